@@ -78,9 +78,8 @@ std::vector<PowerUnit> units_of(const PowerQuestion& question) {
   for (std::size_t i = 0; i < question.cells.size(); ++i) {
     const QuestionCell& cell = question.cells[i];
     const int all = cell.null ? plan.null_replications : plan.replications;
-    const int block = sessions ? 1 : plan.block;  // full sessions take long
-    for (int first = 0; first < all; first += block) {
-      units.push_back({i, sessions, first, std::min(block, all - first)});
+    for (int first = 0; first < all; first += plan.block) {
+      units.push_back({i, sessions, first, std::min(plan.block, all - first)});
     }
     for (int first = 0; cell.checked && first < plan.checked_replications; ++first) {
       units.push_back({i, true, first, 1});

@@ -43,7 +43,7 @@ int megabytes_of_a_task() {
 void print_bundling(const PowerQuestion& question, std::size_t parts, double each) {
   constexpr std::size_t kFew = 1000;  // files that hurt nobody
   constexpr double kSeconds = 60.0;   // of computing that are worth a file
-  if (parts <= kFew || each >= kSeconds || question.plan.depth == PowerDepth::kSessions) {
+  if (parts <= kFew || each >= kSeconds) {
     return;
   }
   const int most = std::max(question.plan.replications, question.plan.null_replications);

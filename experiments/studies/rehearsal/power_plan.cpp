@@ -49,6 +49,9 @@ PowerPlan read_power_plan(Table& root) {
                      ? PowerDepth::kSessions
                      : PowerDepth::kResponses;
   }
+  if (plan.depth == PowerDepth::kSessions && !table.has("block")) {
+    plan.block = 1;  // full sessions take long
+  }
   if (table.has("check")) {
     Table check = table.table("check");
     plan.checked_cells = static_cast<int>(check.integer("cells", 0, 1000));

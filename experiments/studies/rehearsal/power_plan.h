@@ -29,7 +29,7 @@ struct PowerPlan {
   double target{0.8};           // power
   int replications{1000};       // of each cell
   int null_replications{2000};  // of each cell without an effect
-  int block{100};               // replications of a part
+  int block{100};               // replications of a part; of full sessions 1 unless stated
   std::uint64_t seed{1};
   PowerDepth depth{PowerDepth::kResponses};
   int checked_cells{0};  // cells that are also simulated in full

@@ -156,6 +156,24 @@ TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {
   check_watched(q);
 }
 
+TEST(PowerQuestion, AFullStudyIsAPartOfItsOwnUnlessABlockIsStated) {
+  const TemporaryFolder folder;
+  const std::string plan = "watch = \"drift over the trials\"\nreplications = 10\n";
+  const auto counts_of = [&](const std::string& more) {
+    std::vector<int> counts;
+    for (const PowerUnit& unit : units_of(question_of(
+             folder, power_of("stiffness_discrimination",
+                              plan + more + "[[power.vary]]\nkey = \"design.participants\"\n"
+                                            "values = [4]\n")))) {
+      counts.push_back(unit.count);
+    }
+    return counts;
+  };
+  EXPECT_EQ(counts_of("depth = \"sessions\"\n"), std::vector<int>(10, 1));
+  EXPECT_EQ(counts_of("depth = \"sessions\"\nblock = 4\n"), (std::vector<int>{4, 4, 2}));
+  EXPECT_EQ(counts_of(""), std::vector<int>{10});
+}
+
 TEST(PowerQuestion, TheSourcesPooledTestExceedsItsLevelAndThePairedOneDoesNot) {
   const TemporaryFolder folder;
   PowerQuestion q = load_question(kSource / "docs/worked/power/pooled.toml");
