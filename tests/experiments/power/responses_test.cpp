@@ -160,11 +160,10 @@ TEST(PowerQuestion, AFullStudyIsAPartOfItsOwnUnlessABlockIsStated) {
   const TemporaryFolder folder;
   const std::string plan = "watch = \"drift over the trials\"\nreplications = 10\n";
   const auto counts_of = [&](const std::string& more) {
+    const std::string vary = "[[power.vary]]\nkey = \"design.participants\"\nvalues = [4]\n";
+    const std::string power = power_of("stiffness_discrimination", plan + more + vary);
     std::vector<int> counts;
-    for (const PowerUnit& unit : units_of(question_of(
-             folder, power_of("stiffness_discrimination",
-                              plan + more + "[[power.vary]]\nkey = \"design.participants\"\n"
-                                            "values = [4]\n")))) {
+    for (const PowerUnit& unit : units_of(question_of(folder, power))) {
       counts.push_back(unit.count);
     }
     return counts;
