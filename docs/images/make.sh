@@ -4,6 +4,7 @@
 # Needs Debian's chromium and chromium-driver for console and report. The report is that of
 # results/force_training. Other pictures:
 #   docs/algorithms/bone-look.sh, docs/drilling-session.sh   bones and drillings, from a labelled ear
+#   docs/cavities.sh                                         stage-*.jpg, cavity-*.jpg, from labelled ears
 #   docs/live-hints.sh                                       live-hint.png, with a rehearsal (15 min)
 #   docs/algorithms/alignment-options.sh                     paths of the alignment
 #   docs/algorithms/tutoring.sh                              a led hand beside its tutor's
