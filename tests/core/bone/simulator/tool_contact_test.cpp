@@ -175,7 +175,7 @@ TEST(ToolContactTest, ToolsThatMeetLoseEnergyAlsoInTicks) {
     EXPECT_LT(bounced(speed, ToolContactParameters{}.damping), 1.0) << speed;
   }
   EXPECT_NEAR(bounced(0.1, 0.0), 1.0, 0.02);  // nor does a spring alone gain much
-  EXPECT_GT(bounced(0.1, 0.0, 0.0), 1.05);     // as it would by being held for a tick
+  EXPECT_GT(bounced(0.1, 0.0, 0.0), 1.05);    // as it would by being held for a tick
 }
 
 TEST(ToolContactTest, ToolsThatCrossArePushedBackUntilTheyAreFree) {
