@@ -64,7 +64,7 @@ void TwoRateTouch::start(const Vector3d& tool) noexcept {
   path_.starts = true;
   path_.from = tool_ = tool;
   path_.count = 0;
-  note_late();
+  waited_ = 0;
   force_count_ = 0;
   contact_ = {};
   contact_.proxy = tool;
@@ -102,11 +102,10 @@ void TwoRateTouch::hand_over(const Vector3d& tool) noexcept {
     return;
   }
   if (given_ && !take()) {
-    ++counts_.late;
-    ++waited_;
+    wait();
     return;
   }
-  if (note_late()) {
+  if (std::exchange(waited_, 0) > 0) {
     for (int i = 0; i < rates_.window; ++i) {
       const double share = (i + 1.0) / rates_.window;
       path_.tools[static_cast<std::size_t>(i)] = path_.from + share * (tool - path_.from);
@@ -120,13 +119,15 @@ void TwoRateTouch::hand_over(const Vector3d& tool) noexcept {
   path_.count = 0;
 }
 
-/// @returns whether the body was waited for
-bool TwoRateTouch::note_late() noexcept {
-  const std::uint64_t waited = std::exchange(waited_, 0);
-  if (waited > 0 && late_.size() < kMostLate) {
-    late_.push_back({tick_, waited});
+/// The window is late by a tick more, whatever ends that: it is known at every moment.
+void TwoRateTouch::wait() noexcept {
+  ++counts_.late;
+  ++waited_;
+  if (waited_ > 1 && !late_.empty() && late_.back().tick == tick_) {
+    late_.back() = {tick_ + 1, waited_};
+  } else if (waited_ == 1 && late_.size() < kMostLate) {
+    late_.push_back({tick_ + 1, 1});
   }
-  return waited > 0;
 }
 
 /// @returns whether the body has gone along the path that it was given

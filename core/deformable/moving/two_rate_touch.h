@@ -66,7 +66,7 @@ class TwoRateTouch final : public BodyTouch {
  private:
   void hand_over(const Eigen::Vector3d& tool) noexcept;
   bool take() noexcept;
-  bool note_late() noexcept;
+  void wait() noexcept;
   bool is_to_be_late() noexcept;
   void note() noexcept;
   void limit() noexcept;
