@@ -133,8 +133,8 @@ TEST_P(BoneLayerTest, ADentIsDrawnIntoThePictureThatIsKept) {
     dent = {2,
             {frame.camera.target.x() + 3e-4 * step, frame.camera.target.y() - 0.004, top},
             Eigen::Vector3d::UnitZ(),
-            3e-4 * step,
-            0.003};
+            1.5e-4 * step,
+            0.002};
     ASSERT_NO_FATAL_FAILURE(both.draw(frame, "a dent", step));
     EXPECT_GT(both.pixels(), 0U) << step;
     EXPECT_LT(both.pixels(), std::size_t{kWidth * kHeight / 2}) << step;
