@@ -165,7 +165,8 @@ TEST(TrialObjectTest, ABodyOfSpringsIsReadAndItsMistakesAreToldInASentenceEach) 
   EXPECT_THAT(problems("density = 1000\n"), Contains(HasSubstr("constants is missing")));
   const std::string jelly = "constants = [1e-3, 0, 2e-3]\ndensity = 1000\n";
   EXPECT_THAT(problems(jelly + "rate = 250\n"), IsEmpty());
-  EXPECT_THAT(problems(jelly + "rate = 0\n"), Contains(HasSubstr("objects.tissue.rate is 0 Hz")));
+  EXPECT_THAT(problems(jelly + "rate = 0\n"),
+              Contains(HasSubstr("objects.tissue.rate is 0; allowed")));
   EXPECT_THAT(problems("constants = [1e-3, 0, 2e-3]\ndensity = 1000\nyoung = 1e4\n"),
               Contains(HasSubstr("objects.tissue.young")));
 }
