@@ -128,7 +128,7 @@ struct FirstTests {
   std::string because;  // why a study made none
 };
 
-/// Of the first study that could make any.
+/// The tests of the first simulated study that could make any.
 FirstTests first_tests(const PowerQuestion& question) {
   constexpr int kStudies = 3;
   FirstTests first;

@@ -19,7 +19,7 @@ namespace {
 
 using namespace haptrial;
 
-/// Of the processor, in this process.
+/// @returns what the processor has worked for this process [s]
 double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// @returns trials a second

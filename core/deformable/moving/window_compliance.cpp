@@ -32,7 +32,7 @@ std::vector<std::int32_t> touched_vertices(const MovingBody& body,
   return {touched.begin(), touched.end()};
 }
 
-/// Of a symmetric matrix whose lower half is given.
+/// @param matrix  symmetric and positive definite; its lower half is read
 Eigen::MatrixXf inverse_of(Eigen::MatrixXd matrix) {
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factors(matrix);
   Eigen::MatrixXd root = Eigen::MatrixXd::Identity(matrix.rows(), matrix.rows());

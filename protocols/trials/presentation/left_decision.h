@@ -14,7 +14,7 @@ inline constexpr std::size_t kMostIntervals = 16;
 /// servo thread asks and goes on; the participant thinks until the answer is there.
 class LeftDecision {
  public:
-  /// Of one question.
+  /// The answer to one question.
   struct Answer {
     int choice{-1};        // from 0; of a typed number -1
     double value{0.0};     // of a typed number

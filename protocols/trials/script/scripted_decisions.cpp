@@ -76,7 +76,7 @@ std::optional<LeftDecision::Answer> answer_in(const Line& said, const Question& 
   return found != question.choices.end() ? std::optional(answer) : std::nullopt;
 }
 
-/// Of its own: 53 bits, which every language's numbers hold.
+/// A decision's own seed, of 53 bits: numbers of every language hold it.
 std::uint64_t seed_of(std::uint64_t seed, const TrialToDecide& trial, const Question& question) {
   return derived_seed(seed, fmt::format("decision {}{} {}", trial.practice ? "practice " : "",
                                         trial.trial, question.name)) >>
