@@ -12,13 +12,15 @@
 namespace haptrial {
 
 std::string file_text(const std::filesystem::path& file) {
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   // An empty file gives no character to <<, which takes that for a failure.
   const bool empty = in && in.peek() == std::ifstream::traits_type::eof() && !in.bad();
   if (!in.is_open() || !(empty || text << in.rdbuf())) {
+    const int why = errno == 0 ? EIO : errno;
     throw InputError(
-        fmt::format("{}: cannot be read; choose a file with read permission", file.string()));
+        fmt::format("{}: cannot be read: {}", file.string(), std::system_category().message(why)));
   }
   return std::move(text).str();
 }
