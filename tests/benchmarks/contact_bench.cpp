@@ -1,5 +1,6 @@
 // Contact rendering on a tessellated sphere and on scanned meshes: tool at 50 mm/s, 0.5 to 2 mm
-// below the surface. Times of single ticks with 20 ns of clock in them.
+// below the surface. Times of single ticks with 20 ns of clock in them. Where Embree is installed, one
+// ray of it from each place of the proxy to the tool says how fast the machine is.
 //
 //     bench_contact [--rounds N] [--ticks N]   each tick counts with the fastest of N rounds (5)
 
@@ -23,6 +24,7 @@
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/mesh/procedural.h"
+#include "tests/benchmarks/distance_peers.h"
 
 namespace {
 
@@ -110,6 +112,26 @@ void follow(const char* name, const ContactSurface& surface, const Path& path, d
   }
 }
 
+#ifdef HAPTRIAL_EMBREE
+void rays(const Mesh& mesh, const ContactSurface& surface, const Path& path, const Vector3d& start) {
+  const haptrial::bench::EmbreeTree tree(mesh);
+  Proxy proxy(surface, {});
+  proxy.start(start);
+  Path from;
+  for (const Vector3d& tool : path) {  // a little outside, so that the ray meets the surface
+    const Vector3d at = proxy.follow(tool).position;
+    from.push_back(at + 1e-6 * (at - tool).normalized());
+  }
+  std::size_t met = 0;
+  measure(
+      "  one ray of Embree, proxy to tool", path.size(), [&] { met = 0; },
+      [&](std::size_t i) { met += tree.meets(from[i], path[i]) < 1.0; });
+  std::printf("  (%zu of %zu rays met the surface)\n", met, path.size());
+}
+#else
+void rays(const Mesh&, const ContactSurface&, const Path&, const Vector3d&) {}
+#endif
+
 void scanned(const char* file) {
   const char* folder = std::getenv("HAPTRIAL_DATA");
   const auto path = std::filesystem::path(folder ? folder : "../shared/data") / "meshes" / file;
@@ -128,6 +150,7 @@ void scanned(const char* file) {
   const Vector3d start = surface.bvh().closest(way.front()).point * 1.3;
   follow("  point", surface, way, 0.0, start);
   follow("  sphere of 1 mm", surface, way, 0.001, start);
+  rays(mesh, surface, way, start);
 }
 
 }  // namespace
@@ -137,11 +160,13 @@ int main(int argc, char** argv) {
     (std::strcmp(argv[i], "--rounds") == 0 ? rounds : ticks) = std::atoi(argv[i + 1]);
   }
   for (const int frequency : {71, 100}) {
-    const ContactSurface surface(haptrial::geometry::make_sphere(0.03, frequency));
+    const Mesh mesh = haptrial::geometry::make_sphere(0.03, frequency);
+    const ContactSurface surface(mesh);
     std::printf("sphere of 30 mm, %zu triangles\n", surface.triangles());
     follow("  point, 1 mm deep", surface, circle(0.03, 0.001), 0.0, {0, 0, 0.04});
     follow("  sphere of 1 mm, 1 mm deep", surface, circle(0.031, 0.001), 0.001, {0, 0, 0.04});
     follow("  point, no contact, 1 mm off", surface, circle(0.031, 0.0), 0.0, {0, 0, 0.04});
+    rays(mesh, surface, circle(0.03, 0.001), {0, 0, 0.04});
   }
   scanned("bunny_watertight_29k_fcpw.obj");
   scanned("dragon_watertight_100k_fcpw.obj");

@@ -1,6 +1,7 @@
 #pragma once
 
-// CGAL's AABB tree and Embree's point query behind the same two calls, for bench_distance.
+// CGAL's AABB tree and Embree's point query behind the same two calls, for bench_distance; Embree's
+// ray beside a proxy's tick, for bench_contact.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -113,6 +114,25 @@ class EmbreeTree {
       rtcPointQuery(scene_, &at, &context, visit, &query);
       squared[i] = static_cast<double>((query.point - query.nearest).squaredNorm());
     }
+  }
+
+  /// The share of the way from one point to another up to the first triangle; 1 where there is none.
+  double meets(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    const Eigen::Vector3f origin = from.cast<float>(), way = (to - from).cast<float>();
+    RTCRayHit ray{};
+    ray.ray.org_x = origin.x();
+    ray.ray.org_y = origin.y();
+    ray.ray.org_z = origin.z();
+    ray.ray.dir_x = way.x();
+    ray.ray.dir_y = way.y();
+    ray.ray.dir_z = way.z();
+    ray.ray.tfar = 1.0f;
+    ray.ray.mask = ~0u;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &ray);
+    return static_cast<double>(ray.ray.tfar);
   }
 
  private:
