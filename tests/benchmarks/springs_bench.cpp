@@ -1,6 +1,7 @@
 // Forces of length, area and volume on 20,480 tetrahedra (16 x 16 x 16 cubes of five), and a step
-// of Verlet's method with them, on one core. Times are processor time of this thread: the fastest
-// and the median of many.
+// of Verlet's method with them, on one core. Beside it what published peers compute, lengths alone,
+// edge after edge, so that figures of different machines can be compared. Times are processor time
+// of this thread: the fastest and the median of many.
 //
 //     bench_springs
 
@@ -49,6 +50,20 @@ std::vector<Vector3d> shaken(const SpringBody& body, double by) {
     p += by * Vector3d(random.normal(), random.normal(), random.normal());
   }
   return positions;
+}
+
+/// f = k / L₀² (l − L₀) along each edge: the law of the peers.
+void add_lengths(const SpringBody& body, const std::vector<Vector3d>& at,
+                 std::vector<Vector3d>& sums) {
+  for (std::size_t e = 0; e < body.parts.edges.size(); ++e) {
+    const auto [a, b] = body.parts.edges[e];
+    const Vector3d way = at[b] - at[a];
+    const double length = way.norm(), rest = body.lengths[e];
+    const double stiffness = body.constants.length[e] / (rest * rest);
+    const Vector3d force = stiffness * (length - rest) / length * way;
+    sums[a] += force;
+    sums[b] -= force;
+  }
 }
 
 void measure_sets(const SpringBody& body) {
@@ -127,6 +142,8 @@ int main() {
   measure_sets(body);
   std::vector<Vector3d> forces;
   const std::vector<Vector3d> positions = shaken(body, 3e-4);
+  std::vector<Vector3d> sums(positions.size(), Vector3d::Zero());
+  measure("lengths alone, edge after edge", 2000, [&] { add_lengths(body, positions, sums); });
   measure("forces, spring after spring", 20, [&] { forces = spring_forces(body, positions); });
   measure("packing", 3, [&] { pack_springs(body); });
   double step = 0;
