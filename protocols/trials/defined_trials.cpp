@@ -17,6 +17,7 @@
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/objects/object_files.h"
 #include "protocols/trials/objects/yielding_bodies.h"
+#include "protocols/trials/presentation/pass_rows.h"
 #include "protocols/trials/presentation/stage_sight.h"
 #include "protocols/trials/presentation/trial_drawing.h"
 #include "protocols/trials/script/kept_script.h"
@@ -53,13 +54,6 @@ std::vector<RecordedObject> recorded_of(const TrialsDefinition& d, std::size_t f
     }
   }
   return recorded;
-}
-
-record::StageEnding ending_of(StageEnd how) {
-  return how == StageEnd::kReached     ? record::StageEnding::kReached
-         : how == StageEnd::kLate      ? record::StageEnding::kLate
-         : how == StageEnd::kTooLittle ? record::StageEnding::kTooLittle
-                                       : record::StageEnding::kBrokenOff;
 }
 
 }  // namespace
@@ -421,28 +415,7 @@ void DefinedTrials::note_variables(std::size_t interval,
 }
 
 std::vector<record::ResponseRow> DefinedTrials::responses() {
-  std::vector<record::ResponseRow> rows;
-  for (std::size_t i = 0; i < pass_->answers().size(); ++i) {
-    const Answer& answer = pass_->answers()[i];
-    const Question& question = d_.questions[i];
-    if (!answer.given) {
-      continue;
-    }
-    record::ResponseRow row;
-    row.question = question.name;
-    row.interval = static_cast<std::int32_t>(pass_->intervals_begun());
-    row.value = question.types() ? answer.value : question.first + answer.choice;
-    if (!question.types()) {
-      row.text = question.choices[static_cast<std::size_t>(answer.choice)].value;
-    }
-    row.correct = right_[i] < 0 ? -1 : answer.choice == right_[i] ? 1 : 0;
-    row.source = answer.source;
-    row.code = answer.code;
-    row.reaction_time = answer.reaction_time;
-    row.sequence = answer.sequence;
-    rows.push_back(std::move(row));
-  }
-  return rows;
+  return response_rows(*pass_, d_.questions, right_);
 }
 
 void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
@@ -451,9 +424,12 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   }
   file.add(std::span<const record::VariableRow>(variables_));
   keep_level(file, row);
-  keep_stages(file, row);
+  const std::vector<record::StageRow> stages = stage_rows(*pass_, stages_, row);
+  file.add(std::span<const record::StageRow>(stages));
   keep_adaptation(file, row);
-  keep_out_of_time(file, row);
+  if (const auto late = out_of_time_rows(*pass_, d_.questions, row); !late.empty()) {
+    file.add(std::span<const record::OutOfTimeRow>(late));
+  }
   touched_bodies_.keep(*pass_, row, file);
 }
 
@@ -467,24 +443,6 @@ std::vector<std::string> DefinedTrials::notices() const {
   const std::vector<std::string> bodies = touched_bodies_.notices();
   lines.insert(lines.end(), bodies.begin(), bodies.end());
   return lines;
-}
-
-void DefinedTrials::keep_out_of_time(SessionFile& file, std::int32_t row) const {
-  std::vector<record::OutOfTimeRow> rows;
-  for (std::size_t i = 0; i < pass_->answers().size(); ++i) {
-    const Answer& answer = pass_->answers()[i];
-    const Question& question = d_.questions[i];
-    if (answer.given && answer.pace != Pace::kInTime) {
-      const bool fast = answer.pace == Pace::kTooFast;
-      rows.push_back({row, question.name,
-                      fast ? record::OutOfTime::kTooFast : record::OutOfTime::kTooSlow,
-                      answer.reaction_time, fast ? question.too_fast : question.too_slow,
-                      question.again && pass_->state() == PassState::kCompleted});
-    }
-  }
-  if (!rows.empty()) {
-    file.add(std::span<const record::OutOfTimeRow>(rows));
-  }
 }
 
 void DefinedTrials::keep_adaptation(SessionFile& file, std::int32_t row) const {
@@ -508,30 +466,6 @@ void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {
                     done ? outcome_of(responses()) : kNone});
   }
   file.add(std::span<const record::LevelRow>(rows));
-}
-
-void DefinedTrials::keep_stages(SessionFile& file, std::int32_t row) const {
-  std::vector<record::StageRow> rows;
-  for (std::size_t i = 0; i < pass_->intervals_begun(); ++i) {
-    const std::span<const StageTimes> times = pass_->machine(i).times();
-    const std::uint64_t first = pass_->first_tick(i);
-    for (std::size_t k = 0; k < times.size() && times[k].begin >= 0; ++k) {
-      const NamedStage& stage = stages_[i][k];
-      record::StageRow each;
-      each.pass = row;
-      each.interval = static_cast<std::int32_t>(i + 1);
-      each.stage = stage.name;
-      each.first_sample = first + static_cast<std::uint64_t>(times[k].begin);
-      each.last_sample =
-          times[k].end >= 0 ? first + static_cast<std::uint64_t>(times[k].end) : pass_->last_tick();
-      each.onset_sample =
-          times[k].onset >= 0 ? static_cast<std::int64_t>(first) + times[k].onset : -1;
-      each.ending = ending_of(times[k].how);
-      each.most = stage.stage.require ? times[k].most : kNone;
-      rows.push_back(std::move(each));
-    }
-  }
-  file.add(std::span<const record::StageRow>(rows));
 }
 
 void DefinedTrials::empty_logs(SessionFile& file) {

@@ -68,9 +68,9 @@ class DefinedTrials final : public Trials {
   double outcome_of(const std::vector<record::ResponseRow>& responses);
   bool comes_again(const std::vector<record::ResponseRow>& responses) const;
   std::vector<TouchedPlace> places_of(const Question& question) const;
-  void keep_out_of_time(SessionFile& file, std::int32_t row) const;
   void keep_level(SessionFile& file, std::int32_t row);
-  void keep_stages(SessionFile& file, std::int32_t row) const;
+  void keep_adaptation(SessionFile& file, std::int32_t row) const;
+  bool adapts() const { return rig_ != nullptr && d_.observer.adaptation.has_value(); }
 
   const StudiedDefinition& d_;
   SessionPlace place_;
@@ -82,9 +82,6 @@ class DefinedTrials final : public Trials {
   bool decisions_kept_{false};                    // likewise
   TrialSequence sequence_;
   NextTrial current_;
-  void keep_adaptation(SessionFile& file, std::int32_t row) const;
-  bool adapts() const { return rig_ != nullptr && d_.observer.adaptation.has_value(); }
-
   mutable std::unique_ptr<SaidAnswer> said_;                            // of a virtual participant
   mutable TrialsRig* rig_{nullptr};                                     // likewise; the runner's
   std::unique_ptr<ContactLog> contacts_;                                // null: none are recorded
