@@ -14,9 +14,9 @@
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
 #include "core/record/read/session_reader.h"
+#include "core/subject/drilling/cavity_chart.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
-#include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
 
 namespace haptrial::experiments {
@@ -163,11 +163,11 @@ std::vector<RatedBone> bones_of(const record::SessionReader& session) {
     RatedBone bone;
     bone.model = bone::bone_of(record);
     bone.X_WB = pose_of(d.placement, bone.model.grid);
-    bone.chart = protocols::make_chart(bone.model, bone.X_WB, *d.cavity);
+    bone.chart = subject::make_chart(bone.model, bone.X_WB, *d.cavity);
     // Nobody can be blamed for corners that no burr gets into.
     const subject::BurrReach reach = subject::burr_reach(
         bone.chart, subject::cavity_floor(bone.chart), protocols::smallest_burr(d));
-    bone.planned = protocols::cavity_depths(bone.model, bone.X_WB, bone.chart, reach.floor);
+    bone.planned = subject::cavity_depths(bone.model, bone.X_WB, bone.chart, reach.floor);
     bones.push_back(std::move(bone));
   }
   return bones;

@@ -71,7 +71,7 @@ class RealAnatomyTest : public testing::TestWithParam<RealEar> {
   Eigen::Isometry3d pose() const { return pose_of(d_.placement, model().grid); }
   std::vector<float> planned() const {
     const subject::DrillingChart& chart = *d_.charts.front();
-    return protocols::cavity_depths(model(), pose(), chart, subject::cavity_floor(chart));
+    return subject::cavity_depths(model(), pose(), chart, subject::cavity_floor(chart));
   }
   Eigen::Vector3d middle_of(const std::string& name) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -62,7 +62,7 @@ TEST(ValidityDefinitionTest, TheCavityIsBoneWithItsMarginsAndLeadsInward) {
   const Eigen::Isometry3d pose = pose_of(d.placement, model.grid);
   const subject::DrillingChart& chart = *d.charts.front();
   const std::vector<float> depths =
-      protocols::cavity_depths(model, pose, chart, subject::cavity_floor(chart));
+      subject::cavity_depths(model, pose, chart, subject::cavity_floor(chart));
   std::size_t planned = 0;
   for (std::size_t at = 0; at < depths.size(); ++at) {
     if (depths[at] >= 0.0F) {

@@ -11,6 +11,7 @@
 #include "core/bone/anatomy/mandible.h"
 #include "core/bone/anatomy/temporal_bone.h"
 #include "core/bone/data/load_bone.h"
+#include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/definition/groups.h"
 #include "protocols/definition/lab_file.h"
 

@@ -17,10 +17,10 @@
 #include "core/nerve/setup/nerve_setup.h"
 #include "core/render/gl/quality_steps.h"
 #include "core/sound/drill_sound.h"
+#include "core/subject/drilling/cavity_chart.h"
 #include "core/subject/drilling/drilling_chart.h"
 #include "core/subject/drilling/drilling_hand.h"
 #include "core/subject/drilling/drilling_surgeon.h"
-#include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/bone_drilling/definition/placement.h"
 #include "protocols/definition/definition.h"
@@ -53,7 +53,7 @@ struct BoneDefinition : Definition {
   Eigen::Vector3d beside{0.003, 0.003, 0.0};  // the burr, where its other one holds the tube [m]
   std::vector<ParticipantGroup> groups;       // none: everybody is alike
   double practice{0.0};                       // before the first procedure, of people only [s]
-  std::optional<CavityParameters> cavity;     // that is asked for
+  std::optional<subject::CavityParameters> cavity;  // that is asked for
   /// Virtual participants are surgeons (drilling_surgeon.h) and not hands that drill; skill is that
   /// of their group.
   std::optional<subject::SurgeonParameters> surgeon;

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <Eigen/Geometry>
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "core/bone/model/bone_model.h"
-#include "core/subject/drilling/drilling_chart.h"
+#include "core/subject/drilling/cavity_chart.h"
 
 namespace haptrial {
 class Table;
@@ -14,34 +8,7 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// The cavity that a procedure asks for: a cone whose narrow end is at a place beside a structure,
-/// as far as margins to structures leave it. By default a cortical mastoidectomy: the antrum lies
-/// behind the incus, and tegmen, sigmoid sinus, ear canal and nerves bound the way to it.
-/// docs/algorithms/virtual-surgeon.md
-struct CavityParameters {
-  Eigen::Vector3d inward{-Eigen::Vector3d::UnitY()};  // into the bone, in W, unit length
-  std::string beside{"incus"};                        // name of a structure
-  Eigen::Vector3d offset_B{-2.0e-3, 7.0e-3, 1.0e-3};  // of the end from its middle, in B [m]
-  double radius{3.5e-3};                              // at the end > 0 [m]
-  double slope{0.45};                                 // radius by height >= 0
-  double margin{1e-3};                                // to any structure >= 0 [m]
-  std::vector<std::string> structures;                // with margins of their own
-  std::vector<double> margins;                        // theirs >= 0 [m]
-};
-
 /// Reads a [cavity] table; every key is optional but `structures` goes with `margins`.
-CavityParameters read_cavity_parameters(Table& table);
-
-/// @param X_WB  pose of the bone
-/// @throws InputError where the bone has no structure of a name that the cavity gives.
-subject::DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
-                                  const CavityParameters& cavity);
-
-/// Of each voxel of a bone (grid.count()): how deep below the first bone of its column it lies,
-/// where it is plain bone that the cavity asks to be removed; -1 elsewhere. [m]
-/// @param floor  of the columns: cavity_floor(), or as far as a burr reaches
-std::vector<float> cavity_depths(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
-                                 const subject::DrillingChart& chart,
-                                 const std::vector<float>& floor);
+subject::CavityParameters read_cavity_parameters(Table& table);
 
 }  // namespace haptrial::protocols

@@ -5,7 +5,7 @@
 #include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
 #include "core/bone/anatomy/ear_side.h"
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "core/subject/drilling/cavity_chart.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -85,7 +85,7 @@ BonePlacement read_placement(Table& table) {
 }
 
 void check_placement(const BonePlacement& placement, const bone::BoneModel& bone,
-                     const Camera& camera, const CavityParameters* cavity) {
+                     const Camera& camera, const subject::CavityParameters* cavity) {
   const auto directions = bone::ear_directions(bone);
   if (!directions) {
     return;

@@ -8,10 +8,11 @@
 namespace haptrial {
 class Table;
 }
+namespace haptrial::subject {
+struct CavityParameters;
+}
 
 namespace haptrial::protocols {
-
-struct CavityParameters;
 
 /// How a bone lies in the scene.
 struct BonePlacement {
@@ -29,6 +30,6 @@ BonePlacement read_placement(Table& table);
 /// @throws InputError where a labelled ear lies so that the camera, or the cavity, would begin
 /// inside the skull: on the wrong side of it, or in the bone.
 void check_placement(const BonePlacement& placement, const bone::BoneModel& bone,
-                     const Camera& camera, const CavityParameters* cavity);
+                     const Camera& camera, const subject::CavityParameters* cavity);
 
 }  // namespace haptrial::protocols

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "core/subject/drilling/cavity_chart.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -31,8 +31,8 @@ class SimulatedRaterTest : public testing::Test {
   SimulatedRaterTest() {
     cavity.inward = Eigen::Vector3d::UnitZ();
     cavity.offset_B = {0.0, 7e-3, 2e-3};
-    chart = protocols::make_chart(model, pose, cavity);
-    planned = protocols::cavity_depths(model, pose, chart, subject::cavity_floor(chart));
+    chart = subject::make_chart(model, pose, cavity);
+    planned = subject::cavity_depths(model, pose, chart, subject::cavity_floor(chart));
     standing.assign(model.labels.size(), 1);
   }
   Outcome outcome() const { return outcome_of(model, standing, planned, pose, chart); }
@@ -44,7 +44,7 @@ class SimulatedRaterTest : public testing::Test {
 
   bone::BoneModel model{block()};
   Eigen::Isometry3d pose{Eigen::Isometry3d::Identity()};
-  protocols::CavityParameters cavity;
+  subject::CavityParameters cavity;
   subject::DrillingChart chart;
   std::vector<float> planned;
   std::vector<std::uint8_t> standing;
