@@ -276,7 +276,7 @@ endfunction()
 function(haptrial_tests)
   include(GoogleTest)
   find_package(GTest REQUIRED)
-  haptrial_precompiled(tests FOLDERS tests tests/core LIBRARIES Eigen3::Eigen fmt::fmt GTest::gmock GTest::gtest
+  haptrial_precompiled(tests FOLDERS tests LIBRARIES Eigen3::Eigen fmt::fmt GTest::gmock GTest::gtest
                        HEADERS <gmock/gmock.h> <gtest/gtest.h>)
   file(GLOB support CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/*.cpp)
   list(FILTER support EXCLUDE REGEX "/stand_in_")

@@ -1,15 +1,13 @@
 # haptrial_level(FOLDER OUT): the level of optimisation of a release build, 0 to 3 or s. It optimises
 # most what computes, compiles faster what waits: for the disk, for a person, for another program, and
 # keeps small what reads and writes text: commands, definitions, reports. Results do not depend on it.
-# Tests of core compute what they compare with; other tests wait for what they call.
+# Tests are compiled once and run once, but not without any: the linker keeps one copy of a template
+# that both sides have, and may keep the test's.
 # The columns of the session file and the loop of a session compute on every tick.
 function(haptrial_level folder out)
   set(level 3)
   if(folder MATCHES "^tests")
-    set(level 0)
-    if(folder MATCHES "^tests/(core|analysis/contact)")
-      set(level 1)
-    endif()
+    set(level 1)
   elseif(folder MATCHES "^core/record/table|^experiments/loop")
     set(level 3)
   elseif(folder MATCHES "^experiments|^core/(record|stream|network|pages|markers)|^core/base/definition" OR
