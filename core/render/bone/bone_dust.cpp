@@ -3,6 +3,7 @@
 #include <GL/glcorearb.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <numeric>
 
@@ -11,6 +12,24 @@
 #include "core/render/gl/gl_program.h"
 
 namespace haptrial::render {
+namespace {
+
+/// The corners of all grains of a cell.
+using Corners = std::array<bone::DustQuad, 4 * kGrains>;
+/// Two triangles for each grain.
+using Triangles = std::array<std::uint32_t, 6 * kGrains>;
+
+Triangles triangles_of(std::size_t cell) {
+  constexpr std::array<std::uint32_t, 6> kTwo{0, 1, 2, 2, 1, 3};
+  Triangles triangles;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::size_t grain = kGrains * cell + i / kTwo.size();
+    triangles[i] = static_cast<std::uint32_t>(4 * grain + kTwo[i % kTwo.size()]);
+  }
+  return triangles;
+}
+
+}  // namespace
 
 std::vector<std::uint32_t> back_to_front(std::span<const bone::DustQuad> dust,
                                          const Eigen::Vector3d& eye) {
@@ -31,15 +50,16 @@ DustDrawing::DustDrawing(const Gl& gl)
       to_eye_(gl.get_uniform_location(program_, "to_eye")),
       to_clip_(gl.get_uniform_location(program_, "to_clip")),
       colour_(gl.get_uniform_location(program_, "dust")),
-      quads_(gl, sizeof(bone::DustQuad)) {
+      corners_(gl, sizeof(Corners)),
+      triangles_(gl, sizeof(Triangles)) {
   gl_.use_program(program_);
   gl_.uniform1i(gl.get_uniform_location(program_, "openness"), BoneLayer::kOpenness);
   gl_.gen_vertex_arrays(1, &array_);
   gl_.bind_vertex_array(array_);
-  quads_.bind(GL_ARRAY_BUFFER);
+  corners_.bind(GL_ARRAY_BUFFER);
+  triangles_.bind(GL_ELEMENT_ARRAY_BUFFER);
   for (unsigned index = 0; index < 2; ++index) {
     gl_.enable_vertex_attrib_array(index);
-    gl_.vertex_attrib_divisor(index, kGrains);
   }
   gl_.vertex_attrib_pointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(bone::DustQuad), nullptr);
   gl_.vertex_attrib_pointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(bone::DustQuad),
@@ -52,18 +72,34 @@ DustDrawing::~DustDrawing() {
   gl_.delete_program(program_);
 }
 
+/// Every corner is a vertex of its own: instances of four, of which there are thousands, cost
+/// llvmpipe more than what they draw.
+void DustDrawing::send(std::span<const bone::DustQuad> dust, const Eigen::Vector3d& eye) {
+  const std::vector<std::uint32_t> order = back_to_front(dust, eye);
+  corners_.fill(dust.size(), [&](ItemRange range, std::byte* to) {
+    Corners corners;
+    for (std::size_t i = 0; i < range.count; ++i) {
+      corners.fill(dust[order[range.first + i]]);
+      std::memcpy(to + i * sizeof(Corners), corners.data(), sizeof(Corners));
+    }
+  });
+  if (dust.size() > numbered_) {
+    numbered_ = dust.size() + dust.size() / 8;
+    triangles_.fill(numbered_, [](ItemRange range, std::byte* to) {
+      for (std::size_t i = 0; i < range.count; ++i) {
+        const Triangles triangles = triangles_of(range.first + i);
+        std::memcpy(to + i * sizeof(Triangles), triangles.data(), sizeof(Triangles));
+      }
+    });
+  }
+}
+
 void DustDrawing::draw(std::span<const bone::DustQuad> dust, const EyeView& view,
                        const Colour& colour, bool shaded) {
   if (dust.empty()) {
     return;
   }
-  const std::vector<std::uint32_t> order = back_to_front(dust, view.eye);
-  quads_.update(dust.size(), order, [&](ItemRange range, std::byte* to) {
-    for (std::size_t i = 0; i < range.count; ++i) {
-      std::memcpy(to + i * sizeof(bone::DustQuad), &dust[order[range.first + i]],
-                  sizeof(bone::DustQuad));
-    }
-  });
+  send(dust, view.eye);
   const Eigen::Matrix4f to_eye = view.view.cast<float>();
   const Eigen::Matrix4f to_clip = view.projection.cast<float>();
   gl_.use_program(program_);
@@ -72,7 +108,8 @@ void DustDrawing::draw(std::span<const bone::DustQuad> dust, const EyeView& view
   gl_.uniform4f(colour_, static_cast<float>(colour.red), static_cast<float>(colour.green),
                 static_cast<float>(colour.blue), shaded ? 1.0F : 0.0F);
   gl_.bind_vertex_array(array_);
-  gl_.draw_arrays_instanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<int>(kGrains * dust.size()));
+  const std::size_t count = dust.size() * std::tuple_size_v<Triangles>;
+  gl_.draw_elements(GL_TRIANGLES, static_cast<int>(count), GL_UNSIGNED_INT, nullptr);
   gl_.bind_vertex_array(0);
 }
 

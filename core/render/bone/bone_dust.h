@@ -29,12 +29,16 @@ class DustDrawing {
             bool shaded);
 
  private:
+  void send(std::span<const bone::DustQuad> dust, const Eigen::Vector3d& eye);
+
   Gl gl_;
   Gl::Name program_;
   int to_eye_;
   int to_clip_;
   int colour_;
-  GlBuffer quads_;
+  GlBuffer corners_;
+  GlBuffer triangles_;
+  std::size_t numbered_{0};  // cells that have triangles
   Gl::Name array_{0};
 };
 

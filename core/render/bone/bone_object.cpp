@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 namespace haptrial::render {
 namespace {
@@ -157,9 +156,7 @@ std::size_t BoneObject::draw(bool visible, const PixelBox& part, const Eigen::Ma
     }
   }
   std::sort(places_.begin(), places_.end());
-  std::vector<std::uint32_t> all(places_.size());
-  std::iota(all.begin(), all.end(), 0U);
-  part_.update(places_.size(), std::move(all), [&](ItemRange range, std::byte* to) {
+  part_.fill(places_.size(), [&](ItemRange range, std::byte* to) {
     for (std::size_t i = 0; i < range.count; ++i) {
       copy_triangle(chosen, places_[range.first + i], to, i);
     }

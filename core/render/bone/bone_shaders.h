@@ -55,7 +55,8 @@ void main() {
 })";
 
 /// Grains of dust, kGrains a cell: balls that face the eye, each a little off the middle of its
-/// cell by a random way that follows from where the cell is, so that they make no lattice.
+/// cell by a random way that follows from where the cell is, so that they make no lattice. Four
+/// vertices a grain.
 inline constexpr unsigned kGrains = 3;
 inline constexpr const char* kDustVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 place;
@@ -75,14 +76,14 @@ float between(float low, float high, inout uint state) {
 }
 void main() {
   uvec3 bits = floatBitsToUint(place);
-  uint state = mixed(bits.x ^ mixed(bits.y ^ mixed(bits.z + uint(gl_InstanceID % 3))));
+  uint state = mixed(bits.x ^ mixed(bits.y ^ mixed(bits.z + uint(gl_VertexID / 4 % 3))));
   float size = size_and_alpha.x;
   vec3 off;
   off.x = between(-0.5, 0.5, state);
   off.y = between(-0.5, 0.5, state);
   off.z = between(-0.5, 0.5, state);
   float radius = 0.5 * size * sqrt(size_and_alpha.y) * between(0.6, 1.15, state);
-  from_middle = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
+  from_middle = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)) * 2.0 - 1.0;
   vec4 p = to_eye * vec4(place + size * off, 1.0);
   p.xy += radius * from_middle;
   alpha_and_shade = vec2(sqrt(size_and_alpha.y), between(0.88, 1.0, state));

@@ -34,8 +34,13 @@ class GlBuffer {
   /// @returns the bytes sent
   std::size_t update(std::size_t count, std::vector<std::uint32_t> changed,
                      const std::function<void(ItemRange, std::byte*)>& write);
+  /// Sends all items.
+  std::size_t fill(std::size_t count, const std::function<void(ItemRange, std::byte*)>& write);
 
  private:
+  bool make_room(std::size_t count);
+  std::size_t send_in_parts(ItemRange range,
+                            const std::function<void(ItemRange, std::byte*)>& write);
   std::size_t send(ItemRange range, const std::function<void(ItemRange, std::byte*)>& write);
 
   Gl gl_;
