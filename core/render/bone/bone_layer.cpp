@@ -48,31 +48,6 @@ PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_cli
   return pixels.isEmpty() ? PixelBox() : pixels;
 }
 
-std::vector<PixelBox> strips_of(std::span<const PixelBox> boxes) {
-  std::vector<int> cuts;
-  for (const PixelBox& box : boxes) {
-    if (!box.isEmpty()) {
-      cuts.push_back(box.min().x());
-      cuts.push_back(box.max().x() + 1);
-    }
-  }
-  std::ranges::sort(cuts);
-  std::vector<PixelBox> strips;
-  for (std::size_t i = 1; i < cuts.size(); ++i) {
-    PixelBox strip;
-    for (const PixelBox& box : boxes) {
-      if (!box.isEmpty() && box.min().x() <= cuts[i - 1] && box.max().x() >= cuts[i] - 1) {
-        strip.extend(Eigen::Vector2i(cuts[i - 1], box.min().y()));
-        strip.extend(Eigen::Vector2i(cuts[i] - 1, box.max().y()));
-      }
-    }
-    if (cuts[i] > cuts[i - 1] && !strip.isEmpty()) {
-      strips.push_back(strip);
-    }
-  }
-  return strips;
-}
-
 BoneLayer::BoneLayer(const Gl& gl) : gl_(gl), antialias_(gl) {
   gl_.gen_textures(static_cast<int>(textures_.size()), textures_.data());
   for (Gl::Name* framebuffer : {&kept_, &openness_, &shaded_, &over_, &smooth_}) {
@@ -198,19 +173,23 @@ void BoneLayer::copy() const {
   bind_textures();
 }
 
-void BoneLayer::smooth(int left, int width, std::vector<PixelBox> parts) const {
+void BoneLayer::smooth(int left, int width, std::span<const PixelBox> parts) const {
   const Eigen::Vector2i corner(left, 0);
   const Eigen::Vector2i around = Eigen::Vector2i::Constant(Antialias::kReach);
   PixelBox area = all_pixels(width, height_);
   area.translate(corner);
-  for (PixelBox& part : parts) {
+  PixelTiles tiles(area);
+  for (const PixelBox& part : parts) {
     if (!part.isEmpty()) {
-      part =
-          PixelBox(part.min() + corner - around, part.max() + corner + around).intersection(area);
+      tiles.add({part.min() + corner - around, part.max() + corner + around});
     }
   }
+  std::vector<PixelBox> boxes;
+  for (const PixelTiles::Part& part : tiles.parts()) {
+    boxes.push_back(part.box);
+  }
   gl_.bind_framebuffer(GL_FRAMEBUFFER, smooth_);
-  antialias_.draw(textures_[kOver], area, strips_of(parts));
+  antialias_.draw(textures_[kOver], area, boxes);
 }
 
 void BoneLayer::show(bool smooth) const {

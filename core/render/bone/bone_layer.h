@@ -17,9 +17,6 @@ PixelBox all_pixels(int width, int height);
 PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_clip, int width,
                    int height);
 
-/// Boxes of which no two share a pixel, and that cover these: upright strips.
-std::vector<PixelBox> strips_of(std::span<const PixelBox> boxes);
-
 /// The pictures that a frame is put together from. Kept from frame to frame: the bones with their
 /// normals and depth, how open each pixel lies, and the bones shaded by that. A copy of these is
 /// what changes in every frame is drawn over. All are upside down: copied to a framebuffer of
@@ -50,7 +47,7 @@ class BoneLayer {
   /// @param left, width  of an eye's picture  @param parts  of it, from its lower left, that are
   /// not
   ///                     as they were the last time
-  void smooth(int left, int width, std::vector<PixelBox> parts) const;
+  void smooth(int left, int width, std::span<const PixelBox> parts) const;
   /// Copies what was drawn over the copy, or the smoothed picture, to the lower left of the
   /// framebuffer that was bound at begin(), the right way up, and binds it again.
   void show(bool smooth) const;

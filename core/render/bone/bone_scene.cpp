@@ -48,16 +48,19 @@ bool is_same(const EyeView& a, const EyeView& b) {
   return a.view == b.view && a.projection == b.projection;
 }
 
-/// A box that holds the grains of all cells.
-Eigen::AlignedBox3d bounds_of(std::span<const bone::DustQuad> dust) {
+/// Where the grains of all cells may be.
+void add_pixels_of(std::span<const bone::DustQuad> dust, const Eigen::Matrix4d& to_clip,
+                   const EyeArea& area, std::vector<PixelBox>& parts) {
   constexpr double kAround = 1.1;  // times a cell's size
-  Eigen::AlignedBox3d bounds;
+  PixelTiles tiles(all_pixels(area.width, area.height));
   for (const bone::DustQuad& quad : dust) {
+    const Eigen::Vector3d middle = quad.position.cast<double>();
     const Eigen::Vector3d around = Eigen::Vector3d::Constant(kAround * quad.size);
-    bounds.extend(Eigen::Vector3d(quad.position.cast<double>() - around));
-    bounds.extend(Eigen::Vector3d(quad.position.cast<double>() + around));
+    tiles.add(pixels_of({middle - around, middle + around}, to_clip, area.width, area.height));
   }
-  return bounds;
+  for (const PixelTiles::Part& part : tiles.parts()) {
+    parts.push_back(part.box);
+  }
 }
 
 /// What of a frame's tools casts shadows, in W.
@@ -141,6 +144,7 @@ struct BoneScene::Impl {
             int height);
   void draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part, int width,
                   int height);
+  std::vector<BoneBall> bone_balls(const BoneFrame& frame) const;
   std::vector<PixelBox> draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area);
   void smooth(std::vector<std::vector<PixelBox>> drawn, int across, int height);
   void use(const EyeView& view) const;
@@ -299,12 +303,25 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
   }
 }
 
+/// All bone, in the blocks that it is drawn by, in W.
+std::vector<BoneBall> BoneScene::Impl::bone_balls(const BoneFrame& frame) const {
+  std::vector<BoneBall> balls;
+  for (const SceneBone& bone : frame.bones) {
+    for (const BoneBlocks::Block& block : bones.at(bone.id)->blocks().blocks()) {
+      if (!block.quads.empty()) {
+        balls.push_back({bone.pose * block.box.center(), 0.5 * block.box.diagonal().norm()});
+      }
+    }
+  }
+  return balls;
+}
+
 /// @returns the pixels that may have changed by that, from the eye's lower left
 std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view,
                                                  const EyeArea& area) {
   std::vector<PixelBox> parts;
   if (quality != Quality::kPlain) {
-    parts = shading.draw_shadows(view, area, capsules_of(frame));
+    parts = shading.draw_shadows(view, area, capsules_of(frame), bone_balls(frame));
   }
   const Eigen::Matrix4d clip = view.projection * view.view;
   for (const SceneMesh& mesh : frame.meshes) {
@@ -312,8 +329,8 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
       parts.push_back(pixels_of(slab, clip * mesh.pose.matrix(), area.width, area.height));
     }
   }
-  parts.push_back(pixels_of(bounds_of(frame.dust), clip, area.width, area.height));
-  parts.push_back(pixels_of(bounds_of(frame.blood), clip, area.width, area.height));
+  add_pixels_of(frame.dust, clip, area, parts);
+  add_pixels_of(frame.blood, clip, area, parts);
   use(view);
   gl.disable(GL_BLEND);
   gl.depth_mask(GL_TRUE);
@@ -338,7 +355,7 @@ void BoneScene::Impl::smooth(std::vector<std::vector<PixelBox>> drawn, int acros
     std::vector<PixelBox> parts = drawn[eye];
     parts.insert(parts.end(), over[eye].begin(), over[eye].end());
     parts.push_back(was_smooth ? changed[eye] : all_pixels(across, height));
-    layer.smooth(static_cast<int>(eye) * across, across, std::move(parts));
+    layer.smooth(static_cast<int>(eye) * across, across, parts);
   }
   over = std::move(drawn);
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 
 #include "core/render/gl/gl_program.h"
@@ -97,8 +96,9 @@ void main() {
 /// measures: the way to the lamp, strength.
 constexpr const char* kShadowShader = R"(
 out vec4 result;
-uniform vec4 from[4];  // and radius; 0: none
+uniform vec4 from[4];  // and radius
 uniform vec4 to[4];
+uniform int count;
 float near_by(vec3 p, vec3 n, vec3 a, vec3 b, float r) {
   vec3 ab = b - a;
   float t = clamp(dot(p - a, ab) / max(dot(ab, ab), 1e-12), 0.0, 1.0);
@@ -128,11 +128,9 @@ void main() {
     vec3 p = place(at);
     vec3 n = 2.0 * texelFetch(normals, at, 0).xyz - 1.0;
     float shadow = 0.0;
-    for (int i = 0; i < 4; ++i) {
-      if (from[i].w > 0.0) {
-        light *= 1.0 - measures.w * near_by(p, n, from[i].xyz, to[i].xyz, from[i].w);
-        shadow = max(shadow, in_shadow(p, n, measures.xyz, from[i].xyz, to[i].xyz, from[i].w));
-      }
+    for (int i = 0; i < count; ++i) {
+      light *= 1.0 - measures.w * near_by(p, n, from[i].xyz, to[i].xyz, from[i].w);
+      shadow = max(shadow, in_shadow(p, n, measures.xyz, from[i].xyz, to[i].xyz, from[i].w));
     }
     light *= 1.0 - measures.w * shadow;
   }
@@ -140,14 +138,6 @@ void main() {
 })";
 
 constexpr double kMostPixels = BoneShading::kReach - 2;  // of the openness's reach
-/// To the lamp, in the eye's frame: beside the eye, so that a shadow tells how high a tool is.
-const Eigen::Vector3d kLamp = Eigen::Vector3d(0.45, 0.6, 1.0).normalized();
-
-constexpr double kFarthest = 0.04;  // a shadow falls, fading [m]; as in the shader
-constexpr double kNearBy = 4.0;     // radii from which on nearness takes nothing; likewise
-constexpr double kSoftest = 0.01;   // its soft edge at the farthest: 0.25 of the way [m], ...
-constexpr double kEdge = 1.1;       // ... and 0.1 of the radius, beyond the radius
-
 float real(double number) { return static_cast<float>(number); }
 
 }  // namespace
@@ -159,6 +149,7 @@ BoneShading::BoneShading(const Gl& gl, const BoneStyle& style)
       shade_(make_pass("the shaded bone", kShadeShader)),
       shadow_(make_pass("the tools' shadow", kShadowShader)) {
   gl_.gen_vertex_arrays(1, &nothing_);
+  count_ = gl_.get_uniform_location(shadow_.program, "count");
   for (std::size_t i = 0; i < kMostCapsules; ++i) {
     from_[i] = gl_.get_uniform_location(shadow_.program, fmt::format("from[{}]", i).c_str());
     to_[i] = gl_.get_uniform_location(shadow_.program, fmt::format("to[{}]", i).c_str());
@@ -241,59 +232,47 @@ void BoneShading::draw(const BoneLayer& layer, const EyeView& view, const EyeAre
   fill(area, wide);
 }
 
-/// Where a capsule takes light, in boxes along it. @param from, to  its ends in the eye's frame
-static std::vector<PixelBox> darkened_by(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                                         double radius, const EyeView& view, const EyeArea& area) {
-  constexpr double kPiece = 0.01;  // of its length [m]
-  constexpr int kMostPieces = 8;
-  const int pieces = std::clamp(static_cast<int>((to - from).norm() / kPiece), 1, kMostPieces);
-  std::vector<PixelBox> boxes;
-  for (int i = 0; i < pieces; ++i) {
-    Eigen::AlignedBox3d dark;
-    for (const int end : {i, i + 1}) {
-      const Eigen::Vector3d middle = from + static_cast<double>(end) / pieces * (to - from);
-      const Eigen::Vector3d far = middle - kFarthest * kLamp;
-      dark.extend(Eigen::Vector3d(middle.array() - kNearBy * radius));
-      dark.extend(Eigen::Vector3d(middle.array() + kNearBy * radius));
-      dark.extend(Eigen::Vector3d(far.array() - (kEdge * radius + kSoftest)));
-      dark.extend(Eigen::Vector3d(far.array() + (kEdge * radius + kSoftest)));
-    }
-    boxes.push_back(pixels_of(dark, view.projection, area.width, area.height));
-  }
-  return boxes;
-}
-
 std::vector<PixelBox> BoneShading::draw_shadows(const EyeView& view, const EyeArea& area,
-                                                std::span<const Capsule> capsules) const {
+                                                std::span<const Capsule> capsules,
+                                                std::span<const BoneBall> bones) const {
   if (capsules.empty() || style_.shadow <= 0.0) {
     return {};
   }
+  const Eigen::Vector3d lamp = to_lamp();
   use(shadow_, view, area);
-  gl_.uniform4f(shadow_.measures, real(kLamp.x()), real(kLamp.y()), real(kLamp.z()),
+  gl_.uniform4f(shadow_.measures, real(lamp.x()), real(lamp.y()), real(lamp.z()),
                 real(style_.shadow));
-  std::vector<PixelBox> dark;
-  for (std::size_t i = 0; i < kMostCapsules; ++i) {
-    const bool there = i < capsules.size();
-    const Capsule capsule = there ? capsules[i] : Capsule{};
-    const Eigen::Vector3d from = (view.view * capsule.from.homogeneous()).head<3>();
-    const Eigen::Vector3d to = (view.view * capsule.to.homogeneous()).head<3>();
-    gl_.uniform4f(from_[i], real(from.x()), real(from.y()), real(from.z()), real(capsule.radius));
-    gl_.uniform4f(to_[i], real(to.x()), real(to.y()), real(to.z()), 0.0F);
-    if (there) {
-      std::ranges::copy(darkened_by(from, to, capsule.radius, view, area),
-                        std::back_inserter(dark));
-    }
-  }
   gl_.enable(GL_BLEND);
   gl_.blend_equation(GL_FUNC_ADD);
   gl_.blend_func_separate(GL_ZERO, GL_SRC_COLOR, GL_ZERO, GL_ONE);
   gl_.depth_mask(GL_FALSE);
-  dark = strips_of(dark);
-  for (const PixelBox& part : dark) {
-    fill(area, part);
+  std::vector<PixelBox> dark;
+  for (const auto& [box, what] :
+       shadowed_parts(view, all_pixels(area.width, area.height), capsules, bones)) {
+    cast(view, capsules, what);
+    fill(area, box);
+    dark.push_back(box);
   }
   gl_.depth_mask(GL_TRUE);
   return dark;
+}
+
+/// @param which  of the capsules take light, a bit each
+void BoneShading::cast(const EyeView& view, std::span<const Capsule> capsules,
+                       unsigned which) const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < std::min(capsules.size(), kMostCapsules); ++i) {
+    if ((which >> i & 1U) == 0) {
+      continue;
+    }
+    const Eigen::Vector3d from = (view.view * capsules[i].from.homogeneous()).head<3>();
+    const Eigen::Vector3d to = (view.view * capsules[i].to.homogeneous()).head<3>();
+    gl_.uniform4f(from_[count], real(from.x()), real(from.y()), real(from.z()),
+                  real(capsules[i].radius));
+    gl_.uniform4f(to_[count], real(to.x()), real(to.y()), real(to.z()), 0.0F);
+    ++count;
+  }
+  gl_.uniform1i(count_, static_cast<int>(count));
 }
 
 }  // namespace haptrial::render

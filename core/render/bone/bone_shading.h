@@ -7,16 +7,10 @@
 #include "core/render/bone/bone_camera.h"
 #include "core/render/bone/bone_layer.h"
 #include "core/render/bone/bone_style.h"
+#include "core/render/bone/tool_shadow.h"
 #include "core/render/gl/gl.h"
 
 namespace haptrial::render {
-
-/// What a tool takes light away with: all within `radius` of the segment [m].
-struct Capsule {
-  Eigen::Vector3d from{0.0, 0.0, 0.0};
-  Eigen::Vector3d to{0.0, 0.0, 0.0};
-  double radius{0.0};
-};
 
 /// Where an eye's picture lies in the layer's [px].
 struct EyeArea {
@@ -47,11 +41,11 @@ class BoneShading {
             const PixelBox& part) const;
   /// Over the layer's copy, before the tools: what they take of the bone's light. More than
   /// kMostCapsules are left out.
-  /// @param capsules  in W
+  /// @param capsules, bones  in W; all bone lies in a ball
   /// @returns the pixels that it may have darkened, from the eye's lower left
   std::vector<PixelBox> draw_shadows(const EyeView& view, const EyeArea& area,
-                                     std::span<const Capsule> capsules) const;
-  static constexpr std::size_t kMostCapsules = 4;
+                                     std::span<const Capsule> capsules,
+                                     std::span<const BoneBall> bones) const;
 
  private:
   struct Pass {
@@ -64,6 +58,7 @@ class BoneShading {
   Pass make_pass(const char* whose, const char* fragment) const;
   void use(const Pass& pass, const EyeView& view, const EyeArea& area) const;
   void fill(const EyeArea& area, const PixelBox& part) const;
+  void cast(const EyeView& view, std::span<const Capsule> capsules, unsigned which) const;
 
   Gl gl_;
   BoneStyle style_;
@@ -73,6 +68,7 @@ class BoneShading {
   Pass shadow_;
   std::array<int, kMostCapsules> from_{};
   std::array<int, kMostCapsules> to_{};
+  int count_{-1};
 };
 
 }  // namespace haptrial::render

@@ -4,11 +4,9 @@
 #include <span>
 
 #include "core/render/gl/gl.h"
+#include "core/render/gl/pixel_tiles.h"
 
 namespace haptrial::render {
-
-/// Pixels from min() to max(), both included, from the lower left of a framebuffer.
-using PixelBox = Eigen::AlignedBox2i;
 
 /// Draws a picture with its jagged edges smoothed: a straight edge between two ends is taken for
 /// one that is half a pixel off at either of them, and pixels beside it get the share of their
