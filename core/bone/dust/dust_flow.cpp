@@ -19,6 +19,17 @@ constexpr int direction_of(int step) {
   return DustGrid::direction(s[0], s[1], s[2]);
 }
 
+/// What is woken around a cell that has all its neighbours in its own block.
+constexpr std::array<int, 18> steps_around() {
+  std::array<int, 18> steps{};
+  for (int i = 0; i < 18; ++i) {
+    steps[static_cast<std::size_t>(i)] =
+        i % 3 - 1 + DustGrid::kEdge * (i / 3 % 3 - 1 + DustGrid::kEdge * (i / 9));
+  }
+  return steps;
+}
+constexpr std::array<int, 18> kStepsAround = steps_around();
+
 }  // namespace
 
 void DustState::change(Ref ref, std::int32_t by) {
@@ -53,12 +64,19 @@ void DustState::wake(Ref ref) {
 
 /// A cell has more room than before: wakes what may move into it or past it, and itself.
 void DustState::wake_above_and_beside(Ref ref) {
+  if (DustGrid::is_inside(ref)) {
+    for (const int step : kStepsAround) {
+      wake(ref + step);
+    }
+    return;
+  }
   for (int direction = DustGrid::direction(-1, -1, 0); direction < 27; ++direction) {
     wake(grid.beside(ref, direction));
   }
 }
 
-/// Out of the region, and out of the memory that there may be, is out.
+/// Out of the region, and out of the memory that there may be, is out. Whoever moves dust wakes
+/// what is around the cell that it came from: once, where it went to several.
 void DustState::move(Ref from, const Look& to, std::int32_t amount) {
   const Ref ref = to.outside || to.ref != kNone ? to.ref : make(to.cell);
   if (to.outside || ref == kNone) {
@@ -71,12 +89,15 @@ void DustState::move(Ref from, const Look& to, std::int32_t amount) {
     wake(ref);
   }
   change(from, -amount);
-  wake_above_and_beside(from);
 }
 
 void DustState::make_flows() {
-  for (const Flow& flow : flows) {
+  for (std::size_t i = 0; i < flows.size(); ++i) {
+    const Flow& flow = flows[i];
     move(flow.from, flow.to, flow.amount);
+    if (i + 1 == flows.size() || flows[i + 1].from != flow.from) {
+      wake_above_and_beside(flow.from);
+    }
   }
   flows.clear();
 }
@@ -90,6 +111,7 @@ void DustState::fall(Ref ref) {
   const std::int32_t amount = below.outside ? here.amount : std::min(here.amount, below.room);
   if (amount > 0) {
     move(ref, below, amount);
+    wake_above_and_beside(ref);
   }
 }
 

@@ -55,6 +55,12 @@ class DustGrid {
     const int at = place(ref);
     return kEdge * block_of(ref).place + DustCell(at & 7, (at >> 3) & 7, at >> 6);
   }
+  /// Whether all cells around one are in its block: their numbers then differ by fixed steps.
+  static bool is_inside(Ref ref) {
+    const int at = place(ref);
+    const auto between = [](int i) { return i > 0 && i < kEdge - 1; };
+    return between(at & 7) && between((at >> 3) & 7) && between(at >> 6);
+  }
   Ref beside(Ref ref, int direction) const {
     const Step step =
         kSteps[static_cast<std::size_t>(direction)][static_cast<std::size_t>(place(ref))];

@@ -29,9 +29,38 @@ auto copier(std::span<const bone::SurfaceTriangle> triangles) {
   };
 }
 
+constexpr double kPixelRoom = 1.5;  // for rounding of vertices and pixels [px]
+
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
 }  // namespace
+
+/// A part of a picture as bounds of x / w and y / w in clip space.
+class BoneObject::PartOfPicture {
+ public:
+  PartOfPicture(const PixelBox& part, const Eigen::Matrix4d& to_clip, int width, int height)
+      : to_clip_(to_clip) {
+    const Eigen::Array2d half(0.5 * width, 0.5 * height);
+    low_ = (part.min().cast<double>().array() - kPixelRoom) / half - 1.0;
+    high_ = (part.max().cast<double>().array() + 1.0 + kPixelRoom) / half - 1.0;
+  }
+  /// The sides of the part beyond which a place of the bone lies, a bit each; none at the eye.
+  unsigned outside_of(const std::array<float, 3>& place) const {
+    const Eigen::Vector4d at = to_clip_ * Eigen::Vector4d(place[0], place[1], place[2], 1.0);
+    if (!(at.w() > 0.0)) {
+      return 0;
+    }
+    return static_cast<unsigned>(at.x() < low_.x() * at.w()) |
+           static_cast<unsigned>(at.x() > high_.x() * at.w()) << 1 |
+           static_cast<unsigned>(at.y() < low_.y() * at.w()) << 2 |
+           static_cast<unsigned>(at.y() > high_.y() * at.w()) << 3;
+  }
+
+ private:
+  Eigen::Matrix4d to_clip_;
+  Eigen::Array2d low_;
+  Eigen::Array2d high_;
+};
 
 BoneObject::BoneObject(const Gl& gl, std::uint32_t id,
                        std::shared_ptr<const bone::StructureDepths> depths,
@@ -147,12 +176,16 @@ std::size_t BoneObject::draw(bool visible) const {
 }
 
 std::size_t BoneObject::draw(bool visible, const PixelBox& part, const Eigen::Matrix4d& to_clip,
-                             int width, int height) {
+                             int width, int height, bool bent) {
   const bool chosen = visible && valid_;
+  const PartOfPicture seen(part, to_clip, width, height);
   places_.clear();
   for (const BoneBlocks::Block& block : blocks_.blocks()) {
-    if (!block.quads.empty() && part.intersects(pixels_of(block.box, to_clip, width, height))) {
-      gather(chosen, block.quads);
+    if (!block.quads.empty()) {
+      const PixelBox covers = pixels_of(block.box, to_clip, width, height);
+      if (part.intersects(covers)) {
+        gather(chosen, block.quads, bent || part.contains(covers) ? nullptr : &seen);
+      }
     }
   }
   std::sort(places_.begin(), places_.end());
@@ -172,12 +205,22 @@ void BoneObject::copy_triangle(bool chosen, std::size_t place, std::byte* to, st
   std::memcpy(to + i * sizeof(triangle), &triangle, sizeof(triangle));
 }
 
-void BoneObject::gather(bool chosen, std::span<const std::int32_t> quads) {
+/// @param seen  what does not fall into this part is left out; null: all is taken
+void BoneObject::gather(bool chosen, std::span<const std::int32_t> quads,
+                        const PartOfPicture* seen) {
+  const auto may_show = [&](std::size_t slot) {
+    const bone::SurfaceTriangle& triangle = surface_->triangles()[slot];
+    unsigned outside = ~0U;
+    for (const std::uint32_t corner : triangle) {
+      outside &= seen->outside_of(surface_->vertices()[corner].place);
+    }
+    return outside == 0;
+  };
   for (const std::int32_t quad : quads) {
     const auto slot = 2 * static_cast<std::size_t>(quad);
     for (std::size_t half = slot; half < slot + 2; ++half) {
       const std::int32_t place = chosen ? visible_.place_of(half) : static_cast<std::int32_t>(half);
-      if (place >= 0) {
+      if (place >= 0 && (seen == nullptr || may_show(half))) {
         places_.push_back(static_cast<std::uint32_t>(place));
       }
     }

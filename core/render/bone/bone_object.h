@@ -42,8 +42,9 @@ class BoneObject {
   /// Only the triangles that may fall into a part of a picture of width x height pixels, in the
   /// order of draw(): where two have the same depth, the same one shows.
   /// @param to_clip  from B to clip space
+  /// @param bent     there are dents, which move vertices: only whole blocks are left out then
   std::size_t draw(bool visible, const PixelBox& part, const Eigen::Matrix4d& to_clip, int width,
-                   int height);
+                   int height, bool bent);
   bool has_visible_array() const noexcept { return valid_; }
   /// Grows when the visible array is begun anew; 0 while there is none.
   std::uint64_t array() const noexcept { return valid_ ? generation_ : 0; }
@@ -54,7 +55,8 @@ class BoneObject {
   void look(const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker);
   std::size_t send(const BonePalette& palette);
   void copy_triangle(bool chosen, std::size_t place, std::byte* to, std::size_t i) const;
-  void gather(bool chosen, std::span<const std::int32_t> quads);
+  class PartOfPicture;
+  void gather(bool chosen, std::span<const std::int32_t> quads, const PartOfPicture* seen);
   void draw_triangles(const GlBuffer& from, std::size_t count) const;
 
   struct GpuVertex {

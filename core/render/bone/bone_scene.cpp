@@ -299,7 +299,8 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
     BoneObject& object = *bones.at(bone.id);
     const Eigen::Matrix4d clip = view.projection * view.view * bone.pose.matrix();
     figures.drawn += all ? object.draw(style.visible_array)
-                         : object.draw(style.visible_array, part, clip, width, height);
+                         : object.draw(style.visible_array, part, clip, width, height,
+                                       !bounds_of(bone.dents).isEmpty());
   }
 }
 

@@ -44,8 +44,8 @@ double distance_of_segments(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
     const double t = along > 0.0 ? std::clamp((p - u).dot(v - u) / along, 0.0, 1.0) : 0.0;
     return (u + t * (v - u) - p).norm();
   };
-  double least = std::min({from_segment(a, c, d), from_segment(b, c, d), from_segment(c, a, b),
-                           from_segment(d, a, b)});
+  double least = std::min(
+      {from_segment(a, c, d), from_segment(b, c, d), from_segment(c, a, b), from_segment(d, a, b)});
   const Eigen::Vector3d across = (b - a).cross(d - c);
   const double square = across.squaredNorm();
   if (square > 0.0) {  // the lines' nearest points, where both lie between the ends
