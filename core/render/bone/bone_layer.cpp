@@ -169,6 +169,9 @@ void BoneLayer::copy() const {
   gl_.bind_framebuffer(GL_DRAW_FRAMEBUFFER, over_);
   copy_of(shaded_, GL_COLOR_BUFFER_BIT);
   copy_of(kept_, GL_DEPTH_BUFFER_BIT);
+}
+
+void BoneLayer::begin_over() const {
   gl_.bind_framebuffer(GL_FRAMEBUFFER, over_);
   bind_textures();
 }

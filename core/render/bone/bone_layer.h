@@ -41,8 +41,10 @@ class BoneLayer {
   void begin_shaded() const;
   /// The shaded bones are the bones as they are.
   void shade_plainly() const;
-  /// Later drawing goes over a copy of the shaded bones; it may read the same textures.
+  /// Makes a copy of the shaded bones.
   void copy() const;
+  /// Later drawing goes over that copy; it may read the same textures.
+  void begin_over() const;
   /// Smooths the edges of what was drawn over the copy, to a picture that is kept.
   /// @param left, width  of an eye's picture  @param parts  of it, from its lower left, that are
   /// not

@@ -14,6 +14,7 @@
 #include "core/render/bone/bone_object.h"
 #include "core/render/bone/bone_palette.h"
 #include "core/render/bone/bone_shaders.h"
+#include "core/render/bone/depth_tiles.h"
 #include "core/render/gl/gl_program.h"
 
 namespace haptrial::render {
@@ -144,7 +145,7 @@ struct BoneScene::Impl {
             int height);
   void draw_bones(const BoneFrame& frame, const EyeView& view, const PixelBox& part, int width,
                   int height);
-  std::vector<BoneBall> bone_balls(const BoneFrame& frame) const;
+  DepthTiles& tiles(const EyeArea& area);
   std::vector<PixelBox> draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area);
   void smooth(std::vector<std::vector<PixelBox>> drawn, int across, int height);
   void use(const EyeView& view) const;
@@ -164,6 +165,7 @@ struct BoneScene::Impl {
   DustDrawing dust;
   DustDrawing blood;
   BoneLayer layer;
+  std::vector<std::unique_ptr<DepthTiles>> depth_tiles;  // by eye
   BoneShading shading;
   std::vector<EyeView> seen_from;  // as the kept picture is
   Quality quality{Quality::kFull};
@@ -304,25 +306,25 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
   }
 }
 
-/// All bone, in the blocks that it is drawn by, in W.
-std::vector<BoneBall> BoneScene::Impl::bone_balls(const BoneFrame& frame) const {
-  std::vector<BoneBall> balls;
-  for (const SceneBone& bone : frame.bones) {
-    for (const BoneBlocks::Block& block : bones.at(bone.id)->blocks().blocks()) {
-      if (!block.quads.empty()) {
-        balls.push_back({bone.pose * block.box.center(), 0.5 * block.box.diagonal().norm()});
-      }
-    }
+DepthTiles& BoneScene::Impl::tiles(const EyeArea& area) {
+  const auto eye = static_cast<std::size_t>(area.left / area.width);
+  while (depth_tiles.size() <= eye) {
+    depth_tiles.push_back(std::make_unique<DepthTiles>(gl));
   }
-  return balls;
+  return *depth_tiles[eye];
 }
 
 /// @returns the pixels that may have changed by that, from the eye's lower left
 std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view,
                                                  const EyeArea& area) {
+  const std::vector<Capsule> capsules = capsules_of(frame);
   std::vector<PixelBox> parts;
-  if (quality != Quality::kPlain) {
-    parts = shading.draw_shadows(view, area, capsules_of(frame), bone_balls(frame));
+  layer.begin_over();
+  if (quality != Quality::kPlain && !capsules.empty()) {
+    const std::vector<BoneColumn>& columns = tiles(area).columns(view, area);
+    layer.begin_over();
+    gl.viewport(area.left, 0, area.width, area.height);
+    parts = shading.draw_shadows(view, area, capsules, columns);
   }
   const Eigen::Matrix4d clip = view.projection * view.view;
   for (const SceneMesh& mesh : frame.meshes) {
@@ -386,6 +388,7 @@ void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& v
     if (part.isEmpty()) {
       continue;
     }
+    tiles({left, across, height}).change(part);
     gl.viewport(left, 0, across, height);
     if (there) {
       gl.enable(GL_SCISSOR_TEST);

@@ -138,6 +138,16 @@ void main() {
 })";
 
 constexpr double kMostPixels = BoneShading::kReach - 2;  // of the openness's reach
+/// In the eye's frame.
+std::vector<Capsule> seen_by(const EyeView& view, std::span<const Capsule> capsules) {
+  std::vector<Capsule> seen;
+  for (const Capsule& each : capsules) {
+    seen.push_back({(view.view * each.from.homogeneous()).head<3>(),
+                    (view.view * each.to.homogeneous()).head<3>(), each.radius});
+  }
+  return seen;
+}
+
 float real(double number) { return static_cast<float>(number); }
 
 }  // namespace
@@ -234,7 +244,7 @@ void BoneShading::draw(const BoneLayer& layer, const EyeView& view, const EyeAre
 
 std::vector<PixelBox> BoneShading::draw_shadows(const EyeView& view, const EyeArea& area,
                                                 std::span<const Capsule> capsules,
-                                                std::span<const BoneBall> bones) const {
+                                                std::span<const BoneColumn> bone) const {
   if (capsules.empty() || style_.shadow <= 0.0) {
     return {};
   }
@@ -247,9 +257,9 @@ std::vector<PixelBox> BoneShading::draw_shadows(const EyeView& view, const EyeAr
   gl_.blend_func_separate(GL_ZERO, GL_SRC_COLOR, GL_ZERO, GL_ONE);
   gl_.depth_mask(GL_FALSE);
   std::vector<PixelBox> dark;
-  for (const auto& [box, what] :
-       shadowed_parts(view, all_pixels(area.width, area.height), capsules, bones)) {
-    cast(view, capsules, what);
+  const std::vector<Capsule> seen = seen_by(view, capsules);
+  for (const auto& [box, what] : shadowed_parts(all_pixels(area.width, area.height), seen, bone)) {
+    cast(seen, what);
     fill(area, box);
     dark.push_back(box);
   }
@@ -258,17 +268,14 @@ std::vector<PixelBox> BoneShading::draw_shadows(const EyeView& view, const EyeAr
 }
 
 /// @param which  of the capsules take light, a bit each
-void BoneShading::cast(const EyeView& view, std::span<const Capsule> capsules,
-                       unsigned which) const {
+void BoneShading::cast(std::span<const Capsule> capsules, unsigned which) const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < std::min(capsules.size(), kMostCapsules); ++i) {
     if ((which >> i & 1U) == 0) {
       continue;
     }
-    const Eigen::Vector3d from = (view.view * capsules[i].from.homogeneous()).head<3>();
-    const Eigen::Vector3d to = (view.view * capsules[i].to.homogeneous()).head<3>();
-    gl_.uniform4f(from_[count], real(from.x()), real(from.y()), real(from.z()),
-                  real(capsules[i].radius));
+    const auto& [from, to, radius] = capsules[i];
+    gl_.uniform4f(from_[count], real(from.x()), real(from.y()), real(from.z()), real(radius));
     gl_.uniform4f(to_[count], real(to.x()), real(to.y()), real(to.z()), 0.0F);
     ++count;
   }

@@ -12,13 +12,6 @@
 
 namespace haptrial::render {
 
-/// Where an eye's picture lies in the layer's [px].
-struct EyeArea {
-  int left{0};
-  int width{0};
-  int height{0};
-};
-
 /// Darkens bone that is closed in and bone under a tool. Each pixel follows from the kept picture
 /// within kReach pixels around it, so a part drawn again is as it is in the whole. One thread,
 /// with the context current; leaves its own program, blending and scissor behind.
@@ -41,11 +34,12 @@ class BoneShading {
             const PixelBox& part) const;
   /// Over the layer's copy, before the tools: what they take of the bone's light. More than
   /// kMostCapsules are left out.
-  /// @param capsules, bones  in W; all bone lies in a ball
+  /// @param capsules  in W
+  /// @param bone      all that shows of it
   /// @returns the pixels that it may have darkened, from the eye's lower left
   std::vector<PixelBox> draw_shadows(const EyeView& view, const EyeArea& area,
                                      std::span<const Capsule> capsules,
-                                     std::span<const BoneBall> bones) const;
+                                     std::span<const BoneColumn> bone) const;
 
  private:
   struct Pass {
@@ -58,7 +52,7 @@ class BoneShading {
   Pass make_pass(const char* whose, const char* fragment) const;
   void use(const Pass& pass, const EyeView& view, const EyeArea& area) const;
   void fill(const EyeArea& area, const PixelBox& part) const;
-  void cast(const EyeView& view, std::span<const Capsule> capsules, unsigned which) const;
+  void cast(std::span<const Capsule> capsules, unsigned which) const;
 
   Gl gl_;
   BoneStyle style_;

@@ -2,34 +2,35 @@
 
 #include <algorithm>
 
-#include "core/render/bone/bone_layer.h"
-
 namespace haptrial::render {
 namespace {
 
-constexpr double kFarthest = 0.04;  // a shadow falls, fading [m]; as in the shader
-constexpr double kNearBy = 4.0;     // radii from which on nearness takes nothing; likewise
-constexpr double kSoftest = 0.01;   // its soft edge at the farthest: 0.25 of the way [m], ...
-constexpr double kEdge = 1.1;       // ... and 0.1 of the radius, beyond the radius
+constexpr double kShadowEnds = 0.04;  // a shadow falls, fading [m]; as in the shader
+constexpr double kNearBy = 4.0;       // radii from which on nearness takes nothing; likewise
+constexpr double kSoftening = 0.25;   // of the way that it fell: its soft edge, ...
+constexpr double kSharpEdge = 1.1;    // ... beyond the radius and 0.1 of it
 
-/// Whether a capsule may take light of anything in a ball: it is near, or on the way to the lamp.
-/// @param lamp  the way to the lamp as far as shadows fall [m]
-bool darkens(const Capsule& capsule, const BoneBall& ball, const Eigen::Vector3d& lamp) {
-  const double from_ball =
-      distance_of_segments(ball.centre, ball.centre, capsule.from, capsule.to) - ball.radius;
-  if (from_ball < kNearBy * capsule.radius) {
-    return true;
-  }
-  const double from_light =
-      distance_of_segments(ball.centre, ball.centre + lamp, capsule.from, capsule.to) - ball.radius;
-  return from_light < kEdge * capsule.radius + kSoftest;
+double distance(const BoneColumn& bone, const Eigen::Vector3d& moved, const Capsule& capsule) {
+  return distance_of_segments(bone.nearest + moved, bone.farthest + moved, capsule.from,
+                              capsule.to) -
+         bone.radius - capsule.radius;
 }
 
-PixelBox pixels_of_ball(const BoneBall& ball, const EyeView& view, const PixelBox& area) {
-  const Eigen::Vector3d centre = (view.view * ball.centre.homogeneous()).head<3>();
-  const Eigen::AlignedBox3d around(Eigen::Vector3d(centre.array() - ball.radius),
-                                   Eigen::Vector3d(centre.array() + ball.radius));
-  return pixels_of(around, view.projection, area.sizes().x() + 1, area.sizes().y() + 1);
+/// Whether a capsule may take light of any of the bone: it is near, or on the way to the lamp.
+bool darkens(const Capsule& capsule, const BoneColumn& bone) {
+  constexpr int kSteps = 8;
+  constexpr double kHalf = 0.5 * kShadowEnds / kSteps;
+  if (distance(bone, Eigen::Vector3d::Zero(), capsule) < (kNearBy - 1.0) * capsule.radius) {
+    return true;
+  }
+  for (int step = 0; step < kSteps; ++step) {
+    const double way = (2 * step + 1) * kHalf;
+    const double edge = (kSharpEdge - 1.0) * capsule.radius + kSoftening * (way + kHalf);
+    if (distance(bone, way * to_lamp(), capsule) < edge + kHalf) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -58,19 +59,17 @@ double distance_of_segments(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   return least;
 }
 
-std::vector<PixelTiles::Part> shadowed_parts(const EyeView& view, const PixelBox& area,
+std::vector<PixelTiles::Part> shadowed_parts(const PixelBox& area,
                                              std::span<const Capsule> capsules,
-                                             std::span<const BoneBall> bones) {
-  const Eigen::Vector3d lamp =
-      kFarthest * (view.view.topLeftCorner<3, 3>().transpose() * to_lamp());
+                                             std::span<const BoneColumn> bone) {
   PixelTiles tiles(area);
-  for (const BoneBall& ball : bones) {
+  for (const BoneColumn& column : bone) {
     unsigned marks = 0;
     for (std::size_t i = 0; i < std::min(capsules.size(), kMostCapsules); ++i) {
-      marks |= darkens(capsules[i], ball, lamp) ? 1U << i : 0U;
+      marks |= darkens(capsules[i], column) ? 1U << i : 0U;
     }
     if (marks != 0) {
-      tiles.add(pixels_of_ball(ball, view, area), static_cast<std::uint8_t>(marks));
+      tiles.add(column.pixels, static_cast<std::uint8_t>(marks));
     }
   }
   return tiles.parts();

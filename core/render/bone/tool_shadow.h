@@ -5,10 +5,16 @@
 #include <span>
 #include <vector>
 
-#include "core/render/bone/bone_camera.h"
 #include "core/render/gl/pixel_tiles.h"
 
 namespace haptrial::render {
+
+/// Where an eye's picture lies in the layer's [px].
+struct EyeArea {
+  int left{0};
+  int width{0};
+  int height{0};
+};
 
 /// What a tool takes light away with: all within `radius` of the segment [m].
 struct Capsule {
@@ -17,10 +23,13 @@ struct Capsule {
   double radius{0.0};
 };
 
-/// A ball in which bone lies that a shadow may fall on.
-struct BoneBall {
-  Eigen::Vector3d centre{0.0, 0.0, 0.0};
+/// Bone that shows in a part of an eye's picture: within `radius` of the segment from where it is
+/// nearest to where it is farthest, in the eye's frame [m].
+struct BoneColumn {
+  Eigen::Vector3d nearest{0.0, 0.0, 0.0};
+  Eigen::Vector3d farthest{0.0, 0.0, 0.0};
   double radius{0.0};
+  PixelBox pixels;  // from the lower left of the eye's picture
 };
 
 /// The least distance between points of two segments.
@@ -35,10 +44,10 @@ Eigen::Vector3d to_lamp();
 
 /// The parts of an eye's picture in which bone may be darkened, each with the capsules (a bit by
 /// number) that may do it. The measures are those of the shadow's shader (bone_shading.cpp).
-/// @param capsules, bones  in W; capsules from kMostCapsules on are left out
-/// @param area  of the eye's picture
-std::vector<PixelTiles::Part> shadowed_parts(const EyeView& view, const PixelBox& area,
+/// @param area  all of the picture
+/// @param capsules  in the eye's frame; those from kMostCapsules on are left out
+std::vector<PixelTiles::Part> shadowed_parts(const PixelBox& area,
                                              std::span<const Capsule> capsules,
-                                             std::span<const BoneBall> bones);
+                                             std::span<const BoneColumn> bone);
 
 }  // namespace haptrial::render
