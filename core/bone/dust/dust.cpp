@@ -1,6 +1,7 @@
 #include "core/bone/dust/dust.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -78,10 +79,20 @@ double Dust::amount_at(const Eigen::Vector3d& p_W) const noexcept {
   return ref == DustGrid::kNone ? 0.0 : state_->grid.at(ref).amount * kDustUnit;
 }
 
+/// Whether the cell's dust cannot be seen for that in the six cells at its faces.
+static bool is_buried(const DustGrid& grid, Ref ref, std::int32_t enough) {
+  constexpr std::array<int, 6> kFaces{4, 10, 12, 14, 16, 22};  // directions of DustGrid
+  return std::ranges::all_of(kFaces, [&](int direction) {
+    const Ref beside = grid.beside(ref, direction);
+    return beside != DustGrid::kNone && grid.at(beside).amount >= enough;
+  });
+}
+
 void Dust::quads(std::vector<DustQuad>& quads) const {
   constexpr double kLeast = 0.004;  // of a full cell: less is not seen
   constexpr double kSize = 1.6;     // neighbours overlap, so that a pile has no gaps
   constexpr float kAlpha = 0.55F;
+  const std::int32_t enough = state_->capacity / 2;
   quads.clear();
   for (std::int32_t block = 0; block < state_->grid.block_count(); ++block) {
     if (!state_->grid.block(block).used || state_->grid.block(block).filled == 0) {
@@ -90,7 +101,7 @@ void Dust::quads(std::vector<DustQuad>& quads) const {
     for (int place = 0; place < DustGrid::kBlockCells; ++place) {
       const Ref ref = block * DustGrid::kBlockCells + place;
       const double filled = static_cast<double>(state_->grid.at(ref).amount) / state_->capacity;
-      if (filled < kLeast) {
+      if (filled < kLeast || is_buried(state_->grid, ref, enough)) {
         continue;
       }
       const double size = kSize * state_->parameters.cell * std::cbrt(std::min(1.0, filled));

@@ -343,6 +343,8 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
   gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   gl.depth_mask(GL_FALSE);
   draw_meshes(frame, view, true);
+  // Alpha tells the smoothing what is dust.
+  gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
   dust.draw(frame.dust, view, style.dust, is_shaded);
   blood.draw(frame.blood, view, style.blood, is_shaded);
   gl.depth_mask(GL_TRUE);

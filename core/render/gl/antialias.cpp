@@ -24,6 +24,8 @@ vec4 beside(ivec2 at) {  // of the pixels below, above, at its left and at its r
 )";
 
 /// A pixel that is at no edge is as it was, and takes the depth of the pass; edges are left out.
+/// What is more than half transparent is taken for dust, which is soft already: full of edges that
+/// are none.
 constexpr const char* kFlatShader = R"(
 const float kLeast = 0.04;   // of a difference that is an edge
 const float kShare = 0.125;  // and of the brightest
@@ -34,9 +36,10 @@ void main() {
   vec4 near = beside(at);
   float brightest = max(m, max(max(near.x, near.y), max(near.z, near.w)));
   float darkest = min(m, min(min(near.x, near.y), min(near.z, near.w)));
-  if (brightest - darkest >= max(kLeast, kShare * brightest)) {
+  if (result.a > 0.5 && brightest - darkest >= max(kLeast, kShare * brightest)) {
     discard;
   }
+  result.a = 1.0;
 })";
 
 /// The brightness of the eight neighbours tells whether the edge runs across or up, and on which

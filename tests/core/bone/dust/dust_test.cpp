@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/base/random.h"
 
@@ -457,6 +459,48 @@ TEST(DustTest, TheSameCallsGiveTheSameDustAndTimeMayBeCut) {
   for (const DustQuad& quad : cut) {
     EXPECT_EQ(places[key(quad)], quad.size);
   }
+}
+
+TEST(DustTest, OnlyCellsWithFullCellsAtAllFacesAreLeftOutOfThePicture) {
+  const BoneVolume bone = volume_of(32, [](int i, int j, int k) {
+    return k < 8 || std::min({i, j, 31 - i, 31 - j}) < 8;  // a pit
+  });
+  Dust dust(aligned());
+  const DustBone bones[] = {{&bone}};
+  dust.follow(bones);
+  for (int n = 0; n < 60; ++n) {
+    dust.deposit({middle(16, 16, 24), 1e-3, 30.0});
+    dust.step(24.0 * dust.step_time());
+  }
+  std::vector<DustQuad> quads;
+  dust.quads(quads);
+  const auto at = [&](const Eigen::Vector3d& p) { return dust.amount_at(p) / dust.capacity(); };
+  std::set<std::array<int, 3>> drawn;
+  const auto key = [](const Eigen::Vector3d& p) {
+    const Eigen::Array3i cell = (p.array() / kEdge).floor().cast<int>();
+    return std::array{cell.x(), cell.y(), cell.z()};
+  };
+  for (const DustQuad& quad : quads) {
+    drawn.insert(key(quad.position.cast<double>()));
+  }
+  int buried = 0;
+  for (int k = 0; k < 32; ++k) {
+    for (int j = 0; j < 32; ++j) {
+      for (int i = 0; i < 32; ++i) {
+        const Eigen::Vector3d p = middle(i, j, k);
+        double least = 1.0;
+        for (int axis = 0; axis < 3; ++axis) {
+          const Eigen::Vector3d step = kEdge * Eigen::Vector3d::Unit(axis);
+          least = std::min({least, at(p + step), at(p - step)});
+        }
+        if (at(p) > 0.01) {
+          EXPECT_EQ(drawn.contains(key(p)), least < 0.5) << i << ", " << j << ", " << k;
+          buried += least < 0.5 ? 0 : 1;
+        }
+      }
+    }
+  }
+  EXPECT_GT(buried, 5);
 }
 
 TEST(DustTest, NoDustCostsNothingAndMemoryIsBounded) {

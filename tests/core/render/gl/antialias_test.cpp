@@ -21,7 +21,7 @@ constexpr int kSize = 64;
 using Brightness = std::function<double(double x, double y)>;
 
 /// A picture of that, smoothed.
-Image smoothed(const Brightness& of) {
+Image smoothed(const Brightness& of, std::uint8_t alpha = 255) {
   OffscreenContext context(kSize, kSize);
   const Gl& gl = context.gl();
   std::vector<std::uint8_t> bytes;
@@ -29,7 +29,7 @@ Image smoothed(const Brightness& of) {
     for (int x = 0; x < kSize; ++x) {
       const auto grey =
           static_cast<std::uint8_t>(std::lround(255.0 * of(x + 0.5, kSize - y - 0.5)));
-      bytes.insert(bytes.end(), {grey, grey, grey, 255});
+      bytes.insert(bytes.end(), {grey, grey, grey, alpha});
     }
   }
   Gl::Name picture = 0;
@@ -96,6 +96,12 @@ TEST(AntialiasTest, EdgesComeNearerToTheShareOfEachPixelThatIsLit) {
     return std::hypot(x - 31.7, y - 32.4) < 22.3 ? 0.95 : 0.05;
   };
   EXPECT_LT(error_of(smoothed(disc), disc), 0.65 * error_without(disc));
+}
+
+TEST(AntialiasTest, WhatIsTransparentStaysAsItIs) {
+  const Brightness half = [](double x, double y) { return y > 20.0 + 0.2 * x ? 0.9 : 0.1; };
+  EXPECT_DOUBLE_EQ(error_of(smoothed(half, 100), half), error_without(half));
+  EXPECT_LT(error_of(smoothed(half, 200), half), error_without(half));
 }
 
 TEST(AntialiasTest, WithoutAnEdgeEveryPixelStaysAsItIsAndTheTopStaysAbove) {
