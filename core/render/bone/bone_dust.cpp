@@ -16,9 +16,12 @@ namespace {
 
 /// The corners of all grains of a cell.
 using Corners = std::array<bone::DustQuad, 4 * kGrains>;
-/// Two triangles for each grain.
+/// Two triangles for each grain, of all of a cell or of its first.
 using Triangles = std::array<std::uint32_t, 6 * kGrains>;
+using FirstTriangles = std::array<std::uint32_t, 6>;
+constexpr float kWider = 1.5F;  // a grain that stands for three
 
+template <class Triangles>
 Triangles triangles_of(std::size_t cell) {
   constexpr std::array<std::uint32_t, 6> kTwo{0, 1, 2, 2, 1, 3};
   Triangles triangles;
@@ -27,6 +30,14 @@ Triangles triangles_of(std::size_t cell) {
     triangles[i] = static_cast<std::uint32_t>(4 * grain + kTwo[i % kTwo.size()]);
   }
   return triangles;
+}
+
+template <class Triangles>
+void put_triangles(ItemRange cells, std::byte* to) {
+  for (std::size_t i = 0; i < cells.count; ++i) {
+    const auto triangles = triangles_of<Triangles>(cells.first + i);
+    std::memcpy(to + i * sizeof(Triangles), triangles.data(), sizeof(Triangles));
+  }
 }
 
 }  // namespace
@@ -50,14 +61,15 @@ DustDrawing::DustDrawing(const Gl& gl)
       to_eye_(gl.get_uniform_location(program_, "to_eye")),
       to_clip_(gl.get_uniform_location(program_, "to_clip")),
       colour_(gl.get_uniform_location(program_, "dust")),
+      widen_(gl.get_uniform_location(program_, "widen")),
       corners_(gl, sizeof(Corners)),
-      triangles_(gl, sizeof(Triangles)) {
+      triangles_(gl, sizeof(Triangles)),
+      first_grains_(gl, sizeof(FirstTriangles)) {
   gl_.use_program(program_);
   gl_.uniform1i(gl.get_uniform_location(program_, "openness"), BoneLayer::kOpenness);
   gl_.gen_vertex_arrays(1, &array_);
   gl_.bind_vertex_array(array_);
   corners_.bind(GL_ARRAY_BUFFER);
-  triangles_.bind(GL_ELEMENT_ARRAY_BUFFER);
   for (unsigned index = 0; index < 2; ++index) {
     gl_.enable_vertex_attrib_array(index);
   }
@@ -85,17 +97,13 @@ void DustDrawing::send(std::span<const bone::DustQuad> dust, const Eigen::Vector
   });
   if (dust.size() > numbered_) {
     numbered_ = dust.size() + dust.size() / 8;
-    triangles_.fill(numbered_, [](ItemRange range, std::byte* to) {
-      for (std::size_t i = 0; i < range.count; ++i) {
-        const Triangles triangles = triangles_of(range.first + i);
-        std::memcpy(to + i * sizeof(Triangles), triangles.data(), sizeof(Triangles));
-      }
-    });
+    triangles_.fill(numbered_, put_triangles<Triangles>);
+    first_grains_.fill(numbered_, put_triangles<FirstTriangles>);
   }
 }
 
 void DustDrawing::draw(std::span<const bone::DustQuad> dust, const EyeView& view,
-                       const Colour& colour, bool shaded) {
+                       const Colour& colour, bool shaded, bool coarse) {
   if (dust.empty()) {
     return;
   }
@@ -107,8 +115,11 @@ void DustDrawing::draw(std::span<const bone::DustQuad> dust, const EyeView& view
   gl_.uniform_matrix4fv(to_clip_, 1, GL_FALSE, to_clip.data());
   gl_.uniform4f(colour_, static_cast<float>(colour.red), static_cast<float>(colour.green),
                 static_cast<float>(colour.blue), shaded ? 1.0F : 0.0F);
+  gl_.uniform1f(widen_, coarse ? kWider : 1.0F);
   gl_.bind_vertex_array(array_);
-  const std::size_t count = dust.size() * std::tuple_size_v<Triangles>;
+  (coarse ? first_grains_ : triangles_).bind(GL_ELEMENT_ARRAY_BUFFER);
+  const std::size_t count =
+      dust.size() * (coarse ? std::tuple_size_v<FirstTriangles> : std::tuple_size_v<Triangles>);
   gl_.draw_elements(GL_TRIANGLES, static_cast<int>(count), GL_UNSIGNED_INT, nullptr);
   gl_.bind_vertex_array(0);
 }

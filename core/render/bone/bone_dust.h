@@ -25,8 +25,9 @@ class DustDrawing {
   DustDrawing& operator=(const DustDrawing&) = delete;
 
   /// @param shaded  the openness of a BoneLayer, which is bound, is that of this picture
+  /// @param coarse  one grain a cell, larger, in place of three: a third of the time
   void draw(std::span<const bone::DustQuad> dust, const EyeView& view, const Colour& colour,
-            bool shaded);
+            bool shaded, bool coarse);
 
  private:
   void send(std::span<const bone::DustQuad> dust, const Eigen::Vector3d& eye);
@@ -36,8 +37,10 @@ class DustDrawing {
   int to_eye_;
   int to_clip_;
   int colour_;
+  int widen_;
   GlBuffer corners_;
   GlBuffer triangles_;
+  GlBuffer first_grains_;
   std::size_t numbered_{0};  // cells that have triangles
   Gl::Name array_{0};
 };

@@ -345,8 +345,8 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
   draw_meshes(frame, view, true);
   // Alpha tells the smoothing what is dust.
   gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
-  dust.draw(frame.dust, view, style.dust, is_shaded);
-  blood.draw(frame.blood, view, style.blood, is_shaded);
+  dust.draw(frame.dust, view, style.dust, is_shaded, quality == Quality::kPlain);
+  blood.draw(frame.blood, view, style.blood, is_shaded, false);
   gl.depth_mask(GL_TRUE);
   return parts;
 }

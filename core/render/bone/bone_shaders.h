@@ -63,6 +63,7 @@ layout(location = 0) in vec3 place;
 layout(location = 1) in vec2 size_and_alpha;
 uniform mat4 to_eye;
 uniform mat4 to_clip;
+uniform float widen;  // a grain: this many times
 out vec2 from_middle;
 flat out vec2 alpha_and_shade;
 uint mixed(uint x) {
@@ -82,7 +83,7 @@ void main() {
   off.x = between(-0.5, 0.5, state);
   off.y = between(-0.5, 0.5, state);
   off.z = between(-0.5, 0.5, state);
-  float radius = 0.5 * size * sqrt(size_and_alpha.y) * between(0.6, 1.15, state);
+  float radius = 0.5 * widen * size * sqrt(size_and_alpha.y) * between(0.6, 1.15, state);
   from_middle = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)) * 2.0 - 1.0;
   vec4 p = to_eye * vec4(place + size * off, 1.0);
   p.xy += radius * from_middle;

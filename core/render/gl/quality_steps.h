@@ -6,8 +6,8 @@ namespace haptrial::render {
 
 /// How much of a picture is drawn, from the least to the most.
 enum class Quality : std::uint8_t {
-  kPlain,   // light alone
-  kShaded,  // and shadows
+  kPlain,   // light alone, and a grain of dust a cell
+  kShaded,  // and shadows, and all grains
   kFull,    // and smoothed edges
 };
 

@@ -62,7 +62,7 @@ TEST(ToolShadowTest, AllBoneThatATubeMayDarkenIsInAPart) {
   const PixelBox area(Eigen::Vector2i(0, 0), Eigen::Vector2i(31, 31));
   int dark = 0;
   int left_out = 0;
-  for (int run = 0; run < 3000; ++run) {
+  for (int run = 0; run < 10000; ++run) {
     const std::vector<Capsule> capsules{
         {random_place(random, 0.03), random_place(random, 0.03), random.uniform(0.0005, 0.003)}};
     BoneColumn column{random_place(random, 0.05), {}, random.uniform(0.0, 0.003), area};
