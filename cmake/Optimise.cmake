@@ -1,23 +1,32 @@
 # haptrial_level(FOLDER OUT): the level of optimisation of a release build, 0 to 3 or s. It optimises
-# most what computes, compiles faster what waits: for the disk, for a person, for another program, and
-# keeps small what reads and writes text: commands, definitions, reports. Results do not depend on it.
+# most what computes on every tick or over meshes, compiles faster what waits: for the disk, for a
+# person, for another program, or for a trial to end, and keeps small what reads, prepares, draws and
+# writes: commands, definitions, files, pictures, reports. Results do not depend on it.
 # Tests are compiled once and run once, but not without any: the linker keeps one copy of a template
 # that both sides have, and may keep the test's.
-# The columns of the session file and the loop of a session compute on every tick.
+# The columns of the session file and the loop of a session compute on every tick; simulations of
+# power spend their time in statistics and fits.
 function(haptrial_level folder out)
   set(level 3)
   if(folder MATCHES "^tests")
     set(level 1)
   elseif(folder MATCHES "^core/record/table|^experiments/loop")
     set(level 3)
-  elseif(folder MATCHES "^experiments|^core/(record|stream|network|pages|markers)|^core/base/definition" OR
-         (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/(alignment|psychometric)"))
+  elseif(folder MATCHES "^(experiments|analysis/psychometric)" OR
+         folder MATCHES "^core/(record|stream|network|pages|markers|base/definition)" OR
+         folder MATCHES "^core/(bone/(anatomy|record|tools)|deformable/calibration|device/vendor|hint|nerve/record)" OR
+         folder MATCHES "^core/(psychometric/(function|prediction|procedure)|render/(bone|gl))" OR
+         folder MATCHES "^protocols/(bone_drilling|tutoring|trials|trials/(objects|presentation|stages|subject))$" OR
+         (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/alignment"))
     set(level 2)
   endif()
-  if(folder MATCHES "^experiments/(command|console|control|power|screen|studies|study)" OR
-     folder MATCHES "^core/(base/definition|record/recovery|scene/read|psychometric/definition|nerve/setup|pages)" OR
-     folder MATCHES "^protocols/(definition|[a-z_]+/definition|trials/(language|script))" OR
-     folder MATCHES "^analysis/(document|link|power|[a-z_]+/(comparison|exchange|feedback|figures|report|study|words))")
+  if(folder MATCHES "^experiments/(command|console|control|devices|pages|plugin|power|runner|screen|studies|study)" OR
+     folder MATCHES "^core/(base/definition|bone/data|deformable/setup|device/(gamepad|input|pedal)|geometry/(files|volume_files))" OR
+     folder MATCHES "^core/(markers|nerve/setup|pages|psychometric/definition|record/recovery|render/(flat|mesh|trial)|scene/read|sound/cues)" OR
+     folder MATCHES "^protocols/(definition|force_training$|[a-z_]+/(definition|display)|trials/(language|looks|order|script|sequence))" OR
+     folder MATCHES "^analysis/(document|exchange|files|link|power|statistics/(design|words)|bone_drilling/(hints|nerves|validity)|force_training/statistics|trials/(data|psychometric|reaching))" OR
+     folder MATCHES "^analysis/contact/(duck|evaluation|failure|identification|metrics|recording|registration|simulation|truth)" OR
+     folder MATCHES "^analysis/[a-z_]+/(comparison|exchange|feedback|figures|report|study|words)")
     set(level s)
   endif()
   set(${out} ${level} PARENT_SCOPE)
@@ -31,4 +40,13 @@ function(haptrial_optimise target folder)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}> -Wno-restrict
                                              -Wno-array-bounds -Wno-stringop-overread)
   endif()
+endfunction()
+
+# haptrial_small(TARGET): each function in a section of its own, so that the link of the command leaves
+# out those that nothing calls. Inline functions are not exported: plug-ins have their own. Checks in
+# Eigen and JSON end the program as ever, but without texts that name functions with all their templates.
+function(haptrial_small target)
+  set(check "((x)?void():__builtin_abort())")
+  target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections -fvisibility-inlines-hidden
+                                           "-Deigen_assert(x)=${check}" "-DJSON_ASSERT(x)=${check}")
 endfunction()

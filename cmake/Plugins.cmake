@@ -1,3 +1,19 @@
+# haptrial_inside(OUT): the archives that export nothing, since no plug-in can need them: the commands,
+# the console, simulations of power, and the reports on the program's own experiments.
+function(haptrial_inside out)
+  set(archives "")
+  get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
+  foreach(name ${modules})
+    get_property(folder GLOBAL PROPERTY HAPTRIAL_FOLDER_${name})
+    if(folder MATCHES "^experiments/(command|console|power|screen|studies)" OR
+       folder MATCHES "^analysis/(contact|exchange|link|power|[a-z_]+/(comparison|exchange|feedback|report|study|validity))")
+      list(APPEND archives libhaptrial_${name}.a)
+    endif()
+  endforeach()
+  list(JOIN archives ":" archives)
+  set(${out} ${archives} PARENT_SCOPE)
+endfunction()
+
 # Plug-ins take the program's own functions: the command exports them, and haptrial::plugin has the
 # headers without the libraries (docs/decisions/0015-plug-ins-take-the-program.md).
 function(haptrial_plugins)
@@ -26,6 +42,8 @@ function(haptrial_plugins)
           COMPONENT development)
 
   set(exports ${CMAKE_SOURCE_DIR}/cmake/exports.txt)
-  target_link_options(haptrial PRIVATE LINKER:--dynamic-list=${exports})
+  haptrial_inside(inside)
+  target_link_options(haptrial PRIVATE LINKER:--dynamic-list=${exports} LINKER:--exclude-libs,${inside}
+                                       LINKER:--gc-sections LINKER:-z,pack-relative-relocs)
   set_property(TARGET haptrial APPEND PROPERTY LINK_DEPENDS ${exports})
 endfunction()

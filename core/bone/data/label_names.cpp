@@ -91,9 +91,10 @@ std::vector<Structure> structures_in(const std::map<std::string, std::string>& k
     }
   }
   for (const auto& [key, name] : keys) {
-    const auto label =
-        key.starts_with("label_") ? label_in(std::string_view(key).substr(6)) : std::nullopt;
-    if (label) {
+    if (!key.starts_with("label_")) {
+      continue;
+    }
+    if (const auto label = label_in(std::string_view(key).substr(6))) {
       Structure structure = structure_named(name, static_cast<std::uint8_t>(*label));
       take_properties(value(fmt::format("haptrial_{}", key)), structure);
       put(structures, *label, std::move(structure));
