@@ -22,7 +22,7 @@ using FirstTriangles = std::array<std::uint32_t, 6>;
 constexpr float kWider = 1.5F;  // a grain that stands for three
 
 template <class Triangles>
-Triangles triangles_of(std::size_t cell) {
+Triangles grains_of(std::size_t cell) {
   constexpr std::array<std::uint32_t, 6> kTwo{0, 1, 2, 2, 1, 3};
   Triangles triangles;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -35,7 +35,7 @@ Triangles triangles_of(std::size_t cell) {
 template <class Triangles>
 void put_triangles(ItemRange cells, std::byte* to) {
   for (std::size_t i = 0; i < cells.count; ++i) {
-    const auto triangles = triangles_of<Triangles>(cells.first + i);
+    const auto triangles = grains_of<Triangles>(cells.first + i);
     std::memcpy(to + i * sizeof(Triangles), triangles.data(), sizeof(Triangles));
   }
 }

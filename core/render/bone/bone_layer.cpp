@@ -16,10 +16,6 @@ constexpr double kRoom = 1.5;  // for rounding of vertices and pixels [px]
 
 }  // namespace
 
-PixelBox all_pixels(int width, int height) {
-  return {Eigen::Vector2i(0, 0), Eigen::Vector2i(width - 1, height - 1)};
-}
-
 PixelBox pixels_of(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& to_clip, int width,
                    int height) {
   PixelBox pixels;

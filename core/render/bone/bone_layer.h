@@ -10,7 +10,6 @@
 
 namespace haptrial::render {
 
-PixelBox all_pixels(int width, int height);
 /// The pixels that a box may cover, with room for rounding; all of them where it reaches the
 /// near plane; none for an empty box.
 /// @param to_clip  from the box's frame to OpenGL's clip space

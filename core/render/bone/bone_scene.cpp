@@ -14,8 +14,8 @@
 #include "core/render/bone/bone_object.h"
 #include "core/render/bone/bone_palette.h"
 #include "core/render/bone/bone_shaders.h"
-#include "core/render/bone/depth_tiles.h"
 #include "core/render/gl/gl_program.h"
+#include "core/render/shadow/depth_tiles.h"
 
 namespace haptrial::render {
 namespace {
@@ -309,7 +309,7 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
 DepthTiles& BoneScene::Impl::tiles(const EyeArea& area) {
   const auto eye = static_cast<std::size_t>(area.left / area.width);
   while (depth_tiles.size() <= eye) {
-    depth_tiles.push_back(std::make_unique<DepthTiles>(gl));
+    depth_tiles.push_back(std::make_unique<DepthTiles>(gl, BoneLayer::kDepth));
   }
   return *depth_tiles[eye];
 }
@@ -321,7 +321,7 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
   std::vector<PixelBox> parts;
   layer.begin_over();
   if (quality != Quality::kPlain && !capsules.empty()) {
-    const std::vector<BoneColumn>& columns = tiles(area).columns(view, area);
+    const std::vector<BoneColumn>& columns = tiles(area).columns(view.projection, area);
     layer.begin_over();
     gl.viewport(area.left, 0, area.width, area.height);
     parts = shading.draw_shadows(view, area, capsules, columns);

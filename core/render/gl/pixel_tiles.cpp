@@ -32,6 +32,10 @@ std::vector<Run> runs_in(const std::uint8_t* column, int rows) {
 
 }  // namespace
 
+PixelBox all_pixels(int width, int height) {
+  return {Eigen::Vector2i(0, 0), Eigen::Vector2i(width - 1, height - 1)};
+}
+
 PixelTiles::PixelTiles(const PixelBox& area)
     : area_(area),
       columns_(tiles_in(area.sizes().x() + 1)),

@@ -9,6 +9,8 @@ namespace haptrial::render {
 /// Pixels from min() to max(), both included, from the lower left of a framebuffer.
 using PixelBox = Eigen::AlignedBox2i;
 
+PixelBox all_pixels(int width, int height);
+
 /// Which tiles of a picture something has to be done for, and what: a few boxes in place of many
 /// that overlap.
 class PixelTiles {

@@ -1,5 +1,5 @@
 // What a picture leaves out of a tool's shadow is what the shadow's law leaves alone.
-#include "core/render/bone/tool_shadow.h"
+#include "core/render/shadow/tool_shadow.h"
 
 #include <gtest/gtest.h>
 

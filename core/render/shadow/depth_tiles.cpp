@@ -1,4 +1,4 @@
-#include "core/render/bone/depth_tiles.h"
+#include "core/render/shadow/depth_tiles.h"
 
 #include <GL/glcorearb.h>
 
@@ -40,12 +40,12 @@ Eigen::Vector3d place_of(const Eigen::Vector2d& across, double depth, const Eige
 
 }  // namespace
 
-DepthTiles::DepthTiles(const Gl& gl)
+DepthTiles::DepthTiles(const Gl& gl, int unit)
     : gl_(gl),
       program_(build_program(gl, "the tiles' depths", kScreenVertexShader, kTileShader)),
       area_(gl.get_uniform_location(program_, "area")) {
   gl_.use_program(program_);
-  gl_.uniform1i(gl_.get_uniform_location(program_, "depths"), BoneLayer::kDepth);
+  gl_.uniform1i(gl_.get_uniform_location(program_, "depths"), unit);
   gl_.gen_vertex_arrays(1, &nothing_);
   gl_.gen_textures(1, &texture_);
   gl_.gen_framebuffers(1, &framebuffer_);
@@ -103,7 +103,8 @@ void DepthTiles::find(const EyeArea& area) {
   changed_.setEmpty();
 }
 
-const std::vector<BoneColumn>& DepthTiles::columns(const EyeView& view, const EyeArea& area) {
+const std::vector<BoneColumn>& DepthTiles::columns(const Eigen::Matrix4d& lens,
+                                                   const EyeArea& area) {
   make_room(area);
   if (!changed_.isEmpty()) {
     find(area);
@@ -111,7 +112,6 @@ const std::vector<BoneColumn>& DepthTiles::columns(const EyeView& view, const Ey
   columns_.clear();
   const PixelBox all = all_pixels(area.width, area.height);
   const Eigen::Vector2d size(area.width, area.height);
-  const Eigen::Matrix4d& lens = view.projection;
   const double half_diagonal =
       (kTile / size.array() / lens.diagonal().head<2>().array().abs()).matrix().norm();
   for (int row = 0; row < tiles_.y(); ++row) {

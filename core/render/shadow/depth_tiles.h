@@ -3,10 +3,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "core/render/bone/bone_camera.h"
-#include "core/render/bone/bone_layer.h"
-#include "core/render/bone/tool_shadow.h"
 #include "core/render/gl/gl.h"
+#include "core/render/shadow/tool_shadow.h"
 
 namespace haptrial::render {
 
@@ -15,16 +13,18 @@ namespace haptrial::render {
 /// tile. One thread, with the context current.
 class DepthTiles {
  public:
-  explicit DepthTiles(const Gl& gl);
+  /// @param unit  of the texture with the depths
+  DepthTiles(const Gl& gl, int unit);
   ~DepthTiles();
   DepthTiles(const DepthTiles&) = delete;
   DepthTiles& operator=(const DepthTiles&) = delete;
 
   /// The depths of a part of the eye's picture, from its lower left, changed since they were read.
   void change(const PixelBox& part);
-  /// The bone that shows, by tiles that have some. The layer's textures are bound; another
-  /// framebuffer, viewport and program are afterwards.
-  const std::vector<BoneColumn>& columns(const EyeView& view, const EyeArea& area);
+  /// The bone that shows, by tiles that have some. The depths are bound; another framebuffer,
+  /// viewport and program are afterwards.
+  /// @param lens  the eye's projection
+  const std::vector<BoneColumn>& columns(const Eigen::Matrix4d& lens, const EyeArea& area);
 
  private:
   void make_room(const EyeArea& area);

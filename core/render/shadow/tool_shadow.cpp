@@ -1,4 +1,4 @@
-#include "core/render/bone/tool_shadow.h"
+#include "core/render/shadow/tool_shadow.h"
 
 #include <algorithm>
 
