@@ -16,15 +16,15 @@ function(haptrial_level folder out)
          folder MATCHES "^core/(record|stream|network|pages|markers|base/definition)" OR
          folder MATCHES "^core/(bone/(anatomy|record|tools)|deformable/calibration|device/vendor|hint|nerve/record)" OR
          folder MATCHES "^core/(psychometric/(function|prediction|procedure)|render/(bone|gl))" OR
-         folder MATCHES "^protocols/(bone_drilling|tutoring|trials|trials/(objects|presentation|stages|subject))$" OR
+         folder MATCHES "^protocols/(bone_drilling|tutoring|trials/(objects|presentation|stages))$" OR
          (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/alignment"))
     set(level 2)
   endif()
   if(folder MATCHES "^experiments/(command|console|control|devices|pages|plugin|power|runner|screen|studies|study)" OR
      folder MATCHES "^core/(base/definition|bone/data|deformable/setup|device/(gamepad|input|pedal)|geometry/(files|volume_files))" OR
      folder MATCHES "^core/(markers|nerve/setup|pages|psychometric/definition|record/recovery|render/(flat|mesh|trial)|scene/read|sound/cues)" OR
-     folder MATCHES "^protocols/(definition|force_training$|[a-z_]+/(definition|display)|trials/(language|looks|order|script|sequence))" OR
-     folder MATCHES "^analysis/(document|exchange|files|link|power|statistics/(design|words)|bone_drilling/(hints|nerves|validity)|force_training/statistics|trials/(data|psychometric|reaching))" OR
+     folder MATCHES "^protocols/(definition|force_training$|[a-z_]+/(definition|display)|trials/(language|looks|script))" OR
+     folder MATCHES "^analysis/(document|exchange|files|link|power|statistics/(design|words)|bone_drilling/(hints|nerves|validity)|force_training/statistics)" OR
      folder MATCHES "^analysis/contact/(duck|evaluation|failure|identification|metrics|recording|registration|simulation|truth)" OR
      folder MATCHES "^analysis/[a-z_]+/(comparison|exchange|feedback|figures|report|study|words)")
     set(level s)

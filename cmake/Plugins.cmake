@@ -5,7 +5,7 @@ function(haptrial_inside out)
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
   foreach(name ${modules})
     get_property(folder GLOBAL PROPERTY HAPTRIAL_FOLDER_${name})
-    if(folder MATCHES "^experiments/(command|console|power|screen|studies)" OR
+    if(folder MATCHES "^experiments/(command|console|power|screen)" OR
        folder MATCHES "^analysis/(contact|exchange|link|power|[a-z_]+/(comparison|exchange|feedback|report|study|validity))")
       list(APPEND archives libhaptrial_${name}.a)
     endif()
