@@ -12,12 +12,12 @@ function(haptrial_level folder out)
     set(level 1)
   elseif(folder MATCHES "^core/record/table|^experiments/loop")
     set(level 3)
-  elseif(folder MATCHES "^(experiments|analysis/psychometric)" OR
+  elseif(folder MATCHES "^experiments" OR
          folder MATCHES "^core/(record|stream|network|pages|markers|base/definition)" OR
          folder MATCHES "^core/(bone/(anatomy|record|tools)|deformable/calibration|device/vendor|hint|nerve/record)" OR
-         folder MATCHES "^core/(psychometric/(function|prediction|procedure)|render/(bone|gl))" OR
+         folder MATCHES "^core/render/(bone|gl)" OR
          folder MATCHES "^protocols/(bone_drilling|tutoring|trials/(objects|presentation|stages))$" OR
-         (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/alignment"))
+         (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/(alignment|psychometric)"))
     set(level 2)
   endif()
   if(folder MATCHES "^experiments/(command|console|control|devices|pages|plugin|power|runner|screen|studies|study)" OR
