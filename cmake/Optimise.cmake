@@ -1,11 +1,11 @@
 # haptrial_level(FOLDER OUT): the level of optimisation of a release build, 0 to 3 or s. It optimises
 # most what computes on every tick or over meshes, compiles faster what waits: for the disk, for a
-# person, for another program, or for a trial to end, and keeps small what reads, prepares, draws and
+# person or for another program, and keeps small what reads, prepares, draws and
 # writes: commands, definitions, files, pictures, reports. Results do not depend on it.
 # Tests are compiled once and run once, but not without any: the linker keeps one copy of a template
 # that both sides have, and may keep the test's.
 # The columns of the session file and the loop of a session compute on every tick; simulations of
-# power spend their time in statistics and fits.
+# power spend their time in statistics, fits and the course of trials.
 function(haptrial_level folder out)
   set(level 3)
   if(folder MATCHES "^tests")
