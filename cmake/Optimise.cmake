@@ -1,7 +1,7 @@
 # haptrial_level(FOLDER OUT): the level of optimisation of a release build, 0 to 3 or s. It optimises
 # most what computes on every tick or over meshes, compiles faster what waits: for the disk, for a
-# person or for another program, and keeps small what reads, prepares, draws and
-# writes: commands, definitions, files, pictures, reports. Results do not depend on it.
+# person or for another program, and keeps small what reads, prepares, draws and writes: commands,
+# definitions, files, pictures, reports. Results do not depend on it.
 # Tests are compiled once and run once, but not without any: the linker keeps one copy of a template
 # that both sides have, and may keep the test's.
 # The columns of the session file and the loop of a session compute on every tick; simulations of
