@@ -25,6 +25,7 @@ function(haptrial_level folder out)
      folder MATCHES "^core/(markers|nerve/setup|pages|psychometric/definition|record/recovery|render/(flat|mesh|trial)|scene/read|sound/cues)" OR
      folder MATCHES "^protocols/(definition|force_training$|[a-z_]+/(definition|display)|trials/(language|looks|script))" OR
      folder MATCHES "^analysis/(document|exchange|files|link|power|statistics/(design|words)|bone_drilling/(hints|nerves|validity)|force_training/statistics)" OR
+     folder MATCHES "^analysis/contact/(duck|evaluation|failure|identification|metrics|recording|registration|simulation|truth)" OR
      folder MATCHES "^analysis/[a-z_]+/(comparison|exchange|feedback|figures|report|study|words)")
     set(level s)
   endif()
