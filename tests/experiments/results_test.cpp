@@ -162,27 +162,39 @@ TEST_P(EstimatedResults, Reproduce) {
 INSTANTIATE_TEST_SUITE_P(Shipped, EstimatedResults,
                          testing::ValuesIn(results_with("estimates.csv")), study_of);
 
-std::vector<std::string> cells_of(const std::string& csv) {
-  std::vector<std::string> cells(1);
-  for (const char c : csv) {
-    if (c == ',' || c == '\n') {
-      cells.emplace_back();
-    } else {
-      cells.back() += c;
+std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      rows.back().push_back(cell);
     }
   }
-  return cells;
+  return rows;
 }
 
-/// Operations are counted; on another processor a few of a hundred thousand ticks take one more.
-void expect_close_cells(const std::string& made, const std::string& kept) {
-  const std::vector<std::string> a = cells_of(made);
-  const std::vector<std::string> b = cells_of(kept);
+/// Operations are counted. A processor with wider registers takes near triangles in another order: of a
+/// hundred thousand ticks a few take one operation more, and the greatest of them up to a quarter more.
+/// From its end a row holds the most and the mean of each kind in turn; names of renderers hold commas.
+void expect_close_counts(const std::string& made, const std::string& kept) {
+  const auto a = rows_of(made);
+  const auto b = rows_of(kept);
   ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] != b[i]) {
-      const double number = std::strtod(b[i].c_str(), nullptr);
-      EXPECT_NEAR(std::strtod(a[i].c_str(), nullptr), number, 0.002 + 0.02 * number) << i;
+  ASSERT_EQ(a.front(), b.front());
+  for (std::size_t row = 1; row < b.size(); ++row) {
+    ASSERT_EQ(a[row].size(), b[row].size()) << row;
+    for (std::size_t from_end = 0; from_end < b[row].size(); ++from_end) {
+      const std::string& count = a[row][a[row].size() - 1 - from_end];
+      const std::string& expected = b[row][b[row].size() - 1 - from_end];
+      if (count != expected) {
+        const double number = std::strtod(expected.c_str(), nullptr);
+        const bool greatest = from_end % 2 == 0;
+        EXPECT_NEAR(std::strtod(count.c_str(), nullptr), number,
+                    greatest ? 0.25 * number : 0.002 + 0.02 * number)
+            << "row " << row << ", from its end " << from_end;
+      }
     }
   }
 }
@@ -198,7 +210,7 @@ TEST_P(ContactResults, Reproduce) {
   for (const char* name : {"table-4.csv", "table-5.csv", "table-6.csv", "failures.csv"}) {
     expect_the_same(name);
   }
-  expect_close_cells(test::read_text(out_ / "study/operations.csv"),
+  expect_close_counts(test::read_text(out_ / "study/operations.csv"),
                      test::read_text(folder_ / "operations.csv"));
 }
 
