@@ -14,30 +14,32 @@ function(haptrial_level folder out)
     set(level 3)
   elseif(folder MATCHES "^experiments" OR
          folder MATCHES "^core/(record|stream|network|pages|markers|base/definition)" OR
-         folder MATCHES "^core/(bone/(anatomy|record|tools)|deformable/calibration|device/vendor|hint|nerve/record)" OR
+         folder MATCHES "^core/(bone/tools|deformable/calibration|nerve/record)" OR
          folder MATCHES "^core/render/(bone|gl)" OR
-         folder MATCHES "^protocols/(bone_drilling|tutoring|trials/(objects|presentation|stages))$" OR
+         folder MATCHES "^protocols/(tutoring|trials/(objects|presentation|stages))$" OR
          (folder MATCHES "^analysis" AND NOT folder MATCHES "^analysis/(alignment|psychometric)"))
     set(level 2)
   endif()
   if(folder MATCHES "^experiments/(command|console|control|devices|pages|plugin|power|runner|screen|studies|study)" OR
-     folder MATCHES "^core/(base/definition|bone/data|deformable/setup|device/(gamepad|input|pedal)|geometry/(files|volume_files))" OR
-     folder MATCHES "^core/(markers|nerve/setup|pages|psychometric/definition|record/recovery|render/(flat|mesh|trial)|scene/read|sound/cues)" OR
-     folder MATCHES "^protocols/(definition|force_training$|[a-z_]+/(definition|display)|trials/(language|looks|script))" OR
-     folder MATCHES "^analysis/(document|exchange|files|link|power|statistics/(design|words)|bone_drilling/(hints|nerves|validity)|force_training/statistics)" OR
-     folder MATCHES "^analysis/contact/(duck|evaluation|failure|identification|metrics|recording|registration|simulation|truth)" OR
+     folder MATCHES "^core/(base/definition|bone/(anatomy|data|record)|deformable/setup|device/(gamepad|input|pedal|vendor)|geometry/(files|volume_files))" OR
+     folder MATCHES "^core/(hint|markers|nerve/setup|pages|psychometric/definition|record/(read|recovery)|render/(flat|mesh|trial)|scene/read|sound/cues)" OR
+     folder MATCHES "^protocols/(bone_drilling$|definition|force_training$|[a-z_]+/(definition|display)|trials/(language|looks|script))" OR
+     folder MATCHES "^analysis/(document|exchange|files|link|power|statistics/(design|words)|bone_drilling/(hints|metrics|nerves|validity)|trials/data|force_training/statistics)" OR
+     folder MATCHES "^analysis/contact/(duck|evaluation|failure|identification|metrics|recording|registration|regression|simulation|truth)" OR
      folder MATCHES "^analysis/[a-z_]+/(comparison|exchange|feedback|figures|report|study|words)")
     set(level s)
   endif()
   set(${out} ${level} PARENT_SCOPE)
 endfunction()
 
-# haptrial_optimise(TARGET FOLDER): at that level; one for all under a sanitizer.
+# haptrial_optimise(TARGET FOLDER): at that level; one for all under a sanitizer. Only what computes on
+# every tick has its loops and functions aligned.
 # Below -O3 GCC 12 sees overlaps and overflows in strings that cannot be.
 function(haptrial_optimise target folder)
   haptrial_level("${folder}" level)
   if(NOT HAPTRIAL_SANITIZER AND NOT level EQUAL 3)
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}> -Wno-restrict
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O${level}> -fno-align-functions
+                                             -fno-align-loops -fno-align-jumps -Wno-restrict
                                              -Wno-array-bounds -Wno-stringop-overread)
   endif()
 endfunction()
