@@ -16,18 +16,6 @@ function(haptrial_inside out)
   set(${out} ${archives} PARENT_SCOPE)
 endfunction()
 
-# haptrial_folded_link(): functions with the same instructions are one, and relocations are packed. GNU's
-# linker cannot fold, so without lld the command is 4 % larger. Constants keep their own addresses:
-# by these a picture's type is told.
-function(haptrial_folded_link)
-  find_program(HAPTRIAL_LLD ld.lld)
-  if(HAPTRIAL_LLD AND NOT HAPTRIAL_SANITIZER)
-    target_link_options(haptrial PRIVATE -fuse-ld=lld LINKER:-O2 LINKER:--icf=all)
-  else()
-    target_link_options(haptrial PRIVATE LINKER:-z,pack-relative-relocs)
-  endif()
-endfunction()
-
 # Plug-ins take the program's own functions: the command exports them, and haptrial::plugin has the
 # headers without the libraries (docs/decisions/0015-plug-ins-take-the-program.md).
 function(haptrial_plugins)
@@ -59,6 +47,10 @@ function(haptrial_plugins)
   haptrial_inside(inside)
   target_link_options(haptrial PRIVATE LINKER:--dynamic-list=${exports} LINKER:--exclude-libs,${inside}
                                        LINKER:--gc-sections)
-  haptrial_folded_link()
+  if(HAPTRIAL_LLD AND NOT HAPTRIAL_SANITIZER)
+    # Functions with the same instructions are one. Constants keep their own addresses: by these a
+    # picture's type is told.
+    target_link_options(haptrial PRIVATE LINKER:-O2 LINKER:--icf=all)
+  endif()
   set_property(TARGET haptrial APPEND PROPERTY LINK_DEPENDS ${exports})
 endfunction()

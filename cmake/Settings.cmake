@@ -22,6 +22,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=262144>)
 endif()
 
+# Links a test in a third of the time of GNU's linker, and makes a smaller command (Plugins.cmake).
+find_program(HAPTRIAL_LLD ld.lld)
+if(HAPTRIAL_LLD)
+  add_link_options(-fuse-ld=lld)
+endif()
+
 set(HAPTRIAL_SANITIZER "" CACHE STRING "address or thread")
 if(HAPTRIAL_SANITIZER STREQUAL "address")
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
