@@ -411,17 +411,22 @@ void Console::Implementation::send_events(httplib::Response& response, MakeEvent
   }
   const Seconds period(1.0 / options_.events_per_second);
   const Seconds patience(options_.request_time);
+  // All in one call: between two, a server that closes would leave out how the session ended.
   response.set_chunked_content_provider(
       "text/event-stream",
-      [period, patience, make = std::move(make), first = true](std::size_t,
-                                                               httplib::DataSink& sink) mutable {
+      [period, patience, make = std::move(make)](std::size_t, httplib::DataSink& sink) {
         Connection& connection = t_job->connection;
-        const bool last = !first && !connection.wait(period);  // how the session ended, say
-        connection.set_deadline(patience);                     // for a page that no longer reads
-        const std::string event =
-            fmt::format("{}data: {}\n\n", first ? "retry: 500\n" : "", make());
-        first = false;
-        return sink.write(event.data(), event.size()) && !last;
+        const auto send = [&](std::string_view before) {
+          connection.set_deadline(patience);  // for a page that no longer reads
+          const std::string event = fmt::format("{}data: {}\n\n", before, make());
+          return sink.write(event.data(), event.size());
+        };
+        bool open = send("retry: 500\n");
+        for (bool goes_on = true; open && goes_on;) {
+          goes_on = connection.wait(period);
+          open = send("");
+        }
+        return false;
       },
       [this](bool) { streams_.fetch_sub(1); });
 }
