@@ -11,6 +11,9 @@
 #   docs/images/folders.py                                   folders.svg, from CMakeLists.txt
 #   tests/benchmarks/stops.py, every_hand.gp                 stops.svg, every-hand.svg
 #   docs/images/scan.sh                                      scan-*.png, by a test
+#   docs/images/validity-live.sh                             validity-live.jpg
+#   HAPTRIAL_KEEP_PICTURES=FOLDER build/test_experiments --gtest_filter=LiveMouseDrilling*
+#                                                            first-drilling.png
 #   HAPTRIAL_KEEP_PICTURES=FOLDER build/test_drilling_analysis  drilling-visibility.png
 # A page says under its picture which command draws it, if one does.
 set -euo pipefail
