@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   steps.done("surface");
   render::OffscreenContext context(d.display.width, d.display.height);
   steps.done("opening OpenGL");
-  BoneDisplay display(context.gl(), d, stage, d.display.width, d.display.height,
+  BoneDisplay display(context.gl(), d, stage, d.display.width, d.display.height, {},
                       std::move(surface));
   display.draw({});
   steps.done("first picture");
