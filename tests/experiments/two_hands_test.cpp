@@ -1,6 +1,7 @@
 // Drillings with two devices, a burr at one and a tube at the other: recorded, felt, killed,
 // repeated to the bit.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -103,6 +104,22 @@ TEST_F(TwoHandsTest, TheOtherHandSucksTheDustAndRinses) {
   EXPECT_EQ(field[0].bled, 0.0);
   const auto hand = reader.rows<record::SecondHandRow>();
   EXPECT_GT(std::ranges::count_if(hand, &record::SecondHandRow::rinses), 1000);
+}
+
+TEST_F(TwoHandsTest, TheReportTellsHeatAndBlood) {
+  const test::TemporaryFolder study;
+  fs::copy(file(), study / "S01.h5");
+  const test::CommandResult done =
+      test::run_command("haptrial analyze '" + study.path().string() + "'");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const auto field = record::SessionReader(file()).rows<record::FieldRow>();
+  ASSERT_EQ(field.size(), 1u);
+  EXPECT_THAT(test::read_text(study / "heat_and_blood.csv"),
+              HasSubstr(fmt::format(",1,1,{:.3f},{:.3f},0,0,0\n", field[0].hottest,
+                                    field[0].harmful_time)));
+  const std::string report = test::read_text(study / "report.md");
+  EXPECT_THAT(report, HasSubstr("Heat and blood (simulated)"));
+  EXPECT_THAT(report, HasSubstr(fmt::format("| 1 | {:.1f} |", field[0].hottest)));
 }
 
 TEST_F(TwoHandsTest, AReplayFeelsTheSameInBothHands) {

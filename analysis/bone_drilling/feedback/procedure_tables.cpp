@@ -40,6 +40,23 @@ const SafeProfile* profile_named(const Experts& experts, const std::string& name
   return nullptr;
 }
 
+constexpr double kMillilitres = 1e6;  // in a cubic metre
+
+/// What the burr warmed, and what bled, where there may be any.
+std::vector<std::string> field_lines(const std::optional<record::FieldRow>& field) {
+  std::vector<std::string> lines;
+  if (field && field->hottest > 0.0) {
+    lines.push_back(fmt::format(
+        "Hottest at the burr: {:.1f} °C in a model; above the harmful temperature: {:.1f} s",
+        field->hottest, field->harmful_time));
+  }
+  if (field && field->bled > 0.0) {
+    lines.push_back(fmt::format("Blood: {:.2f} ml lost, {:.2f} ml of it sucked away",
+                                kMillilitres * field->bled, kMillilitres * field->blood_sucked));
+  }
+  return lines;
+}
+
 /// How often something is true of the removals nearest to one structure.
 template <class Is>
 std::size_t count_near(const Findings& f, std::int32_t structure, const Is& is) {
@@ -111,6 +128,9 @@ std::string summary_points(const Findings& f, const Experts& experts) {
   }
   lines.push_back(fmt::format("Strokes: {}, mean length {} mm", f.summary.strokes.count,
                               number_text(f.summary.value("stroke_length"))));
+  for (std::string& line : field_lines(f.summary.field)) {
+    lines.push_back(std::move(line));
+  }
   std::string html = "<ul class=\"lines\">\n";
   for (const std::string& line : lines) {
     html += "<li>" + escape_html(line) + "</li>\n";

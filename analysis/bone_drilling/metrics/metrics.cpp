@@ -235,6 +235,7 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   summary.simulated = procedure.simulated;
   summary.completed = procedure.completed;
   summary.bone = procedure.bone;
+  summary.field = procedure.field;
   DrillingMeter meter(procedure.bone, procedure.pose_WB, procedure.tools, procedure.rate, bones);
   visit_in_order(procedure, meter);
   summary.visibility = meter.visibility();

@@ -58,6 +58,7 @@ struct ProcedureSummary {
   std::vector<Injury> injuries;
   StrokeFigures strokes;
   Usage usage;
+  std::optional<record::FieldRow> field;  // heat and blood, where there may be any
   /// By structure of MetricOptions; of one that this bone does not have there are no removals.
   std::vector<NearRemovals> near;
   /// (metric_kinds()); nothing where it is not defined, as the share of no voxels. That of the

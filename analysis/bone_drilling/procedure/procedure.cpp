@@ -86,7 +86,8 @@ class Loader {
         views_(file),
         splits_(file),
         tears_(file),
-        ends_(file.rows<record::ProcedureRow>()) {
+        ends_(file.rows<record::ProcedureRow>()),
+        fields_(file.rows<record::FieldRow>()) {
     for (const record::BoneRecord& record : record::recorded_bones(file)) {
       models_.push_back(keep(record));
     }
@@ -108,6 +109,12 @@ class Loader {
     procedure.tools = setup_.tools;
     for (const Pass& pass : passes) {
       add(pass.pass, procedure);
+    }
+    for (const record::FieldRow& field : fields_) {  // the last is of the end
+      if (std::any_of(passes.begin(), passes.end(),
+                      [&](const Pass& pass) { return std::cmp_equal(field.pass, pass.row); })) {
+        procedure.field = field;
+      }
     }
     return procedure;
   }
@@ -185,6 +192,7 @@ class Loader {
   Rows<record::SplitRow> splits_;
   Rows<record::TearRow> tears_;
   std::vector<record::ProcedureRow> ends_;
+  std::vector<record::FieldRow> fields_;
 };
 
 double as_filed(double value, double resolution) {

@@ -13,6 +13,7 @@
 #include "core/bone/model/bone_model.h"
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/record/drilling_types.h"
+#include "core/bone/record/field_row.h"
 #include "core/record/rows/session_types.h"
 
 namespace haptrial::record {
@@ -109,6 +110,8 @@ struct Procedure {
   std::vector<View> views;
   std::vector<Crumb> crumbs;
   std::vector<Torn> tears;
+  /// Heat and blood since the bone was new; none where the definition has neither.
+  std::optional<record::FieldRow> field;
 
   /// Null out of range.
   const ProcedureTool* tool(std::int32_t tool) const noexcept;

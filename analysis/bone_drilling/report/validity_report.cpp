@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/bone_drilling/report/field_section.h"
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_summary.h"
@@ -68,6 +69,7 @@ class Report {
     add_combined();
     add_unknown();
     add_tears();
+    add_field_section(document_, result_.procedures, v_.simulated);
     add_quality();
     add_published();
     add_methods();

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "analysis/bone_drilling/report/field_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_json.h"
 #include "analysis/bone_drilling/report/validity_report.h"
@@ -116,6 +117,9 @@ void write_validity(const ValidityResult& result, const fs::path& folder) {
   staging.write("statistics.json", validity_json(result));
   if (!result.nerves.empty()) {
     staging.write("nerves.csv", nerves_csv(result.nerves));
+  }
+  if (has_field(result.procedures)) {
+    staging.write("heat_and_blood.csv", field_csv(result.procedures));
   }
   if (!result.hints.empty()) {
     staging.write("hints.csv", hints_csv(result.hints));

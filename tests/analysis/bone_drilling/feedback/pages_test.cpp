@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/bone_drilling/feedback/procedure_page.h"
+#include "analysis/bone_drilling/feedback/procedure_tables.h"
 #include "analysis/bone_drilling/feedback/range_plot.h"
 #include "analysis/bone_drilling/feedback/scene_mesh.h"
 #include "analysis/bone_drilling/feedback/trainee_page.h"
@@ -84,6 +85,21 @@ TEST(FeedbackPageTest, AFaultlessLookingPageOfAnUnlabelledBoneIsNoAllClear) {
   EXPECT_THAT(html, HasSubstr("Vital structures are unknown: this bone has none by a known name"));
   EXPECT_THAT(html, Not(HasSubstr("No turning burr reached")));
   EXPECT_THAT(html, Not(HasSubstr("SIMULATED")));
+}
+
+TEST(FeedbackPageTest, HeatAndBloodAreSaidWhereThereMayBeAny) {
+  Procedure p = test::procedure_on(test::block(6, 6, 6));
+  test::remove_in_turn(p, {{1, 1, 1}});
+  StudyBones bones;
+  const Experts nobody;
+  const auto points_of = [&] { return summary_points(findings_of(p, nobody, bones), nobody); };
+  EXPECT_THAT(points_of(), Not(testing::AnyOf(HasSubstr("Hottest"), HasSubstr("Blood"))));
+  p.field = record::FieldRow{0, 4.25e-6, 1.5e-6, 2.75e-6, 49.34, 18.31};
+  EXPECT_THAT(points_of(), HasSubstr("Hottest at the burr: 49.3 °C in a model; above the harmful "
+                                     "temperature: 18.3 s"));
+  EXPECT_THAT(points_of(), HasSubstr("Blood: 4.25 ml lost, 1.50 ml of it sucked away"));
+  p.field->hottest = 0.0;
+  EXPECT_THAT(points_of(), Not(HasSubstr("Hottest")));
 }
 
 std::vector<std::uint16_t> words_of(const nlohmann::json& text) {
