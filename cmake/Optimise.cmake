@@ -23,7 +23,7 @@ function(haptrial_level folder out)
   if(folder MATCHES "^experiments/(command|console|control|devices|pages|plugin|power|runner|screen|studies|study)" OR
      folder MATCHES "^core/(base/definition|bone/(anatomy|data|record)|deformable/setup|device/(gamepad|input|pedal|vendor)|geometry/(files|volume_files))" OR
      folder MATCHES "^core/(hint|markers|nerve/setup|pages|psychometric/definition|record/(read|recovery)|render/(flat|mesh|trial)|scene/read|sound/cues)" OR
-     folder MATCHES "^protocols/(bone_drilling$|definition|force_training$|[a-z_]+/(definition|display)|trials/(language|looks|script))" OR
+     folder MATCHES "^protocols/(bone_drilling$|definition|force_training$|[a-z_]+/(definition|display|nerves)|trials/(language|looks|script))" OR
      folder MATCHES "^analysis/(document|exchange|files|link|power|statistics/(design|words)|bone_drilling/(hints|metrics|nerves|validity)|trials/data|force_training/statistics)" OR
      folder MATCHES "^analysis/contact/(duck|evaluation|failure|identification|metrics|recording|registration|regression|simulation|truth)" OR
      folder MATCHES "^analysis/[a-z_]+/(comparison|exchange|feedback|figures|report|study|words)")

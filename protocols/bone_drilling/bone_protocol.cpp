@@ -22,8 +22,8 @@
 #include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
 #include "protocols/bone_drilling/hints/replayed_hints.h"
-#include "protocols/bone_drilling/nerve_page.h"
-#include "protocols/bone_drilling/replayed_nerves.h"
+#include "protocols/bone_drilling/nerves/nerve_page.h"
+#include "protocols/bone_drilling/nerves/replayed_nerves.h"
 
 namespace haptrial::protocols {
 namespace {

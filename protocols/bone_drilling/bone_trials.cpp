@@ -20,7 +20,7 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
 #include "protocols/bone_drilling/drilling_rig.h"
-#include "protocols/bone_drilling/nerve_page.h"
+#include "protocols/bone_drilling/procedure_rows.h"
 #include "protocols/interface/session_file.h"
 
 namespace haptrial::protocols {
@@ -43,40 +43,6 @@ std::vector<PlannedTrial> plan_of(const BoneDefinition& d, const SessionPlace& p
 // begun.
 constexpr double kUntilDepths = 0.2;
 constexpr double kUntilSurface = 0.5;
-
-/// Blood and heat up to now.
-record::FieldRow field_of(const BoneStage& stage, std::int32_t row) {
-  const bone::Simulator& simulator = *stage.simulator;
-  const double spacing = stage.model->grid.spacing;
-  const double voxel = spacing * spacing * spacing;
-  const bone::DustBalance blood = stage.companions->blood();
-  record::FieldRow field;
-  field.pass = row;
-  field.bled = voxel * blood.deposited;
-  field.blood_sucked = voxel * blood.suctioned;
-  field.blood_lying = voxel * (blood.lying + blood.held);
-  if (simulator.heat() != nullptr) {
-    field.hottest = simulator.heat()->hottest();
-    field.harmful_time = simulator.heat()->harmful_time();
-  }
-  return field;
-}
-
-std::vector<record::BurrRow> burr_rows(std::span<const bone::ToolSpec> tools) {
-  std::vector<record::BurrRow> rows;
-  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
-    if (const auto* burr = tools[tool].as<bone::BurrTool>()) {
-      const bone::BurrParameters& p = burr->burr;
-      const bone::ShaftParameters none{0.0, 0.0, {}};
-      const bone::ShaftParameters& shaft = burr->shaft ? *burr->shaft : none;
-      rows.push_back({static_cast<std::int32_t>(tool), tools[tool].name,
-                      static_cast<std::uint8_t>(p.kind), static_cast<std::uint8_t>(p.form),
-                      p.diameter, 2.0 * bone::BurrShape(p.dimensions()).half_length(),
-                      p.narrow_diameter, p.clockwise, shaft.radius, shaft.length, p.wear_volume});
-    }
-  }
-  return rows;
-}
 
 /// How many bones a trial has had in earlier runs.
 std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
@@ -109,7 +75,8 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   }
   burrs_ = burr_rows(d_.simulator.tools);
   if (d_.nerves) {
-    watch_nerves();
+    nerves_ = std::make_unique<TrialNerves>(d_, place, voice_);
+    logs_.watch_nerves(&nerves_->beside());
   }
   if (d_.hints) {
     hints_ = std::make_unique<TrialHints>(d_, place.real, chime_);
@@ -148,29 +115,6 @@ void BoneTrials::open_sound() {
     voice_.reset();
     chime_.reset();
   }
-}
-
-/// A session that goes on has other noise than before.
-void BoneTrials::watch_nerves() {
-  const std::vector<nerve::Channel> channels = nerve::channels_of(*d_.nerves);
-  for (const nerve::Channel& channel : channels) {
-    channels_.push_back({static_cast<std::int32_t>(channels_.size()), channel.name, channel.nerve,
-                         d_.nerves->monitor.rate});
-  }
-  pulse_ = std::make_shared<std::atomic<float>>(static_cast<float>(d_.nerves->current));
-  const auto make = [setup = *d_.nerves, rate = d_.rate, seed = place_.session_seed,
-                     pulse = pulse_](std::uint64_t first) {
-    const std::string name = fmt::format("nerves from tick {}", first);
-    return std::make_unique<nerve::NerveSimulation>(setup, rate, derived_seed(seed, name), pulse);
-  };
-  if (place_.real) {
-    const auto page = page_of<NervePage>(place_.side_pages);
-    const nerve::NerveListeners listeners{page ? page->desk() : nullptr, voice_};
-    nerves_ = std::make_unique<nerve::ThreadedNerves>(make, d_.rate, listeners);
-  } else {
-    nerves_ = std::make_unique<nerve::SteppedNerves>(make);
-  }
-  logs_.watch_nerves(nerves_.get());
 }
 
 std::vector<stimulus::Observer*> BoneTrials::observers() {
@@ -248,8 +192,8 @@ record::TableList BoneTrials::tables() const {
 std::vector<record::Rows> BoneTrials::first_rows() const {
   std::vector<record::Rows> rows = record::rows_of(records_);
   rows.emplace_back(std::span(burrs_));
-  if (!channels_.empty()) {
-    rows.emplace_back(std::span(channels_));
+  if (nerves_) {
+    rows.emplace_back(nerves_->channels());
   }
   if (hints_) {
     rows.emplace_back(hints_->limits());
@@ -294,13 +238,7 @@ void BoneTrials::empty_logs(SessionFile& file) {
     tell_hints(file);
   }
   if (nerves_) {
-    nerves_->settle();  // rows of a tick come before its sample
-    const record::NerveRows rows = nerves_->take();
-    file.add(std::span(rows.emg));
-    file.add(std::span(rows.events));
-    file.add(std::span(rows.thresholds));
-    file.add(std::span(rows.stimuli));
-    file.add(std::span(rows.discharges));
+    nerves_->write(file);
   }
 }
 
@@ -461,10 +399,7 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
     shared_->take_new_bone(stage_->simulator->checksum());
   }
   if (nerves_) {
-    const std::string name = fmt::format("nerves {} from tick {}", bones_used_, spent_);
-    exposures_ = std::make_unique<nerve::NerveExposures>(*d_.nerves, d_.nerve_distances[bone_],
-                                                         derived_seed(trial.stimulus_seed, name),
-                                                         1.0 / d_.rate, pulse_);
+    nerves_->watch(bone_, bones_used_, spent_, trial.stimulus_seed);
   }
   if (hints_) {
     hints_->watch(bone_, *stage_->simulator);
@@ -499,7 +434,7 @@ Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
     shared_->prepare_pass(trial.trial);
   }
   if (nerves_) {
-    nerves_->let_hear(d_.hears_nerves(trial.trial, place_.participant));
+    nerves_->beside().let_hear(d_.hears_nerves(trial.trial, place_.participant));
   }
   if (hints_) {
     hints_->beside().let_show(d_.sees_hints(trial.trial, place_.participant));
@@ -515,7 +450,7 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
   drilling.time_limit = trial.practice ? d_.practice : drilling.time_limit;
   pass_ = std::make_unique<DrillingPass>(*stage_->simulator, *stage_->companions, drilling, logs_,
                                          d_.rate, spent_, vibration_ ? &*vibration_ : nullptr,
-                                         exposures_.get());
+                                         exposures());
   if (shared_) {
     pass_->share(*shared_);
   }
@@ -526,9 +461,9 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
 }
 
 Pass& BoneTrials::make_led_pass(const PlannedTrial& trial) {
-  led_ = std::make_unique<LedPass>(LedPass::Parts{
-      *stage_->simulator, *stage_->companions, d_.drilling, logs_, *shared_, d_.rate, trial.trial,
-      place_.real, exposures_.get(), vibration_ ? &*vibration_ : nullptr});
+  led_ = std::make_unique<LedPass>(
+      LedPass::Parts{*stage_->simulator, *stage_->companions, d_.drilling, logs_, *shared_, d_.rate,
+                     trial.trial, place_.real, exposures(), vibration_ ? &*vibration_ : nullptr});
   return *led_;
 }
 
@@ -542,20 +477,8 @@ void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
     tell_hints(file);
   }
   stage_->companions->settle();
-  const bone::Simulator& simulator = *stage_->simulator;
-  const bone::DustBalance dust = stage_->companions->dust();
-  record::ProcedureRow procedure;
-  procedure.pass = row;
-  procedure.bone = static_cast<std::int32_t>(bone_);
-  procedure.pieces = simulator.pieces();
-  procedure.emptied = simulator.emptied_so_far();
-  procedure.before = simulator.amount_at_start();
-  procedure.left = simulator.amount_left();
-  procedure.cut = simulator.cut_so_far();
-  procedure.dust = dust.lying + dust.held;
-  procedure.suctioned = dust.suctioned;
-  procedure.fallen = dust.fallen + old_dust_;
-  procedure.checksum = simulator.checksum();
+  record::ProcedureRow procedure = procedure_of(*stage_, row, static_cast<std::int32_t>(bone_));
+  procedure.fallen += old_dust_;
   file.add(std::span<const record::ProcedureRow>(&procedure, 1));
   if (d_.has_field()) {
     const record::FieldRow field = field_of(*stage_, row);

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include "core/nerve/beside/nerve_beside.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
@@ -11,6 +10,7 @@
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "protocols/bone_drilling/hints/trial_hints.h"
 #include "protocols/bone_drilling/led_pass.h"
+#include "protocols/bone_drilling/nerves/trial_nerves.h"
 #include "protocols/bone_drilling/shared_bone.h"
 #include "protocols/interface/trials.h"
 
@@ -32,7 +32,7 @@ class BoneTrials final : public Trials {
   TickLog* tick_log() override { return &logs_; }
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override {
-    return logs_.dropped() + (nerves_ ? nerves_->dropped() : 0) +
+    return logs_.dropped() + (nerves_ ? nerves_->beside().dropped() : 0) +
            (hints_ ? hints_->beside().dropped() : 0);
   }
   record::TableList tables() const override;
@@ -54,10 +54,10 @@ class BoneTrials final : public Trials {
   void tell_preparing(double share);
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void open_sound();
-  void watch_nerves();
   void tell_hints(SessionFile& file);
   void restore(const PlannedTrial& trial, SessionFile& file);
   static void begin_again(const PlannedTrial& trial, SessionFile& file);
+  nerve::NerveExposures* exposures() { return nerves_ ? nerves_->exposures() : nullptr; }
   bool is_led() const { return shared_ && !shared_->leads(); }
   Pass& make_drilling_pass(const PlannedTrial& trial);
   Pass& make_led_pass(const PlannedTrial& trial);
@@ -70,13 +70,10 @@ class BoneTrials final : public Trials {
   DrillingLogs logs_;
   std::vector<record::BoneRecord> records_;  // of the bones
   std::vector<record::BurrRow> burrs_;
-  std::vector<record::NerveChannelRow> channels_;
   std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
-  std::unique_ptr<nerve::NerveBeside> nerves_;
-  std::shared_ptr<hint::HintChime> chime_;            // on the sound card; null: none
-  std::unique_ptr<TrialHints> hints_;                 // null: none are given
-  nerve::PulseCurrent pulse_;                         // of the probe
-  std::unique_ptr<nerve::NerveExposures> exposures_;  // of the present bone
+  std::unique_ptr<TrialNerves> nerves_;       // null: nobody watches any
+  std::shared_ptr<hint::HintChime> chime_;    // on the sound card; null: none
+  std::unique_ptr<TrialHints> hints_;         // null: none are given
   std::unique_ptr<BonePictures> pictures_;
   std::shared_ptr<BoneStage> stage_;
   std::size_t bone_{0};         // of the definition's

@@ -1,4 +1,4 @@
-#include "protocols/bone_drilling/nerve_page.h"
+#include "protocols/bone_drilling/nerves/nerve_page.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "protocols/bone_drilling/replayed_nerves.h"
+#include "protocols/bone_drilling/nerves/replayed_nerves.h"
 
 #include <algorithm>
 
