@@ -46,11 +46,11 @@ function(haptrial_plugins)
   set(exports ${CMAKE_SOURCE_DIR}/cmake/exports.txt)
   haptrial_inside(inside)
   target_link_options(haptrial PRIVATE LINKER:--dynamic-list=${exports} LINKER:--exclude-libs,${inside}
-                                       LINKER:--gc-sections)
+                                       LINKER:--gc-sections LINKER:-z,pack-relative-relocs)
   if(HAPTRIAL_LLD AND NOT HAPTRIAL_SANITIZER)
     # Functions with the same instructions are one. Constants keep their own addresses: by these a
     # picture's type is told.
-    target_link_options(haptrial PRIVATE LINKER:-O2 LINKER:--icf=all)
+    target_link_options(haptrial PRIVATE LINKER:--icf=all)
   endif()
   set_property(TARGET haptrial APPEND PROPERTY LINK_DEPENDS ${exports})
 endfunction()
