@@ -1,6 +1,7 @@
 #include "core/realtime/histogram.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
@@ -28,11 +29,20 @@ std::int64_t low_of(std::size_t bin) noexcept {
   return static_cast<std::int64_t>((kSubBins + bin % kSubBins) << shift);
 }
 
+/// One thread writes a count; any may read it meanwhile.
+void count_one_more(std::uint64_t& count) noexcept {
+  std::atomic_ref(count).store(count + 1, std::memory_order_relaxed);
+}
+
+std::uint64_t read_beside(const std::uint64_t& count) noexcept {
+  return std::atomic_ref(const_cast<std::uint64_t&>(count)).load(std::memory_order_relaxed);
+}
+
 }  // namespace
 
 void DurationHistogram::add(std::int64_t duration) noexcept {
   duration = std::max<std::int64_t>(duration, 0);
-  ++counts_[bin_of(static_cast<std::uint64_t>(duration))];
+  count_one_more(counts_[bin_of(static_cast<std::uint64_t>(duration))]);
   ++count_;
   min_ = std::min(min_, duration);
   max_ = std::max(max_, duration);
@@ -85,7 +95,7 @@ DurationHistogram::Bin DurationHistogram::bin(std::size_t i) const {
   }
   const std::int64_t high =
       i + 1 == kBins ? std::numeric_limits<std::int64_t>::max() : low_of(i + 1);
-  return {low_of(i), high, counts_[i]};
+  return {low_of(i), high, read_beside(counts_[i])};
 }
 
 }  // namespace haptrial::realtime

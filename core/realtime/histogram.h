@@ -9,7 +9,7 @@ namespace haptrial::realtime {
 
 /// Counts durations in fixed bins: one nanosecond wide below 64 ns, then 64 bins to an octave, so
 /// that a bin is at most 1/64 of its value wide. The bins reach to the end of std::int64_t.
-/// Not thread-safe.
+/// Not thread-safe but for bin() beside one thread that adds.
 class DurationHistogram {
  public:
   struct Bin {
@@ -37,6 +37,7 @@ class DurationHistogram {
   /// @throws std::invalid_argument unless 0 <= percent <= 100.
   double percentile(double percent) const;
 
+  /// Any thread, also while another adds: of a loop that hangs, say, what it counted is still kept.
   /// @param i  below kBins, or std::out_of_range is thrown.
   Bin bin(std::size_t i) const;
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "core/base/random.h"
@@ -130,6 +131,24 @@ TEST(DurationHistogramTest, PercentBeyondItsBoundsIsRejected) {
   EXPECT_THROW(h.percentile(-0.1), std::invalid_argument);
   EXPECT_THROW(h.percentile(100.1), std::invalid_argument);
   EXPECT_THROW(h.percentile(std::nan("")), std::invalid_argument);
+}
+
+TEST(DurationHistogramTest, ABinIsReadBesideAThreadThatAdds) {
+  DurationHistogram histogram;
+  constexpr std::uint64_t kAdded = 200'000;
+  std::thread adds([&] {
+    for (std::uint64_t n = 0; n < kAdded; ++n) {
+      histogram.add(7);
+    }
+  });
+  std::uint64_t last = 0;
+  for (int look = 0; look < 1000; ++look) {  // a race checker looks, too
+    const std::uint64_t now = histogram.bin(7).count;
+    EXPECT_GE(now, last);
+    last = now;
+  }
+  adds.join();
+  EXPECT_EQ(histogram.bin(7).count, kAdded);
 }
 
 TEST(DurationHistogramTest, AddDoesNotAllocate) {
