@@ -262,7 +262,8 @@ TEST(TwoRateTouchTest, AToolThatIsNotFiniteFeelsNothing) {
 }
 
 TEST(TwoRateTouchTest, RatesAreRefusedWithASentence) {
-  const FeltMesh& block = *test::soft_block(12);
+  const auto shared = test::soft_block(12);
+  const FeltMesh& block = *shared;
   EXPECT_EQ(ticks_of_window(block, 1000.0, 250.0), 4);
   EXPECT_EQ(ticks_of_window(block, 4000.0, 4000.0), 1);
   const auto refused = [](const FeltMesh& body, double rate) {
