@@ -1,5 +1,6 @@
-# haptrial_inside(OUT): the archives that export nothing: what runs and shows sessions, the commands,
-# simulations of power, and all that the shipped experiments have to themselves.
+# haptrial_inside(OUT): the archives that export nothing: what runs, shows and writes sessions, links
+# between sites, the commands, simulations of power, and all that the shipped experiments have to
+# themselves.
 function(haptrial_inside out)
   set(archives "")
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)

@@ -17,7 +17,10 @@ sed -e '/^\[practice\]/,/^$/d' -e 's/^procedures = .*/procedures = 1/; s/^break_
   "$here/../../experiments/construct_validity.toml" > "$WORK/validity.toml"
 "$haptrial" run "$WORK/validity.toml" --subject S01 --window --out "$WORK/sessions" > "$WORK/said" &
 session=$!
-until grep -q ^recording "$WORK/said"; do sleep 0.5; done
+while ! grep -q ^recording "$WORK/said"; do
+  kill -0 "$session"
+  sleep 0.5
+done
 for _ in $(seq 20); do  # the pages before the procedure
   xdotool key Return
   sleep 0.5

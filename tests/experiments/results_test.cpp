@@ -175,8 +175,8 @@ std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
   return rows;
 }
 
-/// Operations are counted. A processor with wider registers takes near triangles in another order: of a
-/// hundred thousand ticks a few take one operation more, and the greatest of them up to a quarter more.
+/// Operations are counted. On another processor a few of a hundred thousand ticks take one operation
+/// more or less, and the greatest count of a row was seen to differ by a seventh.
 /// From its end a row holds the most and the mean of each kind in turn; names of renderers hold commas.
 void expect_close_counts(const std::string& made, const std::string& kept) {
   const auto a = rows_of(made);
@@ -192,7 +192,7 @@ void expect_close_counts(const std::string& made, const std::string& kept) {
         const double number = std::strtod(expected.c_str(), nullptr);
         const bool greatest = from_end % 2 == 0;
         EXPECT_NEAR(std::strtod(count.c_str(), nullptr), number,
-                    greatest ? 0.25 * number : 0.002 + 0.02 * number)
+                    greatest ? 0.2 * number : 0.002 + 0.02 * number)
             << "row " << row << ", from its end " << from_end;
       }
     }
