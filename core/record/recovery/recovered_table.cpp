@@ -43,6 +43,9 @@ bool RecoveredTable::take_if_ours(std::uint64_t offset, std::span<const std::uin
     }
     std::vector<std::uint8_t> packed = table_->packed(planes, rows, version);
     const std::size_t bytes = table_->schema().row_bytes();
+    if (each_tick() && !ticks_rise(packed)) {
+      continue;
+    }
     const std::string first_row(reinterpret_cast<const char*>(packed.data()), bytes);
     Piece& piece = by_first_row_[first_row];
     if (rows < piece.rows) {
@@ -60,6 +63,20 @@ bool RecoveredTable::take_if_ours(std::uint64_t offset, std::span<const std::uin
     return true;
   }
   return false;
+}
+
+/// Else they are rows of another table whose chunks may be as long.
+bool RecoveredTable::ticks_rise(const std::vector<std::uint8_t>& packed) const {
+  const std::size_t bytes = table_->schema().row_bytes();
+  std::int64_t last = -1;
+  for (std::size_t at = 0; at < packed.size(); at += bytes) {
+    const std::int64_t tick = table_->integer(packed.data() + at, "sequence");
+    if (tick <= last) {
+      return false;
+    }
+    last = tick;
+  }
+  return true;
 }
 
 void RecoveredTable::finish() {

@@ -35,19 +35,30 @@ TableList with_tables(TableList tables, const TableList& more) {
   return tables;
 }
 
+namespace {
+
+bool each_tick(const TableDescription& table) { return table.of() == RowsOf::kEachTick; }
+
+/// Ticks do not rise from row to row where rows are taken for others of another length.
+bool told_by_ticks(const TableDescription& a, const TableDescription& b) {
+  return each_tick(a) && each_tick(b) && a.schema().row_bytes() != b.schema().row_bytes();
+}
+
+}  // namespace
+
 void check_chunk_sizes(const TableList& own) {
   std::set<const TableDescription*> tables(own.begin(), own.end());
   tables.insert(session_tables().begin(), session_tables().end());
   tables.insert(common_tables().begin(), common_tables().end());
-  std::map<std::size_t, std::string> by_size;
+  std::map<std::size_t, const TableDescription*> by_size;
   for (const TableDescription* table : tables) {
     const TableSchema& schema = table->schema();
-    const bool each_tick = table->of() == RowsOf::kEachTick;
-    const std::size_t step = each_tick ? kLiveChunkStep : schema.chunk_rows;
+    const std::size_t step = each_tick(*table) ? kLiveChunkStep : schema.chunk_rows;
     for (std::size_t rows = step; rows <= schema.chunk_rows; rows += step) {
-      const auto [at, is_new] = by_size.emplace(rows * schema.row_bytes(), table->name());
-      if (!is_new) {
-        throw std::invalid_argument("the chunks of /" + at->second + " and /" + table->name() +
+      const auto [at, is_new] = by_size.emplace(rows * schema.row_bytes(), table);
+      if (!is_new && !told_by_ticks(*at->second, *table)) {
+        throw std::invalid_argument("the chunks of /" + at->second->name() + " and /" +
+                                    table->name() +
                                     " may be of one size; choose another length for one of them");
       }
     }

@@ -11,7 +11,8 @@ const TableList& common_tables();
 /// `tables` and after them those of `more` that are not among them.
 TableList with_tables(TableList tables, const TableList& more);
 
-/// Recovery knows whose a chunk is by its inflated size.
+/// Recovery knows whose a chunk is by its inflated size, and of tables with a row for each tick by
+/// their ticks.
 /// @param own  tables of protocols
 /// @throws std::invalid_argument naming two tables, of these and those of every session, whose
 /// chunks may be of one size; another number of rows in a chunk mends it

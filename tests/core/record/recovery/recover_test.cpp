@@ -13,11 +13,54 @@
 #include "core/base/random.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/common_tables.h"
 #include "core/record/table/schema.h"
 #include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {
+namespace {
+
+/// Rows of each tick, of 22 and of 33 bytes.
+struct ShortRow {
+  std::uint64_t sequence{0};
+  double a{0.0};
+  std::uint32_t b{0};
+  bool c{false};
+  bool d{false};
+};
+struct LongRow {
+  std::uint64_t sequence{0};
+  double a{0.0};
+  double b{0.0};
+  double c{0.0};
+  bool d{false};
+};
+
+}  // namespace
+
+template <>
+const Table<ShortRow>& table_of<ShortRow>() {
+  using T = Table<ShortRow>;
+  static const T table(
+      {"short", "rows of 22 bytes", 4096, RowsOf::kEachTick, {"sequence"}},
+      {T::column("sequence", &ShortRow::sequence, "1", "tick number"),
+       T::column("a", &ShortRow::a, "1", "a number"), T::column("b", &ShortRow::b, "1", "another"),
+       T::column("c", &ShortRow::c, "1", "a truth"), T::column("d", &ShortRow::d, "1", "another")});
+  return table;
+}
+
+template <>
+const Table<LongRow>& table_of<LongRow>() {
+  using T = Table<LongRow>;
+  static const T table(
+      {"long", "rows of 33 bytes", 4096, RowsOf::kEachTick, {"sequence"}},
+      {T::column("sequence", &LongRow::sequence, "1", "tick number"),
+       T::column("a", &LongRow::a, "1", "a number"), T::column("b", &LongRow::b, "1", "another"),
+       T::column("c", &LongRow::c, "1", "a third"), T::column("d", &LongRow::d, "1", "a truth")});
+  return table;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,6 +253,46 @@ TEST(RecoverTest, AFileOfVersionOneGivesItsRowsAndItsAttributes) {
   found = recover(std::string(48, '\0') + old.substr(48));
   EXPECT_EQ(found.samples, 500u);
   EXPECT_FALSE(found.info);
+}
+
+// At this rate a chunk of /short is as long as 512 rows of /long, and one of /long as 1,152 of
+// /short.
+TEST(RecoverTest, TablesOfEachTickAreToldByTheirTicks) {
+  const TableList own{&table_of<ShortRow>(), &table_of<LongRow>()};
+  EXPECT_NO_THROW(check_chunk_sizes(own));
+  SessionInfo info = test::example_info();
+  info.clock = "real";
+  ASSERT_EQ(live_chunk_rows(info.rate), 768u);
+  const TemporaryFolder folder;
+  constexpr std::uint64_t kTicks = 4000;
+  std::vector<ShortRow> shorts;
+  std::vector<LongRow> longs;
+  for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
+    shorts.push_back({tick, 0.5 + static_cast<double>(tick), 7, true, true});
+    longs.push_back({tick, -1.5, 1e-3 * static_cast<double>(tick), 2.5, true});
+  }
+  SessionWriter writer(folder / "a.h5", info, own);
+  writer.append(test::hand_motion(kTicks, 5));
+  writer.add(std::span<const ShortRow>(shorts));
+  writer.add(std::span<const LongRow>(longs));
+  writer.set_timing({}, {kTicks, 0, 0});
+  writer.close();
+  std::string damaged = file_text(folder / "a.h5");
+  damaged.replace(0, 512, 512, '\0');  // no structure is left
+  std::ofstream(folder / "damaged.h5", std::ios::binary) << damaged;
+  const Recovery found = recover_session(folder / "damaged.h5", folder / "out.h5", own);
+  ASSERT_TRUE(found.anything());
+  const SessionReader reader(folder / "out.h5");
+  const auto short_rows = reader.rows<ShortRow>();
+  const auto long_rows = reader.rows<LongRow>();
+  ASSERT_EQ(short_rows.size(), kTicks);
+  ASSERT_EQ(long_rows.size(), kTicks);
+  for (std::uint64_t tick = 0; tick < kTicks; ++tick) {
+    ASSERT_EQ(short_rows[tick].sequence, tick);
+    ASSERT_EQ(short_rows[tick].a, shorts[tick].a);
+    ASSERT_EQ(long_rows[tick].sequence, tick);
+    ASSERT_EQ(long_rows[tick].b, longs[tick].b);
+  }
 }
 
 TEST(RecoverTest, NothingIsWrittenWhereNothingIsLeftAndNothingIsOverwritten) {
