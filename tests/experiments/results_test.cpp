@@ -162,43 +162,6 @@ TEST_P(EstimatedResults, Reproduce) {
 INSTANTIATE_TEST_SUITE_P(Shipped, EstimatedResults,
                          testing::ValuesIn(results_with("estimates.csv")), study_of);
 
-std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream lines(csv);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream cells(line);
-    rows.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) {
-      rows.back().push_back(cell);
-    }
-  }
-  return rows;
-}
-
-/// Operations are counted. On another processor a few of a hundred thousand ticks take one operation
-/// more or less, and the greatest count of a row was seen to differ by a seventh.
-/// From its end a row holds the most and the mean of each kind in turn; names of renderers hold commas.
-void expect_close_counts(const std::string& made, const std::string& kept) {
-  const auto a = rows_of(made);
-  const auto b = rows_of(kept);
-  ASSERT_EQ(a.size(), b.size());
-  ASSERT_EQ(a.front(), b.front());
-  for (std::size_t row = 1; row < b.size(); ++row) {
-    ASSERT_EQ(a[row].size(), b[row].size()) << row;
-    for (std::size_t from_end = 0; from_end < b[row].size(); ++from_end) {
-      const std::string& count = a[row][a[row].size() - 1 - from_end];
-      const std::string& expected = b[row][b[row].size() - 1 - from_end];
-      if (count != expected) {
-        const double number = std::strtod(expected.c_str(), nullptr);
-        const bool greatest = from_end % 2 == 0;
-        EXPECT_NEAR(std::strtod(count.c_str(), nullptr), number,
-                    greatest ? 0.2 * number : 0.002 + 0.02 * number)
-            << "row " << row << ", from its end " << from_end;
-      }
-    }
-  }
-}
-
 /// The source's tables on a simulated duck.
 class ContactResults : public Results {};
 
@@ -207,11 +170,10 @@ TEST_P(ContactResults, Reproduce) {
     GTEST_SKIP() << "renderings take too long here; other builds make them anew";
   }
   ASSERT_NO_FATAL_FAILURE(make_again());
-  for (const char* name : {"table-4.csv", "table-5.csv", "table-6.csv", "failures.csv"}) {
+  for (const char* name :
+       {"table-4.csv", "table-5.csv", "table-6.csv", "failures.csv", "operations.csv"}) {
     expect_the_same(name);
   }
-  expect_close_counts(test::read_text(out_ / "study/operations.csv"),
-                     test::read_text(folder_ / "operations.csv"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ContactResults, testing::ValuesIn(results_with("table-6.csv")),
