@@ -6,7 +6,7 @@ function(haptrial_inside out)
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
   foreach(name ${modules})
     get_property(folder GLOBAL PROPERTY HAPTRIAL_FOLDER_${name})
-    if(folder MATCHES "^experiments/(command|console|control|devices|loop|pages|power|runner|screen|study)" OR
+    if(folder MATCHES "^experiments/(command|console|control|devices|loop|pages|power|runner|screen|study|studies/(drilling|force|shipped|trials))" OR
        folder MATCHES "^protocols/(bone_drilling|force_training|trials|tutoring)" OR
        folder MATCHES "^core/(deformable/calibration|hint|markers|nerve|network|pages|record/(recovery|write)|stream)" OR
        folder MATCHES "^analysis/(bone_drilling|contact|exchange|force_training|link|power|trials)")
@@ -39,6 +39,7 @@ function(haptrial_plugins)
                              $<BUILD_INTERFACE:${folder}> $<INSTALL_INTERFACE:include/haptrial>)
   target_compile_features(haptrial_plugin INTERFACE cxx_std_20)
   target_compile_options(haptrial_plugin INTERFACE -ffp-contract=off)
+  target_compile_definitions(haptrial_plugin INTERFACE "$<INSTALL_INTERFACE:${HAPTRIAL_EIGEN}>")
   target_link_libraries(haptrial_plugin INTERFACE Eigen3::Eigen fmt::fmt)
   install(TARGETS haptrial_plugin EXPORT haptrial-targets COMPONENT development)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/haptrial/experiments/plugin

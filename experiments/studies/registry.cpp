@@ -9,19 +9,12 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/record/rows/common_tables.h"
-#include "experiments/studies/bone_study.h"
-#include "experiments/studies/force_study.h"
-#include "experiments/studies/trials_study.h"
 
 namespace haptrial::experiments {
 namespace {
 
 std::vector<const Study*>& all() {
-  static std::vector<const Study*> studies{
-      &force_study(),
-      &bone_study(),
-      &trials_study(),
-  };
+  static std::vector<const Study*> studies;
   return studies;
 }
 

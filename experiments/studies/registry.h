@@ -12,10 +12,10 @@ class Table;
 
 namespace haptrial::experiments {
 
-/// Every study that this program knows, the default one first. Call before threads are started.
+/// Every study that this program has added, the default one first. Call before threads are started.
 const std::vector<const Study*>& studies();
 
-/// One more, from a program that has its own. It lives as long as the program.
+/// One more. It lives as long as the program.
 /// @throws std::invalid_argument for a name that is taken
 void add_study(const Study& study);
 

@@ -67,6 +67,8 @@ TEST(SeamTest, NothingThatServesEveryProtocolNamesOne) {
                                 "experiments/study",
                                 "experiments/command",
                                 "experiments/command/sessions",
+                                "experiments/command/devices",
+                                "experiments/command/line",
                                 "experiments/command/analysis"};
   for (const char* folder : kFolders) {
     int files = 0;

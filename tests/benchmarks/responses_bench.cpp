@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "experiments/studies/experiment.h"
+#include "experiments/studies/shipped/shipped_studies.h"
 #include "experiments/study/study_run.h"
 #include "protocols/trials/response_session.h"
 
@@ -41,6 +42,7 @@ double rate_of(const protocols::StudiedDefinition& definition, const std::string
 }  // namespace
 
 int main(int argc, char** argv) {
+  experiments::add_shipped_studies();
   const double lasting = argc > 1 ? std::atof(argv[1]) : 3.0;
   const std::pair<const char*, const char*> studies[]{{"wall_detection", "$level"},
                                                       {"force_discrimination", "$force"},

@@ -14,7 +14,7 @@
 
 #include "experiments/console/console.h"
 #include "experiments/console/console_messages.h"
-#include "experiments/studies/drilled_procedure.h"
+#include "experiments/studies/drilling/drilled_procedure.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {

@@ -13,7 +13,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/write/session_writer.h"
 #include "experiments/runner/session.h"
-#include "experiments/studies/drilling_study.h"
+#include "experiments/studies/drilling/drilling_study.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "tests/experiments/command.h"

@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "experiments/studies/simulated_rater.h"
+#include "experiments/studies/drilling/simulated_rater.h"
 #include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "tests/experiments/command.h"

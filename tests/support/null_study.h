@@ -14,7 +14,7 @@
 #include "analysis/bone_drilling/validity/validity_table.h"
 #include "core/base/files/file_text.h"
 #include "core/base/random.h"
-#include "experiments/studies/simulated_rater.h"
+#include "experiments/studies/drilling/simulated_rater.h"
 #include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"

@@ -1,9 +1,10 @@
 // The command haptrial with one protocol more.
-#include "experiments/command/line/whole_command.h"
-#include "experiments/studies/registry.h"
+#include <array>
+
+#include "experiments/command/whole/whole_command.h"
 #include "springs.h"
 
 int main(int argc, char** argv) {
-  haptrial::experiments::add_study(springs());
-  return haptrial::experiments::whole_command(argc, argv);
+  const std::array own{&springs()};
+  return haptrial::experiments::whole_command(argc, argv, own);
 }

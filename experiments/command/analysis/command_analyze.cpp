@@ -1,4 +1,4 @@
-#include "experiments/command/commands.h"
+#include "experiments/command/analysis_commands.h"
 
 #include <malloc.h>
 

@@ -10,7 +10,7 @@
 #include "analysis/statistics/tests/repeated_power.h"
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/analysis_commands.h"
 
 namespace haptrial::experiments {
 namespace {

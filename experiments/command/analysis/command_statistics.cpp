@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/files/file_text.h"
 #include "core/base/text/alike_names.h"
+#include "experiments/command/analysis_commands.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/commands.h"
 
 namespace haptrial::experiments {
 namespace {

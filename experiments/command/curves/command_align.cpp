@@ -11,8 +11,8 @@
 #include "analysis/force_training/score/score.h"
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
+#include "experiments/command/analysis_commands.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/commands.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -6,7 +6,7 @@
 #include "analysis/force_training/comparison/comparison.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/analysis_commands.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 #include "protocols/interface/study_rules.h"

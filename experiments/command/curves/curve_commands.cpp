@@ -13,7 +13,7 @@
 #include "analysis/statistics/words/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/analysis_commands.h"
 #include "experiments/command/curves/export_watch.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"

@@ -13,8 +13,8 @@
 #include "core/bone/surface/surface_mesh.h"
 #include "core/geometry/files/mesh_io.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/bone_commands.h"
-#include "experiments/command/mesh_command.h"
+#include "experiments/command/drilling/drilling_commands.h"
+#include "experiments/command/mesh/mesh_command.h"
 #include "experiments/control/interrupt.h"
 #include "protocols/bone_drilling/drilled_bone.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/bone_commands.h"
+#include "experiments/command/drilling/drilling_commands.h"
 #include "experiments/studies/drilling/trainee_pages.h"
 
 namespace haptrial::experiments {

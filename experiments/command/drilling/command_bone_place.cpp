@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/render/gl/image.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/bone_commands.h"
+#include "experiments/command/drilling/drilling_commands.h"
 #include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/placement_picture.h"
 

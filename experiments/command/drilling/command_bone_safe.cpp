@@ -3,7 +3,7 @@
 #include "core/base/files/whole_file.h"
 #include "core/base/text/counted.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/bone_commands.h"
+#include "experiments/command/drilling/drilling_commands.h"
 #include "experiments/studies/drilling/learn_limits.h"
 
 namespace haptrial::experiments {

@@ -4,7 +4,7 @@
 #include "core/base/error.h"
 #include "core/render/gl/image.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/drilling/drilling_commands.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
 
 namespace haptrial::experiments {

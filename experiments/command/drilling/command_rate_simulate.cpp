@@ -7,10 +7,10 @@
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/drilling/drilling_commands.h"
 #include "experiments/control/signals.h"
-#include "experiments/studies/drilling_study.h"
-#include "experiments/studies/simulated_rater.h"
+#include "experiments/studies/drilling/drilling_study.h"
+#include "experiments/studies/drilling/simulated_rater.h"
 #include "experiments/study/study_files.h"
 
 namespace haptrial::experiments {

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "experiments/command/commands.h"
+#include "experiments/command/keys/key_commands.h"
 #include "experiments/command/keys/key_list.h"
 
 namespace haptrial::experiments {

@@ -1,5 +1,7 @@
 // What was recorded, here or elsewhere: scores, tests, other programs' forms; sizes of studies.
-#include "experiments/command/line/command_line_internal.h"
+#include "experiments/command/analysis_commands.h"
+#include "experiments/command/line/command_lines.h"
+#include "experiments/command/line/subcommand_internal.h"
 
 namespace haptrial::experiments {
 
@@ -166,7 +168,6 @@ void add_power(CLI::App& app, int& status) {
   sub->add_option("--alpha", o.alpha, "Significance level: false-positive rate (default: 0.05)");
   sub->add_flag("--one-tailed", o.one_tailed,
                 "Test one tail only; the sign of the difference was planned (t test)");
-  add_simulated_power(*sub, status);
 }
 
 }  // namespace haptrial::experiments

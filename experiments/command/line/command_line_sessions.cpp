@@ -1,5 +1,8 @@
 // Sessions: to run them, look into them, mend and show them; definitions and devices.
-#include "experiments/command/line/command_line_internal.h"
+#include "experiments/command/devices/device_commands.h"
+#include "experiments/command/line/command_lines.h"
+#include "experiments/command/line/subcommand_internal.h"
+#include "experiments/command/sessions/session_commands.h"
 
 namespace haptrial::experiments {
 
@@ -179,13 +182,6 @@ void add_validate(CLI::App& app, int& status) {
                              {"", "guide-experimenter.md"});
   auto& definition = options_of<std::string>(*sub, status, validate);
   sub->add_option("DEFINITION", definition, "Experiment definition (.toml)")->required();
-}
-
-void add_keys(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "keys", "List every key that a definition may have",
-                             "haptrial keys trials", {"", "keys.md"});
-  auto& protocol = options_of<std::string>(*sub, status, keys);
-  sub->add_option("PROTOCOL", protocol, "Protocol whose keys are listed (default: every protocol)");
 }
 
 void add_devices(CLI::App& app, int& status) {

@@ -1,4 +1,4 @@
-#include "experiments/command/commands.h"
+#include "experiments/command/sessions/session_commands.h"
 
 #include <fmt/format.h>
 

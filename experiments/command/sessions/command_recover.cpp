@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "core/record/recovery/recover.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/sessions/session_commands.h"
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/sessions/session_commands.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
 #include "experiments/plugin/loaded/loaded_plugins.h"

@@ -10,9 +10,9 @@
 #include "core/base/files/file_text.h"
 #include "core/base/text/counted.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/sessions/exclude.h"
 #include "experiments/command/sessions/next_session.h"
+#include "experiments/command/sessions/session_commands.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
 

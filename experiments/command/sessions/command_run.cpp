@@ -1,4 +1,4 @@
-#include "experiments/command/commands.h"
+#include "experiments/command/sessions/session_commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,9 +15,9 @@
 #include "core/record/read/overruns.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/run_checks.h"
 #include "experiments/command/sessions/meet_partner.h"
 #include "experiments/command/sessions/next_session.h"
+#include "experiments/command/sessions/run_checks.h"
 #include "experiments/console/console.h"
 #include "experiments/control/keyboard.h"
 #include "experiments/control/last_stop.h"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "experiments/command/commands.h"
+#include "experiments/command/sessions/session_commands.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/definition/languages.h"
 

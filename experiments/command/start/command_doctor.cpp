@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "experiments/command/commands.h"
 #include "experiments/command/start/machine_checks.h"
+#include "experiments/command/start/start_commands.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "experiments/command/commands.h"
 #include "experiments/command/start/examples.h"
+#include "experiments/command/start/start_commands.h"
 #include "experiments/studies/experiment.h"
 
 namespace haptrial::experiments {

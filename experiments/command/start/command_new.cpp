@@ -5,8 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/base/files/whole_file.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/start/examples.h"
+#include "experiments/command/start/start_commands.h"
 #include "experiments/studies/experiment.h"
 
 namespace haptrial::experiments {

@@ -7,9 +7,9 @@
 #include "core/bone/anatomy/mandible.h"
 #include "core/bone/anatomy/temporal_bone.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/commands.h"
 #include "experiments/command/tools/bone_carving.h"
 #include "experiments/command/tools/bone_words.h"
+#include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {
 

@@ -9,9 +9,9 @@
 #include "core/base/text/nearest.h"
 #include "core/bone/model/crop.h"
 #include "core/bone/pieces/tidy.h"
-#include "experiments/command/bone_commands.h"
 #include "experiments/command/tools/bone_carving.h"
 #include "experiments/command/tools/bone_words.h"
+#include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -10,9 +10,9 @@
 #include "core/render/bone/bone_scene.h"
 #include "core/render/bone/bone_tools.h"
 #include "core/render/gl/offscreen.h"
-#include "experiments/command/commands.h"
-#include "experiments/command/mesh_command.h"
+#include "experiments/command/mesh/mesh_command.h"
 #include "experiments/command/tools/bone_carving.h"
+#include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -104,8 +104,7 @@ void add_burr(const BonePictureOptions& options, render::BoneFrame& frame) {
   mesh.casts = render::burr_shadow(diameter, shaft, kLength);
   mesh.pose.translation() = burr.from;
   mesh.pose.linear() =
-      shortest_turn(Eigen::Vector3d::UnitZ(), burr.to - burr.from)
-          .toRotationMatrix();
+      shortest_turn(Eigen::Vector3d::UnitZ(), burr.to - burr.from).toRotationMatrix();
   frame.meshes.push_back(std::move(mesh));
 }
 

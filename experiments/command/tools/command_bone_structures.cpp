@@ -6,8 +6,8 @@
 #include "core/base/files/whole_file.h"
 #include "core/bone/anatomy/anatomy.h"
 #include "core/bone/data/bone_summary.h"
-#include "experiments/command/bone_commands.h"
 #include "experiments/command/tools/bone_words.h"
+#include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {
 namespace {

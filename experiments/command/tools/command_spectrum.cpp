@@ -12,7 +12,7 @@
 #include "core/base/text/nearest.h"
 #include "core/sound/power_spectrum.h"
 #include "core/sound/wav.h"
-#include "experiments/command/commands.h"
+#include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -1,0 +1,269 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+
+#include "analysis/contact/duck/duck_report.h"
+#include "analysis/contact/evaluation/check_body.h"
+#include "analysis/contact/recording/read_recording.h"
+#include "analysis/contact/recording/session_contact.h"
+#include "analysis/contact/report/write_evaluation.h"
+#include "analysis/files/csv.h"
+#include "core/base/error.h"
+#include "core/base/text/nearest.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/contact/contact_commands.h"
+#include "experiments/command/mesh/mesh_command.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using contact::RendererKind;
+
+constexpr double kMilli = 1e-3;  // mm to m, ms to s
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+double unit_of(const std::string& name) {
+  if (name == "m") {
+    return 1.0;
+  }
+  if (name == "cm" || name == "mm") {
+    return name == "cm" ? 1e-2 : kMilli;
+  }
+  throw InputError(not_allowed("--units", fmt::format("'{}'", name), {"m", "cm", "mm"}));
+}
+
+/// One word on a command line.
+std::string word_of(RendererKind kind) {
+  std::string word(contact::name_of(kind));
+  std::replace(word.begin(), word.end(), ' ', '-');
+  return word;
+}
+
+std::vector<RendererKind> renderers_of(const std::vector<std::string>& words) {
+  std::vector<RendererKind> kinds;
+  std::vector<std::string> allowed;
+  for (const RendererKind kind : contact::kRendererKinds) {
+    allowed.push_back(word_of(kind));
+    if (words.empty() || std::find(words.begin(), words.end(), word_of(kind)) != words.end()) {
+      kinds.push_back(kind);
+    }
+  }
+  for (const std::string& word : words) {
+    if (std::find(allowed.begin(), allowed.end(), word) == allowed.end()) {
+      throw InputError(not_allowed("--renderer", fmt::format("'{}'", word), allowed));
+    }
+  }
+  return kinds;
+}
+
+Eigen::Vector3d unit_vector(const char* what, const Eigen::Vector3d& v) {
+  if (!(v.norm() > 0.0) || !v.allFinite()) {
+    throw InputError(
+        fmt::format("{}: the axis has no length; allowed: three numbers, not all 0", what));
+  }
+  return v.normalized();
+}
+
+void take_sensors(const EvaluateOptions& o, evaluation::PrepareOptions& p) {
+  p.radius = kMilli * checked_real("--radius", o.radius, 0.0, 1e3);
+  if (!o.tip.empty()) {
+    p.tip = kMilli * Eigen::Vector3d(o.tip[0], o.tip[1], o.tip[2]);
+  }
+  if (!o.sensor.empty()) {
+    const Eigen::Quaterniond q(o.sensor[0], o.sensor[1], o.sensor[2], o.sensor[3]);
+    if (!(std::abs(q.norm() - 1.0) <= 0.01)) {
+      throw InputError(
+          fmt::format("--sensor has the length {:.4g}; allowed: 0.99 to 1.01", q.norm()));
+    }
+    p.mount.orientation = q.normalized();
+  }
+  if (o.free.size() % 2 != 0) {
+    throw InputError(
+        fmt::format("--free has {} times; allowed: pairs, from and to", o.free.size()));
+  }
+  for (std::size_t i = 0; i + 1 < o.free.size(); i += 2) {
+    if (!(o.free[i] < o.free[i + 1])) {
+      throw InputError(fmt::format("--free is from {} to {} s; allowed: an end after its beginning",
+                                   o.free[i], o.free[i + 1]));
+    }
+    p.free.emplace_back(o.free[i], o.free[i + 1]);
+  }
+  if (o.lag) {
+    p.lag = kMilli * checked_real("--lag", *o.lag, -1e4, 1e4);
+  }
+  p.registered = o.registered;
+  p.force_on_body = o.on_body;
+}
+
+evaluation::EvaluationOptions evaluation_options(const EvaluateOptions& o) {
+  evaluation::EvaluationOptions e;
+  take_sensors(o, e.prepare);
+  e.renderers = renderers_of(o.renderers);
+  e.prepare.stiffness = checked_real("--stiffness", o.stiffness, 1.0, 1e6);
+  e.prepare.rate = checked_real("--rate", o.rate, 10.0, 1e5);
+  e.resolution = checked_number("--resolution", o.resolution, 4, 512);
+  e.threshold = kMilli * checked_real("--threshold", o.threshold, 0.0, 1e6);
+  if (o.friction) {
+    e.friction = checked_real("--friction", *o.friction, 0.0, 10.0);
+  }
+  if (o.shading) {
+    e.crease_angle = kDegree * checked_real("--shading", *o.shading, 0.0, 90.0);
+  }
+  if (!o.grating.empty()) {
+    e.texture = evaluation::TextureGrid{
+        unit_vector("--grating", {o.grating[1], o.grating[2], o.grating[3]}),
+        kMilli * checked_real("--grating", o.grating[0], 1e-3, 1e3)};
+  }
+  return e;
+}
+
+std::vector<fs::path> tables_of(const std::vector<std::string>& given) {
+  if (given.size() != 1 || !fs::is_directory(given[0])) {
+    return {given.begin(), given.end()};
+  }
+  std::vector<fs::path> tables;
+  for (const fs::directory_entry& entry : fs::directory_iterator(given[0])) {
+    if (entry.path().extension() == ".csv") {
+      tables.push_back(entry.path());
+    }
+  }
+  if (tables.empty() || tables.size() > 2) {
+    throw InputError(
+        fmt::format("{}: holds {} tables (.csv); allowed: one, or one of poses and one "
+                    "of forces",
+                    given[0], tables.size()));
+  }
+  std::sort(tables.begin(), tables.end());
+  return tables;
+}
+
+evaluation::ContactRecording read_tables(const std::vector<std::string>& given) {
+  std::vector<fs::path> tables = tables_of(given);
+  if (tables.size() == 2) {
+    const analysis::CsvTable first = analysis::CsvTable::load(tables[0]);
+    if (first.has("force_x_N") || first.has("force_x_mN")) {
+      std::swap(tables[0], tables[1]);
+    }
+  }
+  return evaluation::read_recording(tables.front(), tables.back());
+}
+
+/// A recording and what it is called.
+struct GivenRecording {
+  evaluation::ContactRecording recording;
+  evaluation::EvaluationNames names;
+};
+
+/// What a session file keeps has one clock and no load.
+GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& prepare) {
+  const fs::path first(o.recording.front());
+  evaluation::EvaluationNames names{first.filename().string(), fs::path(o.mesh).filename().string(),
+                                    o.simulated};
+  if (o.recording.size() > 1 || first.extension() != ".h5") {
+    if (o.object || o.trial) {
+      throw InputError("--object and --trial are for a session file (.h5)");
+    }
+    return {read_tables(o.recording), names};
+  }
+  evaluation::SessionContact contact =
+      evaluation::read_session_contact(record::SessionReader(first), {o.object, o.trial});
+  prepare.lag = prepare.lag.value_or(0.0);
+  if (prepare.free.empty()) {
+    prepare.load = evaluation::SensorLoad{};
+  }
+  names.recording += fmt::format(", {} in trial {}", contact.object, contact.trial);
+  names.simulated = names.simulated || contact.simulated;
+  return {std::move(contact.recording), names};
+}
+
+/// Recordings of --test-on. What the first recording's session file says of itself holds only
+/// there.
+std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o) {
+  std::vector<evaluation::NamedRecording> others;
+  for (const std::string& path : o.tested_on) {
+    EvaluateOptions other = o;
+    other.recording = {path};
+    other.trial.reset();
+    if (fs::path(path).extension() != ".h5") {
+      other.object.reset();
+    }
+    evaluation::PrepareOptions ignored;
+    auto [recording, names] = read_given(other, ignored);
+    others.push_back({names.recording, std::move(recording)});
+  }
+  return others;
+}
+
+int evaluate_duck(const EvaluateOptions& o) {
+  if (!o.recording.empty() || !o.mesh.empty()) {
+    throw InputError("--duck is given with a recording or a mesh; it makes its own");
+  }
+  if (!o.tested_on.empty()) {
+    throw InputError("--test-on needs RECORDING; --duck makes its own");
+  }
+  evaluation::DuckOptions duck;
+  duck.seed = checked_seed(o.seed);
+  const evaluation::DuckTables tables = evaluation::make_duck_tables(duck);
+  const std::vector<evaluation::FailureMap> maps = evaluation::failure_maps();
+  if (!o.out.empty()) {
+    evaluation::write_duck(tables, maps, o.out);
+  }
+  for (const std::string& line : evaluation::duck_lines(tables, maps)) {
+    fmt::print("{}\n", line);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int evaluate(const EvaluateOptions& options) {
+  if (options.duck) {
+    return evaluate_duck(options);
+  }
+  if (options.seed != EvaluateOptions{}.seed) {
+    throw InputError("--seed is for --duck; a recording has no random numbers");
+  }
+  if (options.recording.empty() || options.mesh.empty()) {
+    throw InputError("evaluate needs RECORDING and --mesh, or --duck");
+  }
+  evaluation::EvaluationOptions chain = evaluation_options(options);
+  const double unit = unit_of(options.units);
+  const auto [recording, names] = read_given(options, chain.prepare);
+  const std::vector<evaluation::NamedRecording> others = read_others(options);
+  const contact::FeltBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
+  try {
+    evaluation::check_body(body);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", options.mesh, error.what()));
+  }
+  evaluation::Evaluation found;
+  try {
+    found = evaluation::evaluate_rendering(recording, body, chain);
+    if (!others.empty()) {
+      evaluation::add_cross_fit(found, names.recording, others, body, chain);
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", options.recording.front(), error.what()));
+  }
+  if (!options.out.empty()) {
+    evaluation::write_evaluation(found, names, options.out);
+  }
+  if (names.simulated) {
+    fmt::print("SIMULATED RECORDING\n");
+  }
+  for (const std::string& line : evaluation::evaluation_lines(found)) {
+    fmt::print("{}\n", line);
+  }
+  if (!options.out.empty()) {
+    fmt::print("report: {}\n", (fs::path(options.out) / "report.html").string());
+  }
+  return 0;
+}
+
+}  // namespace haptrial::experiments

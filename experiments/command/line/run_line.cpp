@@ -1,0 +1,74 @@
+#include "experiments/command/line/run_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "core/base/error.h"
+#include "experiments/command/libraries.h"
+#include "experiments/command/line/command_line_check_internal.h"
+#include "experiments/runner/version.h"
+
+namespace haptrial::experiments {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+/// Also where nobody reads it any more, as in a terminal that was closed.
+void complain(const std::string& sentence) {
+  [[maybe_unused]] const int written = std::fputs(("haptrial: " + sentence + "\n").c_str(), stderr);
+}
+
+}  // namespace
+
+int run_line(std::span<char* const> line,
+             const std::function<void(CLI::App& app, int& status)>& declare) {
+  CLI::App app("Run force-feedback experiments, record them and analyse the results.");
+  app.name("haptrial");
+  app.set_version_flag("--version", fmt::format("haptrial {} ({})\n{}", program_version(),
+                                                program_commit(), libraries()));
+  app.require_subcommand(1);
+  app.footer(
+      "First steps:\n"
+      "  haptrial validate experiments/force_training.toml\n"
+      "  haptrial dry-run experiments/force_training.toml --subjects 4 --out out/try\n"
+      "  haptrial analyze out/try\n"
+      "\n'haptrial SUBCOMMAND --help' shows the options and an example of a subcommand.\n"
+      "Documentation: README.md and docs/ of the source.\n"
+      "Exit status: 0 done, 1 failed, 2 bad input.");
+  int status = 0;
+  declare(app, status);
+  const auto words = line.subspan(1);
+  check_words(app, words);
+  try {
+    app.parse(static_cast<int>(line.size()), line.data());
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    complain(sentence_of(app, words, error));
+    return kBadInput;
+  }
+  return status;
+}
+
+int exit_status(const std::function<int()>& command) {
+  try {
+    const int status = command();
+    if (std::fflush(stdout) != 0) {
+      throw RunError("standard output cannot be written");
+    }
+    return status;
+  } catch (const InputError& error) {
+    complain(error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    complain(error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace haptrial::experiments

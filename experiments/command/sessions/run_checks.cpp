@@ -1,0 +1,229 @@
+#include "experiments/command/sessions/run_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/base/error.h"
+#include "core/base/text/counted.h"
+#include "core/record/hdf5/file_lock.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/write/session_target.h"
+#include "core/record/write/session_writer.h"
+#include "experiments/command/arguments.h"
+#include "experiments/devices/devices.h"
+#include "experiments/study/study_files.h"
+#include "protocols/definition/definition.h"
+#include "protocols/interface/protocol.h"
+#include "protocols/interface/study_rules.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// An identifier becomes a file name: no path may hide in it.
+void check_subject(const std::string& subject) {
+  constexpr std::size_t kLongest = 64;
+  const bool plain = std::all_of(subject.begin(), subject.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+  if (subject.empty() || subject.size() > kLongest || !plain) {
+    throw InputError(fmt::format("--subject is '{}'; allowed: 1 to {} letters, digits, '-' and '_'",
+                                 subject, kLongest));
+  }
+}
+
+void check_device(const RunOptions& options) {
+  for (const std::string& device : options.devices) {
+    check_device_name(device);
+    if ((device == "mouse" || device == "gamepad") && !options.window) {
+      throw InputError(fmt::format(
+          "--device {} takes its pointer from the participant's screen; add --window", device));
+    }
+    if (options.devices.size() == 1 || takes_library(device)) {
+      check_library(device, options.library);
+    }
+    if (options.resume && replayed_file(device)) {
+      throw InputError(
+          "--resume is given with --device replay:FILE, which begins at the recording's first "
+          "pass; leave out --resume and choose another --out");
+    }
+  }
+}
+
+void check_console(const RunOptions& options) {
+  const auto need = [&options](const char* name, bool given) {
+    if (given && !options.console) {
+      throw InputError(
+          fmt::format("{} is given without --console; leave it out or add --console", name));
+    }
+  };
+  need("--port", options.port.has_value());
+  need("--address", options.address.has_value());
+  need("--remote", options.remote);
+}
+
+void check_link(const RunOptions& options) {
+  const bool linked = options.teach || !options.learn_from.empty();
+  if (options.teach && !options.learn_from.empty()) {
+    throw InputError("--teach and --learn-from are both given; a session is one side of a pair");
+  }
+  if (linked && options.secret.empty()) {
+    throw InputError(
+        "--teach and --learn-from need --secret FILE, the same on both sides; haptrial secret FILE "
+        "makes one");
+  }
+  if (!linked && !options.secret.empty()) {
+    throw InputError("--secret is given without --teach or --learn-from; leave it out");
+  }
+  if (linked && !options.tutor.empty()) {
+    throw InputError("--tutor is given beside --teach or --learn-from; leave out one of them");
+  }
+}
+
+std::string unfinished_in(const fs::path& folder) {
+  constexpr std::size_t kMost = 8;
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    return "there is no such folder";
+  }
+  const std::vector<std::string> files = unfinished_sessions(folder);
+  if (files.empty()) {
+    return "no session in this folder is unfinished";
+  }
+  const auto shown = static_cast<long>(std::min(kMost, files.size()));
+  return fmt::format("unfinished in this folder: {}{}",
+                     fmt::join(files.begin(), files.begin() + shown, ", "),
+                     files.size() > kMost ? ", ..." : "");
+}
+
+/// Otherwise a mistyped --subject or --out would start a session anew.
+void check_resumed(const fs::path& file) {
+  if (!record::SessionWriter::can_resume(file)) {
+    throw InputError(fmt::format(
+        "{}: nothing to resume: {} is not there; {}; choose another --subject or --out, or leave "
+        "out --resume",
+        file.parent_path().string(), record::partial_path(file).filename().string(),
+        unfinished_in(file.parent_path())));
+  }
+}
+
+struct EarlierSession {
+  fs::path file;
+  record::SessionInfo info;
+};
+
+/// Of the folder that are of the same kind, finished or not, by name. What cannot be read says
+/// nothing about the study: `analyze` names it.
+/// @param own  file of the session that is to be recorded
+std::vector<EarlierSession> earlier_sessions(const RunOptions& options, const fs::path& own) {
+  std::vector<EarlierSession> sessions;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(options.out, ignored)) {
+    const fs::path& file = entry.path();
+    const bool same = file == own || file == record::partial_path(own) ||
+                      file.stem().stem() == own.stem();  // or what was recovered of it
+    if (same || (file.extension() != ".h5" && file.extension() != ".partial")) {
+      continue;  // its own is looked at when it is resumed
+    }
+    try {
+      const record::SessionInfo info = record::SessionReader(file).info();
+      if (info.pilot == options.pilot) {
+        sessions.push_back({file, info});
+      }
+    } catch (const InputError&) {
+    }
+  }
+  std::sort(sessions.begin(), sessions.end(),
+            [](const auto& a, const auto& b) { return a.file < b.file; });
+  return sessions;
+}
+
+}  // namespace
+
+void check_run_options(const RunOptions& options) {
+  if (!options.subject.empty()) {
+    check_subject(options.subject);
+  }
+  check_device(options);
+  check_console(options);
+  check_link(options);
+  if (options.stream && options.stream_optional) {
+    throw InputError(
+        "--lsl and --lsl-optional are both given; leave out the one that is not meant");
+  }
+}
+
+void check_session_file(const RunOptions& options, const fs::path& file) {
+  if (options.resume) {
+    check_resumed(file);
+    return;
+  }
+  std::error_code ignored;
+  if (fs::exists(file, ignored)) {
+    throw InputError(
+        fmt::format("{}: {} already has a session here; choose another --subject or --out",
+                    file.string(), options.subject));
+  }
+  const fs::path partial = record::partial_path(file);
+  if (fs::exists(partial, ignored) && !record::FileLock::taken(partial)) {
+    throw InputError(fmt::format(
+        "{}: {} has an unfinished session here; add --resume, or choose another --subject or --out",
+        partial.string(), options.subject));
+  }
+}
+
+std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
+                        const protocols::Definition& setup, const fs::path& own) {
+  std::string changed;
+  for (const auto& [file, info] : earlier_sessions(options, own)) {
+    const DefinitionChanges changes =
+        protocols::study_changes(protocol, info, setup.text, options.devices.front());
+    if (!changes.same_study()) {
+      throw InputError(fmt::format(
+          "{}: was recorded with another definition: {}; record each study into a folder of its "
+          "own, chosen with --out",
+          file.string(), sentence_of(changes.binding)));
+    }
+    if (changed.empty() && !changes.free.empty()) {
+      changed = fmt::format(
+          "the definition differs from that of {}: {}; such keys may change within a study",
+          file.filename().string(), sentence_of(changes.free));
+    }
+  }
+  return changed;
+}
+
+void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
+                     const protocols::Definition& setup) {
+  if (options.devices.size() > static_cast<std::size_t>(setup.devices())) {
+    throw InputError(fmt::format("--device is given {} times; {} drives {}", options.devices.size(),
+                                 setup.file_name, counted(setup.devices(), "device", "devices")));
+  }
+  const auto file = replayed_file(options.devices.front());
+  if (!file) {
+    return;
+  }
+  const record::SessionReader reader(*file);
+  const record::SessionInfo& info = reader.info();
+  if (info.subject != options.subject) {
+    throw InputError(fmt::format("{}: was recorded with subject {}; replay it with --subject {}",
+                                 *file, info.subject, info.subject));
+  }
+  if (info.seed != checked_seed(options.seed)) {
+    throw InputError(fmt::format("{}: was recorded with seed {}; replay it with --seed {}", *file,
+                                 info.seed, info.seed));
+  }
+  // The recording stands in for the virtual hand, whose tables are not used.
+  const DefinitionChanges changes = definition_changes(
+      info.definition, setup.text, protocols::study_rules(protocol, protocols::Hand::kPerson));
+  if (!changes.same_study()) {
+    throw InputError(
+        fmt::format("{}: was recorded with another definition: {}; replay it with the same one",
+                    *file, sentence_of(changes.binding)));
+  }
+  protocol.check_replayed(setup, reader);
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "experiments/command/sessions/session_commands.h"
+
+namespace haptrial::protocols {
+struct Definition;
+class Protocol;
+}  // namespace haptrial::protocols
+
+namespace haptrial::experiments {
+
+/// What `run` refuses before a device is opened or anything moves, in the words of its options.
+
+/// @throws InputError for options that contradict each other or would have no effect.
+void check_run_options(const RunOptions& options);
+
+/// @throws InputError unless a session can begin in this file, or with --resume go on in it.
+void check_session_file(const RunOptions& options, const std::filesystem::path& file);
+
+/// Compares the definition with those of the sessions that the folder holds already, pilots with
+/// pilots and others with others. @returns a sentence about keys that differ and may; empty if none
+/// @throws InputError if they are of another study; names the keys.
+/// @param own  file of the session that is to be recorded
+std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
+                        const protocols::Definition& setup, const std::filesystem::path& own);
+
+/// @throws InputError where a recording drives the session (--device replay:FILE) and is of another
+/// subject, seed or definition, or more devices are named than the definition drives.
+void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
+                     const protocols::Definition& setup);
+
+}  // namespace haptrial::experiments

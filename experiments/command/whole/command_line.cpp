@@ -1,0 +1,46 @@
+#include "experiments/command/whole/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/command/line/command_lines.h"
+#include "experiments/command/whole/command_line_internal.h"
+
+namespace haptrial::experiments {
+
+void declare_subcommands(CLI::App& app, int& status) {
+  app.add_option_function<std::vector<std::string>>(
+      "--plugin", [](const std::vector<std::string>&) {},  // read already
+      "Plug-in (.so) to load, for any subcommand; repeated for each plug-in. The folder "
+      "HAPTRIAL_PLUGINS of the environment is loaded first");
+  add_examples(app, status);
+  add_new(app, status);
+  add_doctor(app, status);
+  add_dry_run(app, status);
+  add_run(app, status);
+  add_secret(app, status);
+  add_roster(app, status);
+  add_analyze(app, status);
+  add_export(app, status);
+  add_align(app, status);
+  add_evaluate(app, status);
+  add_compare(app, status);
+  add_statistics(app, status);
+  add_info(app, status);
+  add_recover(app, status);
+  add_replay(app, status);
+  add_validate(app, status);
+  add_keys(app, status);
+  add_power(app, status);
+  add_simulated_power(*app.get_subcommand("power"), status);
+  add_devices(app, status);
+  add_device_test(app, status);
+  add_mesh(app, status);
+  add_bone(app, status);
+  add_deform(app, status);
+  add_spectrum(app, status);
+  add_rate(app, status);
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,117 @@
+#include "experiments/studies/drilling/bone_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/bone/record/drilling_types.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/drilling_study.h"
+#include "experiments/studies/drilling/live_drilling.h"
+#include "experiments/studies/drilling/trainee_pages.h"
+#include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+using analysis::drilling::Procedure;
+
+/// The drillings of a running session.
+class DrillingFigures final : public record::LiveFigures {
+ public:
+  DrillingFigures(const protocols::BoneDefinition& definition, fs::path resumed)
+      : d_(definition),
+        resumed_(std::move(resumed)),
+        live_(procedure_setup(definition), definition.rate) {}
+
+  void begin_pass(const record::PassRow& pass, std::int32_t) override {
+    const auto bone = static_cast<std::size_t>(std::max(pass.trial, 1) - 1) % d_.bones.size();
+    live_.begin(pass, d_.bones[bone], of_earlier_run(pass));
+  }
+  void rows(const record::Rows& batch) override {
+    live_.add(batch.as<record::ToolRow>());
+    live_.add(batch.as<record::RemovalRow>());
+    live_.add(batch.as<record::CameraRow>());
+    live_.add(batch.as<record::SplitRow>());
+  }
+  void samples(std::span<const record::Sample> samples) override { live_.add(samples); }
+  void finish() override { live_.finish(); }
+  std::optional<record::LiveState> now() const override {
+    const auto procedure = live_.now();
+    return procedure ? std::optional(state_of(*procedure)) : std::nullopt;
+  }
+  std::vector<record::LiveState> done() const override {
+    std::vector<record::LiveState> states;
+    for (const DrilledProcedure& procedure : live_.procedures()) {
+      states.push_back(state_of(procedure));
+    }
+    return states;
+  }
+  std::string trouble() const override { return trouble_.empty() ? live_.trouble() : trouble_; }
+
+ private:
+  std::shared_ptr<const Procedure> of_earlier_run(const record::PassRow& pass);
+
+  const protocols::BoneDefinition& d_;
+  fs::path resumed_;
+  LiveDrilling live_;
+  std::string trouble_;  // of the session's thread
+};
+
+/// What the file held of the bone that the first pass after --resume goes on with.
+std::shared_ptr<const Procedure> DrillingFigures::of_earlier_run(const record::PassRow& pass) {
+  const fs::path resumed = std::exchange(resumed_, {});
+  if (resumed.empty() || pass.practice || pass.attempt < 2) {
+    return nullptr;
+  }
+  try {
+    const record::SessionReader file(resumed);
+    const auto passes = file.passes();
+    const bool same_bone = std::any_of(passes.begin(), passes.end(), [&](const auto& row) {
+      return row.trial == pass.trial && !row.practice && row.repetition == pass.repetition;
+    });
+    for (auto& procedure : load_procedures(file, procedure_setup(d_))) {
+      if (same_bone && procedure.number == pass.trial) {
+        return std::make_shared<const Procedure>(std::move(procedure));
+      }
+    }
+  } catch (const std::exception& error) {  // nothing that a session should end for
+    trouble_ = fmt::format("live figures leave out the passes before the session was resumed: {}",
+                           error.what());
+  }
+  return nullptr;
+}
+
+class BoneStudy final : public Study {
+ public:
+  const protocols::Protocol& protocol() const override { return protocols::bone_drilling(); }
+  std::unique_ptr<record::LiveFigures> live_figures(const protocols::Definition& definition,
+                                                    const fs::path& resumed) const override {
+    return std::make_unique<DrillingFigures>(
+        dynamic_cast<const protocols::BoneDefinition&>(definition), resumed);
+  }
+  std::vector<std::string> after_session(const protocols::Definition& definition,
+                                         const fs::path& folder,
+                                         const fs::path& file) const override {
+    return page_after_session(dynamic_cast<const protocols::BoneDefinition&>(definition), folder,
+                              file);
+  }
+  std::vector<std::string> analyze(const AnalysisRequest& request) const override {
+    return analyze_drillings(request.folder, request.files, request.out, request.threads);
+  }
+  std::string next_step(const fs::path& folder) const override {
+    return "haptrial replay " + (folder / "S01.h5").string();
+  }
+};
+
+}  // namespace
+
+const Study& bone_study() {
+  static const BoneStudy study;
+  return study;
+}
+
+}  // namespace haptrial::experiments

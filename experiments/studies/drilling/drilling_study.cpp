@@ -1,0 +1,127 @@
+#include "experiments/studies/drilling/drilling_study.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+
+#include "analysis/bone_drilling/report/validity_summary.h"
+#include "analysis/bone_drilling/report/visibility_picture.h"
+#include "core/base/error.h"
+#include "core/record/read/session_reader.h"
+#include "core/render/mesh/scene.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+namespace drilling = analysis::drilling;
+
+// Pictures on their way into a report; gone at the end.
+class PictureFolder {
+ public:
+  explicit PictureFolder(const fs::path& study)
+      : path_(study / fmt::format(".pictures-{}", getpid())) {
+    std::error_code error;
+    if (!fs::create_directories(path_, error)) {
+      throw InputError(
+          fmt::format("{}: cannot be written ({}); choose a folder with write permission",
+                      study.string(), error.message()));
+    }
+  }
+  ~PictureFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+// As the surgeon looked at it first.
+drilling::SurgeonsView surgeons_view(const protocols::BoneDefinition& definition,
+                                     const geometry::VoxelGrid& grid) {
+  const Camera& start = definition.simulator.camera.start;
+  const Eigen::Matrix3d R_BW = pose_of(definition.placement, grid).linear().transpose();
+  return {R_BW * (start.eye - start.target), R_BW * start.up};
+}
+
+drilling::StudyPicture visibility_picture(const drilling::ProcedureSummary& procedure,
+                                          const protocols::BoneDefinition& definition,
+                                          const std::string& name, const std::string& which,
+                                          const fs::path& folder) {
+  const fs::path file = folder / (name + ".png");
+  render::write_png(file, drilling::visibility_figure(
+                              {procedure.bone.get(), procedure.removed, procedure.removed_seen},
+                              surgeons_view(definition, procedure.bone->grid)));
+  return {name, fmt::format("Removed voxels of the procedure with the {} share in sight", which),
+          fmt::format("Green: visible when they were removed ({:.0f} %). Magenta: hidden by other "
+                      "bone. Pale colours: vital structures. Left: as the surgeon looks into the "
+                      "cavity, bone is not drawn. Right: cut open where most was hidden, the way "
+                      "out is up; beige: bone that stands.",
+                      100.0 * procedure.value("visible_share").value_or(0.0)),
+          "Green and magenta voxels of a cavity among vital structures, whole and cut open.", file};
+}
+
+// Figure 18: the two ends of the study.
+std::vector<drilling::StudyPicture> visibility_pictures(
+    const std::vector<drilling::ProcedureSummary>& procedures,
+    const protocols::BoneDefinition& definition, const fs::path& folder) {
+  const drilling::ProcedureSummary *least = nullptr, *most = nullptr;
+  for (const auto& p : procedures) {
+    if (const auto share = p.value("visible_share")) {
+      least = least == nullptr || *share < *least->value("visible_share") ? &p : least;
+      most = most == nullptr || *share > *most->value("visible_share") ? &p : most;
+    }
+  }
+  std::vector<drilling::StudyPicture> pictures;
+  if (least != nullptr) {
+    pictures.push_back(
+        visibility_picture(*least, definition, "figure-18-undercut", "smallest", folder));
+    pictures.push_back(
+        visibility_picture(*most, definition, "figure-18-saucerized", "largest", folder));
+  }
+  return pictures;
+}
+
+}  // namespace
+
+std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFiles& files,
+                                           const fs::path& out, int threads) {
+  const record::SessionInfo& first = files.first;
+  const std::vector<protocols::StudyGroup> groups =
+      protocols::study_groups(first.definition, first.definition_name);
+  drilling::ValidityStudy study;
+  const auto definition = protocols::parse_bone_definition(first.definition, first.definition_name);
+  study.title = definition.nerves  ? "Drilling beside watched nerves"
+                : definition.hints ? "Drilling with hints"
+                                   : "Construct validity of simulated bone surgery";
+  study.files = files.files;
+  study.threads = threads;
+  study.ratings = folder / kRatingsFile;
+  study.setup = [&](const record::SessionReader& session) {
+    return procedure_setup(session, groups);
+  };
+  for (const protocols::StudyGroup& group : groups) {
+    study.plan.groups.push_back(group.name);
+    if (group.expert) {
+      study.plan.expert_groups.push_back(group.name);
+    }
+  }
+  drilling::ValidityResult result = drilling::analyze(study);
+  result.remarks = files.remarks;
+  const PictureFolder pictures(out);
+  result.pictures = visibility_pictures(result.procedures, definition, pictures.path());
+  drilling::write_validity(result, out);
+  std::vector<std::string> lines = drilling::summary_lines(result);
+  lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
+  return lines;
+}
+
+}  // namespace haptrial::experiments

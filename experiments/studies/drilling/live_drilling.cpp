@@ -1,0 +1,185 @@
+#include "experiments/studies/drilling/live_drilling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <tuple>
+#include <utility>
+
+#include "analysis/bone_drilling/metrics/live.h"
+
+namespace haptrial::experiments {
+
+namespace drilling = analysis::drilling;
+
+/// What came with one call of add(samples), and the pass that began before it.
+struct LiveDrilling::Batch {
+  std::optional<record::PassRow> pass;
+  std::shared_ptr<const bone::BoneModel> bone;
+  std::shared_ptr<const drilling::Procedure> earlier;
+  std::vector<record::Sample> samples;
+  std::vector<record::ToolRow> tool;
+  std::vector<record::RemovalRow> removals;
+  std::vector<record::CameraRow> views;
+  std::vector<record::SplitRow> splits;
+};
+
+/// One bone under the meter.
+struct LiveDrilling::Bone {
+  Bone(const record::PassRow& row, const std::shared_ptr<const bone::BoneModel>& model,
+       const drilling::ProcedureSetup& setup, double rate)
+      : pass(row),
+        metrics(model, setup.pose_WB(model->grid), setup.tools, setup.scale, rate, setup.handle) {}
+
+  record::PassRow pass;
+  drilling::LiveMetrics metrics;
+  std::vector<record::ToolRow> early;  // their samples are still to come
+};
+
+namespace {
+
+template <class Row>
+void append(std::vector<Row>& to, std::span<const Row> rows) {
+  to.insert(to.end(), rows.begin(), rows.end());
+}
+
+auto bone_key(const record::PassRow& pass) {
+  return std::tuple(pass.practice, pass.trial, pass.repetition);
+}
+
+}  // namespace
+
+LiveDrilling::LiveDrilling(drilling::ProcedureSetup setup, double rate)
+    : setup_(std::move(setup)), rate_(rate), given_(std::make_unique<Batch>()) {
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveDrilling::~LiveDrilling() { finish(); }
+
+void LiveDrilling::begin(const record::PassRow& pass, std::shared_ptr<const bone::BoneModel> bone,
+                         std::shared_ptr<const drilling::Procedure> earlier) {
+  given_->pass = pass;
+  given_->bone = std::move(bone);
+  given_->earlier = std::move(earlier);
+}
+
+void LiveDrilling::add(std::span<const record::ToolRow> rows) { append(given_->tool, rows); }
+void LiveDrilling::add(std::span<const record::RemovalRow> rows) { append(given_->removals, rows); }
+void LiveDrilling::add(std::span<const record::CameraRow> rows) { append(given_->views, rows); }
+void LiveDrilling::add(std::span<const record::SplitRow> rows) { append(given_->splits, rows); }
+
+void LiveDrilling::add(std::span<const record::Sample> samples) {
+  append(given_->samples, samples);
+  const std::lock_guard lock(mutex_);
+  if (trouble_.empty()) {
+    waiting_.push_back(std::move(given_));
+  }
+  given_ = std::make_unique<Batch>();
+}
+
+void LiveDrilling::finish() {
+  if (thread_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+    }
+    ended_changed_.notify_one();
+    thread_.join();
+  }
+}
+
+void LiveDrilling::run() {
+  constexpr std::chrono::milliseconds kBetween{100};
+  for (bool ended = false; !ended;) {
+    std::vector<std::unique_ptr<Batch>> batches;
+    {
+      std::unique_lock lock(mutex_);
+      ended = ended_changed_.wait_for(lock, kBetween, [this] { return ended_; });
+      batches.swap(waiting_);
+    }
+    try {
+      for (const auto& batch : batches) {
+        measure(*batch);
+      }
+      if (bone_ && !batches.empty()) {
+        show(*bone_);
+      }
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(mutex_);
+      trouble_ =
+          fmt::format("the drilling is still recorded but no longer measured: {}", error.what());
+      waiting_.clear();
+      return;
+    }
+  }
+}
+
+void LiveDrilling::measure(Batch& batch) {
+  if (batch.pass && (!bone_ || bone_key(bone_->pass) != bone_key(*batch.pass))) {
+    if (bone_) {
+      show(*bone_);
+    }
+    bone_ = std::make_unique<Bone>(*batch.pass, batch.bone, setup_, rate_);
+    if (batch.earlier) {
+      bone_->metrics.add(*batch.earlier);
+    }
+  }
+  if (!bone_ || batch.samples.empty()) {
+    return;
+  }
+  // Rows of a tick are in the logs before its sample is, so some are ahead of their samples. Where
+  // a log lost rows, ticks that are not whole are passed over.
+  std::vector<record::ToolRow>& tool = bone_->early;
+  append(tool, std::span<const record::ToolRow>(batch.tool));
+  std::vector<record::Sample> samples;
+  std::vector<record::ToolRow> of_samples;
+  auto row = tool.begin();
+  for (const record::Sample& sample : batch.samples) {
+    row = std::find_if(row, tool.end(),
+                       [&](const auto& each) { return each.sequence >= sample.sequence; });
+    if (row != tool.end() && row->sequence == sample.sequence) {
+      samples.push_back(sample);
+      of_samples.push_back(*row++);
+    }
+  }
+  tool.erase(tool.begin(), row);
+  drilling::LiveMetrics& metrics = bone_->metrics;
+  metrics.add(samples, of_samples);
+  metrics.add(std::span<const record::RemovalRow>(batch.removals));
+  metrics.add(std::span<const record::CameraRow>(batch.views));
+  metrics.add(std::span<const record::SplitRow>(batch.splits));
+  metrics.advance(batch.samples.back().sequence);
+}
+
+void LiveDrilling::show(const Bone& bone) {
+  DrilledProcedure procedure{bone.pass.trial, bone.pass.practice, bone.metrics.figures()};
+  const std::lock_guard lock(mutex_);
+  if (!procedures_.empty() && procedures_.back().trial == procedure.trial &&
+      procedures_.back().practice == procedure.practice) {
+    procedures_.back() = std::move(procedure);
+  } else {
+    procedures_.push_back(std::move(procedure));
+  }
+}
+
+std::optional<DrilledProcedure> LiveDrilling::now() const {
+  const std::lock_guard lock(mutex_);
+  return procedures_.empty() ? std::nullopt : std::optional(procedures_.back());
+}
+
+std::vector<DrilledProcedure> LiveDrilling::procedures() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<DrilledProcedure> done;
+  std::copy_if(procedures_.begin(), procedures_.end(), std::back_inserter(done),
+               [](const DrilledProcedure& procedure) { return !procedure.practice; });
+  return done;
+}
+
+std::string LiveDrilling::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "analysis/bone_drilling/procedure/procedure.h"
+#include "core/bone/record/drilling_types.h"
+#include "core/record/rows/session_types.h"
+#include "experiments/studies/drilling/drilled_procedure.h"
+
+namespace haptrial::experiments {
+
+/// Measures the drillings of a session while it runs. The session's thread gives it the rows that
+/// go into the file and never waits; a thread of its own measures them, ten times a second.
+///
+/// What it says after the last row is what an analysis of the file says, to the bit.
+class LiveDrilling {
+ public:
+  /// @param setup  of the session; its group is not needed
+  /// @param rate   of ticks [Hz]
+  LiveDrilling(analysis::drilling::ProcedureSetup setup, double rate);
+  ~LiveDrilling();
+  LiveDrilling(const LiveDrilling&) = delete;
+  LiveDrilling& operator=(const LiveDrilling&) = delete;
+
+  // The session's thread.
+
+  /// A pass begins; one of the same trial and repetition goes on with its procedure, another has a
+  /// bone of its own.
+  /// @param earlier  what an earlier run of the session did to that bone; null: nothing
+  void begin(const record::PassRow& pass, std::shared_ptr<const bone::BoneModel> bone,
+             std::shared_ptr<const analysis::drilling::Procedure> earlier = nullptr);
+  void add(std::span<const record::ToolRow> rows);
+  void add(std::span<const record::RemovalRow> rows);
+  void add(std::span<const record::CameraRow> rows);
+  void add(std::span<const record::SplitRow> rows);
+  /// Ticks of which all other rows have been given.
+  void add(std::span<const record::Sample> samples);
+  /// Waits until everything that was given is measured. No more rows after that.
+  void finish();
+
+  // Any thread.
+
+  /// The present procedure, or the last one, as far as it is measured; nothing before the first.
+  std::optional<DrilledProcedure> now() const;
+  /// All but practice, in order; of a trial that was begun anew the last one.
+  std::vector<DrilledProcedure> procedures() const;
+  /// Why it has ceased to measure, in a sentence; empty while it does.
+  std::string trouble() const;
+
+ private:
+  struct Batch;
+  struct Bone;
+  void run();
+  void measure(Batch& batch);
+  void show(const Bone& bone);
+
+  const analysis::drilling::ProcedureSetup setup_;
+  const double rate_;
+  std::unique_ptr<Batch> given_;  // the session's thread: since the last samples
+
+  mutable std::mutex mutex_;
+  std::condition_variable ended_changed_;
+  std::vector<std::unique_ptr<Batch>> waiting_;
+  bool ended_{false};
+  std::vector<DrilledProcedure> procedures_;
+  std::string trouble_;
+
+  std::unique_ptr<Bone> bone_;  // the measuring thread
+  std::thread thread_;
+};
+
+}  // namespace haptrial::experiments

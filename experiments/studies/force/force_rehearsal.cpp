@@ -1,0 +1,230 @@
+#include "experiments/studies/force/force_rehearsal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "analysis/force_training/statistics/study_statistics.h"
+#include "analysis/force_training/study/study.h"
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "experiments/study/study_run.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using analysis::StudyStatistics;
+using analysis::TrialScore;
+
+/// The parts of a score.
+struct ScoreParts {
+  double mean{0.0};
+  double practice{0.0};  // from trial to trial of the session
+  double participant{0.0}, interaction{0.0}, block{0.0}, trial{0.0};  // standard deviations
+  std::map<std::string, double> effects;                              // by condition
+};
+
+std::optional<ScoreParts> read_parts(const std::vector<NamedText>& definition,
+                                     const std::vector<std::string>& conditions) {
+  Table root = Table::parse(definition);
+  if (!root.has("power") || !root.table("power").has("responses")) {
+    return std::nullopt;
+  }
+  Table table = root.table("power").table("responses");
+  ScoreParts parts;
+  parts.mean = table.number("mean", {}, "");
+  parts.participant = table.number("participant", kNonNegative, "");
+  parts.interaction = table.number("interaction", kNonNegative, "");
+  parts.block = table.number("block", kNonNegative, "");
+  parts.trial = table.number("trial", kNonNegative, "");
+  parts.practice = table.number_or("practice", 0.0, {}, "");
+  if (table.has("effects")) {
+    Table effects = table.table("effects");
+    for (const std::string& name : effects.keys()) {
+      parts.effects[name] = effects.number(name, {}, "");
+      if (std::ranges::find(conditions, name) == conditions.end()) {
+        effects.reject(name, "is no condition of the design; name one of design.conditions");
+      }
+    }
+  }
+  root.check();
+  return parts;
+}
+
+void note_tests(const analysis::TestFamily& family, Rehearsed& r) {
+  for (const analysis::SideTest& test : family.tests) {
+    const std::string name = fmt::format("{}: {}", family.name, text_of(test.sides));
+    if (test.t) {
+      r.tests.push_back({name + ", " + name_of_test(test), test.t->p});
+      r.values.push_back({name + ", " + name_of_test(test), test.t->difference});
+    }
+    if (test.ranks) {
+      r.tests.push_back({name + ", ranks", test.ranks->p});
+    }
+  }
+}
+
+void note_pooled(const StudyStatistics& study, Rehearsed& r) {
+  if (study.anova) {
+    r.tests.push_back({"as published: pooled trials, analysis of variance", study.anova->p});
+  }
+  for (const analysis::PooledComparison& each : study.comparisons) {
+    if (each.student) {
+      const std::string name =
+          fmt::format("as published: pooled trials, {}, Student's t", text_of(each.sides));
+      r.tests.push_back({name, each.student->p});
+      r.values.push_back({name, each.student->difference});
+    }
+  }
+}
+
+Rehearsed of_statistics(const StudyStatistics& study, std::size_t trials) {
+  Rehearsed r;
+  r.trials = trials;
+  for (const auto& effect : study.tests.effects) {
+    if (effect) {
+      r.tests.push_back({effect->factor + ": " + effect->test, effect->p});
+    }
+  }
+  if (study.tests.ranks) {
+    r.tests.push_back({"condition: on ranks", study.tests.ranks->p});
+  }
+  note_tests(study.tests.planned, r);
+  for (const analysis::TestFamily& family : study.tests.families) {
+    note_tests(family, r);
+  }
+  if (study.mixed.omnibus) {
+    r.tests.push_back({"mixed model: all conditions", study.mixed.omnibus->p});
+  } else {
+    r.failures.push_back("the mixed model was not fitted: " + study.mixed.omnibus.because());
+  }
+  note_pooled(study, r);
+  for (const analysis::ConditionSummary& each : study.summaries) {
+    if (each.participants) {
+      r.values.push_back({"score: mean of " + each.condition, each.participants->mean});
+    }
+  }
+  return r;
+}
+
+class ForceRehearsal final : public Rehearsal {
+ public:
+  ForceRehearsal(const std::vector<NamedText>& definition, analysis::ScoreParameters scoring,
+                 analysis::AnalysisPlan plan)
+      : d_(protocols::parse_force_definition(Table::parse(definition).source(),
+                                             definition.front().file_name)),
+        asked_in_(definition.back().file_name),
+        scoring_(std::move(scoring)),
+        plan_(std::move(plan)),
+        parts_(read_parts(definition, d_.design.conditions)) {
+    hours_of_trial_ = d_.longest(d_.design.trials) / d_.design.trials / 3600.0;
+  }
+
+  bool people_differ() const override {
+    return !parts_ || parts_->participant > 0.0 || parts_->interaction > 0.0;
+  }
+
+  /// Practice over a session is that of two standard deviations of a trial.
+  std::vector<Strain> strains() const override {
+    if (!parts_) {
+      return {};
+    }
+    const auto given = [](const char* key, double value) {
+      return GivenKey{std::string("power.responses.") + key, fmt::format("{}", value)};
+    };
+    return {{"practice is left in", {given("practice", -2.0 * parts_->trial / d_.design.trials)}},
+            {"blocks that differ twice as much", {given("block", 2.0 * parts_->block)}},
+            {"trials that differ twice as much", {given("trial", 2.0 * parts_->trial)}}};
+  }
+
+  Rehearsed responses(std::uint64_t seed) const override {
+    if (!parts_) {
+      throw InputError(
+          fmt::format("{}: power.responses is missing; give mean, participant, interaction, block "
+                      "and trial, the parts of a score",
+                      asked_in_));
+    }
+    std::vector<TrialScore> scores;
+    for (int p = 0; p < d_.design.participants; ++p) {
+      add_session(p, seed, scores);
+    }
+    analysis::StudyQuestions questions;
+    questions.plan = plan_;
+    return with_hours(of_statistics(analysis::study_statistics(scores, questions), scores.size()));
+  }
+
+  Rehearsed sessions(const std::vector<std::filesystem::path>& files) const override {
+    const analysis::StudyResult study = analysis::analyze_study(files, scoring_, 1, plan_);
+    return with_hours(of_statistics(study.statistics, study.scores.size()));
+  }
+
+ private:
+  Rehearsed with_hours(Rehearsed r) const {
+    r.hours = static_cast<double>(r.trials) * hours_of_trial_;
+    return r;
+  }
+
+  void add_session(int participant, std::uint64_t seed, std::vector<TrialScore>& scores) const {
+    protocols::SessionPlace place;
+    place.subject = participant_name(participant);
+    place.participant = participant;
+    place.seed = seed;
+    protocols::give_seeds(place);
+    RandomStream people(place.session_seed, "score of participant");
+    RandomStream blocks(place.session_seed, "score of block");
+    RandomStream trials(place.session_seed, "score of trial");
+    const double person = parts_->participant * people.normal();
+    std::map<std::string, double> own;
+    for (const std::string& condition : d_.design.conditions) {
+      const auto effect = parts_->effects.find(condition);
+      own[condition] = person + parts_->interaction * people.normal() +
+                       (effect == parts_->effects.end() ? 0.0 : effect->second);
+    }
+    int block = 0;
+    double of_block = 0.0;
+    int scored = 0;
+    for (const protocols::PlannedTrial& trial :
+         plan_trials(d_.design, participant, seed, place.session_seed)) {
+      if (trial.practice) {
+        continue;
+      }
+      if (trial.block != block) {
+        block = trial.block;
+        of_block = parts_->block * blocks.normal();
+      }
+      TrialScore score;
+      score.subject = place.subject;
+      score.condition = trial.condition;
+      score.levels = {trial.condition};
+      score.trial = trial.trial;
+      score.block = trial.block;
+      score.repetition = trial.repetition;
+      score.score = parts_->mean + own.at(trial.condition) + of_block +
+                    parts_->trial * trials.normal() +
+                    parts_->practice * static_cast<double>(scored++);
+      scores.push_back(std::move(score));
+    }
+  }
+
+  protocols::ForceDefinition d_;
+  std::string asked_in_;  // file with [power]
+  analysis::ScoreParameters scoring_;
+  analysis::AnalysisPlan plan_;
+  std::optional<ScoreParts> parts_;
+  double hours_of_trial_{0.0};
+};
+
+}  // namespace
+
+std::unique_ptr<Rehearsal> force_rehearsal(const std::vector<NamedText>& definition,
+                                           const analysis::ScoreParameters& scoring,
+                                           const analysis::AnalysisPlan& plan) {
+  return std::make_unique<ForceRehearsal>(definition, scoring, plan);
+}
+
+}  // namespace haptrial::experiments

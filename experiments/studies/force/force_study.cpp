@@ -1,0 +1,98 @@
+#include "experiments/studies/force/force_study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+#include "analysis/force_training/report/write_analysis.h"
+#include "analysis/force_training/study/study.h"
+#include "analysis/force_training/study/study_summary.h"
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "experiments/studies/force/force_rehearsal.h"
+#include "protocols/force_training/force_definition.h"
+#include "protocols/force_training/force_protocol.h"
+
+namespace haptrial::experiments {
+namespace fs = std::filesystem;
+namespace {
+
+/// Sentences about sessions that the study planned and the folder lacks.
+std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t sessions,
+                                         const protocols::Definition& definition) {
+  std::vector<std::string> remarks;
+  const auto planned = static_cast<std::size_t>(definition.design.participants);
+  if (sessions != planned) {
+    remarks.push_back(fmt::format("{} of {} planned participants {} a session in this folder.",
+                                  sessions, planned, sessions == 1 ? "has" : "have"));
+  }
+  if (const auto unfinished = unfinished_sessions(folder); !unfinished.empty()) {
+    remarks.push_back(fmt::format("Not analysed, because the session is unfinished: {}.",
+                                  fmt::join(unfinished, ", ")));
+  }
+  return remarks;
+}
+
+analysis::StudyResult analyzed(const AnalysisRequest& request) {
+  const StudyFiles& found = request.files;
+  const record::SessionInfo& first = found.first;
+  const auto definition =
+      protocols::parse_force_definition(first.definition, first.definition_name);
+  const CurveAnalysis curves = parse_curve_analysis(first.definition, first.definition_name);
+  std::vector<std::string> remarks;
+  const analysis::AnalysisPlan plan =
+      plan_for(request.planned, request.reference, curves.plan, remarks);
+  analysis::StudyResult study =
+      analysis::analyze_study(found.files, curves.scoring, request.threads, plan);
+  if (study.scores.empty()) {
+    throw InputError(
+        fmt::format("{}: no session holds a completed test pass, so nothing can be scored",
+                    request.folder.string()));
+  }
+  analysis::check_plan(study.statistics.table, plan_of(request.planned, request.reference));
+  study.remarks = found.remarks;
+  study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
+  if (request.pilots == Pilots::kLeftOut) {
+    for (std::string& remark : what_is_missing(request.folder, found.files.size(), definition)) {
+      study.remarks.push_back(std::move(remark));
+    }
+  }
+  return study;
+}
+
+class ForceStudy final : public Study {
+ public:
+  const protocols::Protocol& protocol() const override { return protocols::force_training(); }
+  void read_analysis(Table& root, bool fresh) const override { read_curve_analysis(root, fresh); }
+  std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override {
+    return warnings_of(parse_curve_analysis(d.text, d.file_name).scoring);
+  }
+  std::optional<CurveAnalysis> curves(const record::SessionInfo& session) const override {
+    return parse_curve_analysis(session.definition, session.definition_name);
+  }
+  std::vector<std::string> analyze(const AnalysisRequest& request) const override {
+    const analysis::StudyResult study = analyzed(request);
+    analysis::write_analysis(study, request.out);
+    std::vector<std::string> lines = analysis::summary_lines(study);
+    lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
+    lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
+    return lines;
+  }
+  std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
+                                       const std::string& watched) const override {
+    static_cast<void>(watched);  // all of its tests are quick
+    const CurveAnalysis curves =
+        parse_curve_analysis(Table::parse(definition).source(), definition.front().file_name);
+    return force_rehearsal(definition, curves.scoring, curves.plan);
+  }
+};
+
+}  // namespace
+
+const Study& force_study() {
+  static const ForceStudy study;
+  return study;
+}
+
+}  // namespace haptrial::experiments

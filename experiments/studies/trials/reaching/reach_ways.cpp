@@ -1,0 +1,161 @@
+#include "experiments/studies/trials/reaching/reach_ways.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/presented.h"
+#include "protocols/trials/definition/read_definition.h"
+#include "protocols/trials/definition/trial_values.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using analysis::trials::GivenVariable;
+using analysis::trials::ReachingPlan;
+using analysis::trials::ReachWay;
+using analysis::trials::StudyTrial;
+using analysis::trials::TrialsData;
+
+constexpr double kNearTarget = 1e-9;  // a region whose centre is so near is the target's [m]
+
+/// The definition, read anew for every different trial.
+class Ways {
+ public:
+  Ways(const protocols::TrialsDefinition& definition, const ReachingPlan& plan)
+      : definition_(definition),
+        plan_(plan),
+        root_(Table::parse(definition.text, definition.file_name)) {
+    root_.fill_in(protocols::trials_defaults());
+    names_ = protocols::read_names(root_, definition);
+  }
+
+  ReachWay of(const TrialsData& data, const StudyTrial& trial) {
+    const std::string group =
+        definition_.groups.empty()
+            ? std::string()
+            : protocols::group_of(definition_.groups, data.session_of(trial).participant);
+    const std::string key = key_of(trial, group);
+    const auto known = ways_.find(key);
+    return known != ways_.end() ? known->second
+                                : ways_.emplace(key, read(trial, group)).first->second;
+  }
+
+ private:
+  static std::string key_of(const StudyTrial& trial, const std::string& group) {
+    std::string key = group + "\n" + trial.probe.text();
+    for (const GivenVariable& variable : trial.variables) {
+      key += fmt::format("\n{} {} {:a} {}", variable.name.text(), variable.interval, variable.value,
+                         variable.word.text());
+    }
+    return key;
+  }
+
+  void give(const StudyTrial& trial, const std::string& group) {
+    names_->forget_given();
+    names_->set("trial", trial.trial);
+    names_->set("group", group);
+    names_->set("probe", trial.probe.empty() ? std::string("no") : trial.probe.text());
+    const auto stage = std::find_if(trial.stages.rbegin(), trial.stages.rend(),
+                                    [&](const auto& each) { return each.stage == plan_.stage; });
+    const int interval = stage == trial.stages.rend() ? 1 : stage->interval;
+    names_->set("interval", interval);
+    for (const int of : {0, interval}) {
+      for (const GivenVariable& variable : trial.variables) {
+        if (variable.interval != of) {
+          continue;
+        }
+        variable.word.empty() ? names_->set(variable.name, variable.value)
+                              : names_->set(variable.name, variable.word);
+      }
+    }
+  }
+
+  ReachWay read(const StudyTrial& trial, const std::string& group) {
+    give(trial, group);
+    const protocols::Presented presented =
+        protocols::read_presented(root_, *names_, definition_, nullptr);
+    root_.check();
+    ReachWay way;
+    way.start = names_->place(plan_.start);
+    way.target = names_->place(plan_.target);
+    if (way.start.x() == way.target.x() && way.start.z() == way.target.z()) {
+      throw InputError(
+          fmt::format("{}: the places {} and {} lie above each other in trial {}; a reach needs a "
+                      "way between them",
+                      definition_.file_name, plan_.start, plan_.target, trial.trial));
+    }
+    for (const scene::Region& region : presented.regions) {
+      const auto* sphere = std::get_if<scene::Sphere>(&region.shape);
+      if (sphere != nullptr && (sphere->centre - way.target).norm() < kNearTarget) {
+        way.target_radius = sphere->radius;
+      }
+    }
+    const auto stage = std::find_if(presented.stages.begin(), presented.stages.end(),
+                                    [&](const auto& each) { return each.name == plan_.stage; });
+    for (std::size_t i = 0; i < presented.fields.size(); ++i) {
+      const bool acts = stage != presented.stages.end() && (stage->stage.fields >> i & 1U) != 0;
+      add_field(presented.fields[i], acts, way);
+    }
+    return way;
+  }
+
+  void add_field(const scene::Field& field, bool acts, ReachWay& way) const {
+    if (field.name == plan_.field) {
+      if (const auto* matrix = std::get_if<scene::MatrixViscousParameters>(&field.kind)) {
+        way.field = matrix->matrix;
+        way.active = acts;
+      }
+    }
+    const bool channel = std::holds_alternative<scene::LineChannelParameters>(field.kind) ||
+                         std::holds_alternative<scene::AxisChannelParameters>(field.kind);
+    way.clamp = way.clamp || (acts && channel);
+  }
+
+  const protocols::TrialsDefinition& definition_;
+  const ReachingPlan& plan_;
+  Table root_;
+  std::unique_ptr<protocols::Names> names_;
+  std::map<std::string, ReachWay> ways_;
+};
+
+}  // namespace
+
+std::vector<std::optional<ReachWay>> reach_ways(const protocols::TrialsDefinition& definition,
+                                                const TrialsData& data, const ReachingPlan& plan) {
+  Ways ways(definition, plan);
+  std::vector<std::optional<ReachWay>> all;
+  for (const StudyTrial& trial : data.trials) {
+    all.push_back(trial.counts() ? std::optional(ways.of(data, trial)) : std::nullopt);
+  }
+  return all;
+}
+
+analysis::trials::ReachingNames reaching_names(const protocols::TrialsDefinition& definition) {
+  analysis::trials::ReachingNames names;
+  names.stages = definition.stages;
+  names.combinations = 1;
+  for (const protocols::Factor& factor : definition.order.factors) {
+    names.combinations *= factor.levels.size();
+  }
+  Table root = Table::parse(definition.text, definition.file_name);
+  if (root.has("places")) {
+    names.places = root.table("places").keys_as_written();
+  }
+  if (root.has("fields")) {
+    Table fields = root.table("fields");
+    for (const std::string& name : fields.keys_as_written()) {
+      if (fields.table(name).whole_text("type") == "matrix_viscous") {
+        names.fields.push_back(name);
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace haptrial::experiments
