@@ -14,6 +14,7 @@ say "$study"
 folder=$(sed -n 's/^sessions: //p' <<<"$study")
 build/haptrial_forces analyze "$folder"
 
-say "" "The rest of haptrial is built now; where you stop it, ./quickstart.sh goes on."
+say ""
+say "The rest of haptrial is built now; where you stop it, ./quickstart.sh goes on."
 build build "${options[@]}" -- haptrial
 say "build/haptrial has every experiment: build/haptrial examples lists them"

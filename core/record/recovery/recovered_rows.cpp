@@ -72,8 +72,13 @@ RecoveredRows::RecoveredRows(std::span<const std::uint8_t> file, const TableList
   scan_chunks(
       file, longest_chunk(all), [&](std::uint64_t offset, std::span<const std::uint8_t> raw) {
         const auto take = [&](RecoveredTable& table) { return table.take_if_ours(offset, raw); };
-        // /samples last: an older layout may have a chunk of the same size.
-        if (!std::any_of(session.begin(), session.end(), take) &&
+        const auto take_by_ticks = [&](RecoveredTable& table) {
+          return table.table().of() == RowsOf::kEachTick && take(table);
+        };
+        // First those that know their rows by more than a size. /samples last: an older layout may
+        // have a chunk of the same size.
+        if (!std::any_of(own.begin(), own.end(), take_by_ticks) &&
+            !std::any_of(session.begin(), session.end(), take) &&
             !std::any_of(own.begin(), own.end(), take)) {
           take(samples_);
         }

@@ -39,9 +39,10 @@ namespace {
 
 bool each_tick(const TableDescription& table) { return table.of() == RowsOf::kEachTick; }
 
-/// Ticks do not rise from row to row where rows are taken for others of another length.
+/// Ticks do not rise from row to row where rows are taken for others.
 bool told_by_ticks(const TableDescription& a, const TableDescription& b) {
-  return each_tick(a) && each_tick(b) && a.schema().row_bytes() != b.schema().row_bytes();
+  return each_tick(a) != each_tick(b) ||
+         (each_tick(a) && a.schema().row_bytes() != b.schema().row_bytes());
 }
 
 }  // namespace

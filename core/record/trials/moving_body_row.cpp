@@ -12,7 +12,7 @@ const Table<MovingBodyRow>& table_of<MovingBodyRow>() {
   using R = MovingBodyRow;
   using T = Table<R>;
   static const T table(
-      {"moving_bodies", "how each body that moves did so, in ticks", 40, RowsOf::kPass, {"pass"}},
+      {"moving_bodies", "how each body that moves did so, in ticks", 37, RowsOf::kPass, {"pass"}},
       {T::column("pass", &R::pass, "1", "row of /trials"),
        T::column("device", &R::device, "1", "whose tool, from 0"),
        T::text("object", &R::object, kMovingNameBytes, "of [objects]"),
