@@ -41,6 +41,8 @@ struct TableHead {
 /// may be called from several threads at once.
 class TableDescription {
  public:
+  virtual ~TableDescription() = default;
+
   const std::string& name() const { return name_; }
   RowsOf of() const { return head_.of; }
   const char* group() const { return head_.group; }
