@@ -60,11 +60,10 @@ if(HAPTRIAL_UNITY)
 endif()
 option(HAPTRIAL_TESTS "Build the tests (needs GoogleTest)" ON)
 option(HAPTRIAL_PYTHON "Build the Python module (needs pybind11 and Python's headers)" OFF)
-if(HAPTRIAL_PYTHON)
-  # The module takes the static libraries in. All targets alike, so that precompiled headers fit;
-  # nothing replaces a function of ours from outside, so calls within a file stay direct.
-  add_compile_options(-fPIC -fno-semantic-interposition)
-endif()
+# The module takes the static libraries in. All targets alike, and without the module, too, so that
+# precompiled headers fit and check.sh goes on where quickstart.sh ended; nothing replaces a function of
+# ours from outside, so calls within a file stay direct.
+add_compile_options(-fPIC -fno-semantic-interposition)
 option(HAPTRIAL_FUZZ "Build the libFuzzer targets (needs clang)" OFF)
 option(HAPTRIAL_BENCHMARKS "Build the benchmarks (needs Google Benchmark and the peers)" OFF)
 
