@@ -11,6 +11,7 @@ namespace {
 using namespace haptrial::experiments;
 
 void declare(CLI::App& app, int& status) {
+  app.name("haptrial_forces");
   app.description(
       "Run studies of force training, record them and analyse the results; haptrial has every "
       "other experiment, too.");

@@ -45,6 +45,8 @@ TEST(ForceCommandTest, HasNothingOfTheOtherProtocols) {
   EXPECT_THAT(run_command(libraries + kForces).output, HasSubstr("hdf5"));
   const std::string named = "haptrial::(bone|deformable|contact|geometry)::|meshopt_";
   const std::string symbols = " | grep -Ec '" + named + "'";
+  EXPECT_THAT(run_command("nm --demangle \"$HAPTRIAL\"" + symbols).output,
+              ContainsRegex("^[0-9][0-9][0-9]+\n$"));
   EXPECT_EQ(run_command("nm --demangle " + kForces + symbols).output, "0\n");
 }
 
@@ -53,6 +55,8 @@ TEST(ForceCommandTest, SaysWhichProtocolsItHas) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.errors,
               HasSubstr("experiment.protocol is 'trials'; allowed: force_training"));
+  EXPECT_THAT(run_command(kForces + " keys").errors,
+              HasSubstr("'keys' is not a subcommand of haptrial_forces; allowed: dry-run"));
 }
 
 }  // namespace
