@@ -47,11 +47,26 @@ HAPTRIAL_LANES Lanes pressure(const double*& constants, const Lanes& six_volumes
   return value;
 }
 
-/// pull · (1 - rest / measure), all independent of each other.
-HAPTRIAL_LANES const double* to_tensions(const double* constants, Lanes* begin, const Lanes* end) {
-  for (; begin != end; ++begin) {
-    *begin = load(constants + kPack) * (1.0 - inverse_root(*begin * load(constants)));
-    constants += 2 * kPack;
+/// pull · (1 - rest / measure) of the next n springs, from half of their squares.
+template <int n>
+HAPTRIAL_LANES void some_tensions(const double*& constants, Lanes*& spring) {
+  const Group<n> half = HAPTRIAL_EACH(spring[i] * load(constants + 2 * kPack * i));
+  const Group<n> pull = HAPTRIAL_EACH(load(constants + 2 * kPack * i + kPack));
+  const Group<n> tension = pull * (1.0 - inverse_root_of_twice(half));
+  for (int i = 0; i < n; ++i) {
+    spring[i] = tension.part[i];
+  }
+  constants += 2 * kPack * n;
+  spring += n;
+}
+
+HAPTRIAL_LANES const double* to_tensions(const double* constants, Lanes* spring, const Lanes* end) {
+  constexpr int kTogether = 4;
+  while (end - spring >= kTogether) {
+    some_tensions<kTogether>(constants, spring);
+  }
+  while (spring != end) {
+    some_tensions<1>(constants, spring);
   }
   return constants;
 }

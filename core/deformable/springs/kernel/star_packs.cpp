@@ -270,17 +270,17 @@ struct Constants {
   double measure, pull;
 };
 
-/// What the kernel multiplies by. Edges: 1 / L0² and k / L0². Faces, whose measure is the square of
-/// the doubled area: 1 / (2 A0)² and k / (8 A0²). Tetrahedra: 6 V0 and k / (6 V0)².
+/// What the kernel multiplies by. Edges: 1 / (2 L0²) and k / L0². Faces, whose measure is the
+/// square of the doubled area: 1 / (8 A0²) and k / (8 A0²). Tetrahedra: 6 V0 and k / (6 V0)².
 Constants constants_of(const SpringBody& body, const ClusterPart& part, std::int32_t number) {
   const auto i = static_cast<std::size_t>(number);
   if (part.vertices == 2) {
     const double square = body.lengths[i] * body.lengths[i];
-    return {1 / square, body.constants.length[i] / square};
+    return {0.5 / square, body.constants.length[i] / square};
   }
   if (part.vertices == 3) {
     const double square = body.areas[i] * body.areas[i];
-    return {1 / (4 * square), body.constants.area[i] / (8 * square)};
+    return {1 / (8 * square), body.constants.area[i] / (8 * square)};
   }
   const double six = 6 * body.volumes[i];
   return {six, body.constants.volume[i] / (six * six)};
@@ -295,7 +295,7 @@ void add_row(const SpringBody& body, const Lanes& lanes, std::size_t i, std::uin
     return;
   }
   std::array<Constants, kPackLanes> row;
-  row.fill({part.bit < 0 ? 0.0 : 1.0, 0.0});
+  row.fill({part.bit < 0 ? 0.0 : 0.5, 0.0});
   for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
     if (has(lanes[lane]->owned)) {
       row[lane] = constants_of(body, part, lanes[lane]->part[i]);
