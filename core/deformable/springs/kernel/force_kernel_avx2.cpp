@@ -9,7 +9,7 @@
 #include "core/deformable/springs/kernel/force_kernel.h"
 
 #pragma GCC push_options
-#pragma GCC target("avx2")
+#pragma GCC target("avx2,fma")
 
 namespace haptrial::deformable {
 namespace {
@@ -17,6 +17,10 @@ namespace {
 constexpr std::size_t kLanes = 4;
 typedef double Lanes __attribute__((vector_size(8 * kLanes)));
 typedef long long Flags __attribute__((vector_size(8 * kLanes)));  // -1 or 0
+
+inline Lanes fused(const Lanes& a, const Lanes& b, const Lanes& c) {
+  return (Lanes)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
+}
 
 /// Four rows to four columns and back.
 inline void transpose(const __m256d* row, __m256d* column) {

@@ -9,7 +9,7 @@
 #include "core/deformable/springs/kernel/force_kernel.h"
 
 #pragma GCC push_options
-#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,avx2,prefer-vector-width=512")
+#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,prefer-vector-width=512")
 
 namespace haptrial::deformable {
 namespace {
@@ -17,6 +17,10 @@ namespace {
 constexpr std::size_t kLanes = 8;
 typedef double Lanes __attribute__((vector_size(8 * kLanes)));
 typedef long long Flags __attribute__((vector_size(8 * kLanes)));  // -1 or 0
+
+inline Lanes fused(const Lanes& a, const Lanes& b, const Lanes& c) {
+  return (Lanes)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
 
 typedef double Four __attribute__((vector_size(32)));
 

@@ -5,7 +5,7 @@
 #include "core/deformable/springs/kernel/lattice_kinds.h"
 
 // Included once for each instruction set, by a file that says how many numbers go side by side
-// (kLanes), and gives Lanes, Flags, gather() and scatter(): everything is its own.
+// (kLanes), and gives Lanes, Flags, fused(), gather() and scatter(): everything is its own.
 namespace haptrial::deformable {
 namespace {
 
@@ -18,7 +18,7 @@ constexpr int kMostTensions = 34;
 struct Cluster {
   Vectors point[4], edge[6], force[4];
   Vectors spoke[4][3];  // from a neighbour's apex to the corners of the middle's face
-  Vectors back[4];      // minus the force on the apex
+  Vectors back[4];      // the volume's force on the apex
   Lanes square[6], spoke_square[4][3];
   // Squared, of the owned edges and faces, then their tensions; one more place takes what is not
   // kept.
@@ -52,7 +52,7 @@ template <int n>
 HAPTRIAL_LANES void some_tensions(const double*& constants, Lanes*& spring) {
   const Group<n> half = HAPTRIAL_EACH(spring[i] * load(constants + 2 * kPack * i));
   const Group<n> pull = HAPTRIAL_EACH(load(constants + 2 * kPack * i + kPack));
-  const Group<n> tension = pull * (1.0 - inverse_root_of_twice(half));
+  const Group<n> tension = fused(-pull, inverse_root_of_twice(half), pull);
   for (int i = 0; i < n; ++i) {
     spring[i] = tension.part[i];
   }
@@ -125,13 +125,10 @@ HAPTRIAL_LANES void measure_neighbour(Cluster& m, const double* positions,
   const Vectors nk = cross(el, ej);
   const Vectors nl = cross(ej, ek);
   const Lanes p = pressure(constants, dot(ej, nj), upright);
-  const Vectors fj = p * nj;
-  const Vectors fk = p * nk;
-  const Vectors fl = p * nl;
-  m.force[j] = m.force[j] + fj;
-  m.force[k] = m.force[k] + fk;
-  m.force[l] = m.force[l] + fl;
-  m.back[i] = fj + fk + fl;
+  m.force[j] = fused(p, nj, m.force[j]);
+  m.force[k] = fused(p, nk, m.force[k]);
+  m.force[l] = fused(p, nl, m.force[l]);
+  m.back[i] = -p * (nj + nk + nl);
   queue.put(bit + 3, dot(nj, nj));
   queue.put(bit + 4, dot(nk, nk));
   queue.put(bit + 5, dot(nl, nl));
@@ -141,9 +138,9 @@ HAPTRIAL_LANES void measure_neighbour(Cluster& m, const double* positions,
 /// @param a, b, c  squared lengths; ta, tb, tc  the edges' tensions
 HAPTRIAL_LANES void add_face(const Lanes& g, const Lanes& a, const Lanes& b, const Lanes& c,
                              Lanes& ta, Lanes& tb, Lanes& tc) {
-  ta += g * (b + c - a);
-  tb += g * (a + c - b);
-  tc += g * (a + b - c);
+  ta = fused(g, b + c - a, ta);
+  tb = fused(g, a + c - b, tb);
+  tc = fused(g, a + b - c, tc);
 }
 
 /// Neighbour i, whose face's edges jk, kl and lj are those of the middle.
@@ -167,20 +164,19 @@ HAPTRIAL_LANES void pull_neighbour(Cluster& m, double* forces, const std::int32_
   if (queue.owns(bit + 5)) {
     add_face(*queue.next++, sj, sk, s[jk], tj, tk, t[jk]);
   }
-  const Vectors fj = tj * m.spoke[i][0];
-  const Vectors fk = tk * m.spoke[i][1];
-  const Vectors fl = tl * m.spoke[i][2];
-  m.force[j] = m.force[j] - fj;
-  m.force[k] = m.force[k] - fk;
-  m.force[l] = m.force[l] - fl;
-  const Vectors apex = fj + fk + fl - m.back[i];
+  const Vectors& ej = m.spoke[i][0];
+  const Vectors& ek = m.spoke[i][1];
+  const Vectors& el = m.spoke[i][2];
+  m.force[j] = fused(-tj, ej, m.force[j]);
+  m.force[k] = fused(-tk, ek, m.force[k]);
+  m.force[l] = fused(-tl, el, m.force[l]);
+  const Vectors apex = fused(tj, ej, fused(tk, ek, fused(tl, el, m.back[i])));
   scatter(forces, corners + kPack * (4 + i), apex.x, apex.y, apex.z);
 }
 
 HAPTRIAL_LANES void pull(const Lanes& tension, const Vectors& edge, Vectors& from, Vectors& to) {
-  const Vectors force = tension * edge;
-  from = from + force;
-  to = to - force;
+  from = fused(tension, edge, from);
+  to = fused(-tension, edge, to);
 }
 
 HAPTRIAL_LANES void pull_middle(Cluster& m, double* forces, const std::int32_t* corners,

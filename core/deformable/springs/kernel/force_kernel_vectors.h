@@ -14,6 +14,14 @@ typedef unsigned long long Bits __attribute__((vector_size(sizeof(Lanes))));
 
 struct Vectors {
   Lanes x, y, z;
+
+  // Number by number, as GCC would copy the whole through memory.
+  HAPTRIAL_LANES Vectors& operator=(const Vectors& from) {
+    x = from.x;
+    y = from.y;
+    z = from.z;
+    return *this;
+  }
 };
 
 HAPTRIAL_LANES Vectors operator-(const Vectors& a, const Vectors& b) {
@@ -25,11 +33,18 @@ HAPTRIAL_LANES Vectors operator+(const Vectors& a, const Vectors& b) {
 HAPTRIAL_LANES Vectors operator*(const Lanes& s, const Vectors& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
+HAPTRIAL_LANES Vectors fused(const Lanes& s, const Vectors& a, const Vectors& b) {
+  return {fused(s, a.x, b.x), fused(s, a.y, b.y), fused(s, a.z, b.z)};
+}
 HAPTRIAL_LANES Lanes dot(const Vectors& a, const Vectors& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return fused(a.z, b.z, fused(a.y, b.y, a.x * b.x));
+}
+/// a b - c d, the first product before it is rounded.
+HAPTRIAL_LANES Lanes minor(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d) {
+  return fused(a, b, -(c * d));
 }
 HAPTRIAL_LANES Vectors cross(const Vectors& a, const Vectors& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return {minor(a.y, b.z, a.z, b.y), minor(a.z, b.x, a.x, b.z), minor(a.x, b.y, a.y, b.x)};
 }
 HAPTRIAL_LANES Lanes load(const double* from) {
   Lanes lanes;
@@ -56,24 +71,20 @@ HAPTRIAL_LANES Group<n> each(const Call& call) {
 #define HAPTRIAL_EACH(expression) \
   each<n>([&](int i) __attribute__((always_inline)) { return expression; })
 template <int n>
-HAPTRIAL_LANES Group<n> operator+(const Group<n>& a, const Group<n>& b) {
-  return HAPTRIAL_EACH(a.part[i] + b.part[i]);
-}
-template <int n>
 HAPTRIAL_LANES Group<n> operator*(const Group<n>& a, const Group<n>& b) {
   return HAPTRIAL_EACH(a.part[i] * b.part[i]);
 }
 template <int n>
-HAPTRIAL_LANES Group<n> operator+(double a, const Group<n>& b) {
-  return HAPTRIAL_EACH(a + b.part[i]);
+HAPTRIAL_LANES Group<n> operator-(const Group<n>& a) {
+  return HAPTRIAL_EACH(-a.part[i]);
 }
 template <int n>
-HAPTRIAL_LANES Group<n> operator-(double a, const Group<n>& b) {
-  return HAPTRIAL_EACH(a - b.part[i]);
+HAPTRIAL_LANES Group<n> fused(const Group<n>& a, const Group<n>& b, const Group<n>& c) {
+  return HAPTRIAL_EACH(fused(a.part[i], b.part[i], c.part[i]));
 }
 template <int n>
-HAPTRIAL_LANES Group<n> operator*(double a, const Group<n>& b) {
-  return HAPTRIAL_EACH(a * b.part[i]);
+HAPTRIAL_LANES Group<n> same(double value) {
+  return each<n>([&](int) __attribute__((always_inline)) { return Lanes{} + value; });
 }
 
 /// 1 / √(2 x) to the rounding of doubles, by a first guess from the exponent's bits and three
@@ -83,11 +94,11 @@ HAPTRIAL_LANES Group<n> operator*(double a, const Group<n>& b) {
 template <int n>
 HAPTRIAL_LANES Group<n> inverse_root_of_twice(const Group<n>& x) {
   Group<n> y = HAPTRIAL_EACH((Lanes)(0x5FE6EB50C7B537A9 - ((Bits)(x.part[i] + x.part[i]) >> 1)));
-  y = y * (1.50087896 - x * y * y);
-  Group<n> error = 0.5 - x * y * y;
-  y = y + y * error * (1.0 + 1.5 * error);
-  error = 0.5 - x * y * y;
-  return y + y * error;
+  y = y * fused(-(x * y), y, same<n>(1.50087896));
+  Group<n> error = fused(-(x * y), y, same<n>(0.5));
+  y = fused(y * error, fused(same<n>(1.5), error, same<n>(1.0)), y);
+  error = fused(-(x * y), y, same<n>(0.5));
+  return fused(y, error, y);
 }
 
 }  // namespace
