@@ -1,6 +1,6 @@
 // Contact rendering on a tessellated sphere and on scanned meshes: tool at 50 mm/s, 0.5 to 2 mm
-// below the surface. Times of single ticks with 20 ns of clock in them. Where Embree is installed, one
-// ray of it from each place of the proxy to the tool says how fast the machine is.
+// below the surface. Times of single ticks with 20 ns of clock in them. Where Embree is installed,
+// one ray of it from each place of the proxy to the tool says how fast the machine is.
 //
 //     bench_contact [--rounds N] [--ticks N]   each tick counts with the fastest of N rounds (5)
 
@@ -113,7 +113,8 @@ void follow(const char* name, const ContactSurface& surface, const Path& path, d
 }
 
 #ifdef HAPTRIAL_EMBREE
-void rays(const Mesh& mesh, const ContactSurface& surface, const Path& path, const Vector3d& start) {
+void rays(const Mesh& mesh, const ContactSurface& surface, const Path& path,
+          const Vector3d& start) {
   const haptrial::bench::EmbreeTree tree(mesh);
   Proxy proxy(surface, {});
   proxy.start(start);
@@ -153,6 +154,29 @@ void scanned(const char* file) {
   rays(mesh, surface, way, start);
 }
 
+/// Ten spheres in one place, all touched.
+bool ten_spheres(const char* how, const Mesh& mesh, const ContactSurface& surface, const Path& path,
+                 bool turned) {
+  using namespace haptrial::contact;
+  RandomStream random(1, "turns");
+  MovingObjects objects;
+  for (int i = 0; i < 10; ++i) {
+    const Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    const double angle = turned ? random.uniform(0.0, 3.0) : 0.0;
+    objects.add(make_renderer(RendererKind::kProxy, mesh, surface, {}),
+                {Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()))});
+  }
+  std::printf("ten spheres of %zu triangles in one place, %s\n", surface.triangles(), how);
+  Vector3d sum = Vector3d::Zero();
+  measure(
+      "  point", path.size(),
+      [&] {
+        objects.start({0, 0, 0.04});
+      },
+      [&](std::size_t i) { sum += objects.tick(path[i], 0.001); });
+  return sum.allFinite();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -173,19 +197,8 @@ int main(int argc, char** argv) {
 
   const Mesh mesh = haptrial::geometry::make_sphere(0.03, 71);
   const ContactSurface surface(mesh);
-  haptrial::contact::MovingObjects objects;
-  for (int i = 0; i < 10; ++i) {  // in one place: all are touched
-    objects.add(haptrial::contact::make_renderer(haptrial::contact::RendererKind::kProxy, mesh,
-                                                 surface, {}));
-  }
   const Path path = circle(0.03, 0.001);
-  std::printf("ten spheres of %zu triangles, all touched\n", surface.triangles());
-  Vector3d sum = Vector3d::Zero();
-  measure(
-      "  point", path.size(),
-      [&] {
-        objects.start({0, 0, 0.04});
-      },
-      [&](std::size_t i) { sum += objects.tick(path[i], 0.001); });
-  return sum.allFinite() ? 0 : 1;
+  const bool finite = ten_spheres("alike", mesh, surface, path, false) &&
+                      ten_spheres("each turned its own way", mesh, surface, path, true);
+  return finite ? 0 : 1;
 }

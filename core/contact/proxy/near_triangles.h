@@ -32,6 +32,8 @@ class NearTriangles {
   /// Whether one triangle is met. Does not look at others.
   bool meets(const Sweep& sweep, std::int32_t slot, SweepHit& hit) noexcept;
 
+  const Hull& hull(std::int32_t slot) noexcept { return hulls_.of(slot); }
+
   /// Since forget(). The proxy adds its own.
   Operations& operations() noexcept { return operations_; }
   const Operations& operations() const noexcept { return operations_; }

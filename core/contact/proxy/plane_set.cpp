@@ -9,9 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Two normals closer than 2^-22 rad, three with a smaller determinant: their line or corner is
-// farther off than the rounding of what defines it.
-constexpr double kParallel = 0x1p-44;
+// Three normals with a smaller determinant: their corner is farther off than the rounding of what
+// defines it.
 constexpr double kFlat = 0x1p-30;
 
 }  // namespace

@@ -8,6 +8,10 @@
 
 namespace haptrial::contact {
 
+/// The square of the sine between two normals below which their line is farther off than the
+/// rounding of what defines it: 2^-22 rad.
+inline constexpr double kParallel = 0x1p-44;
+
 /// What holds the proxy: it stays where normal · (x - point) >= level.
 struct ContactPlane {
   Eigen::Vector3d normal;   // a unit vector, towards the proxy

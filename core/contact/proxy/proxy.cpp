@@ -57,6 +57,7 @@ struct Proxy::Tick {
   bool lifted{false};
   int faces_ended{0};  // at which a move was cut
 
+  double some() const { return 4.0 * least; }  // a way that leads somewhere is longer [m]
   double tolerance() const { return 0.25 * skin.thickness; }  // of a plane [m]
 };
 
@@ -67,6 +68,7 @@ void Proxy::start(const Vector3d& at) noexcept {
   near_.forget();
   planes_.clear();
   before_.clear();
+  corner_.forget();
   slipping_ = false;
   state_ = {};
   if (at.allFinite()) {
@@ -192,7 +194,7 @@ bool Proxy::blocked_at_once(const Sweep& sweep, double length, double enough) no
 bool Proxy::leave_on(const Tick& tick, std::span<const int> which) noexcept {
   constexpr int kMostTried = 8;
   const Vector3d wish = tick.goal - state_.position;
-  const double enough = 4.0 * tick.least;
+  const double enough = tick.some();
   const PlaneSolution solution = planes_.solve_on(which, state_.position, wish);
   near_.operations().plane_solutions += 1;
   bool sticks = false;
@@ -235,8 +237,28 @@ bool Proxy::find_way_out(const Tick& tick) noexcept {
       }
     }
   }
+  if (options_.radius == 0.0) {
+    corner_.set(planes_, state_.position, tick.skin);
+  }
   planes_.keep_first(known);
   return false;
+}
+
+/// Whether a point stays at a corner, as every way on from there is stopped as it was before.
+bool Proxy::still_held(Tick& tick) noexcept {
+  if (!corner_.known(tick.skin)) {
+    return false;
+  }
+  const Vector3d wish = tick.goal - state_.position;
+  const PlaneSolution solution = solve(tick, wish);
+  bool sticks = false;
+  if (solution.count < 3 || allowed_by_friction(solution, sticks).norm() > tick.least ||
+      !corner_.holds(wish, tick.some(), near_)) {
+    return false;
+  }
+  state_.settled = true;
+  rest(tick, solution);
+  return true;
 }
 
 /// @returns whether nothing was in the way of the two tangents to a direction; else that becomes
@@ -382,6 +404,10 @@ const ProxyState& Proxy::follow(const Vector3d& tool) noexcept {
   ++near_.operations().ticks;
   way_[0] = state_.position;
   way_length_ = 1;
+  if (still_held(tick)) {
+    return state_;
+  }
+  corner_.forget();
   if (planes_.size() > 0) {
     before_ = planes_;
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/contact/proxy/held_corner.h"
 #include "core/contact/proxy/near_triangles.h"
 #include "core/contact/proxy/plane_set.h"
 #include "core/contact/proxy/sweep.h"
@@ -95,7 +96,7 @@ class Proxy {
   bool advance(Tick& tick) noexcept;
   void break_off(Tick& tick) noexcept;
   bool go(Tick& tick, const Eigen::Vector3d& move) noexcept;
-  bool still_there(Tick& tick) noexcept;
+  bool still_held(Tick& tick) noexcept;
   void lift(Tick& tick) noexcept;
   bool blocked_at_once(const Sweep& sweep, double length, double enough) noexcept;
   bool leave_on(const Tick& tick, std::span<const int> which) noexcept;
@@ -116,6 +117,7 @@ class Proxy {
   NearTriangles near_;
   PlaneSet planes_;
   PlaneSet before_;  // what was met before the planes were forgotten
+  HeldCorner corner_;
   ProxyState state_;
   bool slipping_{false};
   std::array<Eigen::Vector3d, 2 * 48 + 3> way_;

@@ -9,18 +9,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where a move enters a hull that is `wider`, and through which plane; -1: it begins inside.
+/// Where a move enters a hull with its skin, and through which plane; -1: it begins inside.
 struct Entry {
   double t{-1.0};
   int plane{-1};
 };
 
 /// @returns false if the move misses the hull.
-bool clip(const Hull::Heights& heights, const std::array<double, Hull::kPlanes>& wider,
-          Entry& entry) {
+bool clip(const Hull::Heights& heights, double h, Entry& entry) {
   double leave = 1.0;
   for (int k = 0; k < Hull::kPlanes; ++k) {
-    const double above = heights.at[k] - wider[k], rate = heights.gain[k];
+    const double above = heights.at[k] - Hull::wider(k, h), rate = heights.gain[k];
     if (above > 0.0) {
       if (rate >= 0.0) {
         return false;
@@ -46,11 +45,8 @@ bool sweep_point(const Sweep& sweep, const Hull& hull, double end, SweepHit& hit
     apart = hull.farthest(heights);
     return false;
   }
-  std::array<double, Hull::kPlanes> wider;
-  wider.fill(0.5 * h);
-  std::fill_n(wider.begin(), Hull::kFaces, h);
   Entry entry;
-  if (!clip(heights, wider, entry)) {
+  if (!clip(heights, h, entry)) {
     return false;
   }
   hit.plane.slot = hull.slot;
@@ -59,8 +55,8 @@ bool sweep_point(const Sweep& sweep, const Hull& hull, double end, SweepHit& hit
   if (entry.plane >= 0) {
     const int k = entry.plane;
     hit.plane.normal = hull.out(k);
-    hit.plane.level = hull.level[k] + wider[k] + h;
-    const double height = heights.at[k] - wider[k] - h, rate = heights.gain[k];
+    hit.plane.level = hull.level[k] + Hull::wider(k, h) + h;
+    const double height = heights.at[k] - Hull::wider(k, h) - h, rate = heights.gain[k];
     hit.t = end * std::clamp(-height / rate, 0.0, entry.t);
     return true;
   }

@@ -228,9 +228,10 @@ TEST(TwoRateTouchTest, WhatAThreadGaveIsRepeatedToTheBitHoweverLateItWas) {
     }
     EXPECT_EQ(repeated.counts().late, live.counts().late);
     EXPECT_TRUE(std::ranges::equal(repeated.late(), live.late()));
-    EXPECT_GT(live.counts().contact, 100u);
     if (microseconds < 100) {
       EXPECT_GT(live.counts().late, 0u) << "a window of four ticks takes longer than they";
+    } else {
+      EXPECT_GT(live.counts().contact, 100u);
     }
   }
 }
