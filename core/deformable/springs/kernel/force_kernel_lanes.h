@@ -13,12 +13,12 @@ constexpr std::size_t kPack = 8;
 
 constexpr int kMostTensions = 34;
 
-/// What the kernel knows of eight clusters (or of as many as there are lanes). The middle's edges
-/// are 01, 02, 03, 12, 13 and 23.
+/// What the kernel keeps of eight clusters (or of as many as there are lanes). The middle's edges
+/// are 01, 02, 03, 12, 13 and 23; a neighbour's spokes go from its apex to the corners of the
+/// middle's face. Both are subtracted anew where they pull, as that costs less than to keep them.
 struct Cluster {
-  Vectors point[4], edge[6], force[4];
-  Vectors spoke[4][3];  // from a neighbour's apex to the corners of the middle's face
-  Vectors back[4];      // the volume's force on the apex
+  Vectors point[4], force[4], apex[4];
+  Vectors back[4];  // the volume's force on the apex
   Lanes square[6], spoke_square[4][3];
   // Squared, of the owned edges and faces, then their tensions; one more place takes what is not
   // kept.
@@ -76,22 +76,19 @@ HAPTRIAL_LANES void measure_middle(Cluster& m, const double* positions, const st
   for (int i = 0; i < 4; ++i) {
     gather(positions, corners + kPack * i, m.point[i].x, m.point[i].y, m.point[i].z);
   }
-  m.edge[0] = m.point[1] - m.point[0];
-  m.edge[1] = m.point[2] - m.point[0];
-  m.edge[2] = m.point[3] - m.point[0];
-  m.edge[3] = m.point[2] - m.point[1];
-  m.edge[4] = m.point[3] - m.point[1];
-  m.edge[5] = m.point[3] - m.point[2];
+  const Vectors edge[6] = {m.point[1] - m.point[0], m.point[2] - m.point[0],
+                           m.point[3] - m.point[0], m.point[2] - m.point[1],
+                           m.point[3] - m.point[1], m.point[3] - m.point[2]};
 #pragma GCC unroll 6
   for (int i = 0; i < 6; ++i) {
-    m.square[i] = dot(m.edge[i], m.edge[i]);
+    m.square[i] = dot(edge[i], edge[i]);
     queue.put(i, m.square[i]);
   }
-  const Vectors n1 = cross(m.edge[1], m.edge[2]);
-  const Vectors n2 = cross(m.edge[2], m.edge[0]);
-  const Vectors n3 = cross(m.edge[0], m.edge[1]);
+  const Vectors n1 = cross(edge[1], edge[2]);
+  const Vectors n2 = cross(edge[2], edge[0]);
+  const Vectors n3 = cross(edge[0], edge[1]);
   const Vectors n0 = n1 + n2 + n3;
-  const Lanes p = pressure(constants, dot(m.edge[0], n1), upright);
+  const Lanes p = pressure(constants, dot(edge[0], n1), upright);
   m.force[0] = -p * n0;
   m.force[1] = p * n1;
   m.force[2] = p * n2;
@@ -110,21 +107,17 @@ HAPTRIAL_LANES void measure_neighbour(Cluster& m, const double* positions,
   constexpr int bit = 10 + 6 * i;
   Vectors apex;
   gather(positions, corners + kPack * (4 + i), apex.x, apex.y, apex.z);
-  const Vectors ej = m.point[j] - apex;
-  const Vectors ek = m.point[k] - apex;
-  const Vectors el = m.point[l] - apex;
-  m.spoke[i][0] = ej;
-  m.spoke[i][1] = ek;
-  m.spoke[i][2] = el;
+  const Vectors spoke[3] = {m.point[j] - apex, m.point[k] - apex, m.point[l] - apex};
+  m.apex[i] = apex;
 #pragma GCC unroll 3
   for (int c = 0; c < 3; ++c) {
-    m.spoke_square[i][c] = dot(m.spoke[i][c], m.spoke[i][c]);
+    m.spoke_square[i][c] = dot(spoke[c], spoke[c]);
     queue.put(bit + c, m.spoke_square[i][c]);
   }
-  const Vectors nj = cross(ek, el);
-  const Vectors nk = cross(el, ej);
-  const Vectors nl = cross(ej, ek);
-  const Lanes p = pressure(constants, dot(ej, nj), upright);
+  const Vectors nj = cross(spoke[1], spoke[2]);
+  const Vectors nk = cross(spoke[2], spoke[0]);
+  const Vectors nl = cross(spoke[0], spoke[1]);
+  const Lanes p = pressure(constants, dot(spoke[0], nj), upright);
   m.force[j] = fused(p, nj, m.force[j]);
   m.force[k] = fused(p, nk, m.force[k]);
   m.force[l] = fused(p, nl, m.force[l]);
@@ -164,14 +157,14 @@ HAPTRIAL_LANES void pull_neighbour(Cluster& m, double* forces, const std::int32_
   if (queue.owns(bit + 5)) {
     add_face(*queue.next++, sj, sk, s[jk], tj, tk, t[jk]);
   }
-  const Vectors& ej = m.spoke[i][0];
-  const Vectors& ek = m.spoke[i][1];
-  const Vectors& el = m.spoke[i][2];
+  const Vectors ej = m.point[j] - m.apex[i];
+  const Vectors ek = m.point[k] - m.apex[i];
+  const Vectors el = m.point[l] - m.apex[i];
   m.force[j] = fused(-tj, ej, m.force[j]);
   m.force[k] = fused(-tk, ek, m.force[k]);
   m.force[l] = fused(-tl, el, m.force[l]);
-  const Vectors apex = fused(tj, ej, fused(tk, ek, fused(tl, el, m.back[i])));
-  scatter(forces, corners + kPack * (4 + i), apex.x, apex.y, apex.z);
+  const Vectors pulled = fused(tj, ej, fused(tk, ek, fused(tl, el, m.back[i])));
+  scatter(forces, corners + kPack * (4 + i), pulled.x, pulled.y, pulled.z);
 }
 
 HAPTRIAL_LANES void pull(const Lanes& tension, const Vectors& edge, Vectors& from, Vectors& to) {
@@ -181,12 +174,12 @@ HAPTRIAL_LANES void pull(const Lanes& tension, const Vectors& edge, Vectors& fro
 
 HAPTRIAL_LANES void pull_middle(Cluster& m, double* forces, const std::int32_t* corners,
                                 const Lanes* tension) {
-  pull(tension[0], m.edge[0], m.force[0], m.force[1]);
-  pull(tension[1], m.edge[1], m.force[0], m.force[2]);
-  pull(tension[2], m.edge[2], m.force[0], m.force[3]);
-  pull(tension[3], m.edge[3], m.force[1], m.force[2]);
-  pull(tension[4], m.edge[4], m.force[1], m.force[3]);
-  pull(tension[5], m.edge[5], m.force[2], m.force[3]);
+  pull(tension[0], m.point[1] - m.point[0], m.force[0], m.force[1]);
+  pull(tension[1], m.point[2] - m.point[0], m.force[0], m.force[2]);
+  pull(tension[2], m.point[3] - m.point[0], m.force[0], m.force[3]);
+  pull(tension[3], m.point[2] - m.point[1], m.force[1], m.force[2]);
+  pull(tension[4], m.point[3] - m.point[1], m.force[1], m.force[3]);
+  pull(tension[5], m.point[3] - m.point[2], m.force[2], m.force[3]);
   for (int i = 0; i < 4; ++i) {
     scatter(forces, corners + kPack * i, m.force[i].x, m.force[i].y, m.force[i].z);
   }

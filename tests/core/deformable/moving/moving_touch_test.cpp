@@ -374,7 +374,8 @@ TEST(MovingTouchTest, AHandThatBeginsInsideFeelsNothingAndIsNotThrownOutWhenItLe
   for (int i = 0; i < 400; ++i) {
     const double y = kTop - 0.004 + 2e-5 * i;
     const double force = touch.tick({0.0, y, 0.0}, kTick).force.norm();
-    EXPECT_TRUE(y > kTop || force == 0.0) << i;
+    const bool inside = y < kTop - 1e-9;  // the surface itself is there to rounding
+    EXPECT_TRUE(!inside || force == 0.0) << i;
     most = std::max(most, force);
   }
   EXPECT_LT(most, 0.2);
