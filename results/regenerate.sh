@@ -20,9 +20,15 @@ if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recor
   out=$(mktemp -d)/duck
   trap 'rm -rf "$(dirname "$out")"' EXIT
   build/haptrial evaluate --duck --seed "$seed" --out "$out"
+  cp "results/$study/contour.csv" "$out/"
   rm -rf "results/$study"
   mkdir -p "results/$study"
   cp "$out"/*.csv "$out"/report.html "$out"/*.svg "results/$study/"
+  if [ -d "${HAPTRIAL_DATA:-../shared/data}/haptic/contour" ]; then
+    HAPTRIAL_WRITE_RESULTS=1 build/test_contact_analysis --gtest_filter='ContourTableTest.*'
+  else
+    echo "regenerate.sh: no recordings of a real contact; contour.csv stays as it is" >&2
+  fi
   cat >"results/$study/manifest.json" <<EOF
 {
   "study": "$study",
@@ -36,7 +42,8 @@ if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recor
   "table_5_sha256": "$(sum "results/$study/table-5.csv")",
   "table_6_sha256": "$(sum "results/$study/table-6.csv")",
   "operations_sha256": "$(sum "results/$study/operations.csv")",
-  "failures_sha256": "$(sum "results/$study/failures.csv")"
+  "failures_sha256": "$(sum "results/$study/failures.csv")",
+  "contour_sha256": "$(sum "results/$study/contour.csv")"
 }
 EOF
   exit

@@ -279,6 +279,25 @@ TEST_F(EvaluateCommandTest, ARecordingIsNotReplayedWithAnotherMesh) {
   EXPECT_NO_THROW(check_object_files(recorded, objects, "resume"));
 }
 
+TEST_F(EvaluateCommandTest, WhatIsDoubtfulIsSaid) {
+  geometry::Mesh mesh = geometry::read_mesh(folder_ / "body.obj");
+  for (Vector3d& v : mesh.vertices) {
+    v += Vector3d(0.0, -0.3, 0.0);
+  }
+  geometry::write_mesh(folder_ / "far.obj", mesh);
+  const auto far = run("haptrial evaluate rubbed --mesh far.obj --registered --lag 0");
+  EXPECT_EQ(far.status, 0) << far.errors;
+  EXPECT_THAT(far.output, HasSubstr("The path does not lie on the body"));
+  // A stretch that was named as free is none. A load of nothing is one that is known.
+  const auto touched =
+      run("haptrial evaluate rubbed --mesh body.obj --registered --lag 0 --free 0 2");
+  EXPECT_THAT(touched.output, HasSubstr("perhaps something is touched there"));
+  const auto known =
+      run("haptrial evaluate rubbed --mesh body.obj --registered --lag 0 --load 0 0 0 0 0 0");
+  EXPECT_EQ(known.status, 0) << known.errors;
+  EXPECT_THAT(known.output, Not(HasSubstr("No stretch without contact was named")));
+}
+
 TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
   const auto refused = [&](const std::string& line, const std::string& why) {
     const auto result = run("haptrial evaluate " + line);
@@ -317,6 +336,18 @@ TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
   run("mkdir air; cp rubbed/poses.csv air; awk -F, 'NR == 1 { print; next } "
       "{ printf \"%s,%g,0,0\\n\", $1, 1e-4 * (NR % 7) }' rubbed/forces.csv > air/forces.csv");
   refused("air --mesh body.obj --lag 0", "0 of 1000 poses are in contact");
+  refused(good + "--load 0 0 0 0 0 0 --free 0 1", "--load stands beside --free");
+  // Too short for its lag, without any change, and forces in another unit.
+  run("mkdir short still strong; cp rubbed/poses.csv strong; cp rubbed/forces.csv short; "
+      "cp rubbed/forces.csv still; awk 'NR <= 201' rubbed/poses.csv > short/poses.csv; "
+      "awk -F, 'NR == 1 { print; next } { print $1 \",1,2,3\" }' rubbed/poses.csv > "
+      "still/poses.csv; "
+      "awk -F, 'NR == 1 { print; next } { printf \"%s,%g,%g,%g\\n\", $1, 1e3 * $2, 1e3 * $3, 1e3 * "
+      "$4 }' rubbed/forces.csv > strong/forces.csv");
+  refused("short --mesh body.obj",
+          "poses and forces overlap for 1.99 s; allowed where their lag is");
+  refused("still --mesh body.obj", "poses.csv: its poses never change");
+  refused("strong --mesh body.obj --registered --lag 0", "in another unit");
   run("mkdir empty; mkdir out; touch out/file");
   refused("empty --mesh body.obj", "empty: holds 0 tables");
   refused(good + "--lag 0 --renderer proxy --out out", "out");

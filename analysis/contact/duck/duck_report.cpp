@@ -8,22 +8,16 @@
 #include <iterator>
 #include <span>
 
+#include "analysis/contact/duck/duck_figures.h"
+#include "analysis/contact/duck/source_tables.h"
 #include "analysis/contact/report/evaluation_tables.h"
 #include "analysis/document/document.h"
 #include "analysis/document/figure_gnuplot.h"
-#include "analysis/document/palette.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/files/file_text.h"
 
 namespace haptrial::evaluation {
 namespace {
-
-namespace palette = analysis::palette;
-
-// Morris 2006, Tables 4 to 6, "RMS force error" [N].
-constexpr std::array kSourceTable4{0.136, 0.130, 0.129};
-constexpr std::array kSourceTable5{0.132, 0.067};
-constexpr std::array kSourceTable6{0.085, 0.031, 0.031, 0.022, 0.022, 0.015, 0.013, 0.009};
 
 TextTable errors(const std::vector<DuckRow>& rows, std::span<const double> source) {
   TextTable table{
@@ -139,16 +133,6 @@ std::vector<std::string> facts(const DuckTables& t) {
                   t.friction.with, t.friction.without)};
 }
 
-analysis::Series curve(const std::string& label, const analysis::Look& look,
-                       const std::vector<DuckRow>& rows) {
-  analysis::Series series{label, analysis::Mark::kLine, look};
-  for (const DuckRow& r : rows) {
-    series.x.push_back(std::log10(static_cast<double>(r.triangles)));
-    series.y.push_back(r.normal_error);
-  }
-  return series;
-}
-
 }  // namespace
 
 std::vector<std::string> duck_lines(const DuckTables& t, const std::vector<FailureMap>& maps) {
@@ -162,34 +146,6 @@ std::vector<std::string> duck_lines(const DuckTables& t, const std::vector<Failu
     append(text_lines(table));
   }
   return lines;
-}
-
-analysis::Figure resolution_figure(const DuckTables& t) {
-  analysis::Figure figure;
-  figure.name = "figure-64";
-  figure.title = "Force error over the size of the mesh";
-  figure.x_label = "triangles";
-  figure.y_label = "error of the normal force (N)";
-  for (const DuckRow& r : t.table6) {
-    figure.x_names.emplace_back(std::log10(static_cast<double>(r.triangles)),
-                                fmt::format("{:.3g}k", 1e-3 * static_cast<double>(r.triangles)));
-  }
-  figure.series = {
-      curve("plain", {palette::kBlue, palette::kSolid, 7, 2.2, 1.0}, t.table6),
-      curve("force shading", {palette::kOrange, palette::kLong, 5, 2.2, 1.0}, t.shaded)};
-  analysis::Series source{
-      "source, plain", analysis::Mark::kPoints, {palette::kBlack, palette::kSolid, 6, 1.6, 1.2}};
-  source.x = figure.series[0].x;
-  source.y.assign(kSourceTable6.begin(), kSourceTable6.end());
-  figure.series.push_back(source);
-  figure.height = 0.5;
-  figure.simulated = true;
-  figure.who = "RECORDING";
-  figure.caption =
-      "Root mean square of what the rendered force misses of the recorded normal "
-      "force, for the proxy without friction.";
-  figure.alt = "Error falls with the number of triangles, sooner with force shading.";
-  return figure;
 }
 
 namespace {
@@ -247,20 +203,22 @@ class Report {
 
 void write_duck(const DuckTables& t, const std::vector<FailureMap>& maps,
                 const std::filesystem::path& folder) {
-  std::vector<analysis::Figure> figures{resolution_figure(t)};
+  std::vector<analysis::Figure> figures{trajectory_figure(t), path_figure(t), resolution_figure(t)};
+  const std::size_t before = 2, of_tables = figures.size();
   for (const FailureMap& map : maps) {
     figures.push_back(failure_figure(map));
   }
   Report report(folder);
   report.begin(t);
+  report.draw(figures);
+  report.put_pictures(0, before);
   report.add("Table 4: proxy and voxels", "table-4.csv", table4(t));
   report.add("Table 5: friction", "table-5.csv", table5(t));
   report.add("Table 6: size of the mesh", "table-6.csv", table6(t));
-  report.draw(figures);
-  report.put_pictures(0, 1);
+  report.put_pictures(before, of_tables);
   report.add("Figure 65: a ridge, where each algorithm fails", "failures.csv", failures(maps),
              failure_csv(maps));
-  report.put_pictures(1, figures.size());
+  report.put_pictures(of_tables, figures.size());
   report.add("Operations a tick", "operations.csv", operations(t));
   report.add("Costs on this computer", "costs.csv", costs(t));
   report.remark(t.contact.remarks);

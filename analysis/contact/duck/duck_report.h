@@ -6,7 +6,6 @@
 
 #include "analysis/contact/duck/duck_tables.h"
 #include "analysis/contact/failure/failure_map.h"
-#include "analysis/document/figure.h"
 
 namespace haptrial::evaluation {
 
@@ -14,12 +13,9 @@ namespace haptrial::evaluation {
 /// terminal.
 std::vector<std::string> duck_lines(const DuckTables& tables, const std::vector<FailureMap>& maps);
 
-/// The source's Figure 64: error over the size of the mesh, with and without force shading.
-analysis::Figure resolution_figure(const DuckTables& tables);
-
 /// table-4.csv, table-5.csv, table-6.csv (a function of the seed), operations.csv, costs.csv (of
-/// this computer), figure-64, figure-65-RENDERER (.svg, .png), failures.csv and report.html, all of
-/// them or none.
+/// this computer), figure-62 to figure-64, figure-65-RENDERER (.svg, .png), failures.csv and
+/// report.html, all of them or none.
 /// @throws InputError when `folder` holds anything or cannot be made; RunError as draw_figures().
 void write_duck(const DuckTables& tables, const std::vector<FailureMap>& maps,
                 const std::filesystem::path& folder);

@@ -88,6 +88,7 @@ DuckTables make_duck_tables(const DuckOptions& o,
       scanned_mesh(duck_radius, {.frequency = o.frequency, .seed = o.seed}));
   DuckTables t;
   t.options = o;
+  t.scan = scan.mesh.vertices;
   t.scan_error = scan_error(scan.mesh);
   say("lag, load, registration, in-trajectory");
   t.contact = recorded_duck(scan, o);

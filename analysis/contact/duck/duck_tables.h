@@ -39,13 +39,14 @@ struct DuckRow {
 struct DuckTables {
   DuckOptions options;
   PreparedContact contact;
-  double mean_force{0.0};       // recorded [N]
-  double scan_error{0.0};       // root mean square of the scan's distance from the duck [m]
-  FrictionFit friction;         // on the whole scan
-  std::vector<DuckRow> table4;  // voxels at 32 and 64, proxy
-  std::vector<DuckRow> table5;  // proxy without friction and with
-  std::vector<DuckRow> table6;  // proxy on eight meshes, coarsest first
-  std::vector<DuckRow> shaded;  // the same with force shading (the source's Figure 64)
+  std::vector<Eigen::Vector3d> scan;  // its vertices [m]
+  double mean_force{0.0};             // recorded [N]
+  double scan_error{0.0};             // root mean square of the scan's distance from the duck [m]
+  FrictionFit friction;               // on the whole scan
+  std::vector<DuckRow> table4;        // voxels at 32 and 64, proxy
+  std::vector<DuckRow> table5;        // proxy without friction and with
+  std::vector<DuckRow> table6;        // proxy on eight meshes, coarsest first
+  std::vector<DuckRow> shaded;        // the same with force shading (the source's Figure 64)
 };
 
 /// A duck is scanned with noise of 1 mm; a probe with the source's sensors rubs it (lag, load and

@@ -11,18 +11,10 @@ namespace {
 constexpr double kTooLarge = 1.5;  // of a path, over the body's diagonal
 constexpr double kTooSmall = 0.005;
 
-double volume(const geometry::Mesh& mesh) {
-  double sum = 0.0;
-  for (const geometry::Triangle& t : mesh.triangles) {
-    sum += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
-  }
-  return sum / 6.0;
-}
-
 }  // namespace
 
 void check_body(const contact::FeltBody& body) {
-  if (body.closed && volume(body.mesh) < 0.0) {
+  if (body.closed && !body.outwards) {
     throw std::invalid_argument(
         "its faces look inwards; turn them with haptrial mesh repair MESH NEW_MESH");
   }

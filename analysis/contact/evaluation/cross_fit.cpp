@@ -2,10 +2,14 @@
 
 namespace haptrial::evaluation {
 
-double CrossFit::kept(std::size_t fitted, std::size_t tested) const {
+std::optional<double> CrossFit::kept(std::size_t fitted, std::size_t tested) const {
+  constexpr double kNoGain = 1e-3;  // of the error without friction
   const FrictionFit& best = own[tested];
   const double gain = best.without - best.with;
-  return gain > 0.0 ? (best.without - error[fitted][tested]) / gain : 0.0;
+  if (!(gain > kNoGain * best.without)) {
+    return std::nullopt;
+  }
+  return (best.without - error[fitted][tested]) / gain;
 }
 
 CrossFit cross_fit(std::span<const FeltContact> contacts, contact::RendererKind kind,

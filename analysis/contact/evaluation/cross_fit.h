@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,8 +21,8 @@ struct CrossFit {
                                            // column's recording with the row's friction [N]
 
   /// The part of what the own friction gains over none that a foreign one keeps: 1 all of it, 0
-  /// none, below 0 worse than no friction; 0 where the own one gains nothing.
-  double kept(std::size_t fitted, std::size_t tested) const;
+  /// none, below 0 worse than no friction; nothing where the own one gains less than a thousandth.
+  std::optional<double> kept(std::size_t fitted, std::size_t tested) const;
 };
 
 /// @param kind  proxy or ruspini  @throws std::invalid_argument as make_renderer().

@@ -44,8 +44,22 @@ void identify(const EvaluationOptions& o, Evaluation& result) {
   }
 }
 
+/// Contacts that a renderer does not feel are no small matter beside its errors.
+void remark_on_lost(const Evaluation& e, const EvaluatedRendering& r,
+                    std::vector<std::string>& remarks) {
+  constexpr double kFew = 0.01;
+  const double share = static_cast<double>(r.rendered.lost) /
+                       (e.contact.contact_share * static_cast<double>(e.contact.touching.size()));
+  if (share > kFew) {
+    remarks.push_back(
+        fmt::format("{} with friction {:.3f} feels nothing on {:.0f} % of the samples in contact.",
+                    contact::name_of(r.kind), r.friction, 100.0 * share));
+  }
+}
+
 void remark(Evaluation& result) {
   for (const EvaluatedRendering& r : result.renderings) {
+    remark_on_lost(result, r, result.remarks);
     if (r.rendered.unsettled > 0) {
       result.remarks.push_back(fmt::format(
           "{} of {} ticks of {} with friction {:.3f} ended before its proxy was at rest.",
@@ -130,6 +144,9 @@ void add_cross_fit(Evaluation& evaluation, const std::string& name,
   for (const NamedRecording& other : others) {
     cross.names.push_back(other.name);
     prepared.push_back(prepare_contact(other.recording, body, options.prepare));
+    for (const std::string& remark : prepared.back().remarks) {
+      evaluation.remarks.push_back(fmt::format("{}: {}", other.name, remark));
+    }
     contacts.push_back({&prepared.back(), &body});
   }
   cross.fit = cross_fit(contacts, *kind, options_for(*kind, body, options));

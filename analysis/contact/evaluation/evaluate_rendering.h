@@ -34,7 +34,7 @@ struct EvaluatedRendering {
   TickTimes ticks;  // [s]
 };
 
-/// Another recording of the same body.
+/// Another recording of the same body with the same probe.
 struct NamedRecording {
   std::string name;
   ContactRecording recording;
@@ -67,7 +67,8 @@ Evaluation evaluate_rendering(const ContactRecording& recording, const contact::
                               const EvaluationOptions& options);
 
 /// Tests on other recordings of the body the friction that fits this one best, and the other way
-/// round, by the first of the renderers that has friction.
+/// round, by the first of the renderers that has friction. Remarks on the others begin with their
+/// names.
 /// @param name  of the evaluated recording  @param others  prepared with the same options
 /// @throws std::invalid_argument without such a renderer, and as prepare_contact().
 void add_cross_fit(Evaluation& evaluation, const std::string& name,

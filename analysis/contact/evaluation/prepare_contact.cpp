@@ -25,7 +25,7 @@ constexpr int kLagRounds = 6;
 constexpr double kSameLag = 2e-4;      // [s]
 constexpr double kMuchFriction = 0.6;  // rare between dry solids
 constexpr double kInwards = 0.2;       // share of contacts pulled inwards that is doubted
-constexpr double kOffBody = 0.05;      // of the path's size: a median residual that is doubted
+constexpr double kOffBody = 0.05;      // of the path's size: a median distance that is doubted
 
 void require_prepared(bool good, const char* sentence) {
   if (!good) {
@@ -96,6 +96,12 @@ ForceStream first_forces(const ContactRecording& recording, const PoseStream& pa
 }
 
 void remark_on_load(const PrepareOptions& o, PreparedContact& result) {
+  if (result.load && result.load->force_rms > o.least_force) {
+    result.remarks.push_back(
+        fmt::format("The load leaves {:.2g} N in the stretches that were named as free of contact "
+                    "(root mean square): perhaps something is touched there.",
+                    result.load->force_rms));
+  }
   if (result.load) {
     result.remarks.insert(result.remarks.end(), result.load->unfixed.begin(),
                           result.load->unfixed.end());
@@ -105,6 +111,16 @@ void remark_on_load(const PrepareOptions& o, PreparedContact& result) {
   }
   if (result.lag && !result.lag->doubt.empty()) {
     result.remarks.push_back(result.lag->doubt + " No lag was removed.");
+  }
+}
+
+void remark_on_distance(double median, std::span<const Vector3d> contacts,
+                        PreparedContact& result) {
+  if (median > kOffBody * path_size(contacts)) {
+    result.remarks.push_back(
+        fmt::format("The path does not lie on the body: half of the contacts are more than {:.2g} "
+                    "mm off. The mesh may be another body, in another unit or elsewhere.",
+                    1e3 * median));
   }
 }
 
@@ -137,12 +153,7 @@ Eigen::Isometry3d body_from_world(const PoseStream& path, const ForceStream& at_
   result.registration = register_path(body.distance, fitted, options);
   result.remarks.insert(result.remarks.end(), result.registration->unfixed.begin(),
                         result.registration->unfixed.end());
-  if (result.registration->median > kOffBody * path_size(contacts)) {
-    result.remarks.push_back(fmt::format(
-        "The path does not lie on the body: half of the contacts are more than {:.2g} mm "
-        "off. The mesh may be another body, or in another unit.",
-        1e3 * result.registration->median));
-  }
+  remark_on_distance(result.registration->median, contacts, result);
   return result.registration->body_from_world;
 }
 
@@ -282,6 +293,36 @@ void remark_on_lean(const Touch& touch, PreparedContact& result) {
   }
 }
 
+/// Poses that were given in the body's frame, which no registration brought to the body.
+void judge_places(const Touch& touch, PreparedContact& result) {
+  std::vector<Vector3d> contacts;
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < touch.out.size(); ++i) {
+    if (touch.touching[i]) {
+      contacts.push_back(touch.out[i]);
+      distance.push_back(std::abs(touch.depth[i]));
+    }
+  }
+  remark_on_distance(*analysis::quantile(distance, 0.5), contacts, result);
+}
+
+/// @throws std::invalid_argument if forces lead through the whole body
+void judge_depth(const Touch& touch, const contact::FeltBody& body, const PreparedContact& result) {
+  std::vector<double> depth;
+  for (std::size_t i = 0; i < touch.out.size(); ++i) {
+    if (touch.touching[i]) {
+      depth.push_back((touch.out[i] - result.in[i]).norm());
+    }
+  }
+  const double median = *analysis::quantile(depth, 0.5);
+  if (median > body.size) {
+    throw std::invalid_argument(fmt::format(
+        "over {:g} N/m half of the forces lead more than {:.3g} m into a body of {:.3g} "
+        "m; --stiffness, or the forces, are in another unit",
+        result.stiffness, median, body.size));
+  }
+}
+
 /// @throws std::invalid_argument if nothing touches
 void judge_touch(const Touch& touch, PreparedContact& result) {
   require_prepared(
@@ -328,6 +369,10 @@ PreparedContact prepare_contact(const ContactRecording& recording, const contact
       static_cast<double>(std::count(touch.touching.begin(), touch.touching.end(), true)) /
       static_cast<double>(touch.touching.size());
   judge_touch(touch, result);
+  judge_depth(touch, body, result);
+  if (options.registered) {
+    judge_places(touch, result);
+  }
   result.touching = std::move(touch.touching);
   result.out = std::move(touch.out);
   result.normal = std::move(touch.normal);

@@ -80,8 +80,8 @@ RenderedContact render_contact(const PreparedContact& contact, const contact::Fe
     before_tick = renderer->operations();
     const bool free = felt.state == contact::ContactState::kFree;
     result.force.push_back(felt.force);
-    result.place.push_back(free ? contact.out[i]
-                                : Vector3d(felt.proxy - used.radius * felt.normal));
+    result.place.push_back(free ? contact.in[i] : Vector3d(felt.proxy - used.radius * felt.normal));
+    result.lost += free && contact.touching[i] ? 1 : 0;
     result.unsettled += felt.settled ? 0 : 1;
   }
   result.operations = before_tick;

@@ -13,10 +13,11 @@ namespace haptrial::evaluation {
 /// What a renderer answers to an in-trajectory, and what it took.
 struct RenderedContact {
   std::vector<Eigen::Vector3d> force;  // (n) on the tool [N]
-  std::vector<Eigen::Vector3d> place;  // (n) of the contact on the surface; `out` if free [m]
+  std::vector<Eigen::Vector3d> place;  // (n) of the contact; of the tool if nothing is felt [m]
   std::vector<double> tick_seconds;    // (n) a reading of the clock included, about 25 ns [s]
   double preparation{0.0};             // of the renderer from the mesh and its hierarchy [s]
   double memory{0.0};                  // that it holds beside them [bytes]
+  std::size_t lost{0};                 // samples of a contact where nothing is felt
   std::size_t unsettled{0};            // ticks that ended before the proxy was at rest
   contact::Operations operations;      // of all ticks
   contact::Operations most;            // of each kind, in one tick

@@ -106,9 +106,9 @@ analysis::Figure failure_figure(const FailureMap& map) {
   figure.simulated = true;
   figure.who = "TOOL";
   figure.caption = fmt::format(
-      "A tool pulled straight over a ridge of 2 mm, under the {} renderer. Right: the contact "
+      "A tool pulled straight over a ridge of 2 mm, under {}. Right: the contact "
       "climbs the ridge where Coulomb's law says, or stays where friction holds it.",
-      contact::name_of(map.kind));
+      name_of(map));
   figure.alt =
       fmt::format("{} of {} cells are right.", map.count(RidgeOutcome::kRight), map.cells.size());
   return figure;
@@ -116,7 +116,8 @@ analysis::Figure failure_figure(const FailureMap& map) {
 
 std::string failure_csv(const std::vector<FailureMap>& maps) {
   std::string text =
-      "renderer,friction,radius_mm,flank_deg,depth_mm,outcome,left_foot_mm,left_foot_by_law_mm,"
+      "renderer,friction,radius_mm,flank_deg,depth_mm,outcome,"
+      "one_20th_up_mm,one_20th_up_by_law_mm,"
       "highest_mm\n";
   const auto number = [](const std::optional<double>& x) {
     return x ? fmt::format("{:.3f}", 1e3 * *x) : std::string();
@@ -126,7 +127,7 @@ std::string failure_csv(const std::vector<FailureMap>& maps) {
       fmt::format_to(std::back_inserter(text), "{},{},{},{:.0f},{},{},{},{},{:.3f}\n",
                      contact::name_of(map.kind), map.friction, 1e3 * map.radius,
                      cell.flank / kDegree, 1e3 * cell.depth, name_of(cell.result.outcome),
-                     number(cell.result.left_foot), number(cell.law.leaves_foot),
+                     number(cell.result.left_foot), number(cell.law.seen()),
                      1e3 * cell.result.highest);
     }
   }

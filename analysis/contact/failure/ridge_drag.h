@@ -41,6 +41,12 @@ const char* name_of(RidgeOutcome outcome);
 /// Nothing where alpha + phi is a right angle or more: friction holds it.
 struct RidgeLaw {
   std::optional<double> leaves_foot, on_top;
+
+  /// Where it is when the contact is 5 % of the way up, as RidgeResult::left_foot [m].
+  std::optional<double> seen() const {
+    return leaves_foot ? std::optional(*leaves_foot + 0.05 * (*on_top - *leaves_foot))
+                       : std::nullopt;
+  }
 };
 RidgeLaw ridge_law(const Ridge& ridge, const RidgeDrag& drag);
 

@@ -157,9 +157,17 @@ ContactRecording read_recording(const std::filesystem::path& poses,
   recording.force = changes(read_forces(forces == poses ? pose_table : CsvTable::load(forces)));
   const double first = std::max(recording.pose.time.front(), recording.force.time.front());
   const double last = std::min(recording.pose.time.back(), recording.force.time.back());
-  if (!(last - first >= 1.0) || recording.pose.size() < 2 || recording.force.size() < 2) {
+  const auto check_moves = [](std::size_t values, const char* what, const auto& file) {
+    if (values < 2) {
+      throw InputError(fmt::format("{}: {} never change; allowed: a recording of a hand that moves",
+                                   file.string(), what));
+    }
+  };
+  check_moves(recording.pose.size(), "its poses", poses);
+  check_moves(recording.force.size(), "its forces", forces);
+  if (!(last - first >= 1.0)) {
     throw InputError(
-        fmt::format("{} and {}: poses that move and forces overlap for {:.3g} s; "
+        fmt::format("{} and {}: poses that move and forces that change overlap for {:.3g} s; "
                     "allowed: 1 s or more",
                     poses.string(), forces.string(), std::max(0.0, last - first)));
   }

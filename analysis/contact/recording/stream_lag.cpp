@@ -186,10 +186,12 @@ void check_lag(const PoseStream& pose, const ForceStream& force, const LagOption
   }
   const double overlap = std::min(pose.time.back(), force.time.back()) -
                          std::max(pose.time.front(), force.time.front());
-  if (!(overlap >= 20.0 * options.largest) || !(overlap >= 5.0 * options.slowest)) {
+  const double least = std::max(20.0 * options.largest, 5.0 * options.slowest);
+  if (!(overlap >= least)) {
     throw std::invalid_argument(
-        "pose and force must overlap by 20 times the largest lag and 5 times "
-        "`slowest`");
+        fmt::format("poses and forces overlap for {:.3g} s; allowed where their lag is to be "
+                    "found: {:.3g} s or more; or give it (--lag)",
+                    std::max(overlap, 0.0), least));
   }
 }
 

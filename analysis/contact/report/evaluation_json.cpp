@@ -119,7 +119,8 @@ Json to_json(const NamedCrossFit& cross) {
     json["root_mean_square_without_N"].push_back(own.without);
     Json& kept = json["kept"].emplace_back(Json::array());
     for (std::size_t tested = 0; tested < cross.names.size(); ++tested) {
-      kept.push_back(cross.fit.kept(i, tested));
+      const std::optional<double> share = cross.fit.kept(i, tested);
+      kept.push_back(share ? Json(*share) : Json(nullptr));
     }
   }
   return json;

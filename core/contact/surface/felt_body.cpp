@@ -1,5 +1,6 @@
 #include "core/contact/surface/felt_body.h"
 
+#include <Eigen/Geometry>
 #include <array>
 #include <mutex>
 #include <utility>
@@ -22,6 +23,15 @@ bool is_closed(const geometry::Mesh& mesh) {
   return edges.size() > 0;
 }
 
+/// Six times the volume inside; negative where faces look inwards.
+double six_volumes(const geometry::Mesh& mesh) {
+  double sum = 0.0;
+  for (const geometry::Triangle& t : mesh.triangles) {
+    sum += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
+  }
+  return sum;
+}
+
 }  // namespace
 
 FeltBody::FeltBody(geometry::Mesh shape)
@@ -29,7 +39,8 @@ FeltBody::FeltBody(geometry::Mesh shape)
       surface(mesh),
       distance(mesh, surface),
       size(geometry::bounds(mesh).diagonal().norm()),
-      closed(is_closed(mesh)) {}
+      closed(is_closed(mesh)),
+      outwards(six_volumes(mesh) >= 0.0) {}
 
 SharedBody felt_body(geometry::Mesh mesh) {
   constexpr std::size_t kKept = 4;

@@ -19,8 +19,9 @@ struct FeltBody {
   geometry::Mesh mesh;
   ContactSurface surface;
   SignedDistance distance;
-  double size{0.0};    // the diagonal of its box [m]
-  bool closed{false};  // every side of a triangle has one other on it: there is an inside
+  double size{0.0};     // the diagonal of its box [m]
+  bool closed{false};   // every side of a triangle has one other on it: there is an inside
+  bool outwards{true};  // the faces of a closed body, in the mean; else it is a room
 };
 
 using SharedBody = std::shared_ptr<const FeltBody>;

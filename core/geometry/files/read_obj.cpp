@@ -31,7 +31,9 @@ class Obj {
       } else if (std::find(kPassedOver.begin(), kPassedOver.end(), statement) ==
                  kPassedOver.end()) {
         text_.fail(
-            fmt::format("{} is no statement of a polygon mesh in OBJ", in_quotes(statement)));
+            fmt::format("{} is no statement of a polygon mesh in OBJ; allowed: v, f and others of "
+                        "polygons",
+                        in_quotes(statement)));
       }
     }
     if (largest_ >= mesh_.vertex_count()) {

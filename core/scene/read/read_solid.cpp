@@ -34,6 +34,19 @@ void check_radius(const FieldReader& read, SolidParameters& p) {
   }
 }
 
+/// Renderers without a proxy ask a mesh how deep the tool is inside.
+void check_inside(const FieldReader& read, SolidParameters& p) {
+  using contact::RendererKind;
+  if (p.renderer != RendererKind::kProxy && p.renderer != RendererKind::kRuspini && p.body &&
+      !p.body->closed) {
+    read.table.reject("renderer",
+                      fmt::format("is \"{}\", which needs a closed mesh, and this one is open; "
+                                  "allowed: proxy, ruspini",
+                                  contact::name_of(p.renderer)));
+    p.renderer = RendererKind::kProxy;
+  }
+}
+
 }  // namespace
 
 Field read_solid(Table& table, std::string name, const contact::SharedBody& body,
@@ -57,6 +70,7 @@ Field read_solid(Table& table, std::string name, const contact::SharedBody& body
     p.renderer = read_renderer(read);
   }
   check_radius(read, p);
+  check_inside(read, p);
   field.kind = std::move(p);
   return field;
 }

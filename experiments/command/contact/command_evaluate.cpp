@@ -94,6 +94,13 @@ void take_sensors(const EvaluateOptions& o, evaluation::PrepareOptions& p) {
     }
     p.free.emplace_back(o.free[i], o.free[i + 1]);
   }
+  if (!o.load.empty()) {
+    if (!o.free.empty()) {
+      throw InputError("--load stands beside --free; allowed: one of them");
+    }
+    p.load = evaluation::SensorLoad{{o.load[0], o.load[1], o.load[2]},
+                                    {o.load[3], o.load[4], o.load[5]}};
+  }
   if (o.lag) {
     p.lag = kMilli * checked_real("--lag", *o.lag, -1e4, 1e4);
   }
@@ -174,7 +181,7 @@ GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& 
   evaluation::SessionContact contact =
       evaluation::read_session_contact(record::SessionReader(first), {o.object, o.trial});
   prepare.lag = prepare.lag.value_or(0.0);
-  if (prepare.free.empty()) {
+  if (prepare.free.empty() && !prepare.load) {
     prepare.load = evaluation::SensorLoad{};
   }
   names.recording += fmt::format(", {} in trial {}", contact.object, contact.trial);

@@ -29,6 +29,7 @@ struct EvaluateOptions {
   double radius{0.0};                  // of the tip's sphere [mm]
   std::vector<double> sensor;          // its orientation on the probe: w, x, y, z
   std::vector<double> free;            // without contact: from, to, from, to … [s]
+  std::vector<double> load;            // known: weight in W, offset of the sensor, x y z each [N]
   std::optional<double> lag;           // of the force's clock [ms]; default: estimated
   bool registered{false};              // poses are in the mesh's frame
   bool on_body{false};                 // forces are those on the body

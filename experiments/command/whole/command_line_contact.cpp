@@ -39,6 +39,10 @@ void take_contact_sensors(CLI::App& sub, EvaluateOptions& o) {
                  "Stretch without contact, from and to [s], for the sensor's load; may be repeated "
                  "(default: the load is removed already)")
       ->expected(2, 200);
+  sub.add_option("--load", o.load,
+                 "Known load of the sensor, in place of --free: weight in the tracker's frame and "
+                 "offset in the sensor's, x y z each [N]")
+      ->expected(6);
   sub.add_option("--lag", o.lag, "Lag of the force's clock [ms] (default: estimated)");
   sub.add_flag("--registered", o.registered, "Take the poses to be in the mesh's frame");
   sub.add_flag("--on-body", o.on_body, "Take the forces to act on the body, not on the probe");
@@ -66,7 +70,8 @@ void add_evaluate(CLI::App& app, int& status) {
                   "Trial of a session file (default: the first one in which it was touched)");
   sub->add_option(
          "--test-on", o.tested_on,
-         "Another recording of the body, a table, a folder or a session file, on which the "
+         "Another recording of the body with the same probe, a table, a folder or a session file, "
+         "on which the "
          "friction is tested that fits RECORDING, and the other way round; may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--mesh", o.mesh, "Mesh of the body (.obj, .ply, .stl, .off)");

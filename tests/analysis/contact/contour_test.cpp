@@ -1,8 +1,12 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <string>
 
 #include "analysis/contact/evaluation/evaluate_rendering.h"
 #include "analysis/contact/recording/stream_lag.h"
@@ -92,6 +96,51 @@ TEST_P(ContourTest, ARollingToolHasNoFriction) {
   EXPECT_TRUE(friction.holds(0.0)) << friction.low << " to " << friction.high;
   EXPECT_LT(friction.high, 0.2) << "an interval that tells it from a sliding tool's";
   EXPECT_GT(e.identified->stiffness.low, 2000.0) << "the body is rigid";
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.4g}", value) : "";
+}
+
+/// Writes results/contact_evaluation/contour.csv where asked: what is found, no data.
+TEST(ContourTableTest, IsWrittenWhereAsked) {
+  if (std::getenv("HAPTRIAL_WRITE_RESULTS") == nullptr) {
+    GTEST_SKIP() << "HAPTRIAL_WRITE_RESULTS=1 writes results/contact_evaluation/contour.csv";
+  }
+  auto mesh = test::contour_body();
+  if (!mesh) {
+    GTEST_SKIP() << kAbsent;
+  }
+  const contact::FeltBody body(*std::move(mesh));
+  EvaluationOptions options;
+  options.renderers = {contact::RendererKind::kPenalty, contact::RendererKind::kProxy};
+  std::string table =
+      "recording,seconds,mean_force_N,distance_median_mm,lag_ms,lag_low_ms,lag_high_ms,"
+      "dynamic_friction_low,dynamic_friction_high,stiffness_low_N_per_m,stiffness_high_N_per_m,"
+      "renderer,friction,error_N,place_error_mm,not_felt\n";
+  for (const char set_up : {'a', 'b', 'c', 'd', 'e', 'f'}) {
+    options.prepare = test::contour_options(set_up);
+    const Evaluation e =
+        evaluate_rendering(test::read_contour(*test::contour_file(set_up)), body, options);
+    ASSERT_TRUE(e.identified && e.identified->dynamic_friction && e.contact.registration);
+    const bool lag = e.contact.lag && e.contact.lag->doubt.empty();
+    const std::string found = lag ? fmt::format("{:.2f},{:.2f},{:.2f}", 1e3 * e.contact.lag->lag,
+                                                1e3 * e.contact.lag->low, 1e3 * e.contact.lag->high)
+                                  : ",,";
+    const Interval friction = *e.identified->dynamic_friction;
+    for (const EvaluatedRendering& r : e.renderings) {
+      table += fmt::format(
+          "{},{:.2f},{:.2f},{:.3f},{},{:.3f},{:.3f},{},{},{},{:.4f},{:.2f},{:.3f},{:.3f}\n", set_up,
+          e.contact.time.back() - e.contact.time.front(), r.force.mean_force,
+          1e3 * e.contact.registration->median, found, friction.low, friction.high,
+          number(e.identified->stiffness.low), number(e.identified->stiffness.high),
+          contact::name_of(r.kind), r.friction, r.force.root_mean_square,
+          1e3 * r.position.root_mean_square,
+          static_cast<double>(r.rendered.lost) /
+              (e.contact.contact_share * static_cast<double>(e.contact.touching.size())));
+    }
+  }
+  std::ofstream(HAPTRIAL_SOURCE_DIR "/results/contact_evaluation/contour.csv") << table;
 }
 
 INSTANTIATE_TEST_SUITE_P(SetUps, ContourTest, testing::Values('a', 'b', 'c', 'd', 'e', 'f'),

@@ -58,15 +58,43 @@ TEST(FailureMapTest, TheProxySticksNowhereThatFrictionDoesNotExplain) {
         held += cell.result.left_foot ? 0 : 1;
         continue;
       }
-      // 5 % of the way from the foot to the top, which is where it is seen.
-      const double seen = *cell.law.leaves_foot + 0.05 * (*cell.law.on_top - *cell.law.leaves_foot);
       ASSERT_TRUE(cell.result.left_foot);
-      ASSERT_NEAR(*cell.result.left_foot, seen, 1.1e-4) << name_of(map) << ", " << cell.flank;
+      ASSERT_NEAR(*cell.result.left_foot, *cell.law.seen(), 1.1e-4)
+          << name_of(map) << ", " << cell.flank;
       ++climbed;
     }
   }
   EXPECT_GT(climbed, 400);
   EXPECT_GT(held, 20);
+}
+
+/// A proxy has no length and no force of its own: the law holds for every height and stiffness.
+TEST(FailureMapTest, HeightAndStiffnessChangeNothing) {
+  int climbed = 0;
+  for (const double height : {0.001, 0.004}) {
+    for (int degrees = 10; degrees <= 80; degrees += 10) {
+      Ridge ridge;
+      ridge.height = height;
+      ridge.flank = degrees * M_PI / 180.0;
+      const contact::FeltBody body(ridge_mesh(ridge));
+      for (const double friction : {0.0, 0.3}) {
+        for (const double stiffness : {100.0, 5000.0}) {
+          contact::RendererOptions options;
+          options.stiffness = stiffness;
+          options.friction = {friction, friction};
+          const auto renderer =
+              contact::make_renderer(RendererKind::kProxy, body.mesh, body.surface, options);
+          for (const double depth : {0.0005, 0.002, 0.008}) {
+            const RidgeResult found = drag_over(ridge, {depth, friction}, *renderer);
+            ASSERT_EQ(found.outcome, RidgeOutcome::kRight)
+                << height << " m, " << degrees << ", " << stiffness << ", " << depth << " m";
+            climbed += found.left_foot ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(climbed, 100);
 }
 
 /// What is drawn to the nearest surface loses the ridge once the tool is deeper than it is high.

@@ -216,7 +216,9 @@ TEST(MeshIoTest, BadObjGetsASentence) {
               StartsWith("m:2: a face has the corner 2147483648"));
   EXPECT_THAT(obj("f 1 2 99999999999999999999\n"),
               HasSubstr("allowed: a whole number that 64 bits"));
-  EXPECT_EQ(obj("v 0 0 0\ncurv 0 1 1 2\n"), "m:2: 'curv' is no statement of a polygon mesh in OBJ");
+  EXPECT_EQ(
+      obj("v 0 0 0\ncurv 0 1 1 2\n"),
+      "m:2: 'curv' is no statement of a polygon mesh in OBJ; allowed: v, f and others of polygons");
   EXPECT_THAT(obj("\x89PNG\r\n\x1a\n\x01\x02"), StartsWith("m:1: '?PNG' is no statement"));
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/definition/table.h"
+#include "core/geometry/mesh/procedural.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::scene::read_solid_test {
@@ -13,11 +14,11 @@ namespace {
 
 using testing::HasSubstr;
 
-Field read_thing(const std::string& keys) {
+Field read_thing(const std::string& keys, const contact::SharedBody& body = nullptr) {
   Table document = Table::parse("[objects.thing]\n" + keys + "\n", "x.toml");
   Table objects = document.table("objects");
   Table table = objects.table("thing");
-  Field field = read_solid(table, "thing", nullptr);
+  Field field = read_solid(table, "thing", body);
   document.finish();
   return field;
 }
@@ -64,6 +65,18 @@ TEST(ReadSolidTest, EveryMistakeGetsItsSentence) {
   EXPECT_THAT(told_of_thing(kLeast + "renderer = \"penalty\"\ntool_radius = 0.001"),
               HasSubstr("whose tool is a point; leave it out"));
   EXPECT_THAT(told_of_thing(kLeast + "stifness = 5"), HasSubstr("stifness is not a known key"));
+}
+
+TEST(ReadSolidTest, RenderersWithoutAProxyNeedAnInside) {
+  geometry::Mesh box = geometry::make_box({0.1, 0.2, 0.3});
+  const std::string penalty = kLeast + "renderer = \"penalty\"";
+  EXPECT_NO_THROW(read_thing(penalty, contact::felt_body(box)));
+  box.triangles.pop_back();
+  const contact::SharedBody open = contact::felt_body(box);
+  EXPECT_NO_THROW(read_thing(kLeast, open));
+  EXPECT_THAT(test::message_of([&] { read_thing(penalty, open); }),
+              HasSubstr("renderer is \"penalty\", which needs a closed mesh, and this one is open; "
+                        "allowed: proxy, ruspini"));
 }
 
 }  // namespace
