@@ -217,6 +217,66 @@ TEST_F(DeformCommandTest, TouchesOfASessionAreLoads) {
     EXPECT_GT(load["largest_m"].get<double>(), 1e-6);
   }
   EXPECT_THAT(test::read_text(folder_ / "out/report.html"), HasSubstr("SIMULATED"));
+  EXPECT_EQ(numbers["simulated"], true);
+  EXPECT_THAT(result.output, HasSubstr("SIMULATED"));
+  // One touch by its name; and a body that stands elsewhere.
+  const auto second =
+      run("haptrial deform simulate soft.toml --load 'stroke 2' --springs 1 1 1 --seconds 1e-3 "
+          "--out one");
+  EXPECT_EQ(second.status, 0) << second.errors;
+  EXPECT_THAT(second.output, HasSubstr("load 'stroke 2'"));
+  EXPECT_THAT(
+      run("haptrial deform simulate soft.toml --load 'stroke 4' --springs 1 1 1 --out four").errors,
+      HasSubstr("allowed: stroke, stroke 1, stroke 2, stroke 3"));
+  std::string moved = kSoftBall;
+  const std::string stands = "shift = [0.0";
+  moved.replace(moved.find(stands), stands.size(), "shift = [0.3");
+  moved.replace(moved.find("core = {"), std::string::npos, R"(core.side = "-y"
+[loads.stroke]
+held = ["core"]
+session = "study/S01.h5"
+)");
+  test::write_text(folder_ / "moved.toml", moved);
+  const auto elsewhere = run("haptrial deform reference moved.toml --out elsewhere");
+  EXPECT_EQ(elsewhere.status, 2);
+  EXPECT_THAT(elsewhere.errors, HasSubstr("it must stand where the object stood in the session"));
+}
+
+TEST_F(DeformCommandTest, OptionsThatDoNothingAreRefused) {
+  const auto refused = [&](const std::string& line, const std::string& sentence) {
+    const auto result = run("haptrial deform " + line + " --out bad");
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_THAT(result.errors, HasSubstr(sentence)) << line;
+  };
+  refused("calibrate bar.toml --grid 3 3 3", "--grid is for --constants grid");
+  refused("calibrate bar.toml --samples 10", "--samples is for --method annealing");
+  refused("calibrate bar.toml --method annealing --evaluations 20 --samples 50",
+          "--samples is 50; allowed: up to --evaluations, 20");
+  EXPECT_FALSE(fs::exists(folder_ / "bad.evaluations"));
+  refused("simulate bar.toml --model elements --springs 1 1 1", "elements have none");
+  EXPECT_THAT(run("haptrial deform info bar.toml --springs 0 0 0").errors, HasSubstr("all 0"));
+  EXPECT_THAT(run("haptrial deform info bar.xyz").errors, HasSubstr("allowed: .toml, .obj"));
+}
+
+TEST_F(DeformCommandTest, WhatIsInvertedInTheLastFrameIsSaid) {
+  const auto torn =
+      run("haptrial deform simulate bar.toml --load bend --springs 1e-9 1e-9 1e-9 --seconds 0.3 "
+          "--frames 1 --out torn");
+  ASSERT_EQ(torn.status, 0) << torn.errors;
+  EXPECT_THAT(torn.output, HasSubstr("2 frames until 0.3 s"));
+  EXPECT_THAT(torn.output, HasSubstr("inverted    up to "));
+}
+
+TEST_F(DeformCommandTest, ACalibrationThatMadeThingsWorseSaysSo) {
+  const auto found =
+      run("haptrial deform calibrate bar.toml --method annealing --evaluations 2 --samples 2 "
+          "--range -2 2 --hand 0.02 1e-5 0.01 --out cal");
+  ASSERT_EQ(found.status, 0) << found.errors;
+  const auto numbers = json("cal/calibration.json");
+  // Of a few wild guesses none is better than a good hand.
+  const bool worse = numbers["error_m"].get<double>() > numbers["hand_error_m"].get<double>();
+  ASSERT_TRUE(worse) << found.output;
+  EXPECT_THAT(found.output, HasSubstr("all in all worse than with constants set by hand"));
 }
 
 TEST_F(DeformCommandTest, BadInputGetsASentence) {
@@ -237,6 +297,13 @@ TEST_F(DeformCommandTest, BadInputGetsASentence) {
           "corner.high = [2.0, 2.0, 2.0]\n[loads.none]\nheld = [\"bottom\"]\nforces = [{ region = "
           "\"corner\", force = [1.0, 0.0, 0.0] }]",
           "load 'none': no vertex of the body is in the region 'corner'");
+  refused("[loads.bend]\nheld = [\"bottom\"]\nforces = [{ region = \"top\"",
+          "[loads.bend]\nheld = [\"bottom\"]\nforces = [{ region = \"bottom\"",
+          "load 'bend' moves no vertex, and has no force on one that is not held");
+  refused("[loads.bend]", "[loads.\"../bend\"]",
+          "is \"../bend\"; allowed: letters, digits, -, _ and spaces");
+  refused("block = [0.02, 0.02, 0.04]", "block = [0.02, 0.02, 0.04]\nmesh = \"a.obj\"",
+          "body.block stands beside mesh or tetrahedra; keep one of the three");
   refused("law = \"linear\"",
           "law = \"neo-hookean\"\n[loads.tear]\nheld = [\"bottom\"]\n"
           "pressures = [{ region = \"top\", pressure = 1e7 }]",

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cctype>
 
 #include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
@@ -15,6 +16,11 @@ using Eigen::Vector3d;
 
 BodySource read_source(Table table) {
   BodySource source;
+  if (table.has("block") + table.has("tetrahedra") + table.has("mesh") > 1) {
+    table.reject("block", "stands beside mesh or tetrahedra; keep one of the three");
+    table.leave("mesh");
+    table.leave("tetrahedra");
+  }
   if (table.has("block")) {
     source.block = read_vector(table, "block", kPositive, "m", Vector3d::Ones());
   } else if (table.has("tetrahedra")) {
@@ -78,6 +84,13 @@ void read_session(Table& table, SetupLoad& load) {
   load.object = table.has("object") ? table.text("object") : "";
   load.trial = table.integer_or("trial", 0, 1, 1000000);
   load.touches = table.integer_or("touches", 5, 1, 1000);
+}
+
+/// What a load gives is in files of its name.
+bool names_files(const std::string& name) {
+  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == ' ';
+  });
 }
 
 SetupLoad read_load(Table table, const std::string& name, const DeformSetup& setup) {
@@ -178,6 +191,9 @@ DeformSetup read_setup(const std::filesystem::path& file) {
   if (root.has("loads")) {
     Table loads = root.table("loads");
     for (const std::string& name : loads.keys_as_written()) {
+      if (!names_files(name)) {
+        loads.reject(name, fmt::format("\"{}\"", name), "letters, digits, -, _ and spaces");
+      }
       setup.loads.push_back(read_load(loads.table(name), name, setup));
     }
   }

@@ -120,7 +120,17 @@ double felt_block_vertices(const Vector3d& size, int cells) {
   return vertices;
 }
 
+/// @throws InputError before more is made than could be prepared
+void check_cells(double vertices, int cells, const std::string& name) {
+  if (vertices > kMostFeltVertices) {
+    throw InputError(fmt::format(
+        "{}{}cells = {} make about {:.0f} vertices; allowed: up to {:.0f}; lower `cells`", name,
+        name.empty() ? "" : ": ", cells, vertices, kMostFeltVertices));
+  }
+}
+
 FeltMesh felt_block(const Vector3d& size, int cells, const FeltSides& sides, std::string name) {
+  check_cells(felt_block_vertices(size, cells), cells, name);
   const std::array<int, 3> counts = cells_of(size, cells);
   const Vector3d cell(size[0] / counts[0], size[1] / counts[1], size[2] / counts[2]);
   if (cell.minCoeff() < kFlattest * cell.maxCoeff()) {
@@ -150,8 +160,13 @@ FeltMesh felt_solid(const geometry::Mesh& surface, int cells, const FeltSides& s
   try {
     const geometry::VoxelGrid grid = geometry::make_grid(geometry::bounds(surface), cells);
     mesh.spacing = grid.spacing;
-    geometry::tetrahedralize(geometry::voxelize(surface, grid, geometry::fitting_rule(surface)),
-                             mesh.tets);
+    const geometry::VoxelSolid solid =
+        geometry::voxelize(surface, grid, geometry::fitting_rule(surface));
+    // Each has a corner of its own, but for those at the rims.
+    check_cells(
+        static_cast<double>(std::ranges::count(solid.labels, geometry::VoxelLabel::kInside)), cells,
+        "");
+    geometry::tetrahedralize(solid, mesh.tets);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", mesh.name, error.what()));
   }

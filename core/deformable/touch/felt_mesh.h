@@ -43,7 +43,8 @@ struct FeltMesh {
 };
 using SharedFeltMesh = std::shared_ptr<const FeltMesh>;
 
-inline constexpr int kMostFeltCells = 200;  // along the longest side
+inline constexpr double kMostFeltVertices = 1e5;  // what takes a minute or so to prepare
+inline constexpr int kMostFeltCells = 200;        // along the longest side
 
 /// Whether two bodies are the same but for what they are made of.
 bool same_mesh(const FeltMesh& a, const FeltMesh& b);

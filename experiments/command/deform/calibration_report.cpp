@@ -209,6 +209,17 @@ std::vector<std::string> calibration_lines(const CalibrationRun& run) {
                                 load.name, load.unseen ? ", unseen" : "", with_unit(load.moved),
                                 with_unit(load.hand), with_unit(load.found)));
   }
+  for (const JudgedLoad& load : run.loads) {
+    if (load.found > load.hand) {
+      lines.push_back(fmt::format("load '{}': worse than with constants set by hand{}", load.name,
+                                  load.unseen ? "; calibrate with loads like it" : ""));
+    }
+  }
+  if (seen_error(run, false) > seen_error(run, true)) {
+    lines.push_back(
+        fmt::format("all in all worse than with constants set by hand; {}",
+                    run.method == "descent" ? "try --method annealing" : "raise --evaluations"));
+  }
   return lines;
 }
 

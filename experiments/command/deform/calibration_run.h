@@ -30,7 +30,7 @@ struct CalibrationRun {
   deformable::SpringConstants springs;  // found
   double seconds{};                     // of the search in this run
   std::size_t earlier{};                // evaluations of a run before
-  double tighter{};                     // change of the error by a tenfold tighter rest [m]
+  double tighter{};                     // change of the error by a rest a hundred times tighter [m]
   std::vector<JudgedLoad> loads;
   bool simulated{false};
 };

@@ -50,12 +50,17 @@ deformable::SearchRange range_of(const DeformCalibrateOptions& o, double materia
   return range;
 }
 
+std::array<int, 3> grid_of(const DeformCalibrateOptions& o) {
+  return o.grid.empty() ? std::array{5, 5, 3} : std::array{o.grid[0], o.grid[1], o.grid[2]};
+}
+
 SpringParameters parameters_of(const DeformCalibrateOptions& o, const SpringBody& springs) {
   if (o.constants == "homogeneous") {
     return SpringParameters::uniform(springs);
   }
   if (o.constants == "grid") {
-    return SpringParameters::on_grid(springs, {o.grid[0], o.grid[1], o.grid[2]});
+    const auto nodes = grid_of(o);
+    return SpringParameters::on_grid(springs, {nodes[0], nodes[1], nodes[2]});
   }
   if (o.constants == "elements") {
     return SpringParameters::by_element(springs);
@@ -72,6 +77,21 @@ deformable::CalibrationMethod method_of(const std::string& name) {
     }
   }
   throw InputError(not_allowed("--method", fmt::format("'{}'", name), {"annealing", "descent"}));
+}
+
+/// Options that would be without effect. Before anything is computed or written.
+void check_together(const DeformCalibrateOptions& o) {
+  const bool annealing = method_of(o.method) == deformable::CalibrationMethod::kAnnealing;
+  if (o.constants != "grid" && !o.grid.empty()) {
+    throw InputError("--grid is for --constants grid");
+  }
+  if (o.samples && !annealing) {
+    throw InputError("--samples is for --method annealing");
+  }
+  if (o.samples && o.evaluations && *o.samples > *o.evaluations) {
+    throw InputError(fmt::format("--samples is {}; allowed: up to --evaluations, {}", *o.samples,
+                                 *o.evaluations));
+  }
 }
 
 /// Where the body is under each load, by elements or by a file.
@@ -117,12 +137,15 @@ std::vector<CalibrationLoad> seen_of(const std::vector<NamedLoad>& loads,
   return seen;
 }
 
+constexpr int kSamples = 100;
+
 /// Another number for another body, reference or search; evaluations at most may grow.
 std::uint64_t fingerprint(const DeformCalibrateOptions& o, const DeformBody& body,
                           const CalibrationRun& run, const std::vector<CalibrationLoad>& seen) {
   Fnv1a hash;
   hash.add(body.setup.text).add(o.method).add(o.constants).add(run.seed);
-  for (const int n : {o.grid[0], o.grid[1], o.grid[2], o.samples, o.batch}) {
+  const auto nodes = grid_of(o);
+  for (const int n : {nodes[0], nodes[1], nodes[2], o.samples.value_or(kSamples), o.batch}) {
     hash.add(static_cast<std::uint64_t>(n));
   }
   const auto add = [&](std::span<const double> values) {
@@ -148,7 +171,7 @@ void search(const DeformCalibrateOptions& o, const CalibrationProblem& problem,
   settings.ranges.assign(parameters.size(), run.range);
   settings.evaluations = checked_number(
       "--evaluations", o.evaluations.value_or(annealing ? kAnnealing : kDescent), 1, kMost);
-  settings.annealing.samples = checked_number("--samples", o.samples, 1, kMost);
+  settings.annealing.samples = checked_number("--samples", o.samples.value_or(kSamples), 1, kMost);
   settings.annealing.batch = checked_number("--batch", o.batch, 1, 1000);
   settings.enough = kMilli * checked_real("--enough", o.enough, 0.0, 1e9);
   settings.seed = run.seed;
@@ -224,6 +247,7 @@ std::array<double, 3> hand_of(const DeformCalibrateOptions& o, double material) 
 }  // namespace
 
 int deform_calibrate(const DeformCalibrateOptions& options) {
+  check_together(options);
   const MemoryBudget budget(options.input.max_memory);
   const DeformBody body = load_deform_body(options.input);
   if (!options.out.empty() && fs::exists(options.out) && !fs::is_empty(options.out)) {
@@ -233,6 +257,7 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   const std::vector<NamedLoad> loads = loads_of(body);
   const std::vector<CalibrationLoad> answers = answered(body, loads, budget);
   const std::vector<CalibrationLoad> seen = seen_of(loads, answers);
+  check_memory_of(body, kBySpring, budget);
   const SpringBody springs = springs_of(body, {1.0, 1.0, 1.0});
   const double material = log_of_material(body, springs);
   CalibrationRun run;
@@ -247,10 +272,16 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   const SpringParameters parameters = parameters_of(options, springs);
   const CalibrationProblem problem(springs, seen);
   const std::string out = fs::path(options.out).lexically_normal().string();
-  CalibrationJournal journal(
-      (out.ends_with('/') ? out.substr(0, out.size() - 1) : out) + ".evaluations",
-      fingerprint(options, body, run, seen), parameters.size());
-  search(options, problem, parameters, journal, run);
+  const std::string kept =
+      (out.ends_with('/') ? out.substr(0, out.size() - 1) : out) + ".evaluations";
+  CalibrationJournal journal(kept, fingerprint(options, body, run, seen), parameters.size());
+  try {
+    search(options, problem, parameters, journal, run);
+  } catch (const geometry::Cancelled&) {
+    fmt::print(stderr, "haptrial: {} keeps the evaluations; the same command goes on from there\n",
+               kept);
+    throw;
+  }
   if (run.result.logarithms.empty()) {
     throw InputError(
         fmt::format("no constants of {} rest under every load; the last: {}; raise "
@@ -263,6 +294,9 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
         checked_jobs(options.jobs), run);
   write_calibration(body, springs, run, options.out);
   journal.remove();
+  if (run.simulated) {
+    fmt::print("SIMULATED: loads from a simulated session\n");
+  }
   for (const std::string& line : calibration_lines(run)) {
     fmt::print("{}\n", line);
   }

@@ -133,9 +133,20 @@ void print_material(const DeformBody& body) {
 }
 
 void print_springs(const DeformBody& body, const std::vector<double>& constants) {
+  for (const double constant : constants) {
+    checked_real("--springs", constant, 0.0, 1e30);
+  }
+  if (std::ranges::count(constants, 0.0) == 3) {
+    throw InputError("--springs are all 0; allowed: one at least above 0");
+  }
   const auto springs = springs_of(body, {constants[0], constants[1], constants[2]});
   fmt::print("step        {:.3g} s at most for springs of {:g}, {:g} and {:g} J\n",
              deformable::stable_step(springs), constants[0], constants[1], constants[2]);
+}
+
+bool is_mesh(const std::filesystem::path& file) {
+  constexpr std::array kEndings{".obj", ".ply", ".stl", ".off"};
+  return std::ranges::find(kEndings, file.extension().string()) != kEndings.end();
 }
 
 /// A mesh alone, as a body of some material.
@@ -144,6 +155,10 @@ TetMesh mesh_alone(const DeformInfoOptions& o, const MemoryBudget& budget) {
   const std::filesystem::path file(o.input.file);
   (file.extension() == ".node" ? setup.source.tetrahedra : setup.source.mesh) =
       std::filesystem::absolute(file);
+  if (file.extension() != ".node" && !is_mesh(file)) {
+    throw InputError(
+        fmt::format("{}: allowed: .toml, .obj, .ply, .stl, .off or .node", o.input.file));
+  }
   setup.source.scale = checked_real("--scale", o.scale, 1e-12, 1e12);
   setup.source.resolution = checked_number("--resolution", o.resolution, 1, 1000);
   return deformable::body_of(
@@ -163,6 +178,7 @@ int deform_info(const DeformInfoOptions& options) {
   } else {
     body.mesh = mesh_alone(options, budget);
   }
+  check_memory_of(body, kByPart, budget);
   print_counts(body.mesh);
   const bool good = print_shapes(body.mesh);
   print_memory(body.mesh);

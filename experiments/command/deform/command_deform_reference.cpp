@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "analysis/document/document.h"
 #include "analysis/files/new_folder.h"
@@ -86,12 +87,12 @@ std::string reference_report(const DeformBody& body, const std::vector<Answer>& 
   return analysis::to_html(page);
 }
 
-std::string reference_json(const DeformBody& body, const std::vector<Answer>& answers) {
-  Json all{{"body", body.setup.file.filename().string()},
-           {"tetrahedra", body.mesh.tetrahedra.size()},
-           {"vertices", body.mesh.vertices.size()},
-           {"law", std::string(name_of(body.elasticity.law))},
-           {"loads", Json::array()}};
+std::string reference_json(const DeformBody& body, const std::vector<Answer>& answers,
+                           bool simulated) {
+  Json all{
+      {"body", body.setup.file.filename().string()},      {"simulated", simulated},
+      {"tetrahedra", body.mesh.tetrahedra.size()},        {"vertices", body.mesh.vertices.size()},
+      {"law", std::string(name_of(body.elasticity.law))}, {"loads", Json::array()}};
   for (const Answer& answer : answers) {
     Json load{{"name", answer.load},
               {"rms_m", root_mean_square(answer.displacement)},
@@ -114,7 +115,12 @@ int deform_reference(const DeformReferenceOptions& options) {
   const auto loads = loads_of(body, options.loads);
   exchange::NewFolder out(options.out);
   const deformable::ElasticBody elastic(body.mesh, body.elasticity);
-  deformable::StaticSolver solver = static_solver(body, elastic, budget);
+  std::optional<deformable::StaticSolver> solver;
+  if (options.model == "static") {
+    solver.emplace(static_solver(body, elastic, budget));
+  } else {
+    check_memory_of(body, kByMovingElement, budget);
+  }
   std::vector<Answer> answers;
   bool simulated = false;
   {
@@ -122,8 +128,9 @@ int deform_reference(const DeformReferenceOptions& options) {
     watch_for_interrupt();
     for (const NamedLoad& load : loads) {
       const auto done = static_cast<double>(answers.size());
+      progress.update(done, load.load.name, 0.0);
       answers.push_back(options.model == "static"
-                            ? statics(solver, load)
+                            ? statics(*solver, load)
                             : dynamics(body, elastic, load, options, progress, done));
       simulated = simulated || load.simulated;
       const auto& u = answers.back().displacement;
@@ -133,9 +140,12 @@ int deform_reference(const DeformReferenceOptions& options) {
       check_interrupt();
     }
   }
-  out.write("reference.json", reference_json(body, answers));
+  out.write("reference.json", reference_json(body, answers, simulated));
   out.write("report.html", reference_report(body, answers, simulated));
   out.publish();
+  if (simulated) {
+    fmt::print("SIMULATED   loads from a simulated session\n");
+  }
   for (const Answer& answer : answers) {
     fmt::print("{}: {:.6g} mm (root mean square), {:.6g} mm at most\n", answer.load,
                1e3 * root_mean_square(answer.displacement), 1e3 * largest(answer.displacement));

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -105,25 +107,30 @@ deformable::SpringBody springs_asked_for(const DeformBody& body, const DeformSim
 }
 
 std::unique_ptr<Stepper> stepper_of(const DeformBody& body, const deformable::LoadCase& load,
-                                    const DeformSimulateOptions& o) {
+                                    const DeformSimulateOptions& o, const MemoryBudget& budget) {
   constexpr double kElementStep = 1e-3, kOfStable = 0.5;
   const double damping = checked_real("--damping", o.damping, 0.0, 1e6);
   const auto step_or = [&](double otherwise) {
     return o.step ? checked_real("--step", *o.step, 1e-12, 10.0) : otherwise;
   };
   if (o.model == "elements") {
+    if (!o.constants.empty() || !o.three.empty()) {
+      throw InputError("--constants and --springs are for --model springs; elements have none");
+    }
+    check_memory_of(body, kByMovingElement, budget);
     return std::make_unique<ElementStepper>(body, load, step_or(kElementStep), damping);
   }
   if (o.model != "springs") {
     throw InputError(not_allowed("--model", fmt::format("'{}'", o.model), {"springs", "elements"}));
   }
+  check_memory_of(body, kBySpring, budget);
   deformable::SpringBody springs = springs_asked_for(body, o);
   double mass = 0.0;
   for (const double m : springs.masses) {
     mass += m / static_cast<double>(springs.masses.size());
   }
-  const double step =
-      step_or(kOfStable * deformable::stable_step(springs, deformable::held_vertices(load)));
+  const double stable = deformable::stable_step(springs, deformable::held_vertices(load));
+  const double step = step_or(std::min(kOfStable * stable, o.seconds / o.frames));
   return std::make_unique<SpringStepper>(std::move(springs), load, step, damping * mass);
 }
 
@@ -136,6 +143,18 @@ std::string series_of(const std::vector<double>& times) {
                    "<DataSet timestep=\"{}\" file=\"frame-{:04}.vtu\"/>\n", times[i], i);
   }
   return text + "</Collection>\n</VTKFile>\n";
+}
+
+/// In a body that is moved by `u`.
+std::size_t inverted_tetrahedra(const geometry::TetMesh& mesh, const Places& u) {
+  const Places at = moved_by(mesh, u);
+  const auto corner = [&](std::int32_t v) -> const Vector3d& {
+    return at[static_cast<std::size_t>(v)];
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(mesh.tetrahedra, [&](const auto& t) {
+    const Vector3d& a = corner(t[0]);
+    return !((corner(t[1]) - a).dot((corner(t[2]) - a).cross(Vector3d(corner(t[3]) - a))) > 0.0);
+  }));
 }
 
 void check_finite(const Places& u, double time) {
@@ -156,16 +175,19 @@ int deform_simulate(const DeformSimulateOptions& options) {
   const DeformBody body = load_deform_body(options.input);
   const auto loads =
       loads_of(body, options.load.empty() ? std::vector<std::string>() : std::vector{options.load});
-  const auto stepper = stepper_of(body, loads[0].load, options);
   const double seconds = checked_real("--seconds", options.seconds, 1e-9, 1e6);
   const int frames = checked_number("--frames", options.frames, 1, kMostFrames);
+  const MemoryBudget budget(options.input.max_memory);
+  const auto stepper = stepper_of(body, loads[0].load, options, budget);
   exchange::NewFolder out(options.out);
   Progress progress("simulating", seconds);
   watch_for_interrupt();
   std::vector<double> times;
+  std::size_t inverted = 0;
   const auto write = [&] {
     const Places u = stepper->displacement();
     check_finite(u, stepper->time());
+    inverted = std::max(inverted, inverted_tetrahedra(body.mesh, u));
     write_state(out.place(fmt::format("frame-{:04}.vtu", times.size())), body.mesh, u,
                 stepper->states());
     out.write(fmt::format("frame-{:04}.csv", times.size()), displacements_csv(body.mesh, u));
@@ -174,7 +196,6 @@ int deform_simulate(const DeformSimulateOptions& options) {
   const deformable::RestCriterion criterion;
   double quiet_since = 0.0;
   bool rests = false;
-  std::size_t inverted = 0;
   write();
   while (stepper->time() < seconds && !rests) {
     stepper->step();

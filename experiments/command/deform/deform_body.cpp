@@ -28,6 +28,12 @@ deformable::SpringBody springs_of(const DeformBody& body,
       body.mesh, deformable::densities(body.elasticity, body.mesh.tetrahedra.size()), constants);
 }
 
+void check_memory_of(const DeformBody& body, double by_tetrahedron, const MemoryBudget& budget) {
+  const std::size_t tetrahedra = body.mesh.tetrahedra.size();
+  budget.check(fmt::format("what is computed on {} tetrahedra", tetrahedra),
+               by_tetrahedron * static_cast<double>(tetrahedra));
+}
+
 deformable::StaticSolver static_solver(const DeformBody& body,
                                        const deformable::ElasticBody& elastic,
                                        const MemoryBudget& budget) {
@@ -37,9 +43,11 @@ deformable::StaticSolver static_solver(const DeformBody& body,
   }
   const std::size_t vertices = body.mesh.vertices.size();
   const std::size_t tetrahedra = body.mesh.tetrahedra.size();
+  constexpr double kByState = 250.0;  // by tetrahedron: the body, and what is written of it [bytes]
   budget.check(fmt::format("statics of {} tetrahedra", tetrahedra),
-               deformable::static_memory(vertices, tetrahedra,
-                                         deformable::faster_solver(vertices, poisson)));
+               kByState * static_cast<double>(tetrahedra) +
+                   deformable::static_memory(vertices, tetrahedra,
+                                             deformable::faster_solver(vertices, poisson)));
   return deformable::StaticSolver(elastic, {.tolerance = body.setup.tolerance});
 }
 

@@ -33,6 +33,15 @@ struct NamedLoad {
   bool simulated{false};  // from a session that was
 };
 
+// Memory that is used beside the mesh, by tetrahedron [bytes]; measured on lattices of 135,000 and
+// 625,000.
+inline constexpr double kByPart = 330.0;           // edges and faces
+inline constexpr double kBySpring = 400.0;         // springs and their packs
+inline constexpr double kByMovingElement = 950.0;  // a dynamic solver
+
+/// @throws InputError where that is not there
+void check_memory_of(const DeformBody& body, double by_tetrahedron, const MemoryBudget& budget);
+
 /// Statics by elements, asked for memory before.
 deformable::StaticSolver static_solver(const DeformBody& body,
                                        const deformable::ElasticBody& elastic,

@@ -38,10 +38,10 @@ struct DeformCalibrateOptions {
   DeformInput input;
   std::string out;                       // new folder
   std::string constants{"homogeneous"};  // homogeneous, grid, elements
-  std::vector<int> grid{5, 5, 3};        // nodes
+  std::vector<int> grid;                 // nodes; none: 5 5 3
   std::string method{"descent"};         // descent, annealing
   std::optional<int> evaluations;        // default: 1000 of annealing, 200 of descent
-  int samples{100};                      // coarse ones of the annealing
+  std::optional<int> samples;            // coarse ones of the annealing; default: 100
   int batch{1};                          // its candidates at once
   std::vector<double> range;             // of the common logarithms; none: from the material
   std::vector<double> hand;              // constants set by hand [J]; none: from the material

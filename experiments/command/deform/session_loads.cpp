@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 
 #include "analysis/contact/recording/session_contact.h"
 #include "core/base/error.h"
@@ -15,7 +17,15 @@ using Eigen::Vector3d;
 
 constexpr double kFelt = 0.05;  // of the largest force: the tool touches
 
-std::int32_t nearest_outside(const geometry::TetMesh& mesh, const Vector3d& place) {
+constexpr double kElsewhere = 0.1;  // of the body's size: a touch so far from it is of another body
+
+/// @throws InputError where the tool is far from the body
+std::int32_t nearest_outside(const geometry::TetMesh& mesh, const Vector3d& place,
+                             const std::string& load) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& vertex : mesh.vertices) {
+    box.extend(vertex);
+  }
   std::int32_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -24,6 +34,12 @@ std::int32_t nearest_outside(const geometry::TetMesh& mesh, const Vector3d& plac
       least = way;
       best = static_cast<std::int32_t>(v);
     }
+  }
+  if (least > kElsewhere * box.diagonal().norm()) {
+    throw InputError(
+        fmt::format("load '{}': the tool touches ({:.4g}, {:.4g}, {:.4g}) m, {:.3g} m from the "
+                    "body; it must stand where the object stood in the session (body.shift)",
+                    load, place.x(), place.y(), place.z(), least));
   }
   return best;
 }
@@ -67,7 +83,7 @@ std::vector<NamedLoad> touches_of(const DeformBody& body, const deformable::Setu
   for (const std::size_t i : moments(force, load.touches)) {
     NamedLoad touch{load, fixed, contact.simulated};
     touch.setup.name = touch.load.name = fmt::format("{} {}", load.name, touches.size() + 1);
-    const std::int32_t vertex = nearest_outside(body.mesh, poses.position[i]);
+    const std::int32_t vertex = nearest_outside(body.mesh, poses.position[i], touch.load.name);
     if (std::any_of(fixed.holds.begin(), fixed.holds.end(),
                     [&](const deformable::Hold& hold) { return hold.vertex == vertex; })) {
       throw InputError(fmt::format("load '{}': the tool touches vertex {}, which is held",

@@ -104,6 +104,14 @@ TEST(FeltMeshTest, BadBodiesAreRefusedInASentence) {
                 felt_block({0.1, 0.001, 0.1}, 4, FeltSides{}, "sheet");
               }),
               HasSubstr("sheet: its cells are 0.025 x 0.001 x 0.025 m, which is too flat"));
+  EXPECT_THAT(test::message_of([&] {
+                felt_block({0.1, 0.1, 0.1}, 200, FeltSides{}, "fine");
+              }),
+              HasSubstr("fine: cells = 200 make about 8120601 vertices; allowed: up to 100000"));
+  EXPECT_THAT(test::message_of([&] {
+                felt_solid(geometry::make_box({0.1, 0.1, 0.1}), 120, FeltSides{}, "filled");
+              }),
+              HasSubstr("filled: cells = 120 make about 1728000 vertices"));
   FeltSides hidden;
   hidden.felt = hidden.fixed;
   EXPECT_THAT(test::message_of([&] {
