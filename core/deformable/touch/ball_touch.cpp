@@ -64,10 +64,14 @@ BallTouch::BallTouch(SharedCompliance body, const TouchOptions& options)
   near_.reserve(kMostNear);
   number_.assign(body_->touched(), -1);
   moved_.resize(kMostNear);
+  moved_before_.resize(kMostNear);
   near_force_.resize(kMostNear);
   share_.resize(kMostNear);
+  columns_.resize(kMostNear * kMostNear);
+  column_at_.assign(kMostNear, 0);
   response_.resize(kMostNear * static_cast<std::size_t>(kMostPlaces));
   last_pressed_.assign(samples_.samples.size(), 0);
+  pressed_in_.assign(samples_.samples.size(), 0);
   looked_at_.assign(samples_.samples.size(), 0);
   forces_.resize(kMostNear);
   loaded_.resize(kMostNear);
@@ -77,6 +81,7 @@ BallTouch::BallTouch(SharedCompliance body, const TouchOptions& options)
 
 void BallTouch::start(const Vector3d& tool) noexcept {
   tick_ += 2;  // nothing was pressed on the tick before
+  round_ += 2;
   release(tool);
 }
 
@@ -120,6 +125,7 @@ void BallTouch::gather(const Vector3d& tool, const Vector3d& centre) noexcept {
   }
   near_.clear();
   faces_.clear();
+  clear_ = 0.0;
   way_ = (tool - tool_).norm();
   const double reach = options_.radius + kAhead * body_->mesh().spacing + way_ + farthest_;
   int count = body_->surface().gather(centre, reach, found_);
@@ -184,7 +190,8 @@ bool BallTouch::settle(const Vector3d& tool) noexcept {
 /// Those that are sampled; the nearest point of all faces if the centre is inside of the body.
 void BallTouch::find_places(const Vector3d& centre) noexcept {
   count_ = 0;
-  if (!take_nearest(centre)) {
+  const bool clear = clear_ > (centre - clear_at_).norm() + stirred_;
+  if (clear || !take_nearest(centre)) {
     count_ = 0;
     take_samples(centre);
   }
@@ -222,11 +229,19 @@ bool BallTouch::take_nearest(const Vector3d& centre) noexcept {
                     ? Vector3d(-outward.stableNormalized())
                     : Vector3d((inside ? away : Vector3d(-away)) / best.distance);
   places_[0] = best;
+  clear_ = inside ? 0.0 : best.distance;
+  clear_at_ = centre;
+  stirred_ = 0.0;
   return inside;
 }
 
 void BallTouch::take_samples(const Vector3d& centre) noexcept {
   const double far = options_.radius + kAhead * body_->mesh().spacing + way_;
+  double most = 0.0;
+  for (std::size_t v = 0; v < near_.size(); ++v) {
+    most = std::max(most, moved_[v].squaredNorm());
+  }
+  const double reach = far + std::sqrt(most);  // of what is at rest
   ++round_;
   for (const std::int32_t face : faces_) {
     for (const std::int32_t number : samples_.on(face)) {
@@ -235,6 +250,10 @@ void BallTouch::take_samples(const Vector3d& centre) noexcept {
       }
       looked_at_[at(number)] = round_;
       const SurfaceSamples::Sample& sample = samples_.samples[at(number)];
+      const bool was_pressed = last_pressed_[at(number)] + 1 >= tick_;
+      if (!was_pressed && (sample.rest - centre).squaredNorm() > reach * reach) {
+        continue;
+      }
       Place place;
       place.sample = number;
       place.weight = sample.weight;
@@ -245,7 +264,6 @@ void BallTouch::take_samples(const Vector3d& centre) noexcept {
       }
       const Vector3d towards = place.at - centre;
       place.distance = towards.norm();
-      const bool was_pressed = last_pressed_[at(number)] + 1 >= tick_;
       if ((was_pressed || place.distance < far) && towards.dot(sample.outward) < 0.0) {
         place.normal = towards / place.distance;
         add_place(place);
@@ -271,6 +289,18 @@ void BallTouch::add_place(const Place& place) noexcept {
   }
 }
 
+/// What a force on a near vertex does to every near one; fetched once a tick.
+const Compliance::Block* BallTouch::column(std::int32_t near) noexcept {
+  Compliance::Block* column = &columns_[at(near) * kMostNear];
+  if (column_at_[at(near)] != tick_) {
+    column_at_[at(near)] = tick_;
+    for (std::size_t v = 0; v < near_.size(); ++v) {
+      column[v] = body_->block(near_[v], near_[at(near)]);
+    }
+  }
+  return column;
+}
+
 /// What a force of 1 N along each place's normal does to every near vertex.
 void BallTouch::respond() noexcept {
   for (int c = 0; c < count_; ++c) {
@@ -283,9 +313,9 @@ void BallTouch::respond() noexcept {
       }
       const Vector3f force =
           (place.weight[static_cast<Eigen::Index>(k)] * place.normal).cast<float>();
-      const std::int32_t touched = near_[at(place.near[k])];
+      const Compliance::Block* blocks = column(place.near[k]);
       for (std::size_t v = 0; v < near_.size(); ++v) {
-        to[v] += body_->response(near_[v], touched, force);
+        to[v] += Compliance::response(blocks[v], force);
       }
     }
   }
@@ -312,7 +342,8 @@ bool BallTouch::press_places(const Vector3d& tool) noexcept {
       rest += p.weight[static_cast<Eigen::Index>(k)] * body_->rest(near_[at(p.near[k])]);
     }
     problem_.free_gap[i] = p.normal.dot(rest - tool) - options_.radius;
-    const bool was_pressed = p.sample >= 0 && last_pressed_[at(p.sample)] + 1 >= tick_;
+    // The search for what is pressed begins at what was pressed in the round before.
+    const bool was_pressed = p.sample >= 0 && pressed_in_[at(p.sample)] + 1 >= round_;
     pressed_[i] = was_pressed ? 1.0 : 0.0;
     for (int j = 0; j <= i; ++j) {
       const Place& q = places_[static_cast<std::size_t>(j)];
@@ -324,6 +355,7 @@ bool BallTouch::press_places(const Vector3d& tool) noexcept {
   }
   const bool solved = press(problem_, pressed_);
   normal_force_.setZero();
+  std::swap(moved_, moved_before_);
   std::fill_n(moved_.begin(), near_.size(), Vector3d::Zero());
   for (int c = 0; c < count_; ++c) {
     if (!(pressed_[c] > 0.0)) {
@@ -333,12 +365,18 @@ bool BallTouch::press_places(const Vector3d& tool) noexcept {
     normal_force_ += pressed_[c] * place.normal;
     if (place.sample >= 0) {
       last_pressed_[at(place.sample)] = tick_;
+      pressed_in_[at(place.sample)] = round_;
     }
     const Vector3f* u = &response_[static_cast<std::size_t>(c) * kMostNear];
     for (std::size_t v = 0; v < near_.size(); ++v) {
       moved_[v] += pressed_[c] * u[v].cast<double>();
     }
   }
+  double most = 0.0;
+  for (std::size_t v = 0; v < near_.size(); ++v) {
+    most = std::max(most, (moved_[v] - moved_before_[v]).squaredNorm());
+  }
+  stirred_ += std::sqrt(most);
   return solved;
 }
 
@@ -374,15 +412,18 @@ void BallTouch::rub(const Vector3d& tool) noexcept {
 }
 
 /// How the pressed places and the spring give way across the normal, on the mean of directions.
-double BallTouch::across(const Vector3d& normal) const noexcept {
+double BallTouch::across(const Vector3d& normal) noexcept {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t b = 0; b < near_.size(); ++b) {
+    if (!(share_[b] > 0.0)) {
+      continue;
+    }
+    const Compliance::Block* blocks = column(static_cast<std::int32_t>(b));
     for (std::size_t a = 0; a < near_.size(); ++a) {
-      for (std::size_t b = 0; share_[a] > 0.0 && b < near_.size(); ++b) {
-        if (share_[b] > 0.0) {
-          const Vector3f unit = static_cast<float>(share_[a] * share_[b]) * Vector3f::Unit(axis);
-          sum.col(axis) += body_->response(near_[a], near_[b], unit).cast<double>();
-        }
+      if (share_[a] > 0.0) {
+        using Columns = Eigen::Map<const Eigen::Matrix<float, 4, 3>, Eigen::Aligned16>;
+        const auto both = static_cast<float>(share_[a] * share_[b]);
+        sum += (both * Columns(blocks[a].data()).topRows<3>()).cast<double>();
       }
     }
   }

@@ -67,10 +67,11 @@ class BallTouch final : public BodyTouch {
   void take_samples(const Eigen::Vector3d& centre) noexcept;
   void add_place(const Place& place) noexcept;
   Eigen::Vector3d now(std::int32_t near) const noexcept;
+  const Compliance::Block* column(std::int32_t near) noexcept;
   void respond() noexcept;
   bool press_places(const Eigen::Vector3d& tool) noexcept;
   void rub(const Eigen::Vector3d& tool) noexcept;
-  double across(const Eigen::Vector3d& normal) const noexcept;
+  double across(const Eigen::Vector3d& normal) noexcept;
   void keep_forces() noexcept;
   void note(const Eigen::Vector3d& tool) noexcept;
   void limit() noexcept;
@@ -81,16 +82,21 @@ class BallTouch final : public BodyTouch {
   TouchOptions options_;
   std::vector<contact::NearTriangle> found_;
   SurfaceSamples samples_;
-  std::vector<std::int32_t> faces_;          // near the ball
-  std::vector<std::int32_t> near_;           // their corners: places of the body
-  std::vector<std::int32_t> number_;         // by place: into near_; -1: not near
-  std::vector<Eigen::Vector3d> moved_;       // of each near: u by normal forces [m]
-  std::vector<Eigen::Vector3d> near_force_;  // of each near: along normals [N]
-  std::vector<double> share_;                // of each near, in the normal force
+  std::vector<std::int32_t> faces_;            // near the ball
+  std::vector<std::int32_t> near_;             // their corners: places of the body
+  std::vector<std::int32_t> number_;           // by place: into near_; -1: not near
+  std::vector<Eigen::Vector3d> moved_;         // of each near: u by normal forces [m]
+  std::vector<Eigen::Vector3d> moved_before_;  // likewise, a round ago [m]
+  std::vector<Eigen::Vector3d> near_force_;    // of each near: along normals [N]
+  std::vector<double> share_;                  // of each near, in the normal force
+  /// (near x near): what a force on one does to every one. The body keeps them far apart in memory.
+  std::vector<Compliance::Block> columns_;
+  std::vector<std::uint64_t> column_at_;     // by near: on which tick it was fetched
   std::vector<Eigen::Vector3f> response_;    // (places x near): u by 1 N [m]
   std::vector<std::uint64_t> last_pressed_;  // by sample: on which tick
-  std::vector<std::uint64_t> looked_at_;     // by sample: in which round
-  std::uint64_t round_{0};
+  std::vector<std::uint64_t> pressed_in_;    // by sample: in which round
+  std::vector<std::uint64_t> looked_at_;     // likewise
+  std::uint64_t round_{1};
   std::array<Place, kMostPlaces> places_;
   int count_{0};
   PressedPlaces problem_;
@@ -100,12 +106,15 @@ class BallTouch final : public BodyTouch {
   std::vector<VertexForce> loaded_;  // by normal forces: of places of the body
   std::vector<VertexForce> forces_;
   std::size_t loaded_count_{0}, force_count_{0};
-  std::vector<Eigen::Vector3f> deep_;              // by place: u by all forces [m]
-  std::vector<std::uint64_t> deep_at_;             // by place: on which tick it was found
-  Eigen::Vector3d tool_{Eigen::Vector3d::Zero()};  // a tick ago [m]
-  double way_{0.0};                                // since then [m]
-  double farthest_{0.0};                           // of the displacements near the ball [m]
-  double upright_{0.0};  // the force before a tetrahedron would be inside out [N]
+  std::vector<Eigen::Vector3f> deep_;                  // by place: u by all forces [m]
+  std::vector<std::uint64_t> deep_at_;                 // by place: on which tick it was found
+  Eigen::Vector3d tool_{Eigen::Vector3d::Zero()};      // a tick ago [m]
+  double way_{0.0};                                    // since then [m]
+  Eigen::Vector3d clear_at_{Eigen::Vector3d::Zero()};  // a centre outside of the body on this tick
+  double clear_{0.0};     // the distance of the nearest face from there; 0: not known [m]
+  double stirred_{0.0};   // how far a near vertex may have come since then [m]
+  double farthest_{0.0};  // of the displacements near the ball [m]
+  double upright_{0.0};   // the force before a tetrahedron would be inside out [N]
   std::uint64_t tick_{1};
   bool crowded_{false};  // on this tick
   contact::Contact contact_;

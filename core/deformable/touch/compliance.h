@@ -38,16 +38,21 @@ class Compliance {
 
   std::span<const Eigen::Vector3d> rest() const noexcept { return rest_; }  // (places) [m]
 
+  /// What a force on a touched place does to a place [m/N].
+  const Block& block(std::int32_t place, std::int32_t touched) const noexcept {
+    return blocks_[static_cast<std::size_t>(place) * touched_ + static_cast<std::size_t>(touched)];
+  }
+  static Eigen::Vector3f response(const Block& block, const Eigen::Vector3f& force) noexcept {
+    using Column = Eigen::Map<const Eigen::Vector4f, Eigen::Aligned16>;
+    const float* b = block.data();
+    const Eigen::Vector4f u =
+        force[0] * Column(b) + force[1] * Column(b + 4) + force[2] * Column(b + 8);
+    return u.head<3>();
+  }
   /// The displacement of one place by a force on a touched one [m].
   Eigen::Vector3f response(std::int32_t place, std::int32_t touched,
                            const Eigen::Vector3f& force) const noexcept {
-    using Column = Eigen::Map<const Eigen::Vector4f, Eigen::Aligned16>;
-    const float* block =
-        blocks_[static_cast<std::size_t>(place) * touched_ + static_cast<std::size_t>(touched)]
-            .data();
-    const Eigen::Vector4f u =
-        force[0] * Column(block) + force[1] * Column(block + 4) + force[2] * Column(block + 8);
-    return u.head<3>();
+    return response(block(place, touched), force);
   }
 
   /// The faces that can be touched: corners are places. Surface: the same at rest.

@@ -59,6 +59,10 @@ SurfaceSamples::SurfaceSamples(std::span<const Face> faces, std::span<const Eige
   }
   for (Sample& sample : samples) {
     sample.outward.stableNormalize();
+    for (std::size_t k = 0; k < 3; ++k) {
+      sample.rest += sample.weight[static_cast<Eigen::Index>(k)] *
+                     rest[static_cast<std::size_t>(sample.corners[k])];
+    }
   }
   per_face = faces.empty() ? 0 : of_face.size() / faces.size();
 }

@@ -17,6 +17,7 @@ struct SurfaceSamples {
     std::array<std::int32_t, 3> corners{};  // into `rest`; all of them on each of its faces
     Eigen::Vector3d weight{Eigen::Vector3d::Zero()};
     Eigen::Vector3d outward{Eigen::Vector3d::Zero()};  // at rest: the mean over its faces
+    Eigen::Vector3d rest{Eigen::Vector3d::Zero()};     // where it is then [m]
   };
 
   /// @param faces  of corners into `rest` [m], outward  @param steps  along an edge, at least 1
