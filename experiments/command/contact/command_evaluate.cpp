@@ -96,7 +96,7 @@ void take_sensors(const EvaluateOptions& o, evaluation::PrepareOptions& p) {
   }
   if (!o.load.empty()) {
     if (!o.free.empty()) {
-      throw InputError("--load stands beside --free; allowed: one of them");
+      throw InputError("--load stands beside --free; keep one of the two");
     }
     p.load = evaluation::SensorLoad{{o.load[0], o.load[1], o.load[2]},
                                     {o.load[3], o.load[4], o.load[5]}};
