@@ -34,6 +34,25 @@ void check_radius(const FieldReader& read, SolidParameters& p) {
   }
 }
 
+/// Keys of other renderers.
+void check_others(const FieldReader& read, SolidParameters& p) {
+  using contact::RendererKind;
+  const bool cells =
+      p.renderer == RendererKind::kVoxel || p.renderer == RendererKind::kDistanceField;
+  if (!cells && read.table.has("resolution")) {
+    read.table.reject("resolution", fmt::format("stands beside the renderer \"{}\", which has no "
+                                                "cells; leave it out",
+                                                contact::name_of(p.renderer)));
+  }
+  const bool proxy = p.renderer == RendererKind::kProxy || p.renderer == RendererKind::kRuspini;
+  if (!proxy && p.friction.static_friction > 0.0) {
+    read.table.reject("friction", fmt::format("stands beside the renderer \"{}\", which has none; "
+                                              "leave it out",
+                                              contact::name_of(p.renderer)));
+    p.friction = {};
+  }
+}
+
 /// Renderers without a proxy ask a mesh how deep the tool is inside.
 void check_inside(const FieldReader& read, SolidParameters& p) {
   using contact::RendererKind;
@@ -69,7 +88,9 @@ Field read_solid(Table& table, std::string name, const contact::SharedBody& body
   if (table.has("renderer")) {
     p.renderer = read_renderer(read);
   }
+  p.resolution = table.integer_or("resolution", p.resolution, 4, 512);
   check_radius(read, p);
+  check_others(read, p);
   check_inside(read, p);
   field.kind = std::move(p);
   return field;

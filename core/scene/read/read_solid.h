@@ -17,6 +17,7 @@ namespace haptrial::scene {
 ///     [scale]        of its size, 1 if left out
 ///     [friction]     { static, dynamic }: coefficients, static at least dynamic
 ///     [shading]      crease angle of force shading, 0 to pi / 2 [rad]; none if left out
+///     [resolution]   of voxel and distance field: cells along the longest side, 64 if left out
 ///     [tool_radius]  of the sphere that stands for the hand, at most 0.05 [m]; a point if left out
 ///     [renderer]     "proxy", or for comparison "ruspini", "penalty", "voxel", "distance field"
 ///     [limit], [fade_in], [fade_out]  as of every field

@@ -21,6 +21,7 @@ contact::RendererOptions options_of(const SolidParameters& p) {
   options.radius = p.tool_radius / p.scale;
   options.friction = p.friction;
   options.crease_angle = p.crease_angle;
+  options.resolution = p.resolution;
   return options;
 }
 

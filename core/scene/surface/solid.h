@@ -22,6 +22,7 @@ struct SolidParameters {
   double tool_radius{0.0};    // of the hand; 0: a point [m]
   double crease_angle{-1.0};  // of force shading, 0 to pi / 2; negative: none [rad]
   contact::RendererKind renderer{contact::RendererKind::kProxy};
+  int resolution{64};  // of voxel and distance field: cells along the longest side
 };
 
 /// A mesh rendered by its proxy (core/contact), in W:

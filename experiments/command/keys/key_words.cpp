@@ -450,6 +450,7 @@ objects.NAME.damping | | of its surface
 objects.NAME.tool_radius | | of the ball that stands for the hand; 0: a point
 objects.NAME.shading | none | edges less sharp than this angle feel round
 objects.NAME.renderer | proxy | how contact is rendered
+objects.NAME.resolution | | of voxel and distance field: cells along the longest side
 objects.NAME.shape | needed, or mesh | of the body
 objects.NAME.radius | | of the body, of a torus that of the circle in its middle
 objects.NAME.mesh | needed, or shape | file beside the definition: .obj, .ply, .stl or .off

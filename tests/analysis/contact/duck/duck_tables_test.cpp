@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "analysis/contact/duck/duck_figures.h"
 #include "analysis/contact/duck/duck_report.h"
 #include "core/base/files/file_text.h"
 #include "core/geometry/bvh/bvh.h"
@@ -67,8 +68,39 @@ TEST(DuckTest, TablesHaveTheSourcesTrends) {
   EXPECT_LT(t.shaded[2].normal_error, t.table6[2].normal_error) << "shading helps a coarse mesh";
 }
 
-TEST(DuckTest, IsWrittenWithTheSourcesNumbers) {
+/// A probe that is led 30 mm over a plate and pressed 2 mm into it.
+DuckTables stroked_plate() {
   DuckTables t;
+  t.contact.rate = 1000.0;
+  t.contact.stiffness = 300.0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d on(1e-4 * i, 0.0, 0.0);
+    t.contact.touching.push_back(true);
+    t.contact.out.push_back(on);
+    t.contact.in.emplace_back(on - Vector3d(0.0, 0.002, 0.0));
+    t.contact.normal.push_back(Vector3d::UnitY());
+  }
+  t.scan = {{0.0, 0.0, 0.0}, {0.03, 0.0, 0.0}, {0.03, 0.01, 0.0}, {0.0, 0.01, 0.002}};
+  return t;
+}
+
+TEST(DuckTest, TheInTrajectoryIsDrawnBelowTheOutTrajectory) {
+  const analysis::Figure figure = trajectory_figure(stroked_plate());
+  ASSERT_EQ(figure.series.size(), 3u);
+  const analysis::Series &joined = figure.series[0], &out = figure.series[1],
+                         &in = figure.series[2];
+  ASSERT_EQ(out.x.size(), 200u) << "the middle of 300 samples";
+  EXPECT_NEAR(out.x.back() - out.x.front(), 19.9, 1e-9) << "mm";
+  for (std::size_t i = 0; i < out.x.size(); ++i) {
+    ASSERT_NEAR(out.y[i] - in.y[i], 2.0, 1e-9);
+    ASSERT_NEAR(out.x[i], in.x[i], 1e-9);
+  }
+  EXPECT_EQ(joined.x.size(), 20u);
+  EXPECT_EQ(path_figure(stroked_plate()).series.size(), 2u);
+}
+
+TEST(DuckTest, IsWrittenWithTheSourcesNumbers) {
+  DuckTables t = stroked_plate();
   t.contact.registration = Registration{};
   t.contact.load = LoadFit{};
   t.table4.assign(3, {"proxy", 140'000, 0.0, 0.12, 0.01, 1e-6, 0.0, 0.0});

@@ -67,6 +67,19 @@ TEST(ReadSolidTest, EveryMistakeGetsItsSentence) {
   EXPECT_THAT(told_of_thing(kLeast + "stifness = 5"), HasSubstr("stifness is not a known key"));
 }
 
+TEST(ReadSolidTest, KeysOfOtherRenderersAreRefused) {
+  const auto& cells =
+      std::get<SolidParameters>(read_thing(kLeast + "renderer = \"voxel\"\nresolution = 32").kind);
+  EXPECT_EQ(cells.resolution, 32);
+  EXPECT_THAT(told_of_thing(kLeast + "resolution = 32"),
+              HasSubstr("resolution stands beside the renderer \"proxy\", which has no cells"));
+  EXPECT_THAT(told_of_thing(kLeast + "renderer = \"voxel\"\nresolution = 2"),
+              HasSubstr("resolution is 2"));
+  EXPECT_THAT(
+      told_of_thing(kLeast + "renderer = \"penalty\"\nfriction = { static = 0.4, dynamic = 0.3 }"),
+      HasSubstr("friction stands beside the renderer \"penalty\", which has none"));
+}
+
 TEST(ReadSolidTest, RenderersWithoutAProxyNeedAnInside) {
   geometry::Mesh box = geometry::make_box({0.1, 0.2, 0.3});
   const std::string penalty = kLeast + "renderer = \"penalty\"";
