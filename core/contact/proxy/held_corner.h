@@ -27,7 +27,7 @@ class HeldCorner {
   /// Whether the way to the tool, and those that lead nearer to it along one plane or two, are
   /// stopped at once. Only of a corner that is known.
   /// @param wish  from the point to the tool [m]
-  /// @param enough  how far a way leads that is none [m]
+  /// @param enough  ways that are no longer lead nowhere [m]
   /// @returns false also where only sweeps can tell
   bool holds(const Eigen::Vector3d& wish, double enough, NearTriangles& near) noexcept;
 

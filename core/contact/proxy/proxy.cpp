@@ -57,7 +57,7 @@ struct Proxy::Tick {
   bool lifted{false};
   int faces_ended{0};  // at which a move was cut
 
-  double some() const { return 4.0 * least; }  // a way that leads somewhere is longer [m]
+  double enough() const { return 4.0 * least; }  // ways that are no longer lead nowhere [m]
   double tolerance() const { return 0.25 * skin.thickness; }  // of a plane [m]
 };
 
@@ -194,7 +194,7 @@ bool Proxy::blocked_at_once(const Sweep& sweep, double length, double enough) no
 bool Proxy::leave_on(const Tick& tick, std::span<const int> which) noexcept {
   constexpr int kMostTried = 8;
   const Vector3d wish = tick.goal - state_.position;
-  const double enough = tick.some();
+  const double enough = tick.enough();
   const PlaneSolution solution = planes_.solve_on(which, state_.position, wish);
   near_.operations().plane_solutions += 1;
   bool sticks = false;
@@ -253,7 +253,7 @@ bool Proxy::still_held(Tick& tick) noexcept {
   const PlaneSolution solution = solve(tick, wish);
   bool sticks = false;
   if (solution.count < 3 || allowed_by_friction(solution, sticks).norm() > tick.least ||
-      !corner_.holds(wish, tick.some(), near_)) {
+      !corner_.holds(wish, tick.enough(), near_)) {
     return false;
   }
   state_.settled = true;

@@ -1,12 +1,12 @@
 #include "core/contact/surface/felt_body.h"
 
-#include <Eigen/Geometry>
 #include <array>
 #include <mutex>
 #include <utility>
 
 #include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/mesh/mesh_edges.h"
+#include "core/geometry/mesh/mesh_volume.h"
 
 namespace haptrial::contact {
 namespace {
@@ -23,15 +23,6 @@ bool is_closed(const geometry::Mesh& mesh) {
   return edges.size() > 0;
 }
 
-/// Six times the volume inside; negative where faces look inwards.
-double six_volumes(const geometry::Mesh& mesh) {
-  double sum = 0.0;
-  for (const geometry::Triangle& t : mesh.triangles) {
-    sum += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
-  }
-  return sum;
-}
-
 }  // namespace
 
 FeltBody::FeltBody(geometry::Mesh shape)
@@ -40,7 +31,7 @@ FeltBody::FeltBody(geometry::Mesh shape)
       distance(mesh, surface),
       size(geometry::bounds(mesh).diagonal().norm()),
       closed(is_closed(mesh)),
-      outwards(six_volumes(mesh) >= 0.0) {}
+      outwards(geometry::signed_volume(mesh) >= 0.0) {}
 
 SharedBody felt_body(geometry::Mesh mesh) {
   constexpr std::size_t kKept = 4;

@@ -22,12 +22,6 @@ const Vector3d& corner(const TetMesh& body, const Tetrahedron& t, std::size_t i)
   return body.vertices[static_cast<std::size_t>(t[i])];
 }
 
-double six_volumes(const TetMesh& body, const Tetrahedron& t) {
-  const Vector3d& a = corner(body, t, 0);
-  return (corner(body, t, 1) - a)
-      .dot((corner(body, t, 2) - a).cross(Vector3d(corner(body, t, 3) - a)));
-}
-
 double longest_edge(const TetMesh& body, const Tetrahedron& t) {
   double longest = 0;
   for (std::size_t i = 0; i < t.size(); ++i) {
@@ -130,7 +124,7 @@ void check_body(const TetMesh& body, const std::string& name) {
   check_corners(body, name);
   for (std::size_t i = 0; i < body.tetrahedra.size(); ++i) {
     const Tetrahedron& t = body.tetrahedra[i];
-    const double volume = six_volumes(body, t);
+    const double volume = six_volumes(body.vertices, t);
     const double longest = longest_edge(body, t);
     if (volume > kFlat * longest * longest * longest) {
       continue;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 
@@ -90,6 +91,14 @@ MeshParts mesh_parts(std::span<const Tetrahedron> tetrahedra) {
     }
   }
   return parts;
+}
+
+double six_volumes(std::span<const Eigen::Vector3d> at, const Tetrahedron& t) {
+  const auto corner = [&](std::size_t i) -> const Eigen::Vector3d& {
+    return at[static_cast<std::size_t>(t[i])];
+  };
+  const Eigen::Vector3d a = corner(1) - corner(0), b = corner(2) - corner(0);
+  return a.dot(b.cross(Eigen::Vector3d(corner(3) - corner(0))));
 }
 
 std::vector<std::int32_t> connected_parts(std::span<const Tetrahedron> tetrahedra,

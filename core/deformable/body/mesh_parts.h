@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -22,6 +23,9 @@ struct MeshParts {
 /// Source: Morris 2006, §5.3.3 (constants by edge, face and tetrahedron).
 /// @throws InputError naming a face that three tetrahedra share.
 MeshParts mesh_parts(std::span<const geometry::Tetrahedron> tetrahedra);
+
+/// Six times the volume of a tetrahedron; negative: it is inside out. @param at  of vertices [m]
+double six_volumes(std::span<const Eigen::Vector3d> at, const geometry::Tetrahedron& t);
 
 /// The part of the body, from 0, that each of `vertices` belongs to: vertices that tetrahedra
 /// connect have one number. A vertex without a tetrahedron is a part of its own.

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/files/file_text.h"
+#include "core/deformable/body/mesh_parts.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/volume/voxelize.h"
@@ -81,13 +82,6 @@ std::size_t count_of(const NumberLines& lines, double number) {
     lines.fail(fmt::format("there are {} of them; 1 to 1e8 are allowed", number));
   }
   return static_cast<std::size_t>(number);
-}
-
-double six_volumes(const TetMesh& mesh, const Tetrahedron& t) {
-  const auto at = [&](std::size_t i) -> const Vector3d& {
-    return mesh.vertices[static_cast<std::size_t>(t[i])];
-  };
-  return (at(1) - at(0)).dot((at(2) - at(0)).cross(Vector3d(at(3) - at(0))));
 }
 
 void drop_unused(TetMesh& mesh) {
@@ -179,7 +173,7 @@ TetMesh read_tetgen(const std::filesystem::path& node_file, double scale) {
       }
       t[corner] = static_cast<std::int32_t>(number);
     }
-    inverted += six_volumes(mesh, t) < 0 ? 1 : 0;
+    inverted += six_volumes(mesh.vertices, t) < 0 ? 1 : 0;
     mesh.tetrahedra.push_back(t);
   }
   if (inverted == tetrahedra) {  // the other convention

@@ -190,6 +190,7 @@ bool BallTouch::settle(const Vector3d& tool) noexcept {
 /// Those that are sampled; the nearest point of all faces if the centre is inside of the body.
 void BallTouch::find_places(const Vector3d& centre) noexcept {
   count_ = 0;
+  // What was outside stays outside until it can have come to a face.
   const bool clear = clear_ > (centre - clear_at_).norm() + stirred_;
   if (clear || !take_nearest(centre)) {
     count_ = 0;

@@ -6,6 +6,7 @@
 
 #include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/mesh/mesh_edges.h"
+#include "core/geometry/mesh/mesh_volume.h"
 
 namespace haptrial::geometry {
 namespace {
@@ -130,21 +131,6 @@ void check_topology(const Mesh& mesh, const EdgeTable& edges, MeshReport& report
 }
 
 }  // namespace
-
-double signed_volume(const Mesh& mesh) {
-  const Eigen::AlignedBox3d box = bounds(mesh);
-  if (box.isEmpty()) {
-    return 0.0;
-  }
-  const Eigen::Vector3d middle = box.center();
-  double sixfold = 0.0;
-  for (const Triangle& t : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.vertices[t[0]] - middle;
-    const Eigen::Vector3d b = mesh.vertices[t[1]] - middle;
-    sixfold += a.dot(b.cross(mesh.vertices[t[2]] - middle));
-  }
-  return sixfold / 6.0;
-}
 
 MeshReport check_mesh(const Mesh& mesh) {
   MeshReport report;

@@ -48,8 +48,4 @@ MeshReport check_mesh(const Mesh& mesh);
 /// The report in sentences for people, one a line.
 std::vector<std::string> describe(const MeshReport& report);
 
-/// Of the region that a closed, oriented mesh bounds; for any other mesh the integral of x·n / 3
-/// about the middle of its box [m³].
-double signed_volume(const Mesh& mesh);
-
 }  // namespace haptrial::geometry

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -8,6 +7,7 @@
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
+#include "core/deformable/body/mesh_parts.h"
 #include "core/deformable/elements/dynamic_solver.h"
 #include "core/deformable/springs/settle.h"
 #include "core/deformable/springs/stable_step.h"
@@ -148,13 +148,8 @@ std::string series_of(const std::vector<double>& times) {
 /// In a body that is moved by `u`.
 std::size_t inverted_tetrahedra(const geometry::TetMesh& mesh, const Places& u) {
   const Places at = moved_by(mesh, u);
-  const auto corner = [&](std::int32_t v) -> const Vector3d& {
-    return at[static_cast<std::size_t>(v)];
-  };
-  return static_cast<std::size_t>(std::ranges::count_if(mesh.tetrahedra, [&](const auto& t) {
-    const Vector3d& a = corner(t[0]);
-    return !((corner(t[1]) - a).dot((corner(t[2]) - a).cross(Vector3d(corner(t[3]) - a))) > 0.0);
-  }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      mesh.tetrahedra, [&](const auto& t) { return !(deformable::six_volumes(at, t) > 0.0); }));
 }
 
 void check_finite(const Places& u, double time) {

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/bone/tools/plate_shapes.h"
 #include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/mesh_volume.h"
 #include "core/geometry/repair/mesh_check.h"
 #include "tests/core/bone/pieces/pieces_support.h"
 #include "tests/support/allocation_guard.h"

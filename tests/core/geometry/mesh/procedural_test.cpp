@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/geometry/mesh/mesh_volume.h"
 #include "core/geometry/repair/mesh_check.h"
 
 namespace haptrial::geometry {

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/geometry/mesh/mesh_volume.h"
 #include "core/geometry/mesh/procedural.h"
 #include "core/geometry/repair/mesh_check.h"
 
