@@ -25,16 +25,18 @@ PdController::PdController(const PdGains& gains) : gains_(gains) {
 }
 
 Eigen::Vector3d PdController::force(const PointState& target, const PointState& tip,
-                                    double damping_share) const noexcept {
-  const Eigen::Vector3d f = gains_.stiffness * (target.position - tip.position) +
-                            damping_share * gains_.damping * (target.velocity - tip.velocity);
+                                    const GainShares& shares) const noexcept {
+  const Eigen::Vector3d f =
+      shares.stiffness * gains_.stiffness * (target.position - tip.position) +
+      shares.damping * gains_.damping * (target.velocity - tip.velocity);
   return f.allFinite() ? f : Eigen::Vector3d::Zero();
 }
 
-double PdController::stored(double stretch, double limit) const noexcept {
-  const double force = gains_.stiffness * std::abs(stretch);
+double PdController::stored(double stretch, double limit, double share) const noexcept {
+  const double stiffness = share * gains_.stiffness;
+  const double force = stiffness * std::abs(stretch);
   return force <= limit ? 0.5 * force * std::abs(stretch)
-                        : limit * (std::abs(stretch) - 0.5 * limit / gains_.stiffness);
+                        : limit * (std::abs(stretch) - 0.5 * limit / stiffness);
 }
 
 Eigen::Vector3d saturate(const Eigen::Vector3d& force, double limit) noexcept {

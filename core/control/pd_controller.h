@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/base/point_state.h"
+#include "core/control/gain_shares.h"
 
 namespace haptrial {
 class Table;
@@ -29,16 +30,17 @@ class PdController {
   /// @throws std::invalid_argument naming the gain that breaks its bound.
   explicit PdController(const PdGains& gains);
 
-  /// @param target, tip    in W.
-  /// @param damping_share  of b that is used, 0 to 1 (DampingGovernor)
+  /// @param target, tip  in W.
+  /// @param shares       of k and b that are used
   /// @returns the force on the tip [N]; zero where an input is not finite.
   /// Servo thread: no allocation, lock, I/O or throw.
   Eigen::Vector3d force(const PointState& target, const PointState& tip,
-                        double damping_share = 1.0) const noexcept;
+                        const GainShares& shares = {}) const noexcept;
 
   /// Energy in the spring [J], where it gives at most `limit` [N].
   /// @param stretch  from tip to target [m]
-  double stored(double stretch, double limit) const noexcept;
+  /// @param share    of k that is used
+  double stored(double stretch, double limit, double share = 1.0) const noexcept;
 
   const PdGains& gains() const noexcept { return gains_; }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/point_state.h"
+#include "core/control/gain_shares.h"
 
 namespace haptrial::device {
 
@@ -28,6 +29,7 @@ struct DeviceReading {
   Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
   std::uint32_t keys{0};  // bit i: function i of the definition is held by a key of the window
   double pedal{0.0};      // how far an analog pedal is down, 0 to 1
+  control::GainShares shares{};  // of the gains of all laws, which the handle carries now
 };
 
 /// Whether a button is among those pressed. @param button  from 0; below 0 there is none

@@ -12,22 +12,29 @@ namespace haptrial::device {
 namespace {
 
 constexpr double kGrowthInDoubt = 2.0;  // times the holding force, while readings are suspicious
+constexpr double kFallInDoubt = 20.0;   // while the position may be frozen [N/s]
+constexpr double kShortestFade = 0.05;  // [s]
+constexpr double kLongestAtLimit = 3.0;     // [s]
+constexpr double kLargestHolding = 2.0;     // [N]
+constexpr double kFastestForce = 10'000.0;  // [N/s]
 
 }  // namespace
 EnvelopeLimits read_envelope_limits(Table& table) {
   EnvelopeLimits limits;
   limits.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
-  limits.max_force_rate = table.number("max_force_rate", {10.0, 1e6}, "N/s");
+  limits.max_force_rate = table.number("max_force_rate", {10.0, kFastestForce}, "N/s");
   limits.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
   limits.max_speed = table.number("max_speed", {0.0, 20.0, true}, "m/s");
   limits.max_jump = table.number("max_jump", {0.0, 0.1, true}, "m");
-  limits.ramp_in = table.number("ramp_in", {0.0, 10.0}, "s");
-  limits.ramp_out = table.number("ramp_out", {0.0, 10.0}, "s");
+  limits.ramp_in = table.number("ramp_in", {kShortestFade, 10.0}, "s");
+  limits.ramp_out = table.number("ramp_out", {kShortestFade, 10.0}, "s");
+  limits.change_time =
+      table.number_or("change_time", limits.change_time, {kShortestFade, 10.0}, "s");
   if (table.has("max_saturation")) {
-    limits.max_saturation = table.number("max_saturation", {0.0, 600.0, true}, "s");
+    limits.max_saturation = table.number("max_saturation", {0.0, kLongestAtLimit, true}, "s");
   }
   if (table.has("holding_force")) {
-    limits.holding_force = table.number("holding_force", {0.0, 10.0, true}, "N");
+    limits.holding_force = table.number("holding_force", {0.0, kLargestHolding, true}, "N");
   }
   return limits;
 }
@@ -39,6 +46,7 @@ Envelope::Envelope(const EnvelopeLimits& limits)
   const bool positive = limits.max_force > 0.0 && limits.max_force_rate > 0.0 &&
                         limits.workspace_radius > 0.0 && limits.max_speed > 0.0 &&
                         limits.max_jump > 0.0 && limits.ramp_in >= 0.0 && limits.ramp_out >= 0.0 &&
+                        limits.change_time >= 0.0 &&
                         limits.max_saturation > 0.0 && limits.holding_force > 0.0;
   if (!positive) {
     throw std::invalid_argument("Envelope: every limit must be above 0, and no ramp below");
@@ -93,8 +101,9 @@ Eigen::Vector3d Envelope::limit(const Eigen::Vector3d& wanted, double dt,
     watch_readings(dt);
   }
   if (fault_ == Fault::kNone) {
-    const Eigen::Vector3d force = approach(target(wanted, dt), dt);
-    watch_force(force, wanted, dt, intent);
+    ForceIntent meant = intent;
+    const Eigen::Vector3d force = approach(target(wanted, dt, meant), dt);
+    watch_force(force, dt, meant);
     before_last_force_ = last_force_;
     last_force_ = fault_ == Fault::kNone ? force : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
@@ -122,17 +131,21 @@ void Envelope::watch_readings(double dt) noexcept {
   if (suspicious && !bounded_) {
     bound_ = last_force_.norm() + kGrowthInDoubt * limits_.holding_force;
   }
+  if (readings_.in_doubt()) {
+    bound_ = std::max(0.0, std::min(bound_, last_force_.norm()) - kFallInDoubt * dt);
+  }
+  if (bounded_ && !suspicious) {
+    go_over();  // what was held back comes by degrees
+  }
   bounded_ = suspicious;
 }
 
-void Envelope::watch_force(const Eigen::Vector3d& force, const Eigen::Vector3d& wanted, double dt,
-                           ForceIntent intent) noexcept {
-  const Fault odd = forces_.look(force, dt);
+void Envelope::watch_force(const Eigen::Vector3d& force, double dt,
+                           const ForceIntent& intent) noexcept {
+  const Fault odd = forces_.look(force, intent.stimulus, dt);
   if (odd != Fault::kNone) {
     trip(odd);
   }
-  const double asked = wanted.norm();
-  intent.push *= asked > 0.0 ? std::min(1.0, force.norm() / asked) : 0.0;
   ForceIntent acted = std::exchange(before_last_intent_, std::exchange(last_intent_, intent));
   if (!fresh_) {
     return;
@@ -151,8 +164,25 @@ void Envelope::watch_force(const Eigen::Vector3d& force, const Eigen::Vector3d& 
   }
 }
 
-Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt) noexcept {
+/// What was felt before the protocol went over to other forces, less and less of it.
+Eigen::Vector3d Envelope::blend(const Eigen::Vector3d& wanted, double dt) noexcept {
+  if (std::exchange(goes_over_, false)) {
+    left_over_ = followed_ - wanted;
+    since_change_ = 0.0;
+  }
+  since_change_ += dt;
+  const double u = since_change_ / limits_.change_time;
+  if (!(u < 1.0)) {
+    left_over_.setZero();
+  }
+  return (1.0 - u * u * (3.0 - 2.0 * u)) * left_over_;
+}
+
+/// @param intent  of `wanted`; comes back as that of the force
+Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt,
+                                 ForceIntent& intent) noexcept {
   if (released_) {
+    intent = {};
     since_release_ += dt;
     return since_release_ < limits_.ramp_out
                ? Eigen::Vector3d((1.0 - since_release_ / limits_.ramp_out) * released_force_)
@@ -160,9 +190,14 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt) noexc
   }
   since_start_ += dt;
   const double share = limits_.ramp_in > 0.0 ? std::min(1.0, since_start_ / limits_.ramp_in) : 1.0;
-  const Eigen::Vector3d grown = share * wanted;
+  const Eigen::Vector3d left_over = blend(wanted - intent.stimulus, dt);
+  const Eigen::Vector3d grown = share * (wanted + left_over);
   const double most = bounded_ ? std::min(bound_, limits_.max_force) : limits_.max_force;
-  return longer(grown, most) ? Eigen::Vector3d(grown * (most / grown.norm())) : grown;
+  const double passed = longer(grown, most) ? most / grown.norm() : 1.0;
+  followed_ = passed * (wanted + left_over) - intent.stimulus;
+  intent.push = passed * share * (intent.push + left_over);
+  intent.stimulus *= passed * share;
+  return passed * grown;
 }
 
 void Envelope::trip(Fault fault) noexcept {
@@ -178,7 +213,9 @@ void Envelope::reset() noexcept {
   last_force_.setZero();
   before_last_force_.setZero();
   has_position_ = has_watched_ = false;
-  bounded_ = false;
+  bounded_ = goes_over_ = false;
+  followed_.setZero();
+  left_over_.setZero();
   readings_.reset();
   forces_.reset();
   engage();
@@ -193,8 +230,19 @@ void Envelope::release() noexcept {
 }
 
 void Envelope::engage() noexcept {
-  released_ = false;
+  released_ = goes_over_ = false;
   since_start_ = 0.0;
+  followed_.setZero();
+  left_over_.setZero();
+}
+
+void Envelope::resume() noexcept {
+  last_force_.setZero();
+  before_last_force_.setZero();
+  has_position_ = has_watched_ = false;
+  readings_.reset();
+  since_start_ = 0.0;
+  since_release_ = limits_.ramp_out;
 }
 
 }  // namespace haptrial::device

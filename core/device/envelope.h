@@ -21,20 +21,22 @@ struct EnvelopeLimits {
   double workspace_radius{0.075};  // about the origin > 0 [m]
   double max_speed{1.0};           // > 0 [m/s]
   double max_jump{0.005};          // between two ticks > 0 [m]
-  double ramp_in{0.2};             // force grows from zero over this time after a start >= 0 [s]
-  double ramp_out{0.2};            // and falls to zero over this one after release() >= 0 [s]
+  double ramp_in{0.2};             // force grows from zero over this time after a start [s]
+  double ramp_out{0.2};            // and falls to zero over this one after release() [s]
+  double change_time{0.1};         // from one force to another at go_over() [s]
   double max_saturation{3.0};      // without a break at max_force > 0 [s]
   double holding_force{0.5};  // change of force that friction and a still hand may hide > 0 [N]
 };
 
-/// Reads the keys of an [envelope] table; max_saturation and holding_force may be left
-/// out.
+/// Reads the keys of an [envelope] table; change_time, max_saturation and holding_force may be left
+/// out. No value takes a check out of use: ramps and changes last 0.05 s at least.
 EnvelopeLimits read_envelope_limits(Table& table);
 
 /// Stands between every protocol and every device on every tick. The force that leaves it is
 /// finite, never longer than max_force and never changes faster than max_force_rate, except that a
 /// fault brings it to zero in the same tick; it then stays zero until reset(). A normal end does
-/// not drop the force but lets it go over ramp_out.
+/// not drop the force but lets it go over ramp_out, and where a protocol goes over to other forces
+/// the difference fades over change_time.
 ///
 /// Beside each tick's own limits it watches what only many ticks show: readings that freeze or
 /// jitter (ReadingWatch; while they are suspicious the force does not grow), a force that swings to
@@ -66,7 +68,14 @@ class Envelope {
   void release() noexcept;
   /// The opposite of release(): the force follows limit() again and ramps in. A fault stays.
   void engage() noexcept;
+  /// The protocol goes over to other forces with the next limit(): what changes by that, but for
+  /// the stimulus of its intent, fades over change_time.
+  void go_over() noexcept { goes_over_ = true; }
+  /// The loop has not run for a while, so the force that it gave last is no longer due: it begins at
+  /// zero and ramps in. The next reading may be far from the last.
+  void resume() noexcept;
 
+  const EnvelopeLimits& limits() const noexcept { return limits_; }
   Fault fault() const noexcept { return fault_; }
   bool released() const noexcept { return released_; }
   /// Released, and the force has gone.
@@ -75,11 +84,11 @@ class Envelope {
   const Eigen::Vector3d& force() const noexcept { return last_force_; }
 
  private:
-  Eigen::Vector3d target(const Eigen::Vector3d& wanted, double dt) noexcept;
+  Eigen::Vector3d target(const Eigen::Vector3d& wanted, double dt, ForceIntent& intent) noexcept;
+  Eigen::Vector3d blend(const Eigen::Vector3d& wanted, double dt) noexcept;
   Eigen::Vector3d approach(const Eigen::Vector3d& goal, double dt) const noexcept;
   void watch_readings(double dt) noexcept;
-  void watch_force(const Eigen::Vector3d& force, const Eigen::Vector3d& wanted, double dt,
-                   ForceIntent intent) noexcept;
+  void watch_force(const Eigen::Vector3d& force, double dt, const ForceIntent& intent) noexcept;
 
   EnvelopeLimits limits_;
   Fault fault_{Fault::kNone};
@@ -97,6 +106,10 @@ class Envelope {
   ForceIntent last_intent_;                                     // of last_force_
   ForceIntent before_last_intent_;                              // of before_last_force_
   Eigen::Vector3d watched_position_{Eigen::Vector3d::Zero()};   // at the last limit() [m]
+  Eigen::Vector3d followed_{Eigen::Vector3d::Zero()};  // before the ramp, without the stimulus [N]
+  Eigen::Vector3d left_over_{Eigen::Vector3d::Zero()};  // of the force before go_over() [N]
+  double since_change_{0.0};                            // [s]
+  bool goes_over_{false};
   double bound_{0.0};  // of the force while readings are suspicious [N]
   bool bounded_{false};
   bool released_{false};

@@ -36,7 +36,7 @@ const char* describe(Fault fault) noexcept {
     case Fault::kJitter:
       return "the position jitters faster than a hand can move";
     case Fault::kOscillation:
-      return "the force alternated near its limit: the handle oscillates";
+      return "the force swings to and fro faster than a hand moves: the handle oscillates";
     case Fault::kSaturation:
       return "the force stayed at the limit for longer than the envelope allows";
     case Fault::kEnergy:

@@ -1,51 +1,44 @@
 #include "core/device/force_watch.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace haptrial::device {
 namespace {
 
-constexpr int kTurns = 4;
-constexpr double kBetweenTurns = 0.080;  // [s]
-constexpr double kLasting = 0.073;       // [s]
-constexpr double kSwing = 0.5;           // of the limit
+using control::SwingCounter;
+
+constexpr double kAtTheLimit = 0.98;  // of it
+
+// Near the limit.
+constexpr double kShareOfLimit = 0.5;    // of the limit, peak to peak
 constexpr double kNear = 0.7;            // of the limit
-constexpr double kAtTheLimit = 0.98;     // of it
+constexpr double kGapNearLimit = 0.080;  // [s]
+constexpr int kTurnsNearLimit = 4;
+constexpr double kLastingNearLimit = 0.073;  // [s]
+
+// Anywhere: what no hand does by itself.
+constexpr double kSwing = 2.0;        // peak to peak [N]
+constexpr double kGap = 1.0 / 30.0;   // between the turns of 15 Hz [s]
+constexpr double kLasting = 0.2;      // [s]
 
 }  // namespace
 
-Fault ForceWatch::look(const Eigen::Vector3d& force, double dt) noexcept {
-  time_ += dt;
+ForceWatch::ForceWatch(double limit, double longest) noexcept
+    : limit_(limit),
+      longest_(longest),
+      at_limit_(kShareOfLimit * limit, kGapNearLimit),
+      swings_(kSwing, kGap) {}
+
+Fault ForceWatch::look(const Eigen::Vector3d& force, const Eigen::Vector3d& stimulus,
+                       double dt) noexcept {
   saturated_for_ = force.norm() >= kAtTheLimit * limit_ ? saturated_for_ + dt : 0.0;
-  bool oscillates = false;
-  for (int i = 0; i < 3; ++i) {
-    oscillates = turns_too_often(axes_[static_cast<std::size_t>(i)], force[i]) || oscillates;
-  }
+  const SwingCounter::Train near = at_limit_.look(force, Eigen::Vector3d::Zero(), dt);
+  const SwingCounter::Train any = swings_.look(force, stimulus, dt);
+  const bool oscillates = (near.turned && near.turns >= kTurnsNearLimit &&
+                           near.lasted >= kLastingNearLimit && near.largest > kNear * limit_) ||
+                          (any.turned && any.lasted >= kLasting);
   if (oscillates) {
     return Fault::kOscillation;
   }
   return saturated_for_ > longest_ ? Fault::kSaturation : Fault::kNone;
-}
-
-bool ForceWatch::turns_too_often(Axis& axis, double force) const noexcept {
-  const double swing = force - axis.extreme;
-  const bool near_limit = std::max(std::abs(force), std::abs(axis.extreme)) > kNear * limit_;
-  const bool turned =
-      near_limit && std::abs(swing) > kSwing * limit_ && swing * axis.direction <= 0.0;
-  const bool goes_on = swing * axis.direction > 0.0;
-  if (goes_on || turned) {
-    axis.extreme = force;
-  }
-  if (!turned) {
-    return false;
-  }
-  axis.direction = swing > 0.0 ? 1 : -1;
-  const bool follows = axis.turns > 0 && time_ - axis.latest_turn <= kBetweenTurns;
-  axis.turns = follows ? axis.turns + 1 : 1;
-  axis.first_turn = follows ? axis.first_turn : time_;
-  axis.latest_turn = time_;
-  return axis.turns >= kTurns && time_ - axis.first_turn >= kLasting;
 }
 
 }  // namespace haptrial::device

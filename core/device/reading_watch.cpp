@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/longer.h"
+
 namespace haptrial::device {
 namespace {
 
 constexpr double kHeaviestHand = 2.0;    // with the handle [kg]
 constexpr double kFrozenWay = 6e-5;      // [m]
+constexpr double kProof = 1.5;           // of force that a hand does not lose without moving [N]
 constexpr double kForceMemory = 0.020;   // of what the hand held against before [s]
 constexpr double kRest = 1e-4;           // [m/s]
 constexpr double kStaleAfter = 0.020;    // [s]
@@ -47,18 +50,27 @@ bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) n
   if (!equal || equal_for_ == 0.0) {
     held_ += std::min(1.0, (equal_for_ + dt) / kForceMemory) * (force - held_);
     equal_for_ = equal ? dt : 0.0;
-    free_speed_ = free_way_ = 0.0;
+    free_speed_.setZero();
+    free_way_.setZero();
+    doubted_ = 0.0;
     return false;
   }
   equal_for_ += dt;
-  const double change = (force - held_).norm();
-  if (change <= holding_force_) {
-    free_speed_ = free_way_ = 0.0;
+  if (doubted_ > 0.0) {
+    return force.norm() <= std::max(0.0, doubted_ - kProof);
+  }
+  const Eigen::Vector3d change = force - held_;
+  if (!longer(change, holding_force_)) {
+    free_speed_.setZero();
+    free_way_.setZero();
     return false;
   }
   free_speed_ += change / kHeaviestHand * dt;
   free_way_ += free_speed_ * dt;
-  return free_way_ > std::max(kFrozenWay, 2.0 * smallest_step_);
+  if (longer(free_way_, std::max(kFrozenWay, 2.0 * smallest_step_))) {
+    doubted_ = std::max(force.norm(), 1e-9);
+  }
+  return false;
 }
 
 /// An estimate of velocity comes to zero where the position stays the same.

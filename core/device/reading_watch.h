@@ -11,10 +11,7 @@ namespace haptrial::device {
 /// Finds readings that cannot be those of a hand, though each alone could be.
 ///
 /// - Frozen: position and velocity equal those before to the last bit for 20 ms, and the velocity
-/// is
-///   not zero. Or the position does, while the force changed by more than friction and a still hand
-///   hold against, and for so long that a free hand of 2 kg would have moved by 0.06 mm, or by
-///   twice the smallest step that was seen.
+///   is not zero. Or the position alone stayed the same although the force changed: see in_doubt().
 /// - Jitter: eight times within 50 ms the velocity between readings changes by more than a hand and
 ///   a device can bring about: 500 m/s², but at least 0.1 mm a tick, which covers the resolution of
 ///   encoders. A knock against a stop is one or two such ticks. A device whose clock is its own
@@ -32,6 +29,13 @@ class ReadingWatch {
   /// @returns kFrozen, kJitter or kNone.
   Fault look(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
              const Eigen::Vector3d& force, double dt) noexcept;
+
+  /// The position stayed the same although the force changed by more than friction and a still hand
+  /// hold against, for so long that a free hand of 2 kg would have moved by 0.06 mm, or by twice the
+  /// smallest step that was seen. It may be frozen, or a hand tenses against just this force: the
+  /// force should now fall. A hand that tenses moves before it has lost 1.5 N, which ends the doubt;
+  /// if the position is still the same when the force has lost as much, or is gone, it is frozen.
+  bool in_doubt() const noexcept { return doubted_ > 0.0; }
 
   /// Something is odd and may become a fault: the force should not grow until this is clear.
   bool suspicious() const noexcept { return odd_for_ > 0.0 || equal_for_ >= kSuspiciousAfter; }
@@ -57,8 +61,9 @@ class ReadingWatch {
   Eigen::Vector3d velocity_{Eigen::Vector3d::Zero()};
   double stale_for_{0.0};                          // [s]
   Eigen::Vector3d held_{Eigen::Vector3d::Zero()};  // mean force while the hand moved last [N]
-  double free_speed_{0.0};                         // of a free hand since then [m/s]
-  double free_way_{0.0};                           // [m]
+  Eigen::Vector3d free_speed_{Eigen::Vector3d::Zero()};  // of a free hand since then [m/s]
+  Eigen::Vector3d free_way_{Eigen::Vector3d::Zero()};    // [m]
+  double doubted_{0.0};  // force when the position was first in doubt; 0: it is not [N]
   double odd_for_{0.0};                            // left, after an odd step [s]
   std::array<double, kJitterTicks - 1> odd_at_{};  // ring of times [s]
   int odd_{0};

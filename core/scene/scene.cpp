@@ -88,6 +88,18 @@ Law law_of(const Field& field, const Setting& setting) {
       field.kind);
 }
 
+/// Nothing that is pressed or holds the hand appears or goes by a step.
+constexpr double kShortestFade = 0.05;  // [s]
+
+/// The course in time of these is itself the stimulus, so they may begin and end as they do.
+bool is_stimulus(const FieldKind& kind) noexcept {
+  return std::holds_alternative<PulseParameters>(kind) ||
+         std::holds_alternative<RampParameters>(kind) ||
+         std::holds_alternative<SineVibrationParameters>(kind) ||
+         std::holds_alternative<NoiseVibrationParameters>(kind) ||
+         std::holds_alternative<TapParameters>(kind);
+}
+
 constexpr std::size_t kFreeSpace = Scene::kMostFields;
 
 /// The index of the surface that `field` lies on.
@@ -153,8 +165,10 @@ Scene::Scene(const std::vector<Field>& fields, double rate) : period_(1.0 / rate
               "fade_in must be finite and at least 0");
       require(std::isfinite(field.fade_out) && field.fade_out >= 0.0,
               "fade_out must be finite and at least 0");
+      const double shortest = is_stimulus(field.kind) ? 0.0 : kShortestFade;
       parts_.push_back({law_of(field, {field.limit, rate}), field.kind.index(), field.limit,
-                        field.fade_in, field.fade_out, index_of_surface(fields, field)});
+                        std::max(field.fade_in, shortest), std::max(field.fade_out, shortest),
+                        index_of_surface(fields, field)});
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("field " + field.name + ": " + error.what());
     }
@@ -236,9 +250,10 @@ void Scene::lay_reliefs(const Vector3d& p) noexcept {
   }
 }
 
-void Scene::feel(Part& part, const PointState& hand) noexcept {
+void Scene::feel(Part& part, const PointState& hand,
+                 const control::GainShares& shares) noexcept {
   SurfaceTouch touch;
-  Felt felt{hand, part.time, nullptr};
+  Felt felt{hand, part.time, nullptr, shares};
   if (part.on != kFreeSpace) {
     const Part& surface = parts_[part.on];
     if (surface.acts()) {
@@ -249,6 +264,7 @@ void Scene::feel(Part& part, const PointState& hand) noexcept {
   }
   FieldState& state = part.state;
   state.limited = false;
+  state.stimulus.setZero();
   Vector3d force = std::visit(
       [&](auto& law) -> Vector3d {
         if constexpr (requires { law.force(felt, state); }) {
@@ -263,11 +279,13 @@ void Scene::feel(Part& part, const PointState& hand) noexcept {
   if (!std::holds_alternative<Surface>(part.law) && !std::holds_alternative<Solid>(part.law)) {
     state.contact = size > 0.0;
   }
-  state.force = part.fade.weight() * control::saturate(force, part.limit);
+  const double passed = part.fade.weight() * (size > part.limit ? part.limit / size : 1.0);
+  state.force = passed * force;
+  state.stimulus *= passed;
   state.max_force = std::max(state.max_force, part.fade.weight() * std::min(size, part.limit));
 }
 
-Vector3d Scene::force(const PointState& hand) noexcept {
+Vector3d Scene::force(const PointState& hand, const control::GainShares& shares) noexcept {
   if (!hand.position.allFinite() || !hand.velocity.allFinite()) {
     return Vector3d::Zero();
   }
@@ -275,6 +293,7 @@ Vector3d Scene::force(const PointState& hand) noexcept {
     part.state.work += part.state.force.dot(hand.position - before_);
     part.state.weight = part.fade.weight();
     part.state.force.setZero();
+    part.state.stimulus.setZero();
     if (!part.acts()) {
       part.state.contact = part.state.limited = part.state.sliding = false;
     }
@@ -287,7 +306,7 @@ Vector3d Scene::force(const PointState& hand) noexcept {
   Vector3d sum = Vector3d::Zero();
   for (const std::size_t i : forces_) {
     if (parts_[i].acts()) {
-      feel(parts_[i], hand);
+      feel(parts_[i], hand, shares);
       sum += parts_[i].state.force;
     }
   }
@@ -299,6 +318,10 @@ Vector3d Scene::force(const PointState& hand) noexcept {
     }
   }
   return sum;
+}
+
+bool Scene::acts() const noexcept {
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.acts(); });
 }
 
 void Scene::forget_extremes() noexcept {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/point_state.h"
+#include "core/control/gain_shares.h"
 #include "core/scene/field.h"
 
 namespace haptrial::scene {
@@ -44,8 +45,11 @@ class Scene {
   /// same index in `before`.
   void start_from(const Scene& before) noexcept;
   /// One tick later. @param hand  position [m] and velocity [m/s] in W
+  /// @param shares  of the fields' gains that the handle carries now
   /// @returns the force on the hand [N]; zero, with nothing changed, if the hand is not finite.
-  Eigen::Vector3d force(const PointState& hand) noexcept;
+  Eigen::Vector3d force(const PointState& hand, const control::GainShares& shares = {}) noexcept;
+  /// Whether a field is switched on, or still fades out.
+  bool acts() const noexcept;
   /// Begins max_depth, max_force and work of every field anew: at a stage's beginning.
   void forget_extremes() noexcept;
 
@@ -62,7 +66,7 @@ class Scene {
 
  private:
   struct Part;
-  void feel(Part& part, const PointState& hand) noexcept;
+  void feel(Part& part, const PointState& hand, const control::GainShares& shares) noexcept;
   void lay_reliefs(const Eigen::Vector3d& p) noexcept;
 
   std::vector<Part> parts_;

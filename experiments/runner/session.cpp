@@ -24,6 +24,7 @@
 #include "experiments/runner/session_pace.h"
 #include "experiments/runner/session_pages.h"
 #include "experiments/runner/session_record.h"
+#include "protocols/definition/handle_loop.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
 #include "protocols/tutoring/tutored_trials.h"
@@ -149,6 +150,7 @@ Session::Session(const SessionRequest& request)
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
       desk_(request.control, desk_actions()),
       task_({.devices = rig_->arms(d_.envelope),
+             .loop = protocols::handle_loop(d_),
              .log = record_.log(),
              .device_log = &record_.device_log(),
              .tick_log = trials_->tick_log(),

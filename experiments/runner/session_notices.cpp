@@ -71,7 +71,13 @@ void SessionNotices::note_pass(const protocols::PassResult& result) {
   // A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
   if (result.reduced_ticks > 0) {
     const double rate = p_.request.definition->rate;
-    p_.record.note_damping(result.least_damping, static_cast<double>(result.reduced_ticks) / rate);
+    p_.record.note_damping(result.least_gains.damping,
+                           static_cast<double>(result.reduced_ticks) / rate);
+  }
+  if (const double share = result.least_gains.stiffness; share < 1.0) {
+    p_.record.event("stiffness_reduced",
+                    fmt::format("trial {}: stiffness fell to {:.3f} of the definition's",
+                                p_.record.pass().trial, share));
   }
 }
 

@@ -166,9 +166,11 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   PassOutput out;
   const Eigen::Vector3d shake =
       shaking(vibration_, simulator_, done.contact, done.force.norm(), input.tool);
-  const Eigen::Vector3d wanted = done.force + done.shaft + done.pushed + shake;
+  const Eigen::Vector3d wanted =
+      reading.shares.stiffness * (done.force + done.shaft + done.pushed) + shake;
   out.force = control::saturate(wanted, parameters_.force_limit);
-  out.intent.push = done.drag + shake;
+  out.intent.push = reading.shares.stiffness * done.drag + shake;
+  out.intent.stimulus = shake;
   out.saturated = wanted.norm() > parameters_.force_limit;
   out.applied_force = out.force.y();
   out.stage = record::Stage::kRun;
@@ -184,8 +186,9 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   out.shown = seen;
   out.shown.tool = reading.tool.position;
   if (two) {
-    second_.force = control::saturate(done.tube.force + done.tube.shaft - done.pushed,
-                                      parameters_.second->force_limit);
+    const Eigen::Vector3d on_tube =
+        readings[1].shares.stiffness * (done.tube.force + done.tube.shaft - done.pushed);
+    second_.force = control::saturate(on_tube, parameters_.second->force_limit);
     rows_.log_second(input.tube);
   }
   rows_.log_tool(done.removed + done.cut, done.force);

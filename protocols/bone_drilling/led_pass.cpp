@@ -153,10 +153,12 @@ PassOutput LedPass::output(const Readings& readings) noexcept {
   const bone::BoneTouch::Felt felt = touch_.tick(p_.simulator, own.tool);
   const Eigen::Vector3d shake =
       shaking(p_.vibration, p_.simulator, felt.contact, felt.force.norm(), own.tool);
-  const Eigen::Vector3d wanted = felt.force + felt.shaft + shake;
+  const double share = readings[0].shares.stiffness;
+  const Eigen::Vector3d wanted = share * (felt.force + felt.shaft) + shake;
   PassOutput out;
   out.force = control::saturate(wanted, p_.parameters.force_limit);
-  out.intent.push = felt.drag + shake;
+  out.intent.push = share * felt.drag + shake;
+  out.intent.stimulus = shake;
   out.saturated = wanted.norm() > p_.parameters.force_limit;
   out.applied_force = out.force.y();
   out.stage = record::Stage::kRun;

@@ -134,7 +134,6 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   d.stimulus_rate = recording.number("stimulus_rate", {10.0, 10000.0}, "Hz");
   d.design = read_design(design);
   d.recovery = d.guidance.recovery;
-  d.guidance.loop = handle_loop(d);
   d.display = render::read_trial_display_style(display);
   if (d.guidance.kind == Guidance::kCurve) {
     Table pace = root.table("pace");
@@ -196,13 +195,16 @@ bool ForceDefinition::shows_expert() const {
   return std::any_of(design.conditions.begin(), design.conditions.end(), has_expert);
 }
 
-std::vector<std::string> ForceDefinition::margins() const { return margins_of(guidance); }
+std::vector<std::string> ForceDefinition::margins() const {
+  return margins_of(guidance, handle_loop(*this));
+}
 
-std::vector<std::string> margins_of(const GuidanceParameters& guidance) {
+std::vector<std::string> margins_of(const GuidanceParameters& guidance,
+                                    const control::HandleLoop& loop) {
   std::vector<std::string> lines;
   for (const auto& [which, gains] :
        {std::pair{"trajectory", guidance.trajectory}, {"plane", guidance.plane}}) {
-    lines.push_back(describe(control::loop_margin(which, gains, guidance.loop)));
+    lines.push_back(describe(control::loop_margin(which, gains, loop)));
   }
   return lines;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/control/handle_loop.h"
 #include "core/stimulus/stimulus.h"
 #include "core/subject/pacer.h"
 #include "core/subject/path_learner.h"
@@ -56,6 +57,7 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
                                       const std::filesystem::path* folder);
 
 /// How firmly the loop lets the handle be held, a line for the path and one for the plane.
-std::vector<std::string> margins_of(const GuidanceParameters& guidance);
+std::vector<std::string> margins_of(const GuidanceParameters& guidance,
+                                    const control::HandleLoop& loop = {});
 
 }  // namespace haptrial::protocols

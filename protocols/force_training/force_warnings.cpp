@@ -6,6 +6,7 @@
 #include "core/base/definition/table.h"
 #include "core/control/loop_margin.h"
 #include "core/stimulus/stimulus.h"
+#include "protocols/definition/handle_loop.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/force_training/force_definition.h"
 
@@ -17,7 +18,7 @@ using Warnings = std::vector<std::string>;
 void warn_of_loop(const ForceDefinition& d, Warnings& warnings) {
   for (const auto& [name, gains] :
        {std::pair{"trajectory", d.guidance.trajectory}, {"plane", d.guidance.plane}}) {
-    const control::LoopMargin margin = control::loop_margin(name, gains, d.guidance.loop);
+    const control::LoopMargin margin = control::loop_margin(name, gains, handle_loop(d));
     if (is_dangerous(margin)) {
       warnings.push_back(fmt::format(
           "guidance.{}.stiffness is {} N/m; a released handle oscillates above {:.0f} N/m at "

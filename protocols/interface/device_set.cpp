@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/control/pd_controller.h"
+
 namespace haptrial::protocols {
 
 using device::Fault;
 
-DeviceSet::DeviceSet(const std::vector<Arm>& arms) {
+DeviceSet::DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& loop) {
   if (arms.empty() || arms.size() > kMostDevices) {
     throw std::invalid_argument(
         fmt::format("DeviceSet: {} devices; allowed: 1 to {}", arms.size(), kMostDevices));
@@ -17,30 +19,42 @@ DeviceSet::DeviceSet(const std::vector<Arm>& arms) {
   for (const Arm& arm : arms) {
     devices_.push_back(arm.device);
     envelopes_.emplace_back(arm.limits);
+    guards_.emplace_back(loop);
   }
   readings_.resize(arms.size());
   forces_.resize(arms.size(), Eigen::Vector3d::Zero());
+  stimuli_.resize(arms.size(), Eigen::Vector3d::Zero());
 }
 
-void DeviceSet::read(std::uint32_t keys, std::optional<double> pedal) noexcept {
+void DeviceSet::read(std::uint32_t keys, std::optional<double> pedal, double dt) noexcept {
   for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
     const bool read_ok = devices_[arm]->read(readings_[arm]);
     readings_[arm].keys = keys;
     readings_[arm].pedal = pedal.value_or(readings_[arm].pedal);
     envelopes_[arm].check(read_ok, readings_[arm]);
+    readings_[arm].shares =
+        guards_[arm].watch(readings_[arm].tool.velocity, forces_[arm], stimuli_[arm], dt);
   }
   note_trouble();
   stop_together();
 }
 
 void DeviceSet::limit(const PassOutput& wanted, std::span<const Drive> others, double dt) noexcept {
-  forces_[0] = envelopes_[0].limit(wanted.force, dt, wanted.intent);
+  limit(0, wanted, dt);
   for (std::size_t arm = 1; arm < devices_.size(); ++arm) {
     static const Drive kNothing;
-    const Drive& drive = arm <= others.size() ? others[arm - 1] : kNothing;
-    forces_[arm] = envelopes_[arm].limit(drive.force, dt, drive.intent);
+    limit(arm, arm <= others.size() ? others[arm - 1] : kNothing, dt);
   }
   stop_together();
+}
+
+/// The guard's damper never makes a force too large that the protocol keeps within the limit.
+void DeviceSet::limit(std::size_t arm, const Drive& drive, double dt) noexcept {
+  device::Envelope& envelope = envelopes_[arm];
+  const double most = std::max(envelope.limits().max_force, drive.force.norm());
+  const Eigen::Vector3d calm = control::saturate(drive.force + guards_[arm].calming(), most);
+  forces_[arm] = envelope.limit(calm, dt, drive.intent);
+  stimuli_[arm] = drive.intent.stimulus;
 }
 
 /// A fault of one device is one of all: none of them goes on with its force.
@@ -115,6 +129,18 @@ void DeviceSet::release() noexcept {
 void DeviceSet::engage() noexcept {
   for (device::Envelope& envelope : envelopes_) {
     envelope.engage();
+  }
+}
+
+void DeviceSet::go_over() noexcept {
+  for (device::Envelope& envelope : envelopes_) {
+    envelope.go_over();
+  }
+}
+
+void DeviceSet::resume() noexcept {
+  for (device::Envelope& envelope : envelopes_) {
+    envelope.resume();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/control/handle_guard.h"
 #include "core/device/device.h"
 #include "core/device/envelope.h"
 #include "core/stimulus/observer.h"
@@ -13,8 +14,8 @@
 
 namespace haptrial::protocols {
 
-/// The devices of a session, each with its reading and its envelope. One for whom something is
-/// wrong stops all of them in the same tick. Servo thread, unless a function says otherwise.
+/// The devices of a session, each with its reading, the guard that keeps its handle calm, and its
+/// envelope. One for whom something is wrong stops all of them in the same tick. Servo thread, unless a function says otherwise.
 class DeviceSet {
  public:
   /// One device; it outlives the set.
@@ -23,15 +24,17 @@ class DeviceSet {
     device::EnvelopeLimits limits;
   };
   /// @param arms  1 to kMostDevices
-  /// @throws std::invalid_argument for another number, or as Envelope does
-  explicit DeviceSet(const std::vector<Arm>& arms);
+  /// @param loop  that the guard of each handle assumes
+  /// @throws std::invalid_argument for another number, or as Envelope and HandleGuard do
+  explicit DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& loop = {});
 
   std::size_t size() const noexcept { return devices_.size(); }
   device::Device& device(std::size_t arm) noexcept { return *devices_[arm]; }
 
   /// Reads every device and judges what it said. @param keys  of the window; all devices get them
   /// @param pedal  how far the session's pedal is down; nothing if it has none
-  void read(std::uint32_t keys, std::optional<double> pedal = std::nullopt) noexcept;
+  /// @param dt     since the tick before [s]
+  void read(std::uint32_t keys, std::optional<double> pedal, double dt) noexcept;
   Readings readings() const noexcept { return Readings(readings_); }
 
   /// The forces of this tick, from what a pass wants of each device.
@@ -49,6 +52,8 @@ class DeviceSet {
   void reset() noexcept;
   void release() noexcept;
   void engage() noexcept;
+  void go_over() noexcept;
+  void resume() noexcept;
   bool may_begin() noexcept;
   /// What is wrong, and with which device, from 0; kNone if nothing is.
   device::Fault fault() const noexcept;
@@ -57,11 +62,14 @@ class DeviceSet {
   const char* trouble() const noexcept { return trouble_; }
 
  private:
+  void limit(std::size_t arm, const Drive& drive, double dt) noexcept;
   void stop_together() noexcept;
   void note_trouble() noexcept;
 
   std::vector<device::Device*> devices_;
   std::vector<device::Envelope> envelopes_;
+  std::vector<control::HandleGuard> guards_;
+  std::vector<Eigen::Vector3d> stimuli_;  // of the last forces (ForceIntent) [N]
   std::vector<device::DeviceReading> readings_;
   std::vector<Eigen::Vector3d> forces_;
   const char* trouble_{""};

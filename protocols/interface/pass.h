@@ -44,7 +44,6 @@ struct PassOutput : Drive {  // of the first device
   double applied_force{0.0};  // by the participant, downward > 0 [N]
   record::Stage stage{record::Stage::kIdle};
   bool saturated{false};      // the device's force limit was reached
-  double damping_share{1.0};  // of the damping that the definition asks for
   markers::Onsets onsets;     // what begins on this tick, if the pass names its onsets
 };
 

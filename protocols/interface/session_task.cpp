@@ -4,9 +4,22 @@
 #include <utility>
 
 namespace haptrial::protocols {
+namespace {
+
+constexpr double kNoticed = 0.9;                      // share of the damping
+constexpr std::int64_t kLongestGap_ns = 50'000'000;  // between ticks
+
+bool begins_stage(const PassOutput& out) noexcept {
+  const auto onsets = out.onsets.all();
+  return std::any_of(onsets.begin(), onsets.end(), [](const markers::Onset& onset) {
+    return onset.what == record::MarkerOf::kStage || onset.what == record::MarkerOf::kInterval;
+  });
+}
+
+}  // namespace
 
 SessionTask::SessionTask(const Parts& parts, Leave leave, Origin origin)
-    : devices_(parts.devices),
+    : devices_(parts.devices, parts.loop),
       log_(parts.log),
       device_log_(parts.device_log),
       tick_log_(parts.tick_log),
@@ -45,12 +58,14 @@ bool SessionTask::stopped() const noexcept {
 
 bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
+  resume_after_gap(tick.time_ns);
 
   devices_.read(keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0,
-                pedal_ != nullptr ? std::optional(pedal_->depth()) : std::nullopt);
+                pedal_ != nullptr ? std::optional(pedal_->depth()) : std::nullopt, tick.dt);
   const bool runs = pass_ != nullptr && !broken_off_ && devices_.fault() == device::Fault::kNone;
   const PassOutput out = runs ? pass_->tick(devices_.readings(), tick.dt) : nothing();
-  note_damping(out);
+  note_gains(out);
+  go_over_if_changed(out);
   note_onsets(tick, out);  // before anybody sees what begins
   devices_.limit(out, pass_ != nullptr ? pass_->others() : std::span<const Drive>{}, tick.dt);
   if (take_stop()) {  // it came during the tick, which a slow device may draw out
@@ -80,10 +95,10 @@ markers::TimedOnset SessionTask::timed(const realtime::Tick& tick,
 
 /// A pass begins with its trial; then its own onsets, or its stages.
 void SessionTask::note_onsets(const realtime::Tick& tick, const PassOutput& out) noexcept {
+  const bool begins = std::exchange(begins_, false);
   if (onsets_ == nullptr || pass_ == nullptr) {
     return;
   }
-  const bool begins = std::exchange(begins_, false);
   const bool has_stages = !pass_->names_onsets();
   const bool next_stage = has_stages && (begins || out.stage != told_stage_);
   if (!begins && !next_stage && out.onsets.all().empty()) {
@@ -204,10 +219,33 @@ PassOutput SessionTask::nothing() const noexcept {
   return out;
 }
 
-void SessionTask::note_damping(const PassOutput& out) noexcept {
-  if (out.stage == record::Stage::kRun && out.damping_share < 1.0) {
-    result_.least_damping = std::min(result_.least_damping, out.damping_share);
+/// Of the first device.
+void SessionTask::note_gains(const PassOutput& out) noexcept {
+  const control::GainShares& shares = devices_.readings()[0].shares;
+  if (out.stage == record::Stage::kRun && shares.damping < kNoticed) {
+    control::GainShares& least = result_.least_gains;
+    least.damping = std::min(least.damping, shares.damping);
+    least.stiffness = std::min(least.stiffness, shares.stiffness);
     ++result_.reduced_ticks;
+  }
+}
+
+/// The first tick of a pass ramps in anyway.
+void SessionTask::go_over_if_changed(const PassOutput& out) noexcept {
+  if (pass_ == nullptr) {
+    return;
+  }
+  const bool changed = std::exchange(felt_stage_, out.stage) != out.stage || begins_stage(out);
+  if (changed && !begins_) {
+    devices_.go_over();
+  }
+}
+
+/// A process that was stopped and goes on, or a computer that slept.
+void SessionTask::resume_after_gap(std::int64_t time_ns) noexcept {
+  const std::int64_t before = std::exchange(last_tick_ns_, time_ns);
+  if (before >= 0 && time_ns - before > kLongestGap_ns) {
+    devices_.resume();
   }
 }
 

@@ -25,8 +25,9 @@ struct PassResult {
   const char* trouble{""};        // what it said of it: a text of static duration
   std::uint64_t first_sample{0};  // sequence numbers, both inclusive
   std::uint64_t last_sample{0};
-  double least_damping{1.0};       // during the run, as a share of what the definition asks for
-  std::uint64_t reduced_ticks{0};  // of the run, with less than all of it
+  // During the run, of what the definition asks for (HandleGuard).
+  control::GainShares least_gains;
+  std::uint64_t reduced_ticks{0};  // with noticeably less than all of the damping
 };
 
 /// Where a resumed session goes on: what its first tick is to have.
@@ -39,7 +40,8 @@ struct Origin {
 ///
 ///     devices -> envelopes -> pass -> envelopes -> devices, observers, logs
 ///
-/// The same on a real and on a simulated clock. After a pass the force is let go over the
+/// The same on a real and on a simulated clock. Where a pass goes over to another stage, the force
+/// changes by degrees; after a gap of the loop (a suspended process) it ramps in anew. After a pass the force is let go over the
 /// envelope's ramp_out, and the next one begins when it has gone and the device is ready; between
 /// passes it is zero, and ticks are recorded all the same. The servo thread calls tick(); the
 /// session's thread calls the rest.
@@ -56,6 +58,7 @@ class SessionTask final : public realtime::ServoTask {
   /// What a task works with; all of it outlives the task.
   struct Parts {
     std::vector<DeviceSet::Arm> devices;  // 1 to kMostDevices
+    control::HandleLoop loop{};           // of all of them
     Log& log;
     DeviceLog* device_log{nullptr};  // of the devices after the first
     TickLog* tick_log{nullptr};      // the protocol's own
@@ -104,7 +107,9 @@ class SessionTask final : public realtime::ServoTask {
   bool end_if_over(std::uint64_t sequence) noexcept;
   void record(const realtime::Tick& tick, const PassOutput& out) noexcept;
   PassOutput nothing() const noexcept;
-  void note_damping(const PassOutput& out) noexcept;
+  void note_gains(const PassOutput& out) noexcept;
+  void go_over_if_changed(const PassOutput& out) noexcept;
+  void resume_after_gap(std::int64_t time_ns) noexcept;
   void note_onsets(const realtime::Tick& tick, const PassOutput& out) noexcept;
   void note_end(const realtime::Tick& tick) noexcept;
   markers::TimedOnset timed(const realtime::Tick& tick, const markers::Onset& onset) const noexcept;
@@ -136,6 +141,8 @@ class SessionTask final : public realtime::ServoTask {
   bool broken_off_{false};
   bool begins_{false};                              // the pass has had no tick yet
   record::Stage told_stage_{record::Stage::kIdle};  // of the pass
+  record::Stage felt_stage_{record::Stage::kIdle};
+  std::int64_t last_tick_ns_{-1};                   // -1: there was none
   PassResult result_;                               // published by busy_
 };
 

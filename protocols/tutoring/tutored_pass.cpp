@@ -29,7 +29,7 @@ PassOutput TutoredPass::tick(const Readings& readings, double dt) noexcept {
   handover_.ask(runs ? 1.0 : 0.0);
   handover_.step(dt);
   if (runs || handover_.share() > 0.0) {
-    lead(out, readings[0].tool);
+    lead(out, readings[0]);
   }
   if (runs) {
     playback_.step(dt);
@@ -39,19 +39,22 @@ PassOutput TutoredPass::tick(const Readings& readings, double dt) noexcept {
 }
 
 /// A tutor works on the hand: of his force only the spring has to be passive about his motion.
-void TutoredPass::lead(PassOutput& out, const PointState& own) noexcept {
+void TutoredPass::lead(PassOutput& out, const device::DeviceReading& reading) noexcept {
+  const PointState& own = reading.tool;
   const control::Partner tutor = playback_.now();
   const double share = handover_.share();
   const control::TutoringGains& gains = options_->gains;
   const Eigen::Vector3d own_force = out.force;
   const Eigen::Vector3d wanted =
-      control::tutoring_force(gains, {share, 0.0}, tutor, own, own_force);
+      control::tutoring_force(gains, {share, 0.0}, tutor, own, own_force, reading.shares);
   out.force = control::saturate(wanted, options_->most_force);
   out.saturated = out.saturated || longer(wanted, options_->most_force);
   const Eigen::Vector3d stretch = tutor.tool.position - own.position;
-  out.intent.push = out.force - share * control::coupling_force(gains, tutor.tool, own);
+  out.intent.push = out.force - share * control::coupling_force(gains, tutor.tool, own, reading.shares);
   out.intent.drive = tutor.tool.velocity;
-  out.intent.stored = 0.5 * share * gains.stiffness * stretch.squaredNorm();
+  out.intent.stored =
+      0.5 * share * reading.shares.stiffness * gains.stiffness * stretch.squaredNorm();
+  out.intent.stimulus = share * gains.force_share * tutor.force;
   log_->push({sequence_, playback_.time(), share, tutor.tool.position, tutor.force,
               out.force - (1.0 - share) * own_force});
 }

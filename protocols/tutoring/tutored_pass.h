@@ -25,7 +25,7 @@ class TutoredPass final : public Pass {
   bool wants_attention() noexcept override;
 
  private:
-  void lead(PassOutput& out, const PointState& own) noexcept;
+  void lead(PassOutput& out, const device::DeviceReading& reading) noexcept;
 
   Pass* inner_;
   const TutoringOptions* options_;

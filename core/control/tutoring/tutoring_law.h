@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/base/point_state.h"
+#include "core/control/gain_shares.h"
 
 namespace haptrial::control {
 
@@ -24,9 +25,10 @@ struct Partner {
 ///     f = K_p (p_partner - p) + D (v_partner - v)
 ///
 /// The source prints the spring with the other sign, which would push away.
+/// @param shares  of K_p and D that are used
 /// @returns zero where an input is not finite. Servo thread.
 Eigen::Vector3d coupling_force(const TutoringGains& gains, const PointState& partner,
-                               const PointState& own) noexcept;
+                               const PointState& own, const GainShares& shares = {}) noexcept;
 
 /// Who leads, seen from one side.
 struct Lead {
@@ -40,9 +42,11 @@ struct Lead {
 ///
 /// with a the partner's authority and s the force share; a = 1 is the law of the source.
 /// @param own_force  of the own world on the own tool, in W [N]
+/// @param shares     of K_p and D that are used
 /// @returns zero where an input is not finite. Servo thread.
 Eigen::Vector3d tutoring_force(const TutoringGains& gains, const Lead& lead, const Partner& partner,
-                               const PointState& own, const Eigen::Vector3d& own_force) noexcept;
+                               const PointState& own, const Eigen::Vector3d& own_force,
+                               const GainShares& shares = {}) noexcept;
 
 /// The authority as it goes from one hand to the other: at an even rate, never by a step.
 class Handover {

@@ -11,6 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kOwnMovement = 3.0;  // a hand's way over the rest positions ends about there [Hz]
+constexpr double kPassed = 4.0;       // rest positions a second; from here on the force alternates
+
 Vector3d unit_of(const Vector3d& direction, const char* sentence) {
   require(direction.allFinite() && direction.norm() > 0.0, sentence);
   return direction.normalized();
@@ -21,7 +24,8 @@ Vector3d unit_of(const Vector3d& direction, const char* sentence) {
 Detent::Detent(const DetentParameters& p, const Setting& setting)
     : parameters_(p),
       direction_(unit_of(p.direction, "Detent: direction must be finite and not zero")),
-      wave_(2.0 * std::numbers::pi / p.spacing) {
+      wave_(2.0 * std::numbers::pi / p.spacing),
+      speed_(kOwnMovement, setting.rate) {
   require(p.at.allFinite(), "Detent: at must be finite");
   require(std::isfinite(p.spacing) && p.spacing > 0.0,
           "Detent: spacing must be finite and above 0");
@@ -40,7 +44,12 @@ double Detent::within(const Vector3d& p) const noexcept {
 Vector3d Detent::force(const Felt& felt, FieldState& state) noexcept {
   const double s = within(felt.hand.position);
   state.depth = std::abs(std::remainder(s, parameters_.spacing));
-  return -parameters_.peak * std::sin(wave_ * s) * direction_;
+  const double size = -felt.shares.stiffness * parameters_.peak * std::sin(wave_ * s);
+  const double speed = std::abs(direction_.dot(speed_.next(felt.hand.velocity)));
+  if (speed > kPassed * parameters_.spacing) {
+    state.stimulus = size * direction_;
+  }
+  return size * direction_;
 }
 
 double Detent::energy(const Vector3d& p) const noexcept {
@@ -67,7 +76,7 @@ Vector3d Click::force(const Felt& felt, FieldState& state) noexcept {
   state.done = u >= 1.0;
   const double size =
       p.peak * std::min(d / p.travel, 1.0) - 0.5 * p.drop * (1.0 - std::cos(std::numbers::pi * u));
-  return -size * direction_;
+  return -felt.shares.stiffness * size * direction_;
 }
 
 double Click::energy(const Vector3d& place) const noexcept {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/scene/field/field_state.h"
+#include "core/scene/field/low_pass.h"
 
 namespace haptrial::scene {
 
@@ -19,7 +20,9 @@ struct DetentParameters {
 class Detent {
  public:
   Detent(const DetentParameters& parameters, const Setting& setting);
+  void start(const PointState& hand) noexcept { speed_.start(hand.velocity); }
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+  void adopt(const Detent& before) noexcept { speed_.adopt(before.speed_); }
   double energy(const Eigen::Vector3d& p) const noexcept;  // [J]
 
  private:
@@ -27,7 +30,8 @@ class Detent {
 
   DetentParameters parameters_;
   Eigen::Vector3d direction_;
-  double wave_;  // 2 pi / spacing [1/m]
+  double wave_;    // 2 pi / spacing [1/m]
+  LowPass speed_;  // of the hand as it moves on, without what shakes it [m/s]
 };
 
 struct ClickParameters {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/base/point_state.h"
+#include "core/control/gain_shares.h"
 
 namespace haptrial::scene {
 
@@ -24,11 +25,15 @@ struct Felt {
   PointState hand;                       // finite
   double time{0.0};                      // since the field was switched on [s]
   const SurfaceTouch* surface{nullptr};  // of the surface it lies on; null in free space
+  control::GainShares shares{};          // of its gains, which the law uses
 };
 
 /// What a protocol can read of a field after a tick, to end a stage or to know what was felt.
 struct FieldState {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // on the hand, limited and faded [N]
+  /// The part of `force` whose course in time is itself the stimulus: a vibration, a tap, a pulse, a
+  /// relief under the hand. Laws set it; the scene limits and fades it with the force. [N]
+  Eigen::Vector3d stimulus{Eigen::Vector3d::Zero()};
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // as the field filtered it [m/s]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};   // of a surface, towards the free side
   /// Surfaces and clicks: how deep the hand is in. Spring, channel, plane: how far it is from them.

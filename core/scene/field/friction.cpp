@@ -44,7 +44,8 @@ Vector3d Friction::force(const Felt& felt, FieldState& state) noexcept {
     z_ -= n.dot(z_) * n;
   }
   z_ += way;
-  const double longest = parameters_.dynamic_level * pressing / parameters_.stiffness;
+  const double stiffness = felt.shares.stiffness * parameters_.stiffness;
+  const double longest = parameters_.dynamic_level * pressing / stiffness;
   const bool dahl = parameters_.model == FrictionParameters::Model::kDahl;
   if (dahl && longest > 0.0) {
     z_ /= 1.0 + way.norm() / longest;
@@ -58,13 +59,13 @@ Vector3d Friction::force(const Felt& felt, FieldState& state) noexcept {
     sliding_ = false;
   }
   const double level = sliding_ ? parameters_.dynamic_level : parameters_.static_level;
-  if (length > level * pressing / parameters_.stiffness) {
+  if (length > level * pressing / stiffness) {
     sliding_ = true;
     z_ *= longest / length;
   }
   state.sliding = sliding_;
   state.depth = z_.norm();
-  return -parameters_.stiffness * z_;
+  return -stiffness * z_;
 }
 
 void Friction::adopt(const Friction& before) noexcept {

@@ -47,7 +47,7 @@ Hold::Hold(const PlaneParameters& p, const Setting& setting)
 Vector3d Hold::force(const Felt& felt, FieldState& state) noexcept {
   const PointState off{held_ * (felt.hand.position - place_), held_ * felt.hand.velocity};
   state.depth = off.position.norm();
-  return controller_.force({}, off);
+  return controller_.force({}, off, felt.shares);
 }
 
 double Hold::energy(const Vector3d& p) const noexcept {

@@ -59,7 +59,7 @@ Vector3d Inertia::force(const Felt& felt, FieldState& state) noexcept {
   const Vector3d acceleration = rate_ * (felt.hand.velocity - before_);
   before_ = felt.hand.velocity;
   state.velocity = felt.hand.velocity;
-  return -mass_ * filter_.next(acceleration);
+  return -felt.shares.damping * mass_ * filter_.next(acceleration);
 }
 
 void Inertia::adopt(const Inertia& before) noexcept {

@@ -29,7 +29,7 @@ void Mover::start(const PointState& hand) noexcept {
 Eigen::Vector3d Mover::force(const Felt& felt, FieldState& state) noexcept {
   state.depth = (to_ - felt.hand.position).norm();
   state.done = felt.time >= duration_;
-  return controller_.force(move_.at(felt.time), felt.hand);
+  return controller_.force(move_.at(felt.time), felt.hand, felt.shares);
 }
 
 void Mover::adopt(const Mover& before) noexcept { start({before.from_, Eigen::Vector3d::Zero()}); }

@@ -12,7 +12,8 @@ Own::Own(const OwnParameters& parameters, const Setting& setting) : type_(parame
 
 Eigen::Vector3d Own::force(const Felt& felt, FieldState& state) noexcept {
   const Eigen::Vector3d force = law_->force(felt, state);
-  return force.allFinite() ? force : Eigen::Vector3d::Zero();
+  return force.allFinite() ? Eigen::Vector3d(felt.shares.stiffness * force)
+                           : Eigen::Vector3d::Zero();
 }
 
 void Own::adopt(const Own& before) noexcept {

@@ -16,8 +16,9 @@ class OwnLaw {
   virtual ~OwnLaw() = default;
   /// The field is switched on: its filters and memories begin anew.
   virtual void start(const PointState& hand) noexcept { static_cast<void>(hand); }
-  /// One tick. The scene limits, fades and records what comes back; `state` takes depth, velocity,
-  /// normal and done, if the law has them.
+  /// One tick. The scene limits, fades and records what comes back, and makes it weaker where the
+  /// handle does not carry its stiffness. `state` takes depth, velocity, normal, done and stimulus,
+  /// if the law has them; dampers use `felt.shares.damping` of theirs.
   /// @returns the force on the hand, in W [N]; one that is not finite counts as zero
   virtual Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept = 0;
   /// Goes on where the same field of the trial before stood. @param before  of the same type

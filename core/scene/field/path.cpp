@@ -22,16 +22,10 @@ stimulus::SpatialTrajectory travelled(const PathParameters& p) {
   return stimulus::SpatialTrajectory(p.points, length / p.duration);
 }
 
-control::DampingGovernor governor(const PathParameters& p, const Setting& setting) {
-  control::HandleLoop loop = p.loop;
-  loop.rate = setting.rate;
-  return {p.gains.damping, loop};
-}
-
 }  // namespace
 
-PathGuide::PathGuide(const PathParameters& p, const Setting& setting)
-    : path_(travelled(p)), controller_(p.gains), damping_(governor(p, setting)) {}
+PathGuide::PathGuide(const PathParameters& p, const Setting&)
+    : path_(travelled(p)), controller_(p.gains) {}
 
 Eigen::Vector3d PathGuide::force(const Felt& felt, FieldState& state) noexcept {
   PointState target = path_.at(felt.time);
@@ -39,7 +33,7 @@ Eigen::Vector3d PathGuide::force(const Felt& felt, FieldState& state) noexcept {
   target.velocity *= std::clamp(std::min(felt.time, left) / kSpeedBlend, 0.0, 1.0);
   state.depth = (target.position - felt.hand.position).norm();
   state.done = left <= 0.0;
-  return controller_.force(target, felt.hand, damping_.share(felt.hand.velocity));
+  return controller_.force(target, felt.hand, felt.shares);
 }
 
 }  // namespace haptrial::scene

@@ -47,9 +47,10 @@ Vector3d Pulse::force(const Felt& felt, FieldState& state) noexcept {
   }
   const double edge = std::min(t, parameters_.duration - t);
   if (edge >= parameters_.rise) {
-    return parameters_.force;
+    return state.stimulus = parameters_.force;
   }
-  return 0.5 * (1.0 - std::cos(std::numbers::pi * edge / parameters_.rise)) * parameters_.force;
+  const double risen = 0.5 * (1.0 - std::cos(std::numbers::pi * edge / parameters_.rise));
+  return state.stimulus = risen * parameters_.force;
 }
 
 }  // namespace haptrial::scene

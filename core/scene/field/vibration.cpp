@@ -35,8 +35,8 @@ SineVibration::SineVibration(const SineVibrationParameters& p, const Setting& se
   require_audible(p.frequency, setting.rate);
 }
 
-Vector3d SineVibration::force(const Felt& felt, FieldState&) noexcept {
-  return std::sin(angular_ * felt.time + phase_) * force_;
+Vector3d SineVibration::force(const Felt& felt, FieldState& state) noexcept {
+  return state.stimulus = std::sin(angular_ * felt.time + phase_) * force_;
 }
 
 NoiseVibration::NoiseVibration(const NoiseVibrationParameters& p, const Setting& setting)
@@ -58,7 +58,7 @@ NoiseVibration::NoiseVibration(const NoiseVibrationParameters& p, const Setting&
   phasors_ = first_;
 }
 
-Vector3d NoiseVibration::force(const Felt&, FieldState&) noexcept {
+Vector3d NoiseVibration::force(const Felt&, FieldState& state) noexcept {
   double sum = 0.0;
   for (std::size_t i = 0; i < kTones; ++i) {
     const double s = phasors_.sine[i];
@@ -67,7 +67,7 @@ Vector3d NoiseVibration::force(const Felt&, FieldState&) noexcept {
     phasors_.sine[i] = s * step_.cosine[i] + c * step_.sine[i];
     phasors_.cosine[i] = c * step_.cosine[i] - s * step_.sine[i];
   }
-  return sum * force_;
+  return state.stimulus = sum * force_;
 }
 
 Tap::Tap(const TapParameters& p, const Setting& setting)
@@ -88,7 +88,7 @@ void Tap::start(const PointState&) noexcept {
   touching_ = false;
 }
 
-Vector3d Tap::force(const Felt& felt, FieldState&) noexcept {
+Vector3d Tap::force(const Felt& felt, FieldState& state) noexcept {
   if (felt.surface != nullptr) {
     const bool touches = felt.surface->pressing > 0.0;
     if (touches && !touching_) {
@@ -100,7 +100,7 @@ Vector3d Tap::force(const Felt& felt, FieldState&) noexcept {
   }
   const double t = felt.time - began_;
   const double envelope = strength_ * std::exp(-t / decay_);
-  return envelope * std::sin(angular_ * t) * direction_;
+  return state.stimulus = envelope * std::sin(angular_ * t) * direction_;
 }
 
 void Tap::adopt(const Tap& before) noexcept {

@@ -21,7 +21,7 @@ Viscous::Viscous(const MatrixViscousParameters& p, const Setting& setting)
 
 Eigen::Vector3d Viscous::force(const Felt& felt, FieldState& state) noexcept {
   state.velocity = filter_.next(felt.hand.velocity);
-  return matrix_ * state.velocity;
+  return felt.shares.damping * (matrix_ * state.velocity);
 }
 
 }  // namespace haptrial::scene

@@ -68,7 +68,7 @@ Vector3d Solid::push(const contact::Contact& contact, const Felt& felt,
                      FieldState& state) noexcept {
   const auto& q = parameters_.pose.orientation;
   const Vector3d normal = q * contact.normal;
-  const Vector3d whole = q * contact.force;
+  const Vector3d whole = felt.shares.stiffness * (q * contact.force);
   if (!(relief_.highest > 0.0)) {
     return whole;
   }
@@ -77,14 +77,18 @@ Vector3d Solid::push(const contact::Contact& contact, const Felt& felt,
   state.depth = std::max(depth, 0.0);
   state.contact = depth > 0.0;
   if (!state.contact) {
+    state.stimulus = -whole;
     return Vector3d::Zero();
   }
   const Vector3d lean = normal - relief_.slope;  // g
   const double most = limit_ / (1.0 + relief_.steepest);
-  const double wanted = parameters_.gains.stiffness * depth -
-                        parameters_.gains.damping * lean.dot(felt.hand.velocity);
+  const double wanted =
+      felt.shares.stiffness * parameters_.gains.stiffness * depth -
+      felt.shares.damping * parameters_.gains.damping * lean.dot(felt.hand.velocity);
   state.limited = wanted > most;
-  return std::clamp(wanted, 0.0, most) * lean + dragged;
+  const Vector3d force = std::clamp(wanted, 0.0, most) * lean + dragged;
+  state.stimulus = force - whole;
+  return force;
 }
 
 Vector3d Solid::force(const Felt& felt, FieldState& state) noexcept {

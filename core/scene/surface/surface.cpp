@@ -24,6 +24,15 @@ SurfaceDistance Surface::free_side(const Vector3d& p) const noexcept {
   return found;
 }
 
+/// Without the relief, which is what is felt of it beyond.
+Vector3d Surface::flat_force(const SurfaceDistance& here, const Felt& felt) const noexcept {
+  const double wanted =
+      -felt.shares.stiffness * gains_.stiffness * here.distance -
+      felt.shares.damping * gains_.damping * here.normal.dot(felt.hand.velocity);
+  return here.distance < 0.0 ? Vector3d(std::clamp(wanted, 0.0, limit_) * here.normal)
+                             : Vector3d(Vector3d::Zero());
+}
+
 Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
   const SurfaceDistance here = free_side(felt.hand.position);
   const double depth = relief_.height - here.distance;  // e
@@ -32,14 +41,21 @@ Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
   state.contact = depth > 0.0;
   state.depth = std::max(depth, 0.0);
   touch_ = {here.normal, 0.0, -here.normal.dot(felt.hand.velocity)};
+  if (relief_.highest > 0.0) {
+    state.stimulus = -flat_force(here, felt);
+  }
   if (!state.contact) {
     return Vector3d::Zero();
   }
   const double most = limit_ / (1.0 + relief_.steepest);
-  const double wanted = gains_.stiffness * depth - gains_.damping * lean.dot(felt.hand.velocity);
+  const double wanted = felt.shares.stiffness * gains_.stiffness * depth -
+                        felt.shares.damping * gains_.damping * lean.dot(felt.hand.velocity);
   const double pushed = std::clamp(wanted, 0.0, most);
   state.limited = wanted > most;
   const Vector3d force = pushed * lean;
+  if (relief_.highest > 0.0) {
+    state.stimulus += force;
+  }
   touch_.pressing = std::max(force.dot(here.normal), 0.0);
   return force;
 }

@@ -42,6 +42,7 @@ class Surface {
 
  private:
   SurfaceDistance free_side(const Eigen::Vector3d& p) const noexcept;
+  Eigen::Vector3d flat_force(const SurfaceDistance& here, const Felt& felt) const noexcept;
 
   PlacedShape shape_;
   bool inside_;

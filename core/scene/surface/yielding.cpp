@@ -58,7 +58,7 @@ Vector3d Yielding::force(const Felt& felt, FieldState& state) noexcept {
   state.depth = contact.depth;
   state.sliding = contact.state == contact::ContactState::kSlip;
   state.normal = q * contact.normal;
-  return q * contact.force;
+  return felt.shares.stiffness * (q * contact.force);
 }
 
 }  // namespace haptrial::scene

@@ -50,8 +50,6 @@ TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,
       parameters_(parameters),
       trajectory_controller_(parameters.trajectory),
       plane_controller_(parameters.plane),
-      trajectory_damping_(parameters.trajectory.damping, parameters.loop),
-      plane_damping_(parameters.plane.damping, parameters.loop),
       block_(block),
       guide_(curve_guide()),
       handover_(parameters.tutoring.ramp) {}
@@ -161,10 +159,10 @@ PassOutput TrajectoryPass::tick(const Readings& readings, double dt) noexcept {
   dt_ = dt;
   paused_ = waits_for_hand(readings[0]);
   const PointState target = guide_target(tool, dt);
-  PassOutput out = output(tool, target);
+  PassOutput out = output(readings[0], target);
   target_ = target.position;
   if (stage_ == Stage::kRun && shows_expert()) {
-    play(out, tool);
+    play(out, readings[0]);
   }
   if (stage_ == Stage::kRun && (run_lead() == RunLead::kPlayed || run_lead() == RunLead::kFree)) {
     target_ = tool.position;  // the way back starts where the hand is
@@ -216,13 +214,14 @@ PointState TrajectoryPass::released(const PointState& tool) noexcept {
 }
 
 /// What an expert's hand gives, in place of the push of the target force; a row of it.
-void TrajectoryPass::play(PassOutput& out, const PointState& tool) noexcept {
+void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading) noexcept {
+  const PointState& tool = reading.tool;
   const control::Partner model = expert();
   const double share = handover_.share();
   Eigen::Vector3d played = Eigen::Vector3d::Zero();
   if (run_lead() == RunLead::kPlayed) {
     const control::TutoringGains& gains = parameters_.tutoring.gains;
-    const Eigen::Vector3d coupling = share * control::coupling_force(gains, model.tool, tool);
+    const Eigen::Vector3d coupling = share * control::coupling_force(gains, model.tool, tool, reading.shares);
     played = share * gains.force_share * model.force + coupling;
     Eigen::Vector3d own = out.force;
     own.y() *= 1.0 - share;
@@ -232,7 +231,7 @@ void TrajectoryPass::play(PassOutput& out, const PointState& tool) noexcept {
     const double stretch = (model.tool.position - tool.position).squaredNorm();
     out.intent.push = out.force - Eigen::Vector3d(own.x(), 0.0, own.z()) - coupling;
     out.intent.drive = model.tool.velocity;
-    out.intent.stored += 0.5 * share * gains.stiffness * stretch;
+    out.intent.stored += 0.5 * share * reading.shares.stiffness * gains.stiffness * stretch;
     out.shown = presentation(
         {tool.position, stage_, along_, out.target_force, out.applied_force, out.saturated});
   }
@@ -248,20 +247,19 @@ double TrajectoryPass::takes_hold() const noexcept {
   return stage_ == Stage::kReturn && !plane_holds() ? std::clamp(time_ / kBlend, 0.0, 1.0) : 1.0;
 }
 
-PassOutput TrajectoryPass::output(const PointState& tool, const PointState& target) noexcept {
+PassOutput TrajectoryPass::output(const device::DeviceReading& reading,
+                                  const PointState& target) noexcept {
+  const PointState& tool = reading.tool;
   const bool runs = stage_ == Stage::kRun;
   const bool pushes = runs && !plane_holds();
-  const double along = trajectory_damping_.share({tool.velocity.x(), 0.0, tool.velocity.z()});
-  const double across = plane_damping_.share({0.0, tool.velocity.y(), 0.0});
   PassOutput out;
   out.stage = stage_;
   out.target_force = runs ? stimulus_.force.at(along_) : 0.0;
-  Eigen::Vector3d wanted = trajectory_controller_.force(target, tool, along);
-  const double held = takes_hold() * across;
+  Eigen::Vector3d wanted = trajectory_controller_.force(target, tool, reading.shares);
+  const control::GainShares held{reading.shares.stiffness, takes_hold() * reading.shares.damping};
   wanted.y() = pushes ? out.target_force : plane_controller_.force(target, tool, held).y();
-  out.damping_share = pushes ? along : std::min(along, across);
   out.force = control::saturate(wanted, parameters_.force_limit);
-  out.intent = intent(target, tool, out.force, pushes);
+  out.intent = intent(target, reading, out.force, pushes);
   out.saturated = longer(wanted, parameters_.force_limit);
   out.applied_force = out.force.y();
 
@@ -275,18 +273,20 @@ PassOutput TrajectoryPass::output(const PointState& tool, const PointState& targ
 }
 
 /// The springs follow their target; what pushes the hand up is meant to.
-device::ForceIntent TrajectoryPass::intent(const PointState& target, const PointState& tool,
+device::ForceIntent TrajectoryPass::intent(const PointState& target,
+                                           const device::DeviceReading& reading,
                                            const Eigen::Vector3d& force,
                                            bool pushes) const noexcept {
-  const Eigen::Vector3d stretch = target.position - tool.position;
+  const Eigen::Vector3d stretch = target.position - reading.tool.position;
+  const double share = reading.shares.stiffness;
   const double limit = parameters_.force_limit;
   device::ForceIntent intent;
   intent.drive = target.velocity;
-  intent.stored = trajectory_controller_.stored(std::hypot(stretch.x(), stretch.z()), limit);
+  intent.stored = trajectory_controller_.stored(std::hypot(stretch.x(), stretch.z()), limit, share);
   if (pushes) {
     intent.push.y() = force.y();
   } else {
-    intent.stored += plane_controller_.stored(stretch.y(), limit);
+    intent.stored += plane_controller_.stored(stretch.y(), limit, share);
   }
   return intent;
 }

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "core/control/damping_governor.h"
 #include "core/control/minimum_jerk.h"
 #include "core/control/pd_controller.h"
 #include "core/control/tutoring/tutoring_law.h"
@@ -39,7 +38,6 @@ struct GuidanceParameters {
   double recovery{3.0};                       // without force after an abort >= 0 [s]
   double run_timeout{120.0};  // at one's own pace, or beside a playback; then it is aborted > 0 [s]
   control::CurveFollowing curve{};  // at one's own pace
-  control::HandleLoop loop{};       // what the damping has to be safe for
   bool free_recall{false};          // nothing leads the hand in the test
   double pause_beyond{0.03};        // a playback waits for a hand so far off > 0 [m]
   TutoringOptions tutoring{};       // of a playback
@@ -125,17 +123,15 @@ class TrajectoryPass : public Pass {
   control::Partner expert() const noexcept;
   double longest_run() const noexcept;
   PointState released(const PointState& tool) noexcept;
-  void play(PassOutput& out, const PointState& tool) noexcept;
-  PassOutput output(const PointState& tool, const PointState& target) noexcept;
-  device::ForceIntent intent(const PointState& target, const PointState& tool,
+  void play(PassOutput& out, const device::DeviceReading& reading) noexcept;
+  PassOutput output(const device::DeviceReading& reading, const PointState& target) noexcept;
+  device::ForceIntent intent(const PointState& target, const device::DeviceReading& reading,
                              const Eigen::Vector3d& force, bool pushes) const noexcept;
 
   const stimulus::Stimulus& stimulus_;
   GuidanceParameters parameters_;
   control::PdController trajectory_controller_;
   control::PdController plane_controller_;
-  control::DampingGovernor trajectory_damping_;
-  control::DampingGovernor plane_damping_;
   std::int32_t block_;
   record::Stage stage_{record::Stage::kIdle};
   PassState state_{PassState::kRunning};

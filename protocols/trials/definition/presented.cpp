@@ -9,7 +9,6 @@
 #include "core/scene/read/read_solid.h"
 #include "core/scene/read/read_yielding.h"
 #include "core/sound/cues/read_cues.h"
-#include "protocols/definition/handle_loop.h"
 #include "protocols/definition/window_keys.h"
 #include "protocols/trials/definition/trial_devices.h"
 
@@ -47,11 +46,6 @@ void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& 
     Table table = root.table("fields");
     devices.merge(devices_of(table, d.hands));
     presented.fields = scene::read_fields(table, d.rate, names, objects);
-    for (scene::Field& field : presented.fields) {
-      if (auto* path = std::get_if<scene::PathParameters>(&field.kind)) {
-        path->loop = handle_loop(d);
-      }
-    }
   }
   presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
   presented.felt = felt_by(presented.fields, devices, d.hands);

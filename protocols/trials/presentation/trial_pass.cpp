@@ -116,11 +116,13 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
     if ((run.pushing >> field & 1) != 0) {
       drive.intent.push += scene.state(field).force;
     }
+    drive.intent.stimulus += scene.state(field).stimulus;
     saturated_ = saturated_ || scene.state(field).limited;
   }
   if (const double size = force.norm(); size > setup_.max_force) {
     drive.force *= setup_.max_force / size;
     drive.intent.push *= setup_.max_force / size;
+    drive.intent.stimulus *= setup_.max_force / size;
     saturated_ = true;
   }
   return drive;
@@ -169,13 +171,26 @@ void TrialPass::note_stage(const IntervalRun& run, PassOutput& out) noexcept {
                   static_cast<std::int16_t>(run.sights[stage].sound)});
 }
 
+/// What the fields of the interval give; after the last one, those that fade out.
+void TrialPass::feel(const Readings& readings) noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  const std::size_t devices = std::min(device_count_, run.scenes.size());
+  for (std::size_t device = 0; device < devices; ++device) {
+    if (run.scenes[device].acts()) {
+      const device::DeviceReading& reading = readings[device];
+      drives_[device] =
+          drive(run, device, run.scenes[device].force(reading.tool, reading.shares));
+    }
+  }
+}
+
 void TrialPass::present(const Readings& readings, double dt, PassOutput& out) noexcept {
   IntervalRun& run = setup_.intervals[interval_];
   const std::size_t stage = run.machine.stage();
   note_stage(run, out);
   const std::size_t devices = std::min(device_count_, run.scenes.size());
+  feel(readings);
   for (std::size_t device = 0; device < devices; ++device) {
-    drives_[device] = drive(run, device, run.scenes[device].force(readings[device].tool));
     log_contacts(run, device);
   }
   view_.stage = static_cast<std::uint8_t>(stage);
@@ -199,6 +214,9 @@ void TrialPass::end_interval() noexcept {
     begin_interval();
     --sequence_;
     return;
+  }
+  for (scene::Scene& scene : setup_.intervals[interval_].scenes) {
+    scene.switch_to(0);
   }
   view_.interval = 0;
   view_.mark_count = 0;
@@ -243,6 +261,7 @@ void TrialPass::go_on() noexcept {
 
 void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noexcept {
   time_ += dt;
+  feel(readings);
   if (part_ == Part::kFeedback) {
     if (time_ >= setup_.feedback_time) {
       go_on();

@@ -146,6 +146,7 @@ class TrialPass final : public Pass {
   void go_on_feeling() noexcept;
   void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
   int sound_of(const Asked& asked, const Answer& answer) const noexcept;
+  void feel(const Readings& readings) noexcept;
   void present(const Readings& readings, double dt, PassOutput& out) noexcept;
   void show_pressed(const IntervalRun& run, const StageSight& sight, std::size_t devices) noexcept;
   void log_contacts(const IntervalRun& run, std::size_t device) noexcept;

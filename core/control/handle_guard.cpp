@@ -1,0 +1,86 @@
+#include "core/control/handle_guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace haptrial::control {
+namespace {
+
+constexpr double kSwing = 1.0;           // peak to peak [N]
+constexpr double kLargeSwing = 2.0;      // [N]
+constexpr double kLongestGap = 0.062;    // between turns; those of a slower hand are its own [s]
+constexpr double kOfAHand = 0.033;       // turns of a hand by itself are longer apart [s]
+constexpr int kTurns = 3;                // that make an oscillation
+constexpr double kStep = 1.2;            // of g, for each turn and each N of its swing
+constexpr double kLargestStep = 2.5;     // swing that counts [N]
+constexpr double kDying = 0.96;          // of the swing before
+constexpr double kForDying = 1.5;        // g
+constexpr double kRemembered = 2.0;      // [s]
+constexpr double kStiffnessFrom = 3.0;   // g above which stiffness gives way
+constexpr double kMostGiven = 8.0;       // g
+constexpr double kMargin = 0.4;          // of g, over what was too little
+constexpr double kQuiet = 0.08;          // without a turn [s]
+constexpr double kGivingBack = 7.5;      // of g [1/s]
+constexpr double kTryingAnew = 0.2;      // of what was too little, damping [1/s]
+constexpr double kTryingStiffness = 0.3; // [1/s]
+constexpr double kSlow = 4.0;            // a hand's own movement ends about there [Hz]
+
+}  // namespace
+
+HandleGuard::HandleGuard(const HandleLoop& loop)
+    : calm_damping_(damping_of_bare_handle(std::numeric_limits<double>::infinity(), loop)),
+      turns_(kSwing, kLongestGap) {
+  if (!(loop.handle_mass > 0.0 && loop.rate > 0.0) || loop.velocity_window < 2) {
+    throw std::invalid_argument(
+        "HandleGuard: handle_mass and rate must be above 0 and velocity_window at least 2");
+  }
+}
+
+const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eigen::Vector3d& force,
+                                     const Eigen::Vector3d& accounted, double dt) noexcept {
+  const SwingCounter::Train train = turns_.look(force, accounted, dt);
+  quiet_for_ += dt;
+  if (train.turned && train.turns >= kTurns) {
+    give_way(train);
+    quiet_for_ = 0.0;
+  } else if (quiet_for_ > kQuiet) {
+    recover(dt);
+  }
+  shares_.damping = std::exp(-given_);
+  shares_.stiffness = std::exp(-std::max(0.0, given_ - kStiffnessFrom));
+  calm(velocity, dt);
+  return shares_;
+}
+
+/// What dies away by itself, as after a knock, is only damped; a hand may shake by itself, if slowly
+/// and weakly, and then only damping goes.
+void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
+  const bool dies = train.swing < kDying * train.swing_before;
+  const bool by_a_hand = train.gap > kOfAHand && train.swing < kLargeSwing;
+  if (recovers_ && !dies) {
+    too_little_ = std::min(kMostGiven, std::max(too_little_, given_ + kMargin));
+    recovers_ = false;
+  }
+  const double most = dies ? kForDying : by_a_hand ? kStiffnessFrom : kMostGiven;
+  const double step = kStep * std::min(train.swing, kLargestStep);
+  given_ = std::max(given_, std::min(most, given_ + step));
+}
+
+void HandleGuard::recover(double dt) noexcept {
+  remembered_for_ = given_ > 0.0 ? 0.0 : remembered_for_ + dt;
+  recovers_ = remembered_for_ < kRemembered && (recovers_ || given_ > 0.0);
+  const double anew = too_little_ > kStiffnessFrom ? kTryingStiffness : kTryingAnew;
+  too_little_ = std::max(0.0, too_little_ - anew * dt);
+  given_ = std::max(std::min(given_, too_little_), given_ - kGivingBack * dt);
+}
+
+void HandleGuard::calm(const Eigen::Vector3d& velocity, double dt) noexcept {
+  const Eigen::Vector3d v = velocity.allFinite() ? velocity : Eigen::Vector3d(slow_);
+  slow_ += std::min(1.0, 2.0 * std::numbers::pi * kSlow * dt) * (v - slow_);
+  calming_ = -(1.0 - shares_.damping) * calm_damping_ * (v - slow_);
+}
+
+}  // namespace haptrial::control

@@ -1,0 +1,89 @@
+#include "core/control/swing_counter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace haptrial::control {
+namespace {
+
+constexpr double kAlternates = 5.0;  // what is accounted for alternates above this [Hz]
+constexpr double kPeakMemory = 0.1;  // [s]
+
+}  // namespace
+
+SwingCounter::Train SwingCounter::look(const Eigen::Vector3d& force,
+                                       const Eigen::Vector3d& accounted, double dt) noexcept {
+  time_ += dt;
+  const double swing = least_swing_ + accounted_swing(accounted, dt);
+  const bool first = !std::exchange(begun_, true);
+  Train longest;
+  for (int i = 0; i < 3; ++i) {
+    Axis& axis = axes_[static_cast<std::size_t>(i)];
+    const double rest = force[i] - accounted[i];
+    if (first) {
+      axis.highest = axis.lowest = rest;
+    }
+    look_at(axis, rest, swing);
+    const bool longer = axis.train.turns > longest.turns ||
+                        (axis.train.turned && axis.train.turns == longest.turns);
+    if (longer) {
+      longest = axis.train;
+    }
+  }
+  return longest;
+}
+
+/// Peak to peak.
+double SwingCounter::accounted_swing(const Eigen::Vector3d& accounted, double dt) noexcept {
+  if (peak_ == 0.0 && slow_.isZero(0.0) && accounted.isZero(0.0)) {
+    return 0.0;  // as in most experiments
+  }
+  slow_ += std::min(1.0, 2.0 * std::numbers::pi * kAlternates * dt) * (accounted - slow_);
+  const double fading = peak_ - std::min(1.0, dt / kPeakMemory) * peak_;
+  peak_ = std::max(fading, (accounted - slow_).norm());
+  return 2.0 * peak_;
+}
+
+void SwingCounter::look_at(Axis& axis, double force, double swing) const noexcept {
+  axis.train.turned = false;
+  if (force > axis.highest) {
+    axis.highest = force;
+    axis.highest_at = time_;
+  }
+  if (force < axis.lowest) {
+    axis.lowest = force;
+    axis.lowest_at = time_;
+  }
+  if (axis.direction >= 0 && axis.highest - force >= swing) {
+    axis.direction = -1;
+    note_turn(axis, axis.highest_at, axis.highest);
+  } else if (axis.direction <= 0 && force - axis.lowest >= swing) {
+    axis.direction = 1;
+    note_turn(axis, axis.lowest_at, axis.lowest);
+  } else {
+    if (time_ - axis.turned_at > 2.0 * longest_gap_) {  // the next turn may have been already
+      axis.train = {};
+    }
+    return;
+  }
+  axis.highest = axis.lowest = force;
+  axis.highest_at = axis.lowest_at = time_;
+}
+
+void SwingCounter::note_turn(Axis& axis, double at, double from) const noexcept {
+  Train& train = axis.train;
+  train.gap = at - axis.turned_at;
+  train.swing_before = train.swing;
+  train.swing = std::abs(from - axis.turned_from);
+  train.largest = std::max(std::abs(from), std::abs(axis.turned_from));
+  const bool follows = train.turns > 0 && train.gap <= longest_gap_;
+  train.turns = follows ? train.turns + 1 : 1;
+  train.lasted = follows ? train.lasted + train.gap : 0.0;
+  train.turned = true;
+  axis.turned_at = at;
+  axis.turned_from = from;
+}
+
+}  // namespace haptrial::control
