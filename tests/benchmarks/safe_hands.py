@@ -1,96 +1,301 @@
-"""Every shipped definition with every hand: how long the force is at its limit, and what ends it.
+"""What the handle does in every definition with every hand: trains of turns, steps, work and faults.
 
-usage: safe_hands.py HAPTRIAL [HAPTRIAL_BEFORE]
-Dry runs with the hand's mass from nearly nothing to 2 kg (damping and stiffness in proportion), at
-1 to 4 kHz and with forces that come one to three ticks late. Prints a Markdown table: seconds with
-the force at its limit, of the seconds with a force, the passes that were aborted, and the tracking
-error; with a second command, which may be older and know no force_delay, also those of that one.
+Every shipped definition and those of careless.toml are checked by `haptrial validate` and presented by
+`haptrial dry-run` at several rates, delays of the force and hands. The table has a row for each
+definition and loop and a column for each hand; a cell says
+
+    seconds in trains (the longest train) / largest step of the force [N] / passes aborted of passes
+
+session_swings.py says what a train is. A step is the change of the force from one tick to the next;
+the tick in which a fault cuts the force to zero does not count. `w` after a cell means that validate
+warned, `refused` that it refused. The force of a row with kinds of fields in brackets may swing, since
+those fields move by themselves.
 """
+import argparse
+import collections
+import csv
+import json
+import multiprocessing
 import os
 import re
 import subprocess
 import sys
 import tempfile
+import tomllib
 
-import h5py
-import numpy
+from session_swings import LONGEST, measure
 
-EXPERIMENTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "experiments")
-MASSES = [0.001, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2, 2.0]  # [kg]
-LOOPS = [(1000, 1), (1000, 2), (1000, 3), (2000, 1), (2000, 3), (4000, 1), (4000, 3)]
-FORCE_STUDIES = ["force_training", "force_training_curve"]
-DRILLINGS = ["bone_drilling", "construct_validity"]
+HERE = os.path.dirname(os.path.abspath(__file__))
+SHIPPED = os.path.join(HERE, "..", "..", "experiments")
 
+FREE_STEP = 0.5  # of the force, that is accepted beside what contact explains [N]
+ACTIVE = {"vibration", "tap", "grating", "texture", "matrix_viscous", "pulse", "minimum_jerk", "path"}
 
-def with_key(text, key, value):
-    changed, count = re.subn(rf"(?m)^{key} *=[^\n#]*", f"{key} = {value} ", text, count=1)
-    if count == 0:
-        raise SystemExit(f"no key {key}")
-    return changed
+LOOPS = [(rate, delay) for rate in (500, 1000, 2000, 4000) for delay in (1, 2, 3)]  # [Hz], ticks
+PROPORTIONAL = [0.001, 0.02, 0.05, 0.15, 0.3, 0.5, 0.8, 2.0]  # hands [kg]; the first is the bare handle
 
 
-def definition(name, mass, rate, delay):
-    with open(os.path.join(EXPERIMENTS, name + ".toml"), encoding="utf-8") as file:
-        text = file.read()
-    share = mass / 0.8
-    text = with_key(text, "rate", float(rate))
-    head, hand = text.split("\n[hand]", 1)
-    for key, value in (("hand_mass", mass), ("damping", 15.0 * share), ("stiffness", 250.0 * share)):
-        hand = with_key(hand, key, value)
-    text = head + "\n[hand]" + hand
-    if delay > 1:
-        text = text.replace("\n[device]", f"\n[device]\nforce_delay = {delay}", 1)
-        text = re.sub(r"\n\[device\]([^\n]*)\nforce_delay", r"\n[device]\nforce_delay", text)
-    if name in DRILLINGS:
-        text = with_key(text, "time_limit", 15.0)
-    return text
+def hand(mass, damping=None, stiffness=None):
+    """Keys of [hand]: those of the shipped hand of 0.8 kg, in proportion to the mass."""
+    return {"hand_mass": mass,
+            "damping": 15.0 * mass / 0.8 if damping is None else damping,
+            "stiffness": 250.0 * mass / 0.8 if stiffness is None else stiffness}
 
 
-def measure(haptrial, name, mass, rate, delay):
+HANDS = {f"{mass:g} kg": hand(mass) for mass in PROPORTIONAL}
+HANDS["firm"] = hand(2.0, stiffness=3000.0)
+HANDS["released"] = hand(0.001, damping=0.0, stiffness=0.0)
+
+Cell = collections.namedtuple("Cell", "name definition rate delay hand")
+QUICK_SHIPPED = [("force_training", 1000, 1, "0.05 kg"), ("force_training", 500, 3, "0.5 kg"),
+                 ("tutoring_study", 1000, 1, "0.8 kg"), ("force_discrimination", 1000, 1, "0.8 kg"),
+                 ("grating_discrimination", 1000, 1, "0.8 kg"), ("curl_field", 1000, 1, "0.8 kg")]
+QUICK_HANDS = ["0.001 kg", "0.3 kg", "0.8 kg"]  # of careless definitions, at 1 kHz
+
+
+# --- definitions ---
+def merge(base, other):
+    """Keys of `other` in place of those of `base`, table by table."""
+    merged = dict(base)
+    for key, value in other.items():
+        both = isinstance(value, dict) and isinstance(merged.get(key), dict)
+        merged[key] = merge(merged[key], value) if both else value
+    return merged
+
+
+def toml(value):
+    """A value of TOML on one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{json.dumps(k)} = {toml(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(toml(v) for v in value) + "]"
+    if isinstance(value, (str, bool)):
+        return json.dumps(value, ensure_ascii=False)
+    return repr(value)
+
+
+def write_definition(definition, file):
+    with open(file, "w", encoding="utf-8") as out:
+        out.writelines(f"{key} = {toml(value)}\n" for key, value in definition.items())
+
+
+def read_toml(file):
+    with open(file, "rb") as source:
+        return tomllib.load(source)
+
+
+def careless_definitions():
+    tables = read_toml(os.path.join(HERE, "careless.toml"))
+    base = tables.pop("base")
+    return {name: merge(base, merge(table, {"experiment": {"name": name}}))
+            for name, table in tables.items()}
+
+
+def shipped_definitions():
+    names = sorted(f[:-5] for f in os.listdir(SHIPPED) if f.endswith(".toml") and ".texts." not in f)
+    return {name: read_toml(os.path.join(SHIPPED, name + ".toml")) for name in names}
+
+
+def is_drilling(definition):
+    return "drilling" in definition
+
+
+def at_loop(definition, rate, delay, keys):
+    """The definition at a rate and a delay of the force, for a hand with these keys."""
+    changed = {"experiment": {"rate": float(rate)}, "device": {"force_delay": delay}, "hand": keys}
+    if is_drilling(definition):
+        changed["drilling"] = {"time_limit": 15.0}
+    return merge(definition, changed)
+
+
+def active_fields(definition):
+    return sorted({field.get("type") for field in definition.get("fields", {}).values()} & ACTIVE)
+
+
+def numbers(value):
+    """Every number in a value, however deep."""
+    if isinstance(value, dict):
+        return [n for each in value.values() for n in numbers(each)]
+    if isinstance(value, list):
+        return [n for each in value for n in numbers(each)]
+    return [value] if isinstance(value, (int, float)) and not isinstance(value, bool) else []
+
+
+def greatest(definition, *names):
+    """The greatest number that stands under a key of these names; a formula may be any level."""
+    levels = numbers([definition.get(key, {}) for key in ("procedure", "factors", "intervals")])
+    found = [0.0]
+
+    def look(table):
+        for key, value in table.items():
+            if isinstance(value, dict):
+                look(value)
+            elif key in names:
+                found.extend(numbers(value) or (levels if isinstance(value, str) else []))
+    for section in ("fields", "objects", "guidance", "tutoring", "drilling"):
+        look(definition.get(section, {}))
+    return max(found)
+
+
+# --- one cell of the table ---
+def run(command, folder):
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def present(cell, haptrial, folder):
+    """What validate says of a cell, and what a dry run of it does."""
+    definition = at_loop(cell.definition, cell.rate, cell.delay, HANDS[cell.hand])
+    file = os.path.join(folder, cell.name + ".toml")
+    write_definition(definition, file)
+    status, said = run([haptrial, "validate", file], folder)
+    warnings = re.findall(r"(?m)^warning: (.*)", said)
+    result = {"name": cell.name, "rate": cell.rate, "delay": cell.delay, "hand": cell.hand,
+              "active": " ".join(active_fields(definition)), "validate": status,
+              "warnings": " | ".join(warnings) if status == 0 else said.strip()}
+    if status != 0:
+        return result
+    trials = "1" if is_drilling(definition) else "4"
+    sessions = os.path.join(folder, "sessions")
+    _, said = run([haptrial, "dry-run", file, "--subjects", "1", "--trials", trials, "--jobs", "1",
+                   "--out", sessions], folder)
+    files = [f for f in os.listdir(sessions) if f.endswith(".h5")] if os.path.isdir(sessions) else []
+    if not files:
+        return {**result, "failed": said.strip()}
+    gains = greatest(definition, "stiffness", "spring"), greatest(definition, "damping")
+    return {**result, **measure(os.path.join(sessions, files[0]), cell.delay, gains)}
+
+
+def present_cell(task):
+    cell, haptrial, keep = task
+    if keep:
+        folder = os.path.join(os.path.abspath(keep),
+                              f"{cell.name}-{cell.rate}-{cell.delay}-{cell.hand.replace(' ', '-')}")
+        os.makedirs(folder)
+        return present(cell, haptrial, folder)
     with tempfile.TemporaryDirectory() as folder:
-        file = os.path.join(folder, name + ".toml")
-        with open(file, "w", encoding="utf-8") as out:
-            out.write(definition(name, mass, rate, delay))
-        command = [haptrial, "dry-run", file, "--subjects", "1", "--out", os.path.join(folder, "s")]
-        command += ["--trials", "1" if name in DRILLINGS else "4"]
-        done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
-        if done.returncode != 0:
-            return {"why": done.stderr.strip().splitlines()[-1] if done.stderr.strip() else "failed"}
-        sessions = [f for f in os.listdir(os.path.join(folder, "s")) if f.endswith(".h5")]
-        with h5py.File(os.path.join(folder, "s", sessions[0]), "r") as session:
-            samples = session["samples"][:]
-            trials = session["trials"][:]
-    force = numpy.sqrt(sum(samples[f"force_{a}"].astype(float) ** 2 for a in "xyz"))
-    run = samples["stage"] == 3
-    return {"limit": (force >= 0.98 * 12.0).sum() / rate,
-            "driven": (force > 0).sum() / rate,
-            "aborted": int((trials["status"] == b"aborted").sum()), "passes": len(trials),
-            "y": 1e3 * float(numpy.sqrt(numpy.mean(samples["position_y"][run].astype(float) ** 2)))
-                 if run.any() else float("nan")}
+        return present(cell, haptrial, folder)
 
 
-def cell(result):
-    if "why" in result:
-        return result["why"][:60]
-    return (f"{result['limit']:.2f} of {result['driven']:.0f} s, "
-            f"{result['aborted']} of {result['passes']}, {result['y']:.2f}")
+def loops_of(definition):
+    return [loop for loop in LOOPS if not is_drilling(definition) or loop in ((1000, 1), (1000, 3))]
+
+
+def cells_of(options):
+    """The cells of the table, row by row."""
+    shipped, careless = shipped_definitions(), careless_definitions()
+    if options.quick:
+        cells = [Cell(n, shipped[n], rate, delay, h) for n, rate, delay, h in QUICK_SHIPPED]
+        cells += [Cell(n, d, 1000, 1, h) for n, d in careless.items() for h in QUICK_HANDS]
+    else:
+        cells = [Cell(n, d, *loop, h) for n, d in {**shipped, **careless}.items()
+                 for loop in loops_of(d) for h in HANDS]
+    return [c for c in cells if re.search(options.only, f"{c.name} {c.rate} {c.delay} {c.hand}")]
+
+
+# --- the table ---
+COLUMNS = ("name rate delay hand active validate warnings failed trains longest long_trains step "
+           "any_step unexplained work passes completed aborted faults seconds sentences").split()
+
+
+def as_text(result):
+    if result is None:
+        return "-"
+    if int(result["validate"]) != 0:
+        return "refused"
+    if result.get("failed"):
+        return "failed"
+    trains, longest, step = (float(result[key]) for key in ("trains", "longest", "step"))
+    return (f"{trains:.2f} ({longest:.2f}) / {step:.2f} / {result['aborted']} of {result['passes']}"
+            + (" w" if result["warnings"] else ""))
+
+
+def breaks_rule(result):
+    """A train or a step that validate should not have let pass."""
+    if int(result["validate"]) != 0 or result.get("failed"):
+        return False
+    swings = int(result["long_trains"]) > 0 and not result["active"]
+    return swings or float(result["unexplained"]) > FREE_STEP
+
+
+def key_of(result):
+    return result["name"], int(result["rate"]), int(result["delay"]), result["hand"]
+
+
+def print_row(row, hands, results, before):
+    name, rate, delay = row
+    first = next(r for r in results.values() if r["name"] == name)
+    cells = []
+    for each in hands:
+        key = (*row, each)
+        if key not in results:
+            cells.append("")
+            continue
+        cells.append((as_text(before.get(key)) + " → " if before else "") + as_text(results[key]))
+    mark = f" ({first['active']})" if first["active"] else ""
+    print(f"| {name}{mark} | {rate} | {delay} | " + " | ".join(cells) + " |", flush=True)
+
+
+def read_results(file):
+    with open(file, newline="", encoding="utf-8") as source:
+        return {key_of(row): row for row in csv.DictReader(source)}
+
+
+def measured(cells, haptrial, jobs, csv_file=os.devnull, keep=None):
+    """Results of the cells in their order; each is written to the CSV file as soon as it is there."""
+    tasks = [(cell, os.path.abspath(haptrial), keep) for cell in cells]
+    with (open(csv_file or os.devnull, "w", newline="", encoding="utf-8") as file,
+          multiprocessing.Pool(jobs) as pool):
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for result in pool.imap(present_cell, tasks):
+            writer.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in result.items()})
+            file.flush()
+            yield result
+
+
+def summary(results):
+    passed = [r for r in results if int(r["validate"]) == 0]
+    broken = [r for r in passed if breaks_rule(r)]
+    silent = sum(not r["warnings"] for r in broken)
+    return (f"{len(results)} cells, {len(results) - len(passed)} refused; {len(broken)} break the rule: no "
+            f"train above {LONGEST} s, no step of {FREE_STEP} N more than contact explains; "
+            f"{silent} of them without a warning")
+
+
+def read_options():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("haptrial")
+    parser.add_argument("before", nargs="?", help="an older haptrial, or the CSV file of its run")
+    parser.add_argument("--quick", action="store_true", help="a selection that takes about three minutes")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--only", default="", help="regular expression of 'NAME RATE DELAY HAND'")
+    parser.add_argument("--csv", help="new file with every figure")
+    parser.add_argument("--keep", help="new folder for the definitions and session files")
+    return parser.parse_args()
 
 
 def main():
-    commands = [os.path.abspath(path) for path in sys.argv[1:3]]
-    names = ["after", "before"][:len(commands)][::-1]
-    print("| definition | Hz | ticks late | hand [kg] | " + " | ".join(names) + " |")
-    print("| --- | --- | --- | --- | " + " | ".join("---" for _ in names) + " |")
-    for name in FORCE_STUDIES + DRILLINGS:
-        for rate, delay in LOOPS if name not in DRILLINGS else LOOPS[:1] + LOOPS[2:3]:
-            for mass in MASSES if name not in DRILLINGS else MASSES[:1] + MASSES[2:4] + MASSES[5:6]:
-                results = []
-                for command in commands:
-                    old = command != commands[0]
-                    results.append({"why": "-"} if old and delay > 1
-                                   else measure(command, name, mass, rate, delay))
-                print(f"| {name} | {rate} | {delay} | {mass} | "
-                      + " | ".join(cell(r) for r in results[::-1]) + " |", flush=True)
+    options = read_options()
+    cells = cells_of(options)
+    if not cells:
+        sys.exit(f"no cell is called {options.only}")
+    hands = [h for h in HANDS if any(c.hand == h for c in cells)]
+    before = {}
+    if options.before and options.before.endswith(".csv"):
+        before = read_results(options.before)
+    elif options.before:
+        before = {key_of(r): r for r in measured(cells, options.before, options.jobs)}
+    print("| definition | Hz | ticks late | " + " | ".join(hands) + " |")
+    print("| --- | --- | --- | " + " | ".join("---" for _ in hands) + " |")
+    last = {(c.name, c.rate, c.delay): c.hand for c in cells}
+    results = {}
+    for result in measured(cells, options.haptrial, options.jobs, options.csv, options.keep):
+        results[key_of(result)] = result
+        if last[key_of(result)[:3]] == result["hand"]:
+            print_row(key_of(result)[:3], hands, results, before)
+    print(f"\n{summary(list(results.values()))}")
 
 
 if __name__ == "__main__":
