@@ -15,6 +15,7 @@ import argparse
 import collections
 import csv
 import json
+import math
 import multiprocessing
 import os
 import re
@@ -29,9 +30,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SHIPPED = os.path.join(HERE, "..", "..", "experiments")
 
 FREE_STEP = 0.5  # of the force, that is accepted beside what contact explains [N]
-ACTIVE = {"vibration", "tap", "grating", "texture", "matrix_viscous", "pulse", "minimum_jerk", "path"}
+PUSHING = {"vibration", "tap", "pulse", "grating", "texture"}  # whose force may swing and step
+STEERING = {"matrix_viscous", "minimum_jerk", "path"}          # whose force may swing
 
-LOOPS = [(rate, delay) for rate in (500, 1000, 2000, 4000) for delay in (1, 2, 3)]  # [Hz], ticks
+LOOPS = [(500, 1), (500, 3), (1000, 1), (1000, 2), (1000, 3), (2000, 1), (2000, 3), (4000, 1),
+         (4000, 3)]  # [Hz], ticks from a command to its force
 PROPORTIONAL = [0.001, 0.02, 0.05, 0.15, 0.3, 0.5, 0.8, 2.0]  # hands [kg]; the first is the bare handle
 
 
@@ -47,18 +50,18 @@ HANDS["firm"] = hand(2.0, stiffness=3000.0)
 HANDS["released"] = hand(0.001, damping=0.0, stiffness=0.0)
 
 Cell = collections.namedtuple("Cell", "name definition rate delay hand")
-QUICK_SHIPPED = [("force_training", 1000, 1, "0.05 kg"), ("force_training", 500, 3, "0.5 kg"),
-                 ("tutoring_study", 1000, 1, "0.8 kg"), ("force_discrimination", 1000, 1, "0.8 kg"),
-                 ("grating_discrimination", 1000, 1, "0.8 kg"), ("curl_field", 1000, 1, "0.8 kg")]
-QUICK_HANDS = ["0.001 kg", "0.3 kg", "0.8 kg"]  # of careless definitions, at 1 kHz
+QUICK_LOOPS = [(500, 3), (1000, 1)]
+QUICK_HANDS = ["0.001 kg", "0.05 kg", "0.3 kg", "0.8 kg"]
+DRILLING_LOOPS = [(1000, 1), (1000, 3)]
+DRILLING_HANDS = ["0.001 kg", "0.15 kg", "0.3 kg", "0.8 kg", "2 kg"]
 
 
 # --- definitions ---
 def merge(base, other):
-    """Keys of `other` in place of those of `base`, table by table."""
+    """Keys of `other` in place of those of `base`, table by table; an action is replaced whole."""
     merged = dict(base)
     for key, value in other.items():
-        both = isinstance(value, dict) and isinstance(merged.get(key), dict)
+        both = isinstance(value, dict) and isinstance(merged.get(key), dict) and "do" not in value
         merged[key] = merge(merged[key], value) if both else value
     return merged
 
@@ -109,7 +112,9 @@ def at_loop(definition, rate, delay, keys):
 
 
 def active_fields(definition):
-    return sorted({field.get("type") for field in definition.get("fields", {}).values()} & ACTIVE)
+    """Kinds of fields that move by themselves; a burr vibrates."""
+    kinds = {field.get("type") for field in definition.get("fields", {}).values()}
+    return ["burr"] if is_drilling(definition) else sorted(kinds & (PUSHING | STEERING))
 
 
 def numbers(value):
@@ -131,10 +136,27 @@ def greatest(definition, *names):
             if isinstance(value, dict):
                 look(value)
             elif key in names:
-                found.extend(numbers(value) or (levels if isinstance(value, str) else []))
-    for section in ("fields", "objects", "guidance", "tutoring", "drilling"):
+                found.extend(levels if isinstance(value, str) else numbers(value))
+    for section in ("fields", "objects", "guidance", "tutoring"):
         look(definition.get(section, {}))
     return max(found)
+
+
+def key_stiffness(field):
+    """The steepest slope of the force of a detent or a click [N/m]."""
+    if field.get("type") == "detent":
+        return 2.0 * math.pi * field["peak"] / field["spacing"]
+    if field.get("type") == "click":
+        return max(field["peak"] / field["travel"],
+                   0.5 * math.pi * field["drop"] / field["drop_travel"])
+    return 0.0
+
+
+def gains_of(definition):
+    """The greatest stiffness [N/m] and damping [N·s/m] that a definition states."""
+    keys = [key_stiffness(field) for field in definition.get("fields", {}).values()]
+    return (max([greatest(definition, "stiffness", "spring"), *keys]),
+            greatest(definition, "damping", "matrix"))
 
 
 # --- one cell of the table ---
@@ -162,8 +184,8 @@ def present(cell, haptrial, folder):
     files = [f for f in os.listdir(sessions) if f.endswith(".h5")] if os.path.isdir(sessions) else []
     if not files:
         return {**result, "failed": said.strip()}
-    gains = greatest(definition, "stiffness", "spring"), greatest(definition, "damping")
-    return {**result, **measure(os.path.join(sessions, files[0]), cell.delay, gains)}
+    file = os.path.join(sessions, files[0])
+    return {**result, **measure(file, cell.delay, gains_of(definition))}
 
 
 def present_cell(task):
@@ -177,19 +199,19 @@ def present_cell(task):
         return present(cell, haptrial, folder)
 
 
-def loops_of(definition):
-    return [loop for loop in LOOPS if not is_drilling(definition) or loop in ((1000, 1), (1000, 3))]
+def loops_and_hands(definition, quick):
+    if is_drilling(definition):
+        return ([], []) if quick else (DRILLING_LOOPS, DRILLING_HANDS)
+    return (QUICK_LOOPS, QUICK_HANDS) if quick else (LOOPS, HANDS)
 
 
 def cells_of(options):
-    """The cells of the table, row by row."""
-    shipped, careless = shipped_definitions(), careless_definitions()
-    if options.quick:
-        cells = [Cell(n, shipped[n], rate, delay, h) for n, rate, delay, h in QUICK_SHIPPED]
-        cells += [Cell(n, d, 1000, 1, h) for n, d in careless.items() for h in QUICK_HANDS]
-    else:
-        cells = [Cell(n, d, *loop, h) for n, d in {**shipped, **careless}.items()
-                 for loop in loops_of(d) for h in HANDS]
+    """The cells of the table, row by row; drillings, which take longest, come last."""
+    definitions = {**shipped_definitions(), **careless_definitions()}
+    cells = []
+    for name, definition in sorted(definitions.items(), key=lambda item: is_drilling(item[1])):
+        loops, hands = loops_and_hands(definition, options.quick)
+        cells += [Cell(name, definition, *loop, each) for loop in loops for each in hands]
     return [c for c in cells if re.search(options.only, f"{c.name} {c.rate} {c.delay} {c.hand}")]
 
 
@@ -214,8 +236,9 @@ def breaks_rule(result):
     """A train or a step that validate should not have let pass."""
     if int(result["validate"]) != 0 or result.get("failed"):
         return False
-    swings = int(result["long_trains"]) > 0 and not result["active"]
-    return swings or float(result["unexplained"]) > FREE_STEP
+    active = set(result["active"].split())
+    swings = int(result["long_trains"]) > 0 and not active
+    return swings or float(result["unexplained"]) > FREE_STEP and active <= STEERING
 
 
 def key_of(result):
@@ -268,7 +291,8 @@ def read_options():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("haptrial")
     parser.add_argument("before", nargs="?", help="an older haptrial, or the CSV file of its run")
-    parser.add_argument("--quick", action="store_true", help="a selection that takes about three minutes")
+    parser.add_argument("--quick", action="store_true",
+                        help="two loops and four hands, no drillings: three minutes on two cores")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", default="", help="regular expression of 'NAME RATE DELAY HAND'")
     parser.add_argument("--csv", help="new file with every figure")
