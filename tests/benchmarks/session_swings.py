@@ -77,16 +77,6 @@ def aborted_passes(session):
     return dict(zip(rows.tolist(), texts))
 
 
-def cuts_of_faults(of_pass, force, faults):
-    """Ticks at which a fault brought the force to zero."""
-    acting = force.any(axis=1)
-    cuts = []
-    for row in faults:
-        ticks = numpy.flatnonzero((of_pass == row) & acting)
-        cuts += [ticks[-1] + 1] if len(ticks) else []
-    return [tick for tick in cuts if tick < len(acting) and not acting[tick]]
-
-
 def measure_device(device, faults, rate, delay, gains):
     """Trains, steps and work of one device. A force acts from `delay` ticks after its command on."""
     of_pass, position, velocity, force = device
@@ -100,7 +90,7 @@ def measure_device(device, faults, rate, delay, gains):
     explained = (gains[0] * numpy.linalg.norm(moved, axis=1)
                  + gains[1] * numpy.linalg.norm(numpy.diff(velocity, axis=0), axis=1))
     meant = numpy.ones(len(steps), dtype=bool)
-    meant[[cut - 1 for cut in cuts_of_faults(of_pass, force, faults)]] = False
+    meant[[part[-1] - 1 for part in parts if of_pass[part[0]] in faults]] = False  # cut to zero
     work = numpy.zeros(len(force))
     work[delay + 1:] = (force[:-1 - delay] * moved[delay:]).sum(axis=1)
     return {"trains": max(map(sum, trains)), "longest": max(map(max, ([0.0, *t] for t in trains))),
