@@ -272,7 +272,7 @@ def measured(cells, haptrial, jobs, csv_file=os.devnull, keep=None):
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
         for result in pool.imap(present_cell, tasks):
-            writer.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in result.items()})
+            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in result.items()})
             file.flush()
             yield result
 
