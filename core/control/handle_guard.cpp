@@ -9,7 +9,7 @@
 namespace haptrial::control {
 namespace {
 
-constexpr double kSwing = 1.0;           // peak to peak [N]
+constexpr double kSwing = 1.5;           // peak to peak [N]
 constexpr double kLargeSwing = 2.0;      // [N]
 constexpr double kLongestGap = 0.062;    // between turns; those of a slower hand are its own [s]
 constexpr double kOfAHand = 0.033;       // turns of a hand by itself are longer apart [s]
@@ -26,6 +26,7 @@ constexpr double kQuiet = 0.08;          // without a turn [s]
 constexpr double kGivingBack = 7.5;      // of g [1/s]
 constexpr double kTryingAnew = 0.2;      // of what was too little, damping [1/s]
 constexpr double kTryingStiffness = 0.3; // [1/s]
+constexpr double kFastest = 80.0;        // change of a share, so that 6 N change by 0.5 N in 1 ms [1/s]
 constexpr double kSlow = 4.0;            // a hand's own movement ends about there [Hz]
 
 }  // namespace
@@ -49,8 +50,11 @@ const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eige
   } else if (quiet_for_ > kQuiet) {
     recover(dt);
   }
-  shares_.damping = std::exp(-given_);
-  shares_.stiffness = std::exp(-std::max(0.0, given_ - kStiffnessFrom));
+  const auto go_towards = [dt](double& share, double wanted) {
+    share += std::clamp(wanted - share, -kFastest * dt, kFastest * dt);
+  };
+  go_towards(shares_.damping, std::exp(-given_));
+  go_towards(shares_.stiffness, std::exp(-std::max(0.0, given_ - kStiffnessFrom)));
   calm(velocity, dt);
   return shares_;
 }

@@ -12,7 +12,7 @@ constexpr double kShareOfLimit = 0.5;    // of the limit, peak to peak
 constexpr double kNear = 0.7;            // of the limit
 constexpr double kGapNearLimit = 0.080;  // [s]
 constexpr int kTurnsNearLimit = 4;
-constexpr double kLastingNearLimit = 0.073;  // [s]
+constexpr double kLastingNearLimit = 0.065;  // [s]
 
 // Anywhere: what no hand does by itself.
 constexpr double kSwing = 2.0;        // peak to peak [N]

@@ -1,5 +1,6 @@
 #include "core/device/virtual_device.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -20,19 +21,24 @@ VirtualDeviceParameters read_virtual_device_parameters(Table& table) {
   return p;
 }
 
+int readings_in_window(int milliseconds, double rate) noexcept {
+  return std::max(2, static_cast<int>(std::lround(1e-3 * milliseconds * rate)));
+}
+
 VirtualDevice::VirtualDevice(const VirtualDeviceParameters& parameters, HandlePhysics& physics,
                              double rate)
-    : parameters_(parameters),
+    : readings_(readings_in_window(parameters.velocity_window, rate)),
+      parameters_(parameters),
       info_{"virtual", parameters.max_force, parameters.workspace_radius, true},
       physics_(physics),
       period_(1.0 / rate) {
-  const int n = parameters.velocity_window;
-  if (n < 2 || n > kMaxWindow || !(rate > 0.0) || !(parameters.max_force > 0.0) ||
+  const int n = readings_;
+  if (parameters.velocity_window < 2 || parameters.velocity_window > 64 || n > kMaxWindow || !(rate > 0.0) || !(parameters.max_force > 0.0) ||
       !(parameters.position_quantum >= 0.0) || parameters.force_delay < 1 ||
       parameters.force_delay > kMaxDelay) {
     throw std::invalid_argument(
         "VirtualDevice: rate and max_force must be above 0, position_quantum at least 0, "
-        "velocity_window from 2 to 64 and force_delay from 1 to 8");
+        "velocity_window from 2 to 64 ms and at most 1024 readings, and force_delay from 1 to 8");
   }
   slope_gain_ = 12.0 / (static_cast<double>(n) * (n * n - 1.0) * period_);
   history_.fill(Eigen::Vector3d::Zero());
@@ -44,14 +50,14 @@ VirtualDevice::VirtualDevice(const VirtualDeviceParameters& parameters, HandlePh
 
 void VirtualDevice::sense(const Eigen::Vector3d& position) noexcept {
   const double q = parameters_.position_quantum;
-  newest_ = newest_ + 1 < parameters_.velocity_window ? newest_ + 1 : 0;
+  newest_ = newest_ + 1 < readings_ ? newest_ + 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
     history_[newest_][axis] = q > 0.0 ? q * std::nearbyint(position[axis] / q) : position[axis];
   }
 }
 
 bool VirtualDevice::read(DeviceReading& reading) noexcept {
-  const int n = parameters_.velocity_window;
+  const int n = readings_;
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
   int at = newest_;
   for (int age = 0; age < n; ++age) {

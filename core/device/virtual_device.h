@@ -16,16 +16,20 @@ struct VirtualDeviceParameters {
   double max_force{12.0};          // motors saturate here > 0 [N]
   double workspace_radius{0.075};  // > 0 [m]
   double position_quantum{1e-5};   // resolution of the encoders >= 0 [m]
-  int velocity_window{8};          // readings in the slope that estimates velocity, 2 to 64
+  int velocity_window{8};          // time of the slope that estimates velocity, 2 to 64 [ms]
   int force_delay{1};              // ticks from write() to the force, 1 to 8
 };
+
+/// How many readings a window of velocity has: two at least.
+int readings_in_window(int milliseconds, double rate) noexcept;
 
 /// Reads the keys of a [device] table; force_delay may be left out.
 VirtualDeviceParameters read_virtual_device_parameters(Table& table);
 
 /// A device without hardware. Each write() advances the physics by one period; the force of a tick
 /// acts force_delay ticks later, by default during the next one, as it does through a bus.
-/// Velocity is the least-squares slope over the last readings, as drivers estimate it.
+/// Velocity is the least-squares slope over the last readings, as drivers estimate it: over those of
+/// velocity_window, whatever the rate, but two at least.
 class VirtualDevice final : public Device {
  public:
   /// @param physics  outlives the device.
@@ -46,9 +50,11 @@ class VirtualDevice final : public Device {
   }
 
  private:
-  static constexpr int kMaxWindow = 64;
+  static constexpr int kMaxWindow = 1024;
   static constexpr int kMaxDelay = 8;
   void sense(const Eigen::Vector3d& position) noexcept;
+
+  int readings_;  // in the slope
 
   VirtualDeviceParameters parameters_;
   DeviceInfo info_;

@@ -88,18 +88,6 @@ Law law_of(const Field& field, const Setting& setting) {
       field.kind);
 }
 
-/// Nothing that is pressed or holds the hand appears or goes by a step.
-constexpr double kShortestFade = 0.05;  // [s]
-
-/// The course in time of these is itself the stimulus, so they may begin and end as they do.
-bool is_stimulus(const FieldKind& kind) noexcept {
-  return std::holds_alternative<PulseParameters>(kind) ||
-         std::holds_alternative<RampParameters>(kind) ||
-         std::holds_alternative<SineVibrationParameters>(kind) ||
-         std::holds_alternative<NoiseVibrationParameters>(kind) ||
-         std::holds_alternative<TapParameters>(kind);
-}
-
 constexpr std::size_t kFreeSpace = Scene::kMostFields;
 
 /// The index of the surface that `field` lies on.
@@ -165,10 +153,8 @@ Scene::Scene(const std::vector<Field>& fields, double rate) : period_(1.0 / rate
               "fade_in must be finite and at least 0");
       require(std::isfinite(field.fade_out) && field.fade_out >= 0.0,
               "fade_out must be finite and at least 0");
-      const double shortest = is_stimulus(field.kind) ? 0.0 : kShortestFade;
       parts_.push_back({law_of(field, {field.limit, rate}), field.kind.index(), field.limit,
-                        std::max(field.fade_in, shortest), std::max(field.fade_out, shortest),
-                        index_of_surface(fields, field)});
+                        field.fade_in, field.fade_out, index_of_surface(fields, field)});
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("field " + field.name + ": " + error.what());
     }

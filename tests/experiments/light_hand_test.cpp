@@ -8,6 +8,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_facts_of.h"
 #include "experiments/runner/session.h"
+#include "protocols/definition/handle_loop.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/shipped.h"
@@ -66,7 +67,7 @@ TEST(LightHandTest, AHandThatCarriesItIsGuidedAsTheDefinitionSays) {
 TEST(LightHandTest, TheMarginOfTheShippedStudySaysWhichHandsCarryIt) {
   const protocols::ForceDefinition d = protocols::load_force_definition(test::shipped_definition());
   const control::LoopMargin plane =
-      control::loop_margin("plane", d.guidance.plane, d.guidance.loop);
+      control::loop_margin("plane", d.guidance.plane, protocols::handle_loop(d));
   EXPECT_LT(plane.lightest, d.hand.hand_mass) << "the hand of the study carries its gains";
   EXPECT_GT(plane.lightest, 0.5);
   EXPECT_GT(plane.lightest_late, plane.lightest);
@@ -74,7 +75,7 @@ TEST(LightHandTest, TheMarginOfTheShippedStudySaysWhichHandsCarryIt) {
   EXPECT_NE(describe(plane).find("no less than 15.7 N·s/m for the bare handle"), std::string::npos)
       << describe(plane);
   EXPECT_TRUE(
-      control::is_dangerous(control::loop_margin("stiff", {20000.0, 300.0}, d.guidance.loop)));
+      control::is_dangerous(control::loop_margin("stiff", {20000.0, 300.0}, handle_loop(d))));
 }
 
 }  // namespace

@@ -60,10 +60,13 @@ class PassRun {
   PassRun(protocols::Pass& pass, const Loop& loop, double hand) : loop_(loop), hand_(hand) {
     device::VirtualDeviceParameters parameters;
     parameters.force_delay = loop.delay;
+    parameters.velocity_window = 8;
     device_ = std::make_unique<device::VirtualDevice>(parameters, hand_, loop.rate);
-    task_ = std::make_unique<protocols::SessionTask>(*device_, device::EnvelopeLimits{}, log_,
-                                                     std::vector<stimulus::Observer*>{},
-                                                     protocols::SessionTask::Leave::kNever);
+    task_ = std::make_unique<protocols::SessionTask>(
+        protocols::SessionTask::Parts{.devices = {{device_.get(), device::EnvelopeLimits{}}},
+                                      .loop = {0.22, loop.rate, 8, loop.delay},
+                                      .log = log_},
+        protocols::SessionTask::Leave::kNever);
     task_->start(pass, 0);
   }
 
@@ -107,13 +110,5 @@ class PassRun {
   std::unique_ptr<protocols::SessionTask> task_;
   std::uint64_t tick_{0};
 };
-
-/// The gains of the source on this loop.
-inline protocols::GuidanceParameters published(const Loop& loop) {
-  protocols::GuidanceParameters p;
-  p.loop.rate = loop.rate;
-  p.loop.force_delay = loop.delay;
-  return p;
-}
 
 }  // namespace haptrial::test

@@ -276,17 +276,22 @@ PassOutput TrajectoryPass::output(const device::DeviceReading& reading,
 device::ForceIntent TrajectoryPass::intent(const PointState& target,
                                            const device::DeviceReading& reading,
                                            const Eigen::Vector3d& force,
-                                           bool pushes) const noexcept {
+                                           bool pushes) noexcept {
   const Eigen::Vector3d stretch = target.position - reading.tool.position;
-  const double share = reading.shares.stiffness;
   const double limit = parameters_.force_limit;
   device::ForceIntent intent;
   intent.drive = target.velocity;
-  intent.stored = trajectory_controller_.stored(std::hypot(stretch.x(), stretch.z()), limit, share);
+  const auto stored = [&](double share) {
+    const double beside = std::hypot(stretch.x(), stretch.z());
+    return trajectory_controller_.stored(beside, limit, share) +
+           (pushes ? 0.0 : plane_controller_.stored(stretch.y(), limit, share));
+  };
+  const double share = reading.shares.stiffness;
+  intent.stored = stored(share);
+  intent.added = share != share_ ? intent.stored - stored(share_) : 0.0;
+  share_ = share;
   if (pushes) {
     intent.push.y() = force.y();
-  } else {
-    intent.stored += plane_controller_.stored(stretch.y(), limit, share);
   }
   return intent;
 }

@@ -126,12 +126,13 @@ class TrajectoryPass : public Pass {
   void play(PassOutput& out, const device::DeviceReading& reading) noexcept;
   PassOutput output(const device::DeviceReading& reading, const PointState& target) noexcept;
   device::ForceIntent intent(const PointState& target, const device::DeviceReading& reading,
-                             const Eigen::Vector3d& force, bool pushes) const noexcept;
+                             const Eigen::Vector3d& force, bool pushes) noexcept;
 
   const stimulus::Stimulus& stimulus_;
   GuidanceParameters parameters_;
   control::PdController trajectory_controller_;
   control::PdController plane_controller_;
+  double share_{1.0};  // of the stiffness, on the tick before
   std::int32_t block_;
   record::Stage stage_{record::Stage::kIdle};
   PassState state_{PassState::kRunning};

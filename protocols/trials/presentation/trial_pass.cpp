@@ -67,6 +67,7 @@ PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
   saturated_ = false;
   device_count_ = std::min(readings.size(), kMostDevices);
   look_at_hands(readings);
+  const Part part = part_;  // on this tick, whatever begins with the next
   if (state_ == PassState::kRunning) {
     if (part_ == Part::kIntervals) {
       present(readings, dt, out);
@@ -78,7 +79,7 @@ PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
   static_cast<Drive&>(out) = drives_[0];
   out.saturated = saturated_;
   out.shown = stimulus::Shown(view_);
-  out.stage = part_ == Part::kIntervals ? record::Stage::kRun : record::Stage::kWait;
+  out.stage = part == Part::kIntervals ? record::Stage::kRun : record::Stage::kWait;
   return out;
 }
 

@@ -16,6 +16,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::device::envelope_test {
 namespace {
@@ -383,7 +384,7 @@ std::vector<SlowBreach> slow_breaches() {
        [](double t, const Vector3d&) { return Vector3d(0.0, 11.0 * std::sin(280.0 * t), 0.0); }},
       {Fault::kSaturation, 3.1, lies,
        [](double, const Vector3d&) { return Vector3d(0.0, 12.0, 0.0); }},
-      {Fault::kFrozen, 0.06, [](double) { return Vector3d(0.01, 0.0, 0.0); },
+      {Fault::kFrozen, 0.15, [](double) { return Vector3d(0.01, 0.0, 0.0); },
        [](double t, const Vector3d&) { return Vector3d(0.0, std::min(12.0, 14.4 * t), 0.0); }},
       {Fault::kJitter, 0.05,
        [](double t) { return Vector3d(std::lround(1e3 * t) % 2 == 0 ? 0.004 : 0.0, 0.0, 0.0); },
@@ -430,6 +431,102 @@ TEST(EnvelopeTest, TheForceDoesNotGrowWhileReadingsAreSuspicious) {
   }
 }
 
+/// A hand that pushes just as hard as a wall that grows stays where it is, to the last bit.
+TEST(EnvelopeTest, AHandThatTensesAgainstAWallIsNotFrozen) {
+  constexpr double kMass = 1.0;
+  constexpr double kFriction = 0.15;  // of the handle [N]
+  for (const double most : {0.9, 3.0, 7.0}) {
+    for (const double grows : {0.1, 0.4}) {  // [s]
+      Envelope envelope(open_limits());
+      double x = 0.0;
+      double v = 0.0;
+      double given = 0.0;
+      double least = most;
+      for (int i = 0; i < 3000; ++i) {
+        const double wanted = most * std::min(1.0, kDt * i / grows);
+        const double net = given - wanted;  // the hand pushes against what is to come
+        const double pull = std::abs(net) > kFriction || v != 0.0
+                                ? net - std::copysign(std::min(kFriction, std::abs(net)), net)
+                                : 0.0;
+        v = std::abs(pull) > 0.0 ? v + kDt * (pull / kMass - 40.0 * v) : 0.0;
+        x += kDt * v;
+        envelope.check(true, at({1e-5 * std::round(1e5 * x), 0.0, 0.0}));
+        given = envelope.limit({wanted - 300.0 * x, 0.0, 0.0}, kDt).x();
+        ASSERT_EQ(envelope.fault(), Fault::kNone) << most << " N at " << i << " ms";
+        least = kDt * i > grows + 0.05 ? std::min(least, given) : least;
+      }
+      EXPECT_GT(least, most - 0.9) << "it loses little before it is told from a frozen reading";
+    }
+  }
+}
+
+/// Where a protocol goes over to other forces, in contact or not.
+TEST(EnvelopeTest, WhatChangesByGoingOverFades) {
+  EnvelopeLimits limits = open_limits();
+  limits.change_time = 0.1;
+  Envelope envelope(limits);
+  double x = 0.0;
+  const auto tick = [&](const Vector3d& wanted, const ForceIntent& intent = {}) {
+    envelope.check(true, at({x += 1e-6, 0, 0}));
+    return envelope.limit(wanted, kDt, intent);
+  };
+  Vector3d before = tick({0, 5, 0});
+  envelope.go_over();
+  for (int i = 0; i < 99; ++i) {
+    const Vector3d force = tick({0, -3, 0});
+    ASSERT_LT((force - before).norm(), 0.13) << i;
+    before = force;
+  }
+  EXPECT_EQ(tick({0, -3, 0}), Vector3d(0, -3, 0));
+  EXPECT_EQ(tick({0, 2, 0}), Vector3d(0, 2, 0)) << "other changes are not held back";
+  envelope.go_over();
+  ForceIntent pulse;
+  pulse.stimulus = {4, 0, 0};
+  EXPECT_EQ(tick({4, 2, 0}, pulse), Vector3d(4, 2, 0)) << "a stimulus begins as it is meant to";
+}
+
+TEST(EnvelopeTest, AfterAGapTheForceRampsInFromZero) {
+  EnvelopeLimits limits;
+  limits.ramp_in = 0.2;
+  Envelope envelope(limits);
+  const auto tick = [&](double x) {
+    envelope.check(true, at({x, 0, 0}));
+    return envelope.limit({0, 5, 0}, kDt).y();
+  };
+  for (int i = 0; i < 300; ++i) {
+    tick(1e-6 * i);
+  }
+  EXPECT_EQ(tick(0.001), 5.0);
+  envelope.resume();
+  double before = tick(0.05);
+  EXPECT_LE(before, 0.026);
+  for (int i = 0; i < 199; ++i) {
+    const double force = tick(0.05 + 1e-6 * i);
+    ASSERT_NEAR(force - before, 0.025, 1e-9);
+    before = force;
+  }
+  EXPECT_EQ(envelope.fault(), Fault::kNone) << "the hand may have moved meanwhile";
+}
+
+TEST(EnvelopeTest, NoKeyTakesACheckOutOfUse) {
+  const auto refused = [](const std::string& line) {
+    Table table = Table::parse(
+        "max_force = 8.0\nworkspace_radius = 0.08\nmax_speed = 1.0\nmax_jump = 0.005\n" + line +
+            "\n",
+        "study.toml");
+    read_envelope_limits(table);
+    const std::string said = test::message_of([&] { table.finish(); });
+    EXPECT_NE(said.find(line.substr(0, line.find(' '))), std::string::npos) << said;
+  };
+  const std::string rest = "max_force_rate = 4000.0\nramp_in = 0.2\nramp_out = 0.2\n";
+  refused("max_saturation = 600.0\n" + rest);
+  refused("holding_force = 10.0\n" + rest);
+  refused("change_time = 0.0\n" + rest);
+  refused("ramp_in = 0.0\nramp_out = 0.2\nmax_force_rate = 4000.0");
+  refused("ramp_out = 0.0\nramp_in = 0.2\nmax_force_rate = 4000.0");
+  refused("max_force_rate = 1e6\nramp_in = 0.2\nramp_out = 0.2");
+}
+
 TEST(EnvelopeTest, LimitsOutOfBoundsAreRefused) {
   const auto refused = [](double EnvelopeLimits::*limit, double value) {
     EnvelopeLimits limits;
@@ -470,7 +567,7 @@ TEST(EnvelopeTest, AnOrientationThatIsNoneStopsTheForce) {
 TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
   Table good = Table::parse(
       "max_force = 8.0\nmax_force_rate = 100.0\nworkspace_radius = 0.05\nmax_speed = 0.5\n"
-      "max_jump = 0.001\nramp_in = 0.0\nramp_out = 0.3\n",
+      "max_jump = 0.001\nramp_in = 0.05\nramp_out = 0.3\n",
       "f.toml");
   const EnvelopeLimits limits = read_envelope_limits(good);
   EXPECT_NO_THROW(good.finish());

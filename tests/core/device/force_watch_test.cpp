@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "core/device/energy_watch.h"
@@ -18,11 +19,12 @@ constexpr double kPi = std::numbers::pi;
 
 /// When a force of this course in time becomes a fault [s]; -1: never within `seconds`.
 template <typename Course>
-double found_after(double rate, Fault expected, double seconds, Course course) {
+double found_after(double rate, Fault expected, double seconds, Course course,
+                   const std::function<Vector3d(double)>& stimulus = nullptr) {
   ForceWatch watch(12.0, 3.0);
   const double dt = 1.0 / rate;
   for (int i = 0; i < static_cast<int>(seconds * rate); ++i) {
-    const Fault fault = watch.look(course(i * dt), dt);
+    const Fault fault = watch.look(course(i * dt), stimulus ? stimulus(i * dt) : Vector3d::Zero(), dt);
     if (fault != Fault::kNone) {
       EXPECT_EQ(fault, expected);
       return i * dt;
@@ -54,22 +56,38 @@ TEST(ForceWatchTest, WhatAHandAndAPatternDoIsNoOscillation) {
               -1.0)
         << f;
   }
-  EXPECT_EQ(found_after(1000.0, Fault::kNone, 10.0,
-                        [](double t) {
-                          return Vector3d(0.0, 6.0 + 1.5 * std::sin(2.0 * kPi * 40.0 * t), 0.0);
-                        }),
+  const auto vibration = [](double t) {
+    return Vector3d(0.0, 1.5 * std::sin(2.0 * kPi * 40.0 * t), 0.0);
+  };
+  EXPECT_EQ(found_after(
+                1000.0, Fault::kNone, 10.0,
+                [&](double t) { return Vector3d(Vector3d(0.0, 6.0, 0.0) + vibration(t)); },
+                vibration),
             -1.0)
       << "a vibration of 3 N";
   EXPECT_EQ(found_after(
-                4000.0, Fault::kNone, 10.0,
-                [](double t) { return Vector3d(0.0, 4.5 * std::sin(2.0 * kPi * 150.0 * t), 0.0); }),
+                1000.0, Fault::kNone, 10.0,
+                [](double t) { return Vector3d(0.0, 3.0 + std::sin(2.0 * kPi * 12.0 * t), 0.0); }),
             -1.0)
-      << "the noise of a velocity";
+      << "a tremor against a wall";
   EXPECT_EQ(found_after(
                 1000.0, Fault::kNone, 10.0,
                 [](double t) { return Vector3d(0.0, std::fmod(t, 0.5) < 0.02 ? 11.0 : 0.0, 0.0); }),
             -1.0)
       << "taps twice a second";
+}
+
+/// Far from the limit, too: whatever no stimulus accounts for.
+TEST(ForceWatchTest, ASwingOf2NewtonFasterThanAHandIsFoundWithinAQuarterOfASecond) {
+  for (const double rate : {500.0, 1000.0, 4000.0}) {
+    for (const double f : {16.0, 30.0, 50.0, 150.0}) {
+      const double at = found_after(rate, Fault::kOscillation, 2.0, [=](double t) {
+        return Vector3d(1.5 + 1.1 * std::sin(2.0 * kPi * f * t), 0.0, 0.0);
+      });
+      EXPECT_GE(at, 0.2) << f;
+      EXPECT_LE(at, 0.2 + 1.5 / f + 0.01) << rate << " Hz: " << f << " Hz";
+    }
+  }
 }
 
 TEST(ForceWatchTest, SaturationThatLastsIsFound) {
@@ -90,7 +108,7 @@ TEST(EnergyWatchTest, ASpringThatGivesBackWhatItTookIsNoFault) {
     const double x = 0.02 * std::sin(2.0 * kPi * 2.0 * 1e-3 * i);
     const Vector3d force(-900.0 * 0.5 * (x + before), 0.0, 0.0);
     ASSERT_FALSE(watch.look(force, Vector3d(x - before, 0.0, 0.0),
-                            {Vector3d::Zero(), Vector3d::Zero(), 450.0 * x * x}, 1e-3));
+                            {.stored = 450.0 * x * x}, 1e-3));
     before = x;
   }
   EXPECT_LT(watch.generated(), 0.01);
@@ -101,7 +119,7 @@ TEST(EnergyWatchTest, WhatIsMeantToWorkOnTheHandIsNoFault) {
   for (int i = 0; i < 2000; ++i) {  // pushed up with 10 N, led along with 5 N: 1 W
     const Vector3d force(5.0, 10.0, 0.0);
     const Vector3d moved(1e-4, 5e-5, 0.0);
-    ASSERT_FALSE(watch.look(force, moved, {{0.1, 0.0, 0.0}, {0.0, 10.0, 0.0}, 0.0}, 1e-3));
+    ASSERT_FALSE(watch.look(force, moved, {.drive = {0.1, 0.0, 0.0}, .push = {0.0, 10.0, 0.0}}, 1e-3));
   }
 }
 
@@ -140,7 +158,7 @@ TEST(ForceWatchTest, ATickDoesNotAllocate) {
   const test::AllocationGuard guard;
   for (int i = 0; i < 1000; ++i) {
     const Vector3d force(12.0 * std::sin(i), 0.0, 0.0);
-    forces.look(force, 1e-3);
+    forces.look(force, Vector3d::Zero(), 1e-3);
     energy.look(force, Vector3d(1e-4, 0.0, 0.0), {}, 1e-3);
   }
   EXPECT_EQ(guard.count(), 0u);

@@ -45,20 +45,45 @@ TEST(ReadingWatchTest, AReadingThatStaysWhileItsVelocityDoesIsFoundWithin50Milli
   EXPECT_GE(ticks, 20);
 }
 
-/// 900 N/m that are stretched at 16 mm/s are the slowest: there it is 60 ms, and the force has
-/// grown by 1 N.
-TEST(ReadingWatchTest, AFrozenReadingIsFoundWithin50Milliseconds) {
+/// 900 N/m that are stretched at 16 mm/s are the slowest: there it is in doubt after 60 ms, when the
+/// force has grown by 1 N. From then on the force falls, as the envelope lets it.
+TEST(ReadingWatchTest, AFrozenReadingIsInDoubtWithin50MillisecondsAndAFaultWhenTheForceHasFallen) {
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
     for (const double slope : {14.4, 25.0, 100.0, 1000.0}) {  // of the force [N/s]
-      const double at = found_after(
-          rate, Fault::kFrozen,
-          [](double t) {
-            const double x = 0.016 * std::min(t, kBegin);
-            return Vector3d(1e-6 * std::round(1e6 * x), 0.0, 0.0);
-          },
-          [=](double t) { return Vector3d(std::max(0.0, slope * (t - kBegin)), 1.0, 0.0); });
-      EXPECT_GT(at, kBegin) << rate;
-      EXPECT_LE(at, kBegin + (slope < 20.0 ? 0.060 : 0.050)) << rate << " Hz, " << slope << " N/s";
+      SCOPED_TRACE(testing::Message() << rate << " Hz, " << slope << " N/s");
+      ReadingWatch watch(0.5);
+      Vector3d force(0.0, 1.0, 0.0);
+      double doubted = -1.0;
+      double found = -1.0;
+      for (int i = 0; i < static_cast<int>(2.0 * rate) && found < 0.0; ++i) {
+        const double t = i / rate;
+        const double x = 1e-6 * std::round(1e6 * 0.016 * std::min(t, kBegin));
+        if (watch.in_doubt()) {
+          force *= std::max(0.0, 1.0 - 20.0 / rate / force.norm());
+        } else {
+          force.x() = std::max(0.0, slope * (t - kBegin));
+        }
+        found = watch.look({x, 0.0, 0.0}, Vector3d::Zero(), force, 1.0 / rate) == Fault::kFrozen
+                    ? t
+                    : -1.0;
+        doubted = doubted < 0.0 && watch.in_doubt() ? t : doubted;
+      }
+      EXPECT_GT(doubted, kBegin);
+      EXPECT_LE(doubted, kBegin + (slope < 20.0 ? 0.060 : 0.050));
+      EXPECT_GT(found, doubted);
+      EXPECT_LE(found, doubted + 1.6 / 20.0 + 2.0 / rate) << "1.5 N fall at 20 N/s";
+    }
+  }
+}
+
+/// The change is 3 N and alternates: no handle moves by more than its encoder resolves.
+TEST(ReadingWatchTest, AVibrationThatMovesNothingIsNoDoubt) {
+  for (const double hertz : {100.0, 250.0}) {
+    ReadingWatch watch(0.5);
+    for (int i = 0; i < 3000; ++i) {
+      const Vector3d force(0.0, 3.0 * std::sin(2.0 * 3.14159 * hertz * 1e-3 * i), 0.0);
+      watch.look({0.01, 0.0, 0.0}, Vector3d::Zero(), force, 1e-3);
+      ASSERT_FALSE(watch.in_doubt()) << hertz << " Hz at " << i << " ms";
     }
   }
 }

@@ -73,7 +73,7 @@ TEST(StudyRulesTest, VirtualParticipantsCountIfOneWasAsked) {
 /// guidance is given).
 TEST(StudyRulesTest, KeysThatGuidanceReckonsWithMayNotChange) {
   const auto loop_of = [](const std::string& text) {
-    return parse_force_definition(text, "study.toml").guidance.loop;
+    return handle_loop(parse_force_definition(text, "study.toml"));
   };
   const std::string shipped = test::shipped_text();
   std::string window = shipped;

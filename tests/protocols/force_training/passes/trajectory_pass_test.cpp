@@ -190,7 +190,6 @@ TEST_P(EveryPass, TheForceDoesNotJumpAtAChangeOfStage) {
 TEST(HapticTraining, ThePlaneTakesHoldOfAMovingHandByDegrees) {
   GuidanceParameters p;
   p.force_limit = 1e9;
-  p.loop.handle_mass = 1000.0;  // it carries all the damping
   const auto pass = make_pass("haptic", p);
   constexpr double kSpeed = 0.05;  // along y, which nothing guides in the run
   PointState tool{stimulus_of_study().path.points().front(), Vector3d::Zero()};
@@ -217,7 +216,6 @@ TEST(HapticTraining, ThePlaneTakesHoldOfAMovingHandByDegrees) {
 TEST_P(EveryPass, TheForceAlongYFollowsTheKindOfPass) {
   GuidanceParameters p;
   p.force_limit = 1e9;
-  p.loop.handle_mass = 1000.0;  // it carries all the damping, whatever the hand does
   const auto pass = make_pass(GetParam(), p);
   Hand hand({0.0, 0.005, 0.0});
   hand.push = -4.0;
