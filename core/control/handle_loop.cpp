@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "core/base/matrix_functions.h"
@@ -59,26 +60,47 @@ double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldB
   return haptrial::spectral_radius(tick);
 }
 
-double lightest_stable_hand(const PdGains& gains, const HandleLoop& loop, double heaviest) {
-  // A free mass that is pushed by nothing stays where it is: an eigenvalue of 1.
-  constexpr double kStable = 1.0 + 1e-9;
+namespace {
+
+/// @param holds  whether a hand of this mass is heavy enough
+template <typename Holds>
+double lightest(double heaviest, Holds holds) {
   constexpr double kResolution = 1e-3;  // [kg]
-  const auto stable = [&](double mass) {
-    return spectral_radius(gains, loop, {mass, 0.0, 0.0}) <= kStable;
-  };
-  if (stable(0.0)) {
+  if (holds(0.0)) {
     return 0.0;
   }
-  if (!stable(heaviest)) {
+  if (!holds(heaviest)) {
     return heaviest + 1.0;
   }
   double low = 0.0;
   double high = heaviest;
   while (high - low > kResolution) {
     const double middle = 0.5 * (low + high);
-    (stable(middle) ? high : low) = middle;
+    (holds(middle) ? high : low) = middle;
   }
   return high;
+}
+
+}  // namespace
+
+double lightest_stable_hand(const PdGains& gains, const HandleLoop& loop, double heaviest) {
+  // A free mass that is pushed by nothing stays where it is: an eigenvalue of 1.
+  constexpr double kStable = 1.0 + 1e-9;
+  return lightest(heaviest, [&](double mass) {
+    return spectral_radius(gains, loop, {mass, 0.0, 0.0}) <= kStable;
+  });
+}
+
+HeldBy held_by_hand(double mass) noexcept { return {mass, 15.0 * mass / 0.8, 250.0 * mass / 0.8}; }
+
+bool is_calm(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
+  constexpr double kTime = 0.2;  // [s]
+  return std::pow(spectral_radius(gains, loop, hand), kTime * loop.rate) < 2.0;
+}
+
+double lightest_calm_hand(const PdGains& gains, const HandleLoop& loop, double heaviest) {
+  return lightest(heaviest,
+                  [&](double mass) { return is_calm(gains, loop, held_by_hand(mass)); });
 }
 
 double damping_of_bare_handle(double damping, const HandleLoop& loop) noexcept {

@@ -29,6 +29,18 @@ double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldB
 /// is, `heaviest` + 1 where not even that hand is enough.
 double lightest_stable_hand(const PdGains& gains, const HandleLoop& loop, double heaviest = 2.0);
 
+/// A hand that is held as hands of this mass are: 15 N·s/m and 250 N/m at 0.8 kg.
+HeldBy held_by_hand(double mass) noexcept;
+
+/// Whether an oscillation grows so slowly, if at all, that nobody feels it: its amplitude is less
+/// than doubled within 0.2 s. Springs without a damper never let a free mass come quite to rest;
+/// friction of the handle does. Allocates.
+bool is_calm(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand);
+
+/// The lightest hand (held_by_hand) with which the loop is calm [kg]: 0 where a handle that nobody
+/// holds is, `heaviest` + 1 where not even that hand is enough. Allocates.
+double lightest_calm_hand(const PdGains& gains, const HandleLoop& loop, double heaviest = 2.0);
+
 /// The damping that the bare handle carries with a margin [N·s/m]:
 ///
 ///     b_0 = min(b, m_h / (2 tau)),    tau = (n / 2 + 3) T

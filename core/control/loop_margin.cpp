@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace haptrial::control {
 namespace {
@@ -33,6 +34,13 @@ std::string hand(double mass) {
 }
 
 }  // namespace
+
+BareHandle bare_handle(const control::PdGains& gains, const control::HandleLoop& loop) {
+  // Where a spring has no damper, the guard's own takes its place.
+  const double calming =
+      control::damping_of_bare_handle(std::numeric_limits<double>::infinity(), loop);
+  return {std::min(gains.damping, calming), stiffness_of_bare_handle(calming, loop)};
+}
 
 LoopMargin loop_margin(const std::string& name, const control::PdGains& gains,
                        const control::HandleLoop& loop) {

@@ -21,6 +21,13 @@ struct LoopMargin {
 /// Heaviest hand that is looked at [kg].
 constexpr double kHeaviestHand = 2.0;
 
+/// What the bare handle gets at least of a spring and a damper.
+struct BareHandle {
+  double damping{0.0};    // [N·s/m]
+  double stiffness{0.0};  // that it carries with that damping [N/m]
+};
+BareHandle bare_handle(const control::PdGains& gains, const control::HandleLoop& loop);
+
 LoopMargin loop_margin(const std::string& name, const control::PdGains& gains,
                        const control::HandleLoop& loop);
 

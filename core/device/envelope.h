@@ -23,7 +23,7 @@ struct EnvelopeLimits {
   double max_jump{0.005};          // between two ticks > 0 [m]
   double ramp_in{0.2};             // force grows from zero over this time after a start [s]
   double ramp_out{0.2};            // and falls to zero over this one after release() [s]
-  double change_time{0.1};         // from one force to another at go_over() [s]
+  double change_time{0.05};        // from one force to another at go_over() [s]
   double max_saturation{3.0};      // without a break at max_force > 0 [s]
   double holding_force{0.5};  // change of force that friction and a still hand may hide > 0 [N]
 };

@@ -110,6 +110,21 @@ void check_path(Table& root, const ForceDefinition& d) {
   }
 }
 
+/// Gains that no hand carries would be reduced in every pass.
+void reject_gains(Table& root, const ForceDefinition& d) {
+  const control::HandleLoop loop = handle_loop(d);
+  Table guidance = root.table("guidance");
+  for (const auto& [name, gains] :
+       {std::pair{"trajectory", d.guidance.trajectory}, {"plane", d.guidance.plane}}) {
+    if (control::lightest_calm_hand(gains, loop) > control::kHeaviestHand) {
+      guidance.reject(name, fmt::format("{:g} N/m and {:g} N·s/m", gains.stiffness, gains.damping),
+                      fmt::format("what a hand of up to {:g} kg carries at {:g} Hz with forces that "
+                                  "come {} ticks late",
+                                  control::kHeaviestHand, d.rate, loop.force_delay));
+    }
+  }
+}
+
 }  // namespace
 
 ForceDefinition read_force_definition(Table& root, std::string_view file_name,
@@ -154,6 +169,7 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   check_together(root, d);
   if (folder != nullptr) {
     reject_frequencies(root, d);
+    reject_gains(root, d);
     reject_speed(root, d, "trajectory", "speed", d.trajectory.speed);
     reject_speed(root, d, "guidance", "approach_speed", d.guidance.approach_speed);
   }

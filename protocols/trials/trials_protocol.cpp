@@ -45,7 +45,9 @@ class TrialsProtocol final : public Protocol {
     if (d.observer.script) {
       load_script(*d.observer.script, folder);
     }
-    d.bodies = check_every_value(d);
+    HandleWords words = check_every_value(d);
+    d.felt = std::move(words.lines);
+    d.restless = std::move(words.warnings);
     for (const sound::Cue& cue : d.cues.cues) {
       sound::rendered(cue, 0);  // a file that cannot be played is a mistake of the definition
     }

@@ -72,7 +72,7 @@ void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& f
 
 /// @returns what is said of bodies that give way, if asked for
 std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValues& values,
-                                      bool with_bodies) {
+                                      bool with_bodies, HandleReport& handle) {
   std::vector<std::string> bodies;
   Table root = Table::parse(d.text, d.file_name);
   root.fill_in(trials_defaults());
@@ -86,6 +86,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       scene::Scene(presented.fields, d.rate);
       check_forces(d, presented.fields);
       check_objects(d, presented.fields);
+      handle.add(presented);
       prepare_moving_bodies(presented.fields, d.rate);
       if (with_bodies && place == 0) {
         prepare_bodies(presented.fields, d.rate);
@@ -111,8 +112,9 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
 
 }  // namespace
 
-std::vector<std::string> check_every_value(const TrialsDefinition& d) {
+HandleWords check_every_value(const TrialsDefinition& d) {
   std::vector<std::string> bodies;
+  HandleReport handle(d);
   for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
     const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
     std::size_t combinations = 1;
@@ -136,12 +138,14 @@ std::vector<std::string> check_every_value(const TrialsDefinition& d) {
         const Block& given = d.order.blocks[block];
         values.values.insert(values.values.end(), given.values.begin(), given.values.end());
         const bool first = block == 0 && c == 0 && !high;
-        const std::vector<std::string> said = present_once(d, values, first);
+        const std::vector<std::string> said = present_once(d, values, first, handle);
         bodies.insert(bodies.end(), said.begin(), said.end());
       }
     }
   }
-  return bodies;
+  HandleWords words = handle.words();
+  words.lines.insert(words.lines.begin(), bodies.begin(), bodies.end());
+  return words;
 }
 
 }  // namespace haptrial::protocols

@@ -8,7 +8,6 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/psychometric/definition/read_tracks.h"
-#include "core/scene/needed_damping.h"
 #include "core/sound/cues/read_cues.h"
 #include "protocols/definition/window_keys.h"
 #include "protocols/trials/definition/check_definition.h"
@@ -113,25 +112,6 @@ TrialValues sample_values(const TrialsDefinition& d, std::size_t block) {
   return values;
 }
 
-/// Fields that are passive only in continuous time: a held force gives energy at each tick, which
-/// the damping of device and hand must take up (needed_damping.h).
-void note_restless(const std::vector<scene::Field>& fields, TrialsDefinition& d) {
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (std::holds_alternative<scene::YieldingParameters>(fields[i].kind)) {
-      continue;  // that is told of the body itself
-    }
-    const scene::Steepness steepness = scene::steepness(fields, i);
-    const double needed = scene::needed_damping_below(0.0, steepness, d.rate);
-    if (steepness.passive && needed > d.hand.damping) {
-      d.restless.push_back(fmt::format(
-          "the force of {}.{} changes by up to {:.0f} N for each metre: at {:g} Hz it stays calm "
-          "with {:.3g} N·s/m of damping, and the hand of [hand] has {:g}",
-          scene::is_object(fields[i]) ? "objects" : "fields", fields[i].name, steepness.stiffness,
-          d.rate, needed, d.hand.damping));
-    }
-  }
-}
-
 void keep_stages(const std::vector<NamedStage>& stages, TrialsDefinition& d) {
   for (const NamedStage& stage : stages) {
     d.stages.push_back(stage.name);
@@ -160,9 +140,6 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
       root.check();  // what is not read after this would count as not known
     }
     Presented presented = read_presented(root, *names, d, nullptr);
-    if (place == 0) {
-      note_restless(presented.fields, d);
-    }
     stages = std::move(presented.stages);
   }
   keep_stages(stages, d);

@@ -123,7 +123,7 @@ std::vector<std::string> TrialsDefinition::description() const {
       lines.push_back(*prediction);
     }
   }
-  lines.insert(lines.end(), bodies.begin(), bodies.end());
+  lines.insert(lines.end(), felt.begin(), felt.end());
   if (markers.used) {
     lines.push_back("markers: " + markers::words_of(marker_meanings()));
   }

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "protocols/definition/window_keys.h"
+#include "protocols/trials/definition/every_value.h"
 #include "tests/protocols/trials/definition/small_definition.h"
 
 namespace haptrial::protocols::mistakes_test {
@@ -232,15 +233,24 @@ TEST(TrialMistakesTest, LevelsOutsideOfTheDevice) {
                           HasSubstr("with block main, level = 600")));
 }
 
-// Colgate and Schenkel: K T / 2 < b. 40,000 N/m at 1 kHz ask for 20 N·s/m, the hand has 15.
-TEST(TrialMistakesTest, AFieldThatTheLoopCannotHoldGetsAWarning) {
-  TrialsDefinition calm, restless;
-  read_small(kSmall, calm);
-  EXPECT_THAT(calm.warnings(), IsEmpty());
-  read_small(with(kSmall, "\"$stiffness\"", "40000.0"), restless);
-  EXPECT_THAT(restless.warnings(),
-              ElementsAre(AllOf(HasSubstr("fields.floor changes by up to 40000 N"),
-                                HasSubstr("with 20 N·s/m of damping"))));
+/// A force that is held for a tick and comes a tick late feeds K (T/2 + T) N·s/m to the hand.
+TEST(TrialMistakesTest, AFieldThatTheHandDoesNotCarryGetsAWarningAndOneThatNoHandCarriesIsRefused) {
+  const auto words = [](const char* stiffness) {
+    TrialsDefinition definition;
+    read_small(with(kSmall, "\"$stiffness\"", stiffness), definition);
+    return check_every_value(definition);
+  };
+  EXPECT_THAT(words("400.0").warnings, IsEmpty());
+  EXPECT_THAT(words("400.0").lines, Not(Contains(HasSubstr("nobody holds"))));
+  EXPECT_THAT(words("2000.0").warnings, IsEmpty());
+  EXPECT_THAT(words("2000.0").lines,
+              Contains(AllOf(HasSubstr("add up to 2000 N/m"), HasSubstr("nobody holds"))));
+  EXPECT_THAT(words("20000.0").warnings,
+              ElementsAre(AllOf(HasSubstr("add up to 20000 N/m"),
+                                HasSubstr("the hand of [hand] has 0.8 kg"))));
+  EXPECT_THAT(problems_of_trials(with(kSmall, "\"$stiffness\"", "90000.0")),
+              Contains(AllOf(HasSubstr("no hand of up to 2 kg carries that at 1000 Hz"),
+                             HasSubstr("allowed: less of it"))));
 }
 
 TEST(TrialMistakesTest, NothingToLearnFrom) {

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace haptrial::protocols {
+
+struct Presented;
+struct TrialsDefinition;
+
+/// What the fields of the stages ask of the handle and of the hand on it
+/// (docs/algorithms/every-hand.md).
+struct HandleWords {
+  std::vector<std::string> lines;     // what lighter hands get less of; what begins around the hand
+  std::vector<std::string> warnings;  // what the hand of [hand] does not carry
+};
+
+/// Of one set of values: adds what is not said yet of a stage, or is worse than what was said.
+/// @throws InputError for gains that no hand carries
+class HandleReport {
+ public:
+  explicit HandleReport(const TrialsDefinition& definition) : d_(definition) {}
+  void add(const Presented& presented);
+  HandleWords words() const;
+
+ private:
+  /// The sum of what acts in a stage.
+  struct Load {
+    std::string stage;
+    double stiffness{0.0};  // [N/m]
+    double damping{0.0};    // [N·s/m]
+    double mass{0.0};       // virtual [kg]
+    double cutoff{0.0};     // of its acceleration [Hz]
+    double lightest{0.0};   // hand that carries it [kg]
+    bool own_hand{true};    // that of [hand] does
+  };
+  Load load_of(const Presented& presented, std::size_t stage) const;
+  void judge(Load& load) const;
+  void keep(const Load& load);
+  std::string amount_of(const Load& load) const;
+
+  const TrialsDefinition& d_;
+  std::vector<Load> judged_;        // each sum once, whatever the stage
+  std::vector<Load> worst_;         // (stages that some hand does not carry)
+  std::vector<std::string> begin_;  // what begins around the hand
+  bool looked_{false};              // at what begins
+};
+
+}  // namespace haptrial::protocols
