@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
 
 namespace haptrial::protocols {
@@ -26,12 +26,7 @@ std::optional<int> number_at_end(const std::string& subject) {
 }  // namespace
 
 std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name) {
-  toml::table root;
-  try {
-    root = toml::parse(definition);
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}: is not TOML: {}", file_name, error.description()));
-  }
+  const toml::table root = parse_toml(definition, file_name);
   std::vector<std::pair<toml::source_position, StudyGroup>> found;
   if (const toml::table* groups = root["groups"].as_table()) {
     for (const auto& [key, value] : *groups) {

@@ -5,7 +5,9 @@
 #include <sstream>
 
 #include "core/base/definition/table_words_internal.h"
+#include "core/base/definition/toml_text_internal.h"
 #include "core/base/definition/toml_words_internal.h"
+#include "core/base/error.h"
 #include "core/base/text/utf8.h"
 
 namespace haptrial {
@@ -66,7 +68,7 @@ std::string rewritten(const toml::node& node, std::string_view key, Wanted wante
   } else if (node.is_string()) {
     const std::string text = *node.value<std::string>();
     try {
-      const toml::table inside = toml::parse("x = " + text);
+      const toml::table inside = parse_toml("x = " + text, "");
       const toml::node* value = inside.get("x");
       const bool fits = wanted == Wanted::kTruth   ? value->is_boolean()
                         : wanted == Wanted::kWhole ? value->is_integer()
@@ -74,7 +76,7 @@ std::string rewritten(const toml::node& node, std::string_view key, Wanted wante
       if (fits && inside.size() == 1 && text.find_first_of("#\n") == std::string::npos) {
         return fmt::format("write it without quotes: {} = {}", key, text);
       }
-    } catch (const toml::parse_error&) {
+    } catch (const InputError&) {
       return "";
     }
   } else if (wanted == Wanted::kWhole && node.is_floating_point()) {

@@ -6,6 +6,7 @@
 namespace haptrial {
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t'; }
+inline bool is_quote(char c) { return c == '"' || c == '\''; }
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 inline bool is_bare(char c) {  // may stand in a key without quotes
   return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '-';

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
+#include "core/base/definition/toml_cursor_internal.h"
 #include "core/base/definition/toml_mistake_internal.h"
 #include "core/base/error.h"
+#include "core/base/text/utf8.h"
 
 namespace haptrial {
 namespace {
@@ -12,44 +16,125 @@ namespace {
 /// other, and a tree that deep overflows the stack when it is destroyed.
 constexpr int kMostDotsInKey = 100;
 
-/// Counts dots up to the end of a line, or to a comma that is not quoted: keys have none, but a
-/// list of decimals does.
-void refuse_deep_keys(std::string_view text, std::string_view file_name) {
-  unsigned line = 1;
-  int dots = 0;
-  char quote = 0;  // the open one
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') {
-      ++line;
-      dots = 0;
-      quote = 0;
-    } else if (c == '\\' && quote == '"' && i + 1 < text.size() && text[i + 1] != '\n') {
-      ++i;
-    } else if (c == '"' || c == '\'') {
-      quote = quote == 0 ? c : quote == c ? 0 : quote;
-    } else if (c == ',' && quote == 0) {
-      dots = 0;
-    } else if (c == '.' && ++dots > kMostDotsInKey) {
-      throw InputError(
-          fmt::format("{}:{}: the line has more than {} dots without a comma; write shorter keys",
-                      file_name, line, kMostDotsInKey));
+/// Finds what must not reach the parser, which takes some things for granted: few keys within
+/// each other, no letter beyond ASCII outside of quotes and comments, a name that follows the
+/// bracket of a table's header, and brackets that are closed by their like.
+class ParserGuard : private TomlCursor {
+ public:
+  explicit ParserGuard(std::string_view text) : TomlCursor(text) {
+    at_ = starts("\ufeff") ? std::string_view("\ufeff").size() : 0;
+  }
+
+  std::optional<TomlMistake> find_hazard() {
+    while (skip_quoted(), !ended()) {
+      if (auto sentence = judge_character(); !sentence.empty()) {
+        return TomlMistake{line_, std::move(sentence)};
+      }
+      next();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  void skip_quoted() {
+    while (peek() == '#' || is_quote(peek())) {
+      if (peek() == '#') {
+        skip_comment();
+      } else {
+        line_begins_ = false;
+        skip_text();
+      }
     }
   }
+
+  /// A text in quotes; one that is not closed ends with its line.
+  void skip_text() {
+    const char quote = peek();
+    const std::string around(starts(std::string(3, quote)) ? 3 : 1, quote);
+    at_ += around.size();
+    while (!ended() && !starts(around) && (around.size() > 1 || peek() != '\n')) {
+      const bool escape = quote == '"' && peek() == '\\';
+      next();
+      if (escape && !ended()) {
+        next();
+      }
+    }
+    if (starts(around)) {
+      at_ += around.size();
+    }
+    for (int more = 0; around.size() > 1 && more < 2 && peek() == quote; ++more) {
+      ++at_;  // quotes at its end
+    }
+  }
+
+  /// What is wrong with the character at this place, or nothing.
+  std::string judge_character() {
+    const char c = peek();
+    if (static_cast<unsigned char>(c) >= 0x80) {
+      return fmt::format(
+          "{} stands outside of quotes; write a text in quotes, and a key with letters from a to "
+          "z, digits, _ and -",
+          text_.substr(at_, character_bytes(c)));
+    }
+    if (c == '.' && ++dots_ > kMostDotsInKey) {
+      return fmt::format("the line has more than {} dots without a comma; write shorter keys",
+                         kMostDotsInKey);
+    }
+    if (c == '[' && line_begins_ && open_.empty() && !name_follows()) {
+      return "no name follows the bracket of the table; write [NAME], with letters from a to z, "
+             "digits, _ and -";
+    }
+    if (!follow_bracket(c)) {
+      return fmt::format("{} stands where {} is open; write {} first", c, open_.back(),
+                         open_.back() == '[' ? ']' : '}');
+    }
+    dots_ = c == '\n' || c == ',' ? 0 : dots_;  // a list of decimals has many dots
+    line_begins_ = c == '\n' || (line_begins_ && is_blank(c));
+    return "";
+  }
+
+  /// @returns whether a bracket or brace that closes fits the last one that is open
+  bool follow_bracket(char c) {
+    if (c == '[' || c == '{') {
+      open_.push_back(c);
+    } else if ((c == ']' || c == '}') && !open_.empty()) {
+      if (open_.back() != (c == ']' ? '[' : '{')) {
+        return false;
+      }
+      open_.pop_back();
+    }
+    return true;
+  }
+
+  bool name_follows() const {
+    std::size_t ahead = peek(1) == '[' ? 2 : 1;
+    while (is_blank(peek(ahead))) {
+      ++ahead;
+    }
+    return is_bare(peek(ahead)) || is_quote(peek(ahead));
+  }
+
+  int dots_{0};
+  std::string open_;  // brackets and braces
+  bool line_begins_{true};
+};
+
+[[noreturn]] void refuse(const TomlMistake& mistake, std::string_view file_name) {
+  throw InputError(fmt::format("{}:{}: {}", file_name, mistake.line, mistake.sentence));
 }
 
 }  // namespace
 
 toml::table parse_toml(std::string_view text, std::string_view file_name) {
-  refuse_deep_keys(text, file_name);
+  if (const auto hazard = ParserGuard(text).find_hazard()) {
+    refuse(find_toml_mistake(text).value_or(*hazard), file_name);
+  }
   try {
     return toml::parse(text, file_name);
   } catch (const toml::parse_error& error) {
-    if (const auto mistake = find_toml_mistake(text)) {
-      throw InputError(fmt::format("{}:{}: {}", file_name, mistake->line, mistake->sentence));
-    }
-    throw InputError(fmt::format("{}:{}: not valid TOML: {}", file_name, error.source().begin.line,
-                                 error.description()));
+    refuse(find_toml_mistake(text).value_or(TomlMistake{
+               error.source().begin.line, fmt::format("not valid TOML: {}", error.description())}),
+           file_name);
   }
 }
 
