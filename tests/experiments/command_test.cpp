@@ -452,5 +452,17 @@ TEST_F(CommandTest, OptionsWithoutEffectAreRefused) {
   expect_bad_input(in + "run " + shipped() + " --subject P01 --out ''", "--out is empty");
 }
 
+TEST_F(CommandTest, EmptyWordsDoNotStandForDefaults) {
+  const std::string run = "haptrial run " + shipped() + " --out " + path("out");
+  expect_bad_input(run + " --subject \"$UNSET\"", "--subject is empty; write a value after it");
+  expect_bad_input(run + " --subject=", "--subject is empty");
+  for (const char* option : {"--device", "--library", "--learn-from", "--tutor", "--notes"}) {
+    expect_bad_input(run + " --subject P01 " + option + " ''", std::string(option) + " is empty");
+  }
+  expect_bad_input("haptrial analyze ''", "an empty word follows haptrial analyze");
+  expect_bad_input("haptrial dry-run " + shipped() + " --language '' --out " + path("out"),
+                   "--language is empty");
+}
+
 }  // namespace
 }  // namespace haptrial

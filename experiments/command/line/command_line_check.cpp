@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <string_view>
@@ -14,10 +13,6 @@
 
 namespace haptrial::experiments {
 namespace {
-
-/// Options that name a file or folder to be written.
-constexpr std::array<std::string_view, 8> kOutputs{"--out",   "--bids",  "--csv",  "--curves",
-                                                   "--video", "--sound", "--json", "--picture"};
 
 /// The subcommand that was typed, and what follows it.
 struct Typed {
@@ -97,20 +92,20 @@ void check_options(const Typed& typed) {
   }
 }
 
-/// An empty name, as a script's unset variable leaves it, would stand for the default.
-void check_outputs(const Typed& typed) {
-  for (std::size_t i = 0; i < typed.rest.size(); ++i) {
-    const std::string_view word = typed.rest[i];
-    const std::string option = option_in(word);
-    if (std::find(kOutputs.begin(), kOutputs.end(), option) == kOutputs.end()) {
-      continue;
+/// An empty word, as a script's unset variable leaves it, would stand for the default.
+void check_for_empty_words(const Typed& typed) {
+  std::string option;  // that the word before this one is
+  for (const std::string_view word : typed.rest) {
+    const std::string own = option_in(word);
+    const bool joined = !own.empty() && word == own + "=";
+    if (joined || (word.empty() && !option.empty())) {
+      throw InputError(fmt::format("{} is empty; write a value after it", joined ? own : option));
     }
-    const bool joined = word.size() > option.size();
-    const bool empty = joined ? word.size() == option.size() + 1
-                              : i + 1 < typed.rest.size() && typed.rest[i + 1][0] == '\0';
-    if (empty) {
-      throw InputError(fmt::format("{} is empty; write a name after it", option));
+    if (word.empty()) {
+      throw InputError(
+          fmt::format("an empty word follows {}; leave it out, or write a value", typed.name));
     }
+    option = own;
   }
 }
 
@@ -131,7 +126,7 @@ void check_words(const CLI::App& app, std::span<char* const> words) {
   const Typed typed = typed_subcommand(app, words);
   check_subcommand(typed);
   check_options(typed);
-  check_outputs(typed);
+  check_for_empty_words(typed);
 }
 
 std::string sentence_of(const CLI::App& app, std::span<char* const> words,
