@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/text/exception_words.h"
 #include "core/device/dynamic_library.h"
 
 namespace haptrial::stream {
@@ -251,7 +252,7 @@ std::unique_ptr<LslOutlet> LslOutlet::open(const LslOptions& options, SessionClo
   try {
     return std::make_unique<LslOutlet>(options, std::move(now));
   } catch (const std::exception& error) {
-    notice = fmt::format("{}; the session continues without its streams", error.what());
+    notice = fmt::format("{}; the session continues without its streams", sentence_of(error));
     return nullptr;
   }
 }

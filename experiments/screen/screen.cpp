@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text/exception_words.h"
 #include "core/realtime/histogram.h"
 #include "core/realtime/latest_value.h"
 #include "experiments/screen/easel.h"
@@ -179,7 +180,7 @@ void Screen::Impl::run() {
       return;
     }
     const std::lock_guard lock(mutex);
-    trouble = fmt::format("the screen has stopped: {}", error.what());
+    trouble = fmt::format("the screen has stopped: {}", sentence_of(error));
   }
 }
 

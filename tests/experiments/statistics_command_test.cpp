@@ -97,6 +97,14 @@ TEST_F(StatisticsCommandTest, OneParticipantAndOneConditionAreSaidPlainly) {
   EXPECT_THAT(run.output, HasSubstr("x: mean 2.000 (1 participant, 2 values)"));
 }
 
+TEST_F(StatisticsCommandTest, ValuesBeyondWhatCanBeComputedGetASentence) {
+  const std::string huge =
+      file("huge.csv", "subject,condition,value\nA,x,1\nA,y,1e308\nB,x,2\nB,y,3\nC,x,1\nC,y,5\n");
+  const CommandResult run = run_command("haptrial statistics " + huge + " --value value");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("y: mean not defined, because the values are too large"));
+}
+
 TEST_F(StatisticsCommandTest, EqualSeedsGiveEqualLinesWhateverTheThreads) {
   const std::string command =
       "haptrial statistics " + groups() + " --subject who --factor speed --value error --jobs ";

@@ -4,6 +4,8 @@
 #include <utility>
 #include <variant>
 
+#include "core/base/error.h"
+
 namespace haptrial::analysis {
 
 /// Why a statistic does not exist for the data at hand; completes "not defined, because ...".
@@ -22,8 +24,14 @@ class Defined {
   Defined(Undefined reason) : state_(std::move(reason)) {}
 
   explicit operator bool() const { return std::holds_alternative<T>(state_); }
-  const T& operator*() const { return std::get<T>(state_); }
-  const T* operator->() const { return &std::get<T>(state_); }
+  /// @throws InputError with the reason if there is no value: not every statistic asks before.
+  const T& operator*() const {
+    if (const Undefined* reason = std::get_if<Undefined>(&state_)) {
+      throw InputError("a statistic is not defined, because " + reason->because);
+    }
+    return std::get<T>(state_);
+  }
+  const T* operator->() const { return &**this; }
 
   /// The reason; @throws std::bad_variant_access when there is a value.
   const std::string& because() const { return std::get<Undefined>(state_).because; }

@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/base/formula/expression.h"
 #include "core/base/formula/labels.h"
+#include "core/base/text/exception_words.h"
 #include "core/psychometric/definition/grid.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/function/sigmoid_names.h"
@@ -287,7 +288,7 @@ void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
       return std::make_unique<QuestPlus>(tables, stop);
     };
   } catch (const std::exception& error) {
-    keys.of(key).reject(key, fmt::format("cannot be used as stated: {}", error.what()));
+    keys.of(key).reject(key, fmt::format("cannot be used as stated: {}", sentence_of(error)));
   }
 }
 

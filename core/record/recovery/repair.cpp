@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/text/exception_words.h"
 #include "core/record/hdf5/hdf5_layer.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
@@ -346,7 +347,7 @@ Repair repair_session(const fs::path& partial, const std::string& wrong, const T
     fs::rename(out, partial);
     sync_folder_of(partial);
   } catch (const std::exception& error) {
-    throw RunError(partial.string() + ": cannot be repaired (" + error.what() + ")");
+    throw RunError(partial.string() + ": cannot be repaired (" + sentence_of(error) + ")");
   }
   return repair;
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/text/exception_words.h"
 #include "experiments/command/libraries.h"
 #include "experiments/command/line/command_line_check_internal.h"
 #include "experiments/runner/version.h"
@@ -62,12 +63,9 @@ int exit_status(const std::function<int()>& command) {
       throw RunError("standard output cannot be written");
     }
     return status;
-  } catch (const InputError& error) {
-    complain(error.what());
-    return kBadInput;
   } catch (const std::exception& error) {
-    complain(error.what());
-    return kFailed;
+    complain(haptrial::sentence_of(error));
+    return is_bad_input(error) ? kBadInput : kFailed;
   }
 }
 

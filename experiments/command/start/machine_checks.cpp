@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/files/whole_file.h"
+#include "core/base/text/exception_words.h"
 #include "core/device/vendor/catalog.h"
 #include "core/realtime/servo_loop.h"
 #include "core/render/gl/offscreen.h"
@@ -39,7 +40,7 @@ std::string refusal_of(Check&& check) {
   try {
     check();
   } catch (const std::exception& error) {
-    return error.what();
+    return sentence_of(error);
   }
   return "";
 }

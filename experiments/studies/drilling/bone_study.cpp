@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/text/exception_words.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/drilling_study.h"
@@ -80,7 +81,7 @@ std::shared_ptr<const Procedure> DrillingFigures::of_earlier_run(const record::P
     }
   } catch (const std::exception& error) {  // nothing that a session should end for
     trouble_ = fmt::format("live figures leave out the passes before the session was resumed: {}",
-                           error.what());
+                           sentence_of(error));
   }
   return nullptr;
 }

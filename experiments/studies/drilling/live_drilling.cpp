@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/metrics/live.h"
+#include "core/base/text/exception_words.h"
 
 namespace haptrial::experiments {
 
@@ -108,8 +109,8 @@ void LiveDrilling::run() {
       }
     } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
-      trouble_ =
-          fmt::format("the drilling is still recorded but no longer measured: {}", error.what());
+      trouble_ = fmt::format("the drilling is still recorded but no longer measured: {}",
+                             sentence_of(error));
       waiting_.clear();
       return;
     }

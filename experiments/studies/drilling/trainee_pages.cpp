@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/files/file_text.h"
 #include "core/base/files/whole_file.h"
+#include "core/base/text/exception_words.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/expert_sessions.h"
@@ -264,7 +265,7 @@ std::vector<std::string> page_after_session(const protocols::BoneDefinition& def
   try {
     return {"page: " + write_trainee_pages(request).front().string()};
   } catch (const std::exception& error) {  // the session itself is whole
-    return {fmt::format("no page: {}", error.what())};
+    return {fmt::format("no page: {}", sentence_of(error))};
   }
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/base/text/exception_words.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/trials/trial_rows.h"
 
@@ -51,7 +52,7 @@ void LiveTrials::add_resumed(const std::filesystem::path& file) {
     }
   } catch (const std::exception& error) {  // nothing that a session should end for
     trouble_ = fmt::format("live figures leave out the trials before the session was resumed: {}",
-                           error.what());
+                           sentence_of(error));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/text/exception_words.h"
 #include "core/scene/scene.h"
 #include "protocols/trials/definition/defaults.h"
 #include "protocols/trials/definition/presented.h"
@@ -102,7 +103,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       }
     }
   } catch (const std::exception& error) {
-    const std::string said = error.what();
+    const std::string said = sentence_of(error);
     throw InputError(fmt::format("{}{}\n(with {})",
                                  said.starts_with(d.file_name) ? "" : d.file_name + ": ", said,
                                  words_of(d, values)));

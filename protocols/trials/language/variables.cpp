@@ -116,7 +116,8 @@ double Variables::value(const std::string& name, std::vector<std::string>& way) 
   const auto found = meanings_.find(name);
   if (found == meanings_.end()) {
     if (given != given_.end()) {
-      throw InputError(fmt::format("{} has no value yet", name));
+      throw InputError(fmt::format(
+          "{0} has no value yet; write {0} = VALUE in the block, or let a factor give it", name));
     }
     refuse(name);
   }

@@ -59,6 +59,16 @@ TEST(TrialMistakesTest, ALevelThatNeedsItself) {
       Contains(HasSubstr("small.toml: level = \"2 * $level\": level has no value yet")));
 }
 
+TEST(TrialMistakesTest, ABlockThatGivesAVariableNoValueIsToldWhatToWrite) {
+  const std::string blocks =
+      "[[blocks]]\nname = \"main\"\ntouched = \"floor\"\n[[blocks]]\nname = \"bare\"\n";
+  EXPECT_THAT(
+      problems_of_trials(with(small_trials(kSmallStaircase, blocks), "fields = [\"floor\"]",
+                              "fields = [\"$touched\"]")),
+      Contains(HasSubstr(
+          "touched has no value yet; write touched = VALUE in the block, or let a factor")));
+}
+
 TEST(TrialMistakesTest, AWordIsNoNumber) {
   EXPECT_THAT(
       problems_of_trials(with(kSmall, "{ stiffness = 300.0 }", "{ stiffness = \"'soft'\" }")),
