@@ -263,7 +263,7 @@ function(haptrial_test_needs)
   target_link_libraries(test_render_flat PRIVATE PkgConfig::harfbuzz)
   target_link_libraries(test_render_gl PRIVATE haptrial_render_trial)
   target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_trials  # tables to try
-                                            haptrial_nerve_record haptrial_hint)
+                                            haptrial_nerve_record haptrial_hint PkgConfig::hdf5)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_repair)

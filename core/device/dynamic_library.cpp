@@ -6,11 +6,15 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 
 namespace haptrial::device {
 
-DynamicLibrary::DynamicLibrary(std::string name, std::string_view where)
-    : name_(std::move(name)), handle_(dlopen(name_.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+DynamicLibrary::DynamicLibrary(std::string name, std::string_view where) : name_(std::move(name)) {
+  if (name_.find('/') != std::string::npos) {  // others are looked for among the system's
+    refuse_special_file(name_);
+  }
+  handle_ = dlopen(name_.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle_ == nullptr) {
     const char* reason = dlerror();
     throw InputError(fmt::format("the library {} cannot be loaded ({}); it belongs to {}", name_,

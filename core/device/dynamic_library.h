@@ -37,7 +37,7 @@ class DynamicLibrary {
   void* optional(const char* symbol) const noexcept;
 
   std::string name_;
-  void* handle_;
+  void* handle_{nullptr};
 };
 
 }  // namespace haptrial::device

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/base/files/whole_file.h"
 
 namespace haptrial::sound {
@@ -22,6 +23,7 @@ using File = std::unique_ptr<SNDFILE, CloseFile>;
 }  // namespace
 
 Recording read_recording(const std::filesystem::path& file) {
+  refuse_special_file(file);
   SF_INFO info{};
   const File source(sf_open(file.c_str(), SFM_READ, &info));
   if (!source) {

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -17,6 +15,7 @@
 
 #include "analysis/scores/score.h"
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/device/own_devices.h"
 #include "core/scene/read/field_kinds.h"
 #include "experiments/plugin/loaded/loaded_plugins.h"
@@ -69,12 +68,12 @@ class Registries final : public PluginParts {
 };
 
 std::string bytes_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!fs::is_regular_file(file) || !stream) {
+  std::error_code missing;
+  if (!fs::exists(file, missing)) {
     throw InputError(
         fmt::format("--plugin: there is no file {}; name a shared object (.so)", file.string()));
   }
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return file_text(file);
 }
 
 std::string sha256_of(const std::string& bytes) {

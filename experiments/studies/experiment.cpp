@@ -4,14 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
 #include "experiments/studies/registry.h"
@@ -28,9 +27,7 @@ void refuse_session(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, error)) {
     return;  // a pipe would wait here; load_with_lab() refuses it
   }
-  std::array<char, 8> first{};
-  std::ifstream(file, std::ios::binary).read(first.data(), first.size());
-  if (std::string_view(first.data(), first.size()) == "\x89HDF\r\n\x1a\n") {
+  if (file_head(file, 8) == "\x89HDF\r\n\x1a\n") {
     throw InputError(file.string() + ": is a session file; give a definition (.toml)");
   }
 }

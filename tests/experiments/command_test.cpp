@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -450,6 +451,33 @@ TEST_F(CommandTest, OptionsWithoutEffectAreRefused) {
   expect_bad_input(in + "dry-run " + shipped() + " --out ''", "--out is empty");
   expect_bad_input(in + "dry-run " + shipped() + " --out=", "--out is empty");
   expect_bad_input(in + "run " + shipped() + " --subject P01 --out ''", "--out is empty");
+}
+
+/// A pipe that nobody writes to, and an endless device, in place of each kind of file.
+TEST_F(CommandTest, FilesThatNeverEndAreRefused) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe.obj").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder_ / "zero.obj");
+  fs::create_symlink("/dev/zero", folder_ / "zero.nii");
+  const std::string trials =
+      test::read_text(HAPTRIAL_SOURCE_DIR "/experiments/stiffness_discrimination.toml");
+  for (const std::string file : {"pipe.obj", "zero.obj"}) {
+    const std::string sentence = file + ": is not a regular file";
+    test::write_text(folder_ / "script.toml",
+                     trials + "\n[level_script]\nfile = \"" + file + "\"\n");
+    test::write_text(
+        folder_ / "mesh.toml",
+        trials + "\n[objects.thing]\nstiffness = 500.0\ndamping = 1.0\nmesh = \"" + file + "\"\n");
+    expect_bad_input("haptrial validate " + path("script.toml"), sentence);
+    EXPECT_THAT(run_command("haptrial validate " + path("mesh.toml")).errors, HasSubstr(sentence));
+    expect_bad_input("haptrial statistics " + path(file) + " --value value", sentence);
+    expect_bad_input("haptrial align " + path(file) + " " + path(file) + " --out " + path("a"),
+                     sentence);
+    expect_bad_input("haptrial --plugin " + path(file) + " validate " + shipped(), sentence);
+    expect_bad_input("haptrial validate " + path(file), sentence);
+    expect_bad_input("haptrial device-test force-dimension --library " + path(file), sentence);
+  }
+  expect_bad_input("haptrial bone import " + path("zero.nii") + " " + path("bone.nrrd"),
+                   "zero.nii: is not a regular file");
 }
 
 TEST_F(CommandTest, EmptyWordsDoNotStandForDefaults) {

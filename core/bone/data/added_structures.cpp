@@ -7,9 +7,9 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <fstream>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/base/parallel.h"
 #include "core/bone/anatomy/anatomy.h"
 #include "core/bone/model/crop.h"
@@ -46,9 +46,7 @@ std::array<std::uint8_t, 256> labels_for(const std::vector<Structure>& structure
 
 /// Whether a mesh file's head says that it is in RAS, as 3D Slicer writes there.
 bool says_ras(const std::filesystem::path& file) {
-  std::string head(1024, '\0');
-  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<long>(head.size()));
-  return head.find("SPACE=RAS") != std::string::npos;
+  return file_head(file, 1024).find("SPACE=RAS") != std::string::npos;
 }
 
 geometry::Mesh mesh_in_bone(const MeshStructure& structure, const Eigen::Affine3d& X_PB) {

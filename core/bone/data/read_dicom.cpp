@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/bone/data/read_volume_internal.h"
 
 namespace haptrial::bone {
@@ -47,9 +47,7 @@ bool is_whole(const gdcm::Reader& reader, const Slice& slice, int bits) {
   if (!(head >= 0.0 && head <= kLargest)) {
     return head > 0.0;
   }
-  std::string bytes(static_cast<std::size_t>(head) + 4, '\0');
-  std::ifstream(slice.file, std::ios::binary)
-      .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  const std::string bytes = file_head(slice.file, static_cast<std::size_t>(head) + 4);
   constexpr std::string_view kTag("\xE0\x7F\x10\x00", 4);
   constexpr std::string_view kBigEndianTag("\x7F\xE0\x00\x10", 4);
   return bytes.find(kTag) != std::string::npos || bytes.find(kBigEndianTag) != std::string::npos;

@@ -2,11 +2,11 @@
 #include <teem/nrrd.h>
 
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/bone/data/read_volume_internal.h"
 #include "core/bone/data/segments.h"
 
@@ -23,9 +23,7 @@ using Holder = std::unique_ptr<Nrrd, Forget>;
 
 /// teem would take other formats as well.
 void check_magic(const std::string& name) {
-  std::ifstream in(name, std::ios::binary);
-  std::string magic(7, ' ');
-  if (!in.read(magic.data(), 7) || magic != "NRRD000") {
+  if (file_head(name, 7) != "NRRD000") {
     throw InputError(
         fmt::format("{}: does not begin with 'NRRD000'; choose a volume in NRRD format", name));
   }

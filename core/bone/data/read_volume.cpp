@@ -16,6 +16,7 @@
 
 #include "core/base/error.h"
 #include "core/base/files/child_process.h"
+#include "core/base/files/file_text.h"
 #include "core/bone/data/read_volume_internal.h"
 
 namespace haptrial::bone {
@@ -176,6 +177,7 @@ SourceVolume read_here(const fs::path& path, const Room& room) {
   if (fs::is_directory(path)) {
     return read_dicom(path, room);
   }
+  refuse_special_file(path);
   const auto ends = [&](const char* ending) { return name.ends_with(ending); };
   if (ends(".nrrd") || ends(".nhdr")) {
     return read_nrrd(path, room);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -28,6 +29,13 @@ bool still_there(int descriptor, const std::filesystem::path& file) {
   }, named{};
   return fstat(descriptor, &opened) == 0 && stat(file.c_str(), &named) == 0 &&
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+/// Of the lock that another description of the file has; nothing if it cannot be asked.
+std::optional<int> lock_type_of(int descriptor) {
+  struct flock whole = whole_file();
+  const bool asked = descriptor >= 0 && fcntl(descriptor, F_OFD_GETLK, &whole) == 0;
+  return asked ? std::optional<int>(whole.l_type) : std::nullopt;
 }
 
 }  // namespace
@@ -66,10 +74,12 @@ FileLock FileLock::take(const std::filesystem::path& file, bool create) {
 }
 
 bool FileLock::taken(const std::filesystem::path& file) {
-  const FileLock probe(open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  struct flock whole = whole_file();
-  return probe.descriptor_ >= 0 && fcntl(probe.descriptor_, F_OFD_GETLK, &whole) == 0 &&
-         whole.l_type != F_UNLCK;
+  return lock_type_of(FileLock(open(file.c_str(), O_RDONLY | O_CLOEXEC)).descriptor_)
+             .value_or(F_UNLCK) != F_UNLCK;
+}
+
+bool FileLock::certainly_free(const std::filesystem::path& file) {
+  return lock_type_of(FileLock(open(file.c_str(), O_RDONLY | O_CLOEXEC)).descriptor_) == F_UNLCK;
 }
 
 }  // namespace haptrial::record

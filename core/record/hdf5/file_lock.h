@@ -19,6 +19,8 @@ class FileLock {
   static FileLock take(const std::filesystem::path& file, bool create);
   /// Whether someone has the lock of this file; false for one that is absent.
   static bool taken(const std::filesystem::path& file);
+  /// Whether nobody has the lock, and the file system has locks.
+  static bool certainly_free(const std::filesystem::path& file);
   /// Descriptor of the locked file, or -1 if no file is locked.
   int descriptor() const { return descriptor_; }
 

@@ -1,6 +1,8 @@
 #include <array>
 #include <fstream>
 
+#include "core/base/files/file_text.h"
+#include "core/record/hdf5/file_lock.h"
 #include "core/record/hdf5/hdf5_internal.h"
 #include "core/record/hdf5/hdf5_layer.h"
 
@@ -53,6 +55,7 @@ Id open_to_go_on(const std::filesystem::path& path) {
 }
 
 Id open_file(const std::filesystem::path& path) {
+  refuse_special_file(path);
   const Lock lock;
   const Id access = access_list();
   Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
@@ -61,8 +64,10 @@ Id open_file(const std::filesystem::path& path) {
   }
   const std::string first = reason();
   // A file whose writer was killed or is still at work opens only as a SWMR reader, which reads
-  // what looks torn again after 1, 2, 4, ... ns: 24 times make 17 ms, HDF5's own 100 for ever.
-  check(H5Pset_metadata_read_attempts(access.get(), 24), "read attempts");
+  // what looks torn again after 1, 2, 4, ... ns: 24 times make 17 ms, HDF5's own 100 for ever. If
+  // nobody writes, nothing becomes whole, and a damaged index costs the time for each chunk.
+  check(H5Pset_metadata_read_attempts(access.get(), FileLock::certainly_free(path) ? 1 : 24),
+        "read attempts");
   if (marked_as_written(path)) {
     file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.get()));
   }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
+#include "core/base/files/file_text.h"
 #include "core/base/files/whole_file.h"
 
 namespace haptrial::render {
@@ -59,6 +60,7 @@ Image coarser(const Image& fine, int times) {
 }
 
 Image read_png(const std::filesystem::path& path) {
+  refuse_special_file(path);
   constexpr png_uint_32 kLargest = 4096;
   png_image description{};
   description.version = PNG_IMAGE_VERSION;
