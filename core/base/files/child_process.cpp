@@ -33,6 +33,8 @@ class Actions {
     join(STDIN_FILENO, program.input, O_RDONLY);
     join(STDOUT_FILENO, program.output, O_WRONLY);
     posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    // Libraries open files without close-on-exec: HDF5 the session.
+    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
   }
   ~Actions() { posix_spawn_file_actions_destroy(&actions_); }
   Actions(const Actions&) = delete;
@@ -49,6 +51,23 @@ class Actions {
   }
 
   posix_spawn_file_actions_t actions_;
+};
+
+/// The program becomes the leader of a process group.
+class GroupAttributes {
+ public:
+  GroupAttributes() {
+    posix_spawnattr_init(&attributes_);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETPGROUP);
+    posix_spawnattr_setpgroup(&attributes_, 0);
+  }
+  ~GroupAttributes() { posix_spawnattr_destroy(&attributes_); }
+  GroupAttributes(const GroupAttributes&) = delete;
+  GroupAttributes& operator=(const GroupAttributes&) = delete;
+  const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
 };
 
 void crash_quietly() {
@@ -97,12 +116,14 @@ ChildProcess::ChildProcess(const Program& program) {
   }
   arguments.push_back(nullptr);
   const Actions actions(program);
-  const int error = posix_spawnp(&process_, words.front().c_str(), actions.get(), nullptr,
+  const GroupAttributes attributes;
+  const int error = posix_spawnp(&process_, words.front().c_str(), actions.get(), attributes.get(),
                                  arguments.data(), environ);
   if (error != 0) {
     process_ = -1;
     fail(error, words.front());
   }
+  leads_group_ = true;
 }
 
 ChildProcess::ChildProcess(const std::function<void()>& work) {
@@ -128,12 +149,19 @@ ChildProcess::~ChildProcess() {
 
 void ChildProcess::kill() noexcept {
   if (process_ > 0) {
-    ::kill(process_, SIGKILL);
+    ::kill(leads_group_ ? -process_ : process_, SIGKILL);
   }
 }
 
 int ChildProcess::wait() noexcept {
   if (process_ > 0) {
+    if (leads_group_) {  // whose number is taken as long as its leader is not waited for
+      siginfo_t ended{};
+      while (waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOWAIT) != 0 &&
+             errno == EINTR) {
+      }
+      kill();
+    }
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
     }

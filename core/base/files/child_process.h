@@ -30,7 +30,7 @@ struct Pipe {
   Descriptor from, to;
 };
 
-/// What a program is started with.
+/// What a program is started with: these, the environment, and no other descriptor of this process.
 struct Program {
   std::vector<std::string> words;  // its name, found along PATH, and its arguments
   std::filesystem::path folder{};  // in which it runs; empty: that of this process
@@ -41,7 +41,9 @@ struct Program {
 /// A process beside this one. Waited for at the latest at the end, then killed. One thread.
 class ChildProcess {
  public:
-  /// @throws std::system_error where the program cannot be started.
+  /// The program leads a process group, which is ended with it. A key such as Ctrl-C, which signals
+  /// the group of a terminal, does not reach it.
+  /// @throws std::system_error if the program cannot be started.
   explicit ChildProcess(const Program& program);
   /// A copy of this process, which does the work and ends with status 0, or 1 where the work
   /// throws. What crashes in it leaves no core file and nothing on the screen.
@@ -57,6 +59,7 @@ class ChildProcess {
 
  private:
   pid_t process_{-1};
+  bool leads_group_{false};
   int status_{-1};
 };
 

@@ -1,13 +1,16 @@
 #include "core/base/files/child_process.h"
 
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
@@ -16,6 +19,10 @@
 
 namespace haptrial {
 namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
 
 TEST(ChildProcessTest, AProgramHasItsStreamsItsFolderAndItsStatus) {
   const test::TemporaryFolder folder;
@@ -35,6 +42,37 @@ TEST(ChildProcessTest, AProgramHasItsStreamsItsFolderAndItsStatus) {
 
 TEST(ChildProcessTest, AProgramThatIsNotThereIsSaid) {
   EXPECT_THROW(ChildProcess({.words = {"haptrial-has-no-such-program"}}), std::system_error);
+}
+
+TEST(ChildProcessTest, AProgramHasNoOtherDescriptor) {
+  const test::TemporaryFolder folder;
+  const Descriptor secret(open((folder / "secret").c_str(), O_RDWR | O_CREAT, 0600));
+  ASSERT_GT(secret.get(), STDERR_FILENO);
+  Pipe pipe;
+  ChildProcess child({.words = {"sh", "-c", "readlink /proc/$$/fd/*; ls /proc/$$/fd; true"},
+                      .output = pipe.to.get()});
+  pipe.to.close();
+  const std::string words = read_to_end(pipe.from.get());
+  EXPECT_THAT(words, HasSubstr("/dev/null"));
+  EXPECT_THAT(words, Not(HasSubstr("secret")));
+  EXPECT_THAT(words, EndsWith("\n0\n1\n2\n"));
+}
+
+TEST(ChildProcessTest, WhatAProgramLeavesBehindEndsWithIt) {
+  for (const char* words : {"sleep 100000 & exit 0", "sleep 100000 & echo up; sleep 100000"}) {
+    Pipe pipe;
+    {
+      ChildProcess child({.words = {"sh", "-c", words}, .output = pipe.to.get()});
+      pipe.to.close();
+      if (std::string_view(words).find("up") == std::string_view::npos) {
+        EXPECT_EQ(child.wait(), 0);
+      } else {
+        std::array<char, 3> up{};
+        EXPECT_EQ(read(pipe.from.get(), up.data(), up.size()), 3);
+      }
+    }
+    EXPECT_EQ(read_to_end(pipe.from.get()), "") << "no writer is left";
+  }
 }
 
 TEST(ChildProcessTest, ACopyCanCrashThrowOrHang) {
