@@ -345,6 +345,9 @@ void Session::show_trial() {
 /// it was aborted while an experimenter is there to see to the cause.
 Outcome Session::present(const PlannedTrial& trial) {
   trials_->prepare(trial, record_);
+  for (const std::string& warning : trials_->take_warnings()) {
+    notices_.note(warning);
+  }
   progress_.reset();
   Wishes& wishes = desk_.wishes();
   Outcome outcome{trial, TrialEnd::kAborted, {}};

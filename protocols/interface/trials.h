@@ -164,6 +164,9 @@ class Trials {
     static_cast<void>(leads);
     return nullptr;
   }
+  /// Sentences for an experimenter who can still do something about it, since the last call; asked
+  /// before each trial.
+  virtual std::vector<std::string> take_warnings() { return {}; }
   /// Sentences for the end of the session.
   virtual std::vector<std::string> notices() const { return {}; }
 };

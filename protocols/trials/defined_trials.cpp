@@ -96,6 +96,9 @@ void DefinedTrials::use_script() {
     script_->recall(record::SessionReader(place_.resumed));
     script_kept_ = script_->recalled();
   }
+  if (place_.real) {
+    script_->start_early();
+  }
   sequence_.choose_by(*script_);
 }
 
@@ -124,8 +127,10 @@ void DefinedTrials::prepare(const PlannedTrial&, SessionFile& file) {
   if (!std::exchange(script_kept_, true)) {
     file.event(kScriptEvent, d_.script->text);
   }
+  const bool first = script_->left() == 1;
   for (const std::string& trouble : script_->take_troubles()) {
     file.event(kScriptTrouble, trouble);
+    script_warning_ = first ? trouble : "";  // later ones are events, and counted at the end
   }
 }
 
@@ -431,6 +436,11 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
     file.add(std::span<const record::OutOfTimeRow>(late));
   }
   touched_bodies_.keep(*pass_, row, file);
+}
+
+std::vector<std::string> DefinedTrials::take_warnings() {
+  const std::string warning = std::exchange(script_warning_, "");
+  return warning.empty() ? std::vector<std::string>{} : std::vector{warning};
 }
 
 std::vector<std::string> DefinedTrials::notices() const {

@@ -44,6 +44,7 @@ class DefinedTrials final : public Trials {
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override { return contacts_ ? contacts_->dropped() : 0; }
   const char* why_aborted() const override;
+  std::vector<std::string> take_warnings() override;
   std::vector<std::string> notices() const override;
 
   /// For a replay: bodies of their own rate have no thread, and were late in the next pass as these
@@ -78,6 +79,7 @@ class DefinedTrials final : public Trials {
   std::unique_ptr<Names> names_;
   std::unique_ptr<ScriptedLevels> script_;        // null: the procedures choose
   bool script_kept_{false};                       // its text is in the file
+  std::string script_warning_;                    // not yet passed on; empty: none
   std::unique_ptr<ScriptedDecisions> decisions_;  // null: virtual participants decide themselves
   bool decisions_kept_{false};                    // likewise
   TrialSequence sequence_;

@@ -146,6 +146,19 @@ TEST_F(LevelScriptSessionTest, KilledHangingAndThrowingItLeavesALiveSessionToThe
   }
 }
 
+TEST_F(LevelScriptSessionTest, ThatItGivesNoLevelIsSaidAtTheFirstTrial) {
+  run("import sys\nfor line in sys.stdin:\n    sys.exit('no level today')\n", "S01.h5", 3);
+  std::vector<std::string> kinds;
+  for (const record::EventRow& event : record::SessionReader(folder_ / "S01.h5").events()) {
+    if (event.kind == protocols::kScriptTrouble || event.kind == "notice") {
+      kinds.push_back(event.kind + ": " + event.text.substr(0, event.text.find(':')));
+    }
+  }
+  EXPECT_THAT(kinds, testing::ElementsAre("level_script_failed: trial 1", "notice: trial 1",
+                                          "level_script_failed: trial 2",
+                                          "level_script_failed: trial 3", "notice: levels.py"));
+}
+
 TEST_F(LevelScriptSessionTest, AResumedSessionAsksNothingAgainAndTakesNoOtherScript) {
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "a process that has threads is forked";

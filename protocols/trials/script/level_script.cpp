@@ -31,8 +31,8 @@ LevelScript::Answer level_in(const std::string& line, std::size_t dimensions) {
 
 }  // namespace
 
-LevelScript::LevelScript(std::filesystem::path file, double deadline)
-    : process_(std::move(file), deadline, "level") {}
+LevelScript::LevelScript(std::filesystem::path file, double deadline, double longest_start)
+    : process_(std::move(file), deadline, "level", longest_start) {}
 
 LevelScript::Answer LevelScript::ask(const std::string& question, std::size_t dimensions,
                                      const std::function<void()>& pulse) {

@@ -18,8 +18,11 @@ class LevelScript {
     std::string why_not;  // "it gave no level within 2 s"
   };
 
-  /// @param deadline  for an answer [s]
-  LevelScript(std::filesystem::path file, double deadline);
+  /// @param deadline, longest_start  as of ScriptProcess [s]
+  LevelScript(std::filesystem::path file, double deadline,
+              double longest_start = ScriptProcess::kLongestStart);
+
+  void start_early() noexcept { process_.start_early(); }
 
   /// @param question    one line, without its end
   /// @param dimensions  of the level

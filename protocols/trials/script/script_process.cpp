@@ -1,7 +1,9 @@
 #include "protocols/trials/script/script_process.h"
 
 #include <fmt/format.h>
+#include <linux/sockios.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -25,6 +27,12 @@ bool send_all(int to, const std::string& text) noexcept {
   return true;
 }
 
+/// Whether the other side of a socket has read all that was sent, or will never.
+bool has_read_all(int socket) noexcept {
+  int left = 0;
+  return ::ioctl(socket, SIOCOUTQ, &left) != 0 || left == 0;
+}
+
 /// Not a line that the script prints for itself.
 bool is_answer(const std::string& line, const std::string& key) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
@@ -33,12 +41,22 @@ bool is_answer(const std::string& line, const std::string& key) {
 
 }  // namespace
 
-ScriptProcess::ScriptProcess(std::filesystem::path file, double deadline, std::string key)
+ScriptProcess::ScriptProcess(std::filesystem::path file, double deadline, std::string key,
+                             double longest_start)
     : file_(std::filesystem::absolute(std::move(file))),
       deadline_(deadline),
-      key_(std::move(key)) {}
+      key_(std::move(key)),
+      longest_start_(longest_start) {}
 
 ScriptProcess::~ScriptProcess() { stop(); }
+
+void ScriptProcess::start_early() noexcept {
+  try {
+    start();
+  } catch (const std::exception&) {
+    stop();  // the question tries again, and says why not
+  }
+}
 
 void ScriptProcess::start() {
   std::array<int, 2> ends{};
@@ -62,6 +80,7 @@ void ScriptProcess::start() {
   from_ = std::move(answers.from);
   heard_.clear();
   said_.clear();
+  started_ = false;
 }
 
 void ScriptProcess::stop() noexcept {
@@ -73,8 +92,21 @@ void ScriptProcess::stop() noexcept {
   from_.close();
 }
 
-std::optional<std::string> ScriptProcess::line_before(Clock::time_point end,
-                                                      const std::function<void()>& pulse) {
+void ScriptProcess::begin_to_wait() {
+  const double seconds = started_ ? deadline_ : longest_start_;
+  end_ = Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+bool ScriptProcess::is_late() {
+  if (!started_ && has_read_all(to_.get())) {
+    started_ = true;
+    begin_to_wait();
+  }
+  return Clock::now() >= end_;
+}
+
+std::optional<std::string> ScriptProcess::next_line(const std::function<void()>& pulse) {
   constexpr int kLook = 50;  // [ms]
   while (true) {
     if (const std::size_t at = heard_.find('\n'); at != std::string::npos) {
@@ -82,7 +114,7 @@ std::optional<std::string> ScriptProcess::line_before(Clock::time_point end,
       heard_.erase(0, at + 1);
       return line;
     }
-    if (Clock::now() >= end) {
+    if (is_late()) {
       return std::nullopt;
     }
     pollfd watched{from_.get(), POLLIN, 0};
@@ -107,10 +139,15 @@ ScriptProcess::Reply ScriptProcess::lost() {
   return {"", fmt::format("it ended with no {}{}", key_, said.empty() ? "" : ": " + said)};
 }
 
+ScriptProcess::Reply ScriptProcess::late() {
+  stop();  // its answer would be one to the next question
+  return {"", started_ ? fmt::format("it gave no {} within {:g} s", key_, deadline_)
+                       : fmt::format("it did not read its question within {:g} s after its start",
+                                     longest_start_)};
+}
+
 ScriptProcess::Reply ScriptProcess::ask(const std::string& question,
                                         const std::function<void()>& pulse) {
-  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(deadline_));
   try {
     if (!process_) {
       start();
@@ -119,19 +156,17 @@ ScriptProcess::Reply ScriptProcess::ask(const std::string& question,
     return {"", fmt::format("it cannot be started: {}", error.what())};
   }
   const bool sent = send_all(to_.get(), question + '\n');
-  while (const auto line = line_before(end, pulse)) {
+  begin_to_wait();
+  while (const auto line = next_line(pulse)) {
     if (sent && is_answer(*line, key_)) {
+      started_ = true;
       return {*line, ""};
     }
     if (!line->empty()) {
       said_ = *line;
     }
   }
-  if (Clock::now() < end) {
-    return lost();
-  }
-  stop();  // its answer would be one to the next question
-  return {"", fmt::format("it gave no {} within {:g} s", key_, deadline_)};
+  return Clock::now() < end_ ? lost() : late();
 }
 
 }  // namespace haptrial::protocols

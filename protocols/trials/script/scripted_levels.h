@@ -31,6 +31,9 @@ class ScriptedLevels final : public LevelChooser {
   ScriptedLevels(const ScriptPlan& plan, std::string subject, bool real,
                  std::function<void()> pulse);
 
+  /// Starts the script while nobody waits for it yet.
+  void start_early() noexcept { script_.start_early(); }
+
   /// Takes the levels of an earlier run. @throws InputError where its script was another one
   void recall(const record::SessionReader& earlier);
   bool recalled() const { return recalled_; }

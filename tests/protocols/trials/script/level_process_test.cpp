@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "tests/support/temporary_folder.h"
 
@@ -20,14 +21,16 @@ using testing::HasSubstr;
 class LevelScriptTest : public testing::Test {
  protected:
   /// A program in the shell that reads a line for each answer.
-  LevelScript script(const std::string& body, double deadline = 60.0) const {
+  LevelScript script(const std::string& body, double deadline = 60.0,
+                     double longest_start = 60.0) const {
     const std::filesystem::path file = folder_ / "levels.sh";
     std::ofstream(file) << "#!/bin/sh\n" << body << "\n";
     std::filesystem::permissions(file, std::filesystem::perms::owner_all);
-    return LevelScript(file, deadline);
+    return LevelScript(file, deadline, longest_start);
   }
-  std::string why_not(const std::string& body, double deadline = 60.0) const {
-    LevelScript asked = script(body, deadline);
+  std::string why_not(const std::string& body, double deadline = 60.0,
+                      double longest_start = 60.0) const {
+    LevelScript asked = script(body, deadline, longest_start);
     const LevelScript::Answer answer = asked.ask("{}", 1);
     EXPECT_FALSE(answer.level);
     return answer.why_not;
@@ -54,8 +57,30 @@ TEST_F(LevelScriptTest, WhatIsNoLevelGetsASentence) {
 }
 
 TEST_F(LevelScriptTest, OneThatHangsIsLeftAtItsDeadline) {
-  EXPECT_THAT(why_not("sleep 1000", 0.2), HasSubstr("no level within 0.2 s"));
-  EXPECT_THAT(why_not("while true; do echo busy; done", 0.2), HasSubstr("within 0.2 s"));
+  EXPECT_THAT(why_not("read line; sleep 1000", 0.2), HasSubstr("no level within 0.2 s"));
+  EXPECT_THAT(why_not("read line; while true; do echo busy; done", 0.2), HasSubstr("within 0.2 s"));
+  EXPECT_THAT(why_not("while true; do echo busy; done", 60.0, 0.2),
+              HasSubstr("did not read its question within 0.2 s after its start"));
+}
+
+TEST_F(LevelScriptTest, ItsStartDoesNotCountAgainstTheDeadline) {
+  LevelScript slow =
+      script("sleep 1\nwhile read line; do echo \"{\\\"level\\\": $line}\"; done", 0.5);
+  EXPECT_EQ(slow.ask("2.5", 1).level, Level{2.5});
+  EXPECT_EQ(slow.ask("3.5", 1).level, Level{3.5});
+}
+
+TEST_F(LevelScriptTest, ItMayBeStartedBeforeItsFirstQuestion) {
+  const std::filesystem::path up = folder_ / "up";
+  LevelScript early = script("touch '" + up.string() + "'\nread line; echo '{\"level\": 1}'; cat");
+  early.start_early();
+  while (!std::filesystem::exists(up)) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(early.ask("{}", 1).level, Level{1.0});
+  LevelScript missing(folder_ / "none.sh", 1.0);
+  missing.start_early();
+  EXPECT_THAT(missing.ask("{}", 1).why_not, HasSubstr("cannot be started"));
 }
 
 TEST_F(LevelScriptTest, OneThatEndedIsStartedAgain) {
