@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "core/network/link/secret.h"
 
@@ -28,6 +30,9 @@ struct LinkTerms {
 ///     guest -> host    version, public key, terms, proof
 ///     host  -> guest   terms, proof
 ///
+/// A host that speaks with too many others, or has let another in, says that it is busy in place of
+/// its message.
+///
 /// A proof is a keyed checksum (the key made of secret and salt) over all that was said before, in
 /// the teller's role; the keys of the link come from the exchange of public keys (X25519) and from
 /// the secret, so that a recording of a link stays closed even if the secret is found later.
@@ -41,6 +46,17 @@ class Handshake {
   using Opening = std::array<unsigned char, kOpeningBytes>;
   using Answer = std::array<unsigned char, kAnswerBytes>;
   using Closing = std::array<unsigned char, kClosingBytes>;
+
+  /// What a host says in place of its opening or closing if it has no time for a guest.
+  template <class Message>
+  static Message busy() noexcept {
+    Message message{};
+    std::copy_n(kBusy.begin(), kBusy.size(), message.begin());
+    return message;
+  }
+  static bool is_busy(std::span<const unsigned char> message) noexcept {
+    return std::equal(kBusy.begin(), kBusy.end(), message.begin());
+  }
 
   /// @throws RunError without random numbers
   Handshake(const Secret& secret, const LinkTerms& terms);
@@ -62,6 +78,8 @@ class Handshake {
   const LinkKeys& keys() const noexcept { return keys_; }
 
  private:
+  static constexpr std::string_view kBusy = "haptrial busy 01";
+
   bool make_keys(Role role, std::span<const unsigned char, 32> their_public);
 
   const Secret& secret_;

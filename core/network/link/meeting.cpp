@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/network/link/waiting_guests.h"
 
 namespace haptrial::network {
 namespace {
@@ -16,12 +18,6 @@ constexpr std::chrono::seconds kForKey(20);  // that the other side makes, on a 
 
 Patience patience_for_one(const MeetingRequest& request, Clock::time_point end) {
   return {std::min(end, Clock::now() + kForOne), request.pulse};
-}
-
-/// The guest makes a key first; one that says nothing holds up others for as long.
-Patience patience_for_answer(const MeetingRequest& request, Clock::time_point end) {
-  constexpr std::chrono::seconds kForAnswer(5);
-  return {std::min(end, Clock::now() + kForAnswer), request.pulse};
 }
 
 Patience patience_for_key(const MeetingRequest& request, Clock::time_point end) {
@@ -40,30 +36,32 @@ Met host(const Secret& secret, const MeetingRequest& request, Clock::time_point 
   const Socket listener = listening(request.port);
   Socket datagrams = datagram_socket(request.port);
   Handshake handshake(secret, {port_of(datagrams), request.study});
+  WaitingGuests guests(listener, handshake.opening(), request.notice);
   while (true) {
-    Address other;
-    const Socket guest = accepted(listener, {end, request.pulse}, &other);
-    if (guest.get() < 0) {
+    auto guest = guests.next({end, request.pulse});
+    if (!guest) {
       throw RunError(fmt::format("nobody came to port {} within {} s", request.port,
                                  request.patience.count()));
     }
-    Handshake::Answer answer;
-    const bool told = send_all(guest, handshake.opening(), patience_for_one(request, end)) &&
-                      receive_all(guest, answer, patience_for_answer(request, end));
-    const auto closing = told ? handshake.closing(answer) : std::nullopt;
+    const auto closing = handshake.closing(guest->answer);
     if (!closing) {
       if (request.notice) {
-        request.notice(told ? "a guest without the secret was turned away"
-                            : "a guest that did not speak was turned away");
+        request.notice("a guest without the secret was turned away");
       }
       continue;
     }
-    if (!send_all(guest, *closing, patience_for_one(request, end))) {
+    if (!send_all(guest->socket, *closing, patience_for_one(request, end))) {
       continue;
     }
     check_study(handshake.their_terms(), request);
-    other.set_port(handshake.their_terms().port);
-    return {std::move(datagrams), other, handshake.keys(), true};
+    guest->from.set_port(handshake.their_terms().port);
+    return {std::move(datagrams), guest->from, handshake.keys(), true};
+  }
+}
+
+void refuse_if_busy(std::span<const unsigned char> message) {
+  if (Handshake::is_busy(message)) {
+    throw RunError("the other side is busy with other guests; try again in some seconds");
   }
 }
 
@@ -76,6 +74,7 @@ Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point
   if (!receive_all(socket, opening, patience_for_one(request, end))) {
     throw RunError("the other side did not answer as a host does");
   }
+  refuse_if_busy(opening);
   const auto answer = handshake.answer(opening);
   if (!answer) {
     throw RunError("the other side speaks another version of the link");
@@ -85,6 +84,7 @@ Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point
       !receive_all(socket, closing, patience_for_key(request, end))) {
     throw RunError("the other side turned this one away: the secrets differ");
   }
+  refuse_if_busy(closing);
   if (!handshake.finish(closing)) {
     throw RunError("the other side does not know the secret");
   }

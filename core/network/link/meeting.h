@@ -28,10 +28,11 @@ struct MeetingRequest {
   std::function<void(const std::string&)> notice;  // of guests that were turned away
 };
 
-/// Waits for the other side, or goes to it. A guest without the secret is turned away, and the next
-/// may try; one that says nothing is left after five seconds.
+/// Waits for the other side, or goes to it. A host speaks with several guests at once
+/// (waiting_guests.h): one without the secret is turned away, one that says nothing is left.
 /// @throws InputError where the other side has another study, or is told so; RunError where nobody
-///         came in time, nobody listens, or the host does not know the secret
+///         came in time, nobody listens, the host is busy with others, or it does not know the
+///         secret
 Met meet(const Secret& secret, const MeetingRequest& request);
 
 }  // namespace haptrial::network

@@ -111,6 +111,12 @@ void Address::set_port(std::uint16_t port) noexcept {
   }
 }
 
+bool same_machine(const Address& a, const Address& b) noexcept {
+  Address with_port = b;
+  with_port.set_port(a.port());
+  return a.size == b.size && std::memcmp(&a.storage, &with_port.storage, a.size) == 0;
+}
+
 Address address_of(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   std::string host = colon == std::string::npos ? "" : text.substr(0, colon);

@@ -32,6 +32,8 @@ struct Address {
   std::uint16_t port() const noexcept;
   void set_port(std::uint16_t port) noexcept;
 };
+/// Whether both have the same number but for the port.
+bool same_machine(const Address& a, const Address& b) noexcept;
 /// @throws InputError for a text of another form, a port outside 1 to 65535 or an unknown name
 Address address_of(const std::string& text);
 

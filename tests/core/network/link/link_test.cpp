@@ -20,6 +20,7 @@
 #include "core/network/link/meeting.h"
 #include "core/network/link/sealer.h"
 #include "core/network/link/secret.h"
+#include "core/network/link/waiting_guests.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::network {
@@ -166,7 +167,7 @@ struct Pair {
 MeetingRequest as_host(std::uint16_t port) {
   MeetingRequest request;
   request.port = port;
-  request.patience = 20s;
+  request.patience = 120s;  // on a busy machine
   return request;
 }
 
@@ -218,6 +219,78 @@ TEST(MeetingTest, AGuestWithoutTheSecretIsTurnedAwayAndTheNextLetIn) {
   ASSERT_TRUE(host.has_value());
   EXPECT_EQ(host->keys.send, guest.keys.receive);
   EXPECT_THAT(notices, testing::ElementsAre(HasSubstr("without the secret")));
+}
+
+/// A connection that says nothing; waits until the host has spoken to it.
+Socket silent_guest(std::uint16_t port) {
+  Socket socket = soon([&] {
+    return connected(address_of("127.0.0.1:" + std::to_string(port)),
+                     {std::chrono::steady_clock::now() + 20s, {}});
+  });
+  Handshake::Opening opening;
+  EXPECT_TRUE(receive_all(socket, opening, {std::chrono::steady_clock::now() + 60s, {}}));
+  return socket;
+}
+
+TEST(MeetingTest, SilentGuestsHoldUpNobody) {
+  const std::uint16_t port = free_port();
+  std::optional<Met> host;
+  std::thread waiting([&] { host = meet(secret(), as_host(port)); });
+  std::vector<Socket> silent;
+  for (int i = 0; i < 4; ++i) {
+    silent.push_back(silent_guest(port));
+  }
+  const Met guest = meet(secret(), as_guest(port));
+  waiting.join();
+  EXPECT_EQ(host->keys.send, guest.keys.receive);
+  for (const Socket& left : silent) {
+    Handshake::Closing closing;
+    ASSERT_TRUE(receive_all(left, closing, {std::chrono::steady_clock::now() + 60s, {}}));
+    EXPECT_TRUE(Handshake::is_busy(closing));
+  }
+}
+
+TEST(MeetingTest, OfTooManyTheOneThatHasWaitedLongestIsToldThatTheHostIsBusy) {
+  const std::uint16_t port = free_port();
+  std::optional<Met> host;
+  std::thread waiting([&] { host = meet(secret(), as_host(port)); });
+  bool told = false;
+  while (!told) {  // on a busy machine some leave before the last has come
+    std::vector<Socket> silent;
+    for (std::size_t i = 0; i <= WaitingGuests::kMost; ++i) {
+      silent.push_back(silent_guest(port));
+    }
+    Handshake::Closing closing;
+    told = receive_all(silent.front(), closing, {std::chrono::steady_clock::now() + 60s, {}}) &&
+           Handshake::is_busy(closing);
+  }
+  const Met guest = meet(secret(), as_guest(port));
+  waiting.join();
+  EXPECT_EQ(host->keys.send, guest.keys.receive);
+}
+
+TEST(MeetingTest, AGuestThatIsToldSoSaysThatTheHostIsBusy) {
+  for (const bool at_once : {true, false}) {
+    const std::uint16_t port = free_port();
+    const Socket listener = listening(port);
+    std::string said;
+    std::thread guest(
+        [&] { said = message_of<RunError>([&] { meet(secret(), as_guest(port)); }); });
+    const Patience patience{std::chrono::steady_clock::now() + 60s, {}};
+    Address from;
+    const Socket socket = accepted(listener, patience, &from);
+    if (at_once) {
+      EXPECT_TRUE(send_all(socket, Handshake::busy<Handshake::Opening>(), patience));
+    } else {
+      const Handshake host(secret(), {port, {}});
+      Handshake::Answer answer;
+      EXPECT_TRUE(send_all(socket, host.opening(), patience));
+      EXPECT_TRUE(receive_all(socket, answer, patience));
+      EXPECT_TRUE(send_all(socket, Handshake::busy<Handshake::Closing>(), patience));
+    }
+    guest.join();
+    EXPECT_THAT(said, HasSubstr("busy with other guests; try again"));
+  }
 }
 
 TEST(MeetingTest, AnotherStudyIsRefusedOnBothSides) {
