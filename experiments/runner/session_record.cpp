@@ -218,12 +218,19 @@ std::size_t SessionRecord::collect(const Follower& follow) {
     flushed_ = now;
     writer_.note_counts(counts());
     writer_.flush();
-    for (const std::string& notice : writer_.take_notices()) {
-      fmt::print(stderr, "{}\n", notice);
+    tell_notices();
+  }
+  return count;
+}
+
+/// What befell the file.
+void SessionRecord::tell_notices() {
+  for (const std::string& notice : writer_.take_notices()) {
+    fmt::print(stderr, "{}\n", notice);
+    if (writer_.can_go_on()) {
       event("notice", notice);
     }
   }
-  return count;
 }
 
 void SessionRecord::append(std::span<const record::Sample> samples) {
@@ -313,6 +320,7 @@ void SessionRecord::close(const std::string& text) {
   event("session_end", text);
   write_timing(record::RunState::kEnded);
   writer_.close();
+  tell_notices();
 }
 
 void SessionRecord::give_up(const protocols::SessionTask& task) {

@@ -28,6 +28,14 @@ bool link_back(int descriptor, const fs::path& path) {
   return linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
 }
 
+/// Where an open file is now; empty if it was deleted.
+fs::path present_path(int descriptor) {
+  struct stat file {};
+  std::error_code error;
+  const fs::path path = fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor), error);
+  return error || fstat(descriptor, &file) != 0 || file.st_nlink == 0 ? fs::path() : path;
+}
+
 void copy(int from, int to) {
   struct stat file {};
   if (fstat(from, &file) != 0 || ftruncate(to, 0) != 0) {
@@ -67,29 +75,62 @@ void SessionWriter::Impl::put_back() {
   if (place == DiskSync::Place::kThere) {
     return;
   }
-  const std::string name = partial.filename().string();
   if (place == DiskSync::Place::kForeign) {
-    write(true);
     fs::path saved = partial;
     saved += ".saved";
-    if (!link_back(lock.descriptor(), saved)) {
-      FileLock to = FileLock::take(saved, true);
-      copy(lock.descriptor(), to.descriptor());
-    }
-    sync_folder_of(saved);
+    save_as(saved);
     failure = partial.string() +
               ": was replaced by another file while the session ran; what came " + "before is in " +
               saved.filename().string();
     throw RunError(failure);
   }
+  const fs::path present = present_path(lock.descriptor());
+  make_folder_again();
   if (link_back(lock.descriptor(), partial)) {
     sync_folder_of(partial);
-    notices.push_back(name + " was moved while the session ran, and has its name again");
+    notices.push_back(partial.string() + " was moved while the session ran, to " +
+                      present.string() + ", and has its name again beside that one");
     return;
   }
   copy_back();
-  notices.push_back(name + " was deleted while the session ran, and was written again with " +
+  notices.push_back(partial.filename().string() +
+                    " was deleted while the session ran, and was written again with " +
                     "everything that was recorded");
+}
+
+/// Its folder may have been deleted or renamed with it. Where none can be made, the recording goes
+/// to the folder of temporary files.
+void SessionWriter::Impl::make_folder_again() {
+  const fs::path folder = folder_of(partial);
+  std::error_code error;
+  const bool made = fs::create_directories(folder, error);
+  if (made) {
+    notices.push_back("the folder " + folder.string() +
+                      " was deleted or moved while the session ran, and was made again");
+  }
+  if (!error) {
+    return;
+  }
+  fs::path saved = present_path(lock.descriptor());
+  if (saved.empty()) {
+    saved = fs::temp_directory_path() / partial.filename();
+    saved += "." + std::to_string(getpid());
+    save_as(saved);
+  }
+  failure = "the folder " + folder.string() +
+            " was deleted or moved while the session ran, and cannot be made again (" +
+            error.message() + "); what came before is in " + saved.string();
+  throw RunError(failure);
+}
+
+/// Writes everything so far, and gives the file another name or copies it.
+void SessionWriter::Impl::save_as(const fs::path& saved) {
+  write(true);
+  if (!link_back(lock.descriptor(), saved)) {
+    FileLock to = FileLock::take(saved, true);
+    copy(lock.descriptor(), to.descriptor());
+  }
+  sync_folder_of(saved);
 }
 
 /// A file without a name cannot get one again: a copy goes on in its place.

@@ -30,10 +30,6 @@ bool is_there(const fs::path& path) {
   return fs::symlink_status(path, ignored).type() != fs::file_type::not_found;
 }
 
-fs::path folder_of(const fs::path& file) {
-  return file.has_parent_path() ? file.parent_path() : fs::path(".");
-}
-
 void sync(const fs::path& path, int flags) {
   const int descriptor = open(path.c_str(), flags | O_CLOEXEC);
   if (descriptor < 0) {
@@ -51,6 +47,10 @@ void sync(const fs::path& path, int flags) {
 
 fs::path partial_path(const fs::path& final_path) { return with(final_path, ".partial"); }
 fs::path new_path(const fs::path& final_path) { return with(final_path, ".partial.new"); }
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
 
 void check_target(const fs::path& final_path) {
   const std::string name = final_path.string();

@@ -12,6 +12,9 @@ namespace haptrial::record {
 std::filesystem::path partial_path(const std::filesystem::path& final_path);
 std::filesystem::path new_path(const std::filesystem::path& final_path);
 
+/// The folder that a file is in.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
 /// @throws InputError unless FILE can be created: neither it nor FILE.partial exists, and its
 /// folder may be written.
 void check_target(const std::filesystem::path& final_path);

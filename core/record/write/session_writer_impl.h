@@ -73,6 +73,8 @@ struct SessionWriter::Impl {
   /// Where the file was deleted, moved or replaced, it is put back, or saved under another name.
   /// @throws RunError that names the other name
   void put_back();
+  void make_folder_again();
+  void save_as(const std::filesystem::path& saved);
   void copy_back();
   void take_up(const Resumed& found);
   void add_run(RunState state);

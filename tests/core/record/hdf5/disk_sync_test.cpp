@@ -235,6 +235,51 @@ TEST(LostFileTest, AMovedFileHasItsNameAgain) {
   EXPECT_EQ(SessionReader(folder / "a.h5").sample_count(), 2000u);
 }
 
+TEST(LostFileTest, ADeletedFolderIsMadeAgainWithEverything) {
+  const TemporaryFolder folder;
+  const fs::path sessions = folder / "out" / "sessions";
+  fs::create_directories(sessions);
+  SessionWriter writer(sessions / "a.h5", live_info());
+  writer.append(hand_motion(2000, 2));
+  fs::remove_all(folder / "out");
+  EXPECT_THAT(next_notices(writer),
+              testing::ElementsAre(HasSubstr("sessions was deleted or moved while the session ran, "
+                                             "and was made again"),
+                                   HasSubstr("a.h5.partial was deleted while")));
+  writer.close();
+  EXPECT_EQ(SessionReader(sessions / "a.h5").sample_count(), 2000u);
+}
+
+TEST(LostFileTest, OfARenamedFolderItIsSaidWhereTheRecordingLies) {
+  const TemporaryFolder folder;
+  const fs::path sessions = folder / "sessions";
+  fs::create_directories(sessions);
+  SessionWriter writer(sessions / "a.h5", live_info());
+  writer.append(hand_motion(2000, 2));
+  fs::rename(sessions, folder / "renamed");
+  const fs::path lay = fs::canonical(folder / "renamed") / "a.h5.partial";
+  EXPECT_THAT(next_notices(writer),
+              testing::ElementsAre(HasSubstr("was made again"),
+                                   HasSubstr("while the session ran, to " + lay.string())));
+  EXPECT_TRUE(fs::equivalent(sessions / "a.h5.partial", lay));
+  writer.close();
+  EXPECT_EQ(SessionReader(sessions / "a.h5").sample_count(), 2000u);
+}
+
+TEST(LostFileTest, WithoutAFolderItIsSaidWhereTheRecordingLies) {
+  const TemporaryFolder folder;
+  const fs::path sessions = folder / "out" / "sessions";
+  fs::create_directories(sessions);
+  SessionWriter writer(sessions / "a.h5", live_info());
+  writer.append(hand_motion(2000, 2));
+  fs::rename(folder / "out", folder / "renamed");
+  std::ofstream(folder / "out") << "a file in the folder's place";
+  const std::string said = message_of<RunError>([&] { writer.close(); });
+  const fs::path lies = fs::canonical(folder / "renamed") / "sessions" / "a.h5.partial";
+  EXPECT_THAT(said, HasSubstr("cannot be made again"));
+  EXPECT_THAT(said, HasSubstr("what came before is in " + lies.string()));
+}
+
 TEST(LostFileTest, AReplacedFileIsSavedAndTheOtherLeftAlone) {
   const TemporaryFolder folder;
   SessionWriter writer(folder / "a.h5", live_info());
