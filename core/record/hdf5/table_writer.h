@@ -42,6 +42,7 @@ class TableWriter {
 
   /// Writes the rows of the unfinished chunk, padded with zeros; more may follow them.
   void write_unfinished();
+  std::uint64_t rows() const { return first_row_ + used_; }  // of the dataset
   bool has_unwritten() const { return used_ != written_; }
 
   const h5::Id& dataset() const { return dataset_; }

@@ -218,11 +218,13 @@ void SessionWriter::close() {
     impl_->put_back();
     impl_->write(true);
     probe(h5::descriptor(impl_->file));
+    const std::vector<WrittenTable> written = impl_->written_tables();
     impl_->close_tables();
     h5::close(impl_->file);
     impl_->syncing.reset();
     trim(impl_->partial);
     sync_file(impl_->partial);
+    impl_->read_back(written);
     give_name(impl_->partial, impl_->final_path);
     impl_->finished = true;
     impl_->lock = FileLock();

@@ -233,6 +233,23 @@ void SessionWriter::Impl::close_tables() noexcept {
   }
 }
 
+std::vector<WrittenTable> SessionWriter::Impl::written_tables() {
+  std::vector<WrittenTable> written;
+  for (const Part& part : tables()) {
+    written.push_back({part.schema, (*part.writer)->rows()});
+  }
+  return written;
+}
+
+void SessionWriter::Impl::read_back(std::span<const WrittenTable> written) {
+  if (const std::string what = find_unreadable(partial, written, live); !what.empty()) {
+    failure = partial.string() + ": the session does not read back (" + what +
+              "), as if another program had changed its file; it keeps this name, and haptrial " +
+              "recover " + partial.string() + " saves what it still holds";
+    throw RunError(failure);
+  }
+}
+
 void SessionWriter::Impl::put_counts() {
   const std::array<std::pair<const char*, std::uint64_t>, 3> counts{
       {{"dropped", run.counts.dropped + earlier.dropped},

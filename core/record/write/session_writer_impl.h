@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "core/record/hdf5/hdf5_layer.h"
 #include "core/record/hdf5/table_writer.h"
 #include "core/record/rows/run_types.h"
+#include "core/record/write/read_back.h"
 #include "core/record/write/session_writer.h"
 
 /// What session_writer.cpp and session_resume.cpp share; for those only.
@@ -65,6 +67,9 @@ struct SessionWriter::Impl {
   void divert_file() noexcept;
   bool closable() noexcept;
   void close_tables() noexcept;
+  std::vector<WrittenTable> written_tables();
+  /// @throws RunError if the closed file does not hold what was written
+  void read_back(std::span<const WrittenTable> written);
   void go_on();  // opens the file and its tables
   void start_syncing();
 

@@ -302,6 +302,23 @@ TEST(LostFileTest, AReplacedFileIsSavedAndTheOtherLeftAlone) {
   EXPECT_EQ(SessionReader(folder / "copy.h5").sample_count(), 2000u);
 }
 
+TEST(LostFileTest, AFileThatAnotherProgramCutsIsNotCalledComplete) {
+  for (const std::uintmax_t left : {std::uintmax_t{0}, std::uintmax_t{20'000}}) {
+    const TemporaryFolder folder;
+    SessionWriter writer(folder / "a.h5", live_info());
+    const std::vector<Sample> samples = hand_motion(4000, 2);
+    writer.append(std::span(samples).first(2000));
+    writer.sync();
+    fs::resize_file(folder / "a.h5.partial", left);
+    writer.append(std::span(samples).subspan(2000));
+    const std::string said = message_of<RunError>([&] { writer.close(); });
+    EXPECT_THAT(said, HasSubstr("the session does not read back")) << left;
+    EXPECT_THAT(said, HasSubstr("haptrial recover"));
+    EXPECT_FALSE(fs::exists(folder / "a.h5"));
+    EXPECT_TRUE(fs::exists(folder / "a.h5.partial"));
+  }
+}
+
 TEST(LostFileTest, DeletedBeforeTheEndIsNoticedAtTheEnd) {
   const TemporaryFolder folder;
   SessionWriter writer(folder / "a.h5", live_info());
