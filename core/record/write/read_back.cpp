@@ -36,15 +36,16 @@ void check_table(const h5::Id& file, const WrittenTable& written, bool chunks) {
 
 std::string find_unreadable(const std::filesystem::path& file, std::span<const WrittenTable> tables,
                             bool chunks) {
-  std::string where;
+  std::string where;  // the table
   try {
     const h5::Id opened = h5::open_file(file);
     for (const WrittenTable& table : tables) {
-      where = std::string("/") + table.schema->name + ": ";
+      where = std::string("/") + table.schema->name;
       check_table(opened, table, chunks);
     }
   } catch (const h5::Error& error) {
-    return where + error.what();
+    const std::string what = error.what();
+    return where.empty() || what.starts_with(where) ? what : where + ": " + what;
   }
   return "";
 }
