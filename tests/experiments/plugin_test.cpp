@@ -47,7 +47,7 @@ TEST(PluginTest, AFileThatIsNotThereOrNoSharedObjectIsRefused) {
   const std::string text = (folder / "text.so").string();
   std::ofstream(text) << "not an object\n";
   expect_plugin_refused("nowhere.so", "there is no file nowhere.so");
-  expect_plugin_refused(folder.path().string(), "there is no file");
+  expect_plugin_refused(folder.path().string(), ": is a directory");
   expect_plugin_refused(text, "is not a shared object");
   expect_line_refused("haptrial devices --plugin", "--plugin has no value");
 }
