@@ -34,6 +34,9 @@ name = "home"
 fields = ["home"]
 until = { time = 0.6 }
 [[stages]]
+name = "rest"
+until = { time = 0.1 }
+[[stages]]
 name = "feel"
 fields = ["pull"]
 until = { time = 0.4 }
