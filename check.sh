@@ -29,7 +29,7 @@ run_tests() {
 
 case "${1:-release}" in
   release)
-    install_packages build test
+    install_packages build test site
     build build -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON -DHAPTRIAL_PYTHON=ON
     run_tests build
     ;;

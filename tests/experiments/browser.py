@@ -39,10 +39,9 @@ class Driver:
         try:
             answer = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
                 "browserName": "chrome", "goog:chromeOptions": options, **logging}}})
-        except OSError as error:  # no shared memory, say: nothing that the page could help
+        except OSError:
             self.process.kill()
-            print(f"Chromium does not start here: {error}")
-            sys.exit(77)
+            raise
         self.base += "/session/" + answer["sessionId"]
 
     def call(self, method, path, body=None):

@@ -3,7 +3,7 @@
     console_browser.py URL FOLDER
 
 Leaves pictures in FOLDER. Prints CLOSE when the console is to go away. Exit status 0: all was as it
-should be; 77: there is no Chromium that starts.
+should be.
 """
 
 import http.server

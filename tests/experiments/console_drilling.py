@@ -3,7 +3,7 @@
     console_drilling.py URL FOLDER
 
 The session drills from its second status on. Leaves a picture in FOLDER. Exit status 0: all was as
-it should be; 77: there is no Chromium that starts.
+it should be.
 """
 
 import pathlib

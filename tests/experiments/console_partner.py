@@ -3,7 +3,7 @@
     console_partner.py URL FOLDER
 
 The session is linked from the beginning; its link is lost once the lead was handed over. Leaves a
-picture in FOLDER. Exit status 0: all was as it should be; 77: there is no Chromium that starts.
+picture in FOLDER. Exit status 0: all was as it should be.
 """
 
 import pathlib

@@ -222,7 +222,7 @@ TEST_F(DecisionScriptTest, ItIsToldWhatWasPresentedFeltAndAnswered) {
 
 TEST_F(DecisionScriptTest, AResumedSessionGoesOnAsIfItHadNotBeenInterrupted) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "a process that has threads is forked";
+    GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
   }
   // The history decides, too: every other trial is answered against what was felt.
   const std::string script = answering(

@@ -161,7 +161,7 @@ TEST_F(LevelScriptSessionTest, ThatItGivesNoLevelIsSaidAtTheFirstTrial) {
 
 TEST_F(LevelScriptSessionTest, AResumedSessionAsksNothingAgainAndTakesNoOtherScript) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "a process that has threads is forked";
+    GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
   }
   const std::string script = ladder(
       "    if n == 6 and os.path.exists('kill'):\n        os.kill(os.getppid(), signal.SIGKILL)\n");

@@ -58,8 +58,7 @@ TEST_F(LiveBreaksTest, ABreakEndsBeforeItsTimeWhenTheExperimenterStarts) {
 }
 
 TEST_F(LiveBreaksTest, ABreakUntilReadyLastsItsTimeAndThenUntilTheExperimenterStarts) {
-  LiveCommand session(
-      run({{"break_duration", "break_duration = 2.0\nbreak_until = \"ready\""}}));
+  LiveCommand session(run({{"break_duration", "break_duration = 2.0\nbreak_until = \"ready\""}}));
   ConsolePerson person(session.line_after("console: "));
   ASSERT_NO_FATAL_FAILURE(come_to_the_break(person));
   ASSERT_TRUE(person.ask("start"));  // before its time
@@ -71,9 +70,6 @@ TEST_F(LiveBreaksTest, ABreakUntilReadyLastsItsTimeAndThenUntilTheExperimenterSt
 }
 
 TEST_F(LiveBreaksTest, ABreakUntilReadyEndsWhenTheParticipantPressesEnter) {
-  if (!test::VirtualDisplay::available()) {
-    GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-  }
   const test::VirtualDisplay display(1280, 720);
   LiveCommand session(run({{"break_duration", "break_duration = 0.5\nbreak_until = \"ready\""}},
                           "--console --window"));
@@ -195,9 +191,6 @@ TEST_F(LiveBreaksTest, TheConsoleSpeaksOfThePlannedTrialsAndOfTheDefinitions) {
 }
 
 TEST_F(LiveBreaksTest, EscapeInTheParticipantsWindowStopsASessionWithoutAConsole) {
-  if (!test::VirtualDisplay::available()) {
-    GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-  }
   const test::VirtualDisplay display(1280, 720);
   LiveCommand session(run({}, "--window"));
   const auto partial = folder_ / "out/S01.h5.partial";

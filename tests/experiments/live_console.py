@@ -3,8 +3,7 @@
     live_console.py URL FOLDER
 
 Leaves pictures in FOLDER. HAPTRIAL_PLOT_SECONDS is how long a pass has run before its picture is
-taken (0): the plot of a picture for the docs is to be full. Exit status 0: all was as it should be;
-77: there is no Chromium that starts.
+taken (0): the plot of a picture for the docs is to be full. Exit status 0: all was as it should be.
 """
 
 import os

@@ -42,12 +42,7 @@ std::string with(std::string text, const std::string& what, const std::string& b
 
 class LiveDrillingWindowTest : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!test::VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
-    display_.emplace(kWidth, kHeight);
-  }
+  void SetUp() override { display_.emplace(kWidth, kHeight); }
   /// A small drilling with every kind of tool, stills and a key for everything.
   void write_study(const std::string& carry, bool stereo) {
     const fs::path file = test::write_small_drilling(

@@ -54,9 +54,6 @@ std::string hints() {
 class LiveGamepadDrillingTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (!VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
     display_.emplace(width_, height_);
     std::string text =
         test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/first_drilling.toml");

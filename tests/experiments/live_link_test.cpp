@@ -220,7 +220,7 @@ void expect_no_force_after_silence(const std::string& path) {
 
 TEST_F(LiveLinkTest, TheKilledSideLeavesTheOtherWholeAndBothGoOn) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "real time";
+    GTEST_SKIP() << "a thread sanitizer is too slow for real time";
   }
   for (const char* killed : {"learning", "teaching"}) {
     const std::string left = std::string(killed) == "learning" ? "teaching" : "learning";
@@ -280,7 +280,7 @@ TEST_F(LiveLinkTest, ACutNetworkTakesTheForceAwayAndGivesItBackByARamp) {
 
 TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
   if (!LiveCommand::has_terminals()) {
-    GTEST_SKIP() << "no pseudo-terminals";
+    GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
   }
   port_ = test::free_port();
   teaches_ = std::make_unique<LiveCommand>(

@@ -43,9 +43,6 @@ std::string with(std::string text, const std::string& what, const std::string& b
 class LiveMouseDrillingTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (!VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
     display_.emplace(width_, height_);
     std::string text =
         test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/first_drilling.toml");
@@ -93,23 +90,19 @@ class LiveMouseDrillingTest : public testing::Test {
 TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
   test::LiveCommand session("run '" + (folder_ / "study.toml").string() + "' --out '" +
                             (folder_ / "out").string() + "' --device mouse --window");
-  ASSERT_TRUE(test::eventually(
-      [&] {
-        keep("first-drilling-0.png");
-        display_->try_key(kTitle, VirtualDisplay::kEnter);
-        return rows<record::ToolRow>() > 0;
-      }))
-      << session.errors();
+  ASSERT_TRUE(test::eventually([&] {
+    keep("first-drilling-0.png");
+    display_->try_key(kTitle, VirtualDisplay::kEnter);
+    return rows<record::ToolRow>() > 0;
+  })) << session.errors();
   move(0.5, 0.45);
   std::this_thread::sleep_for(std::chrono::seconds(1));
   keep("first-drilling-1.png");
   display_->press_button(kTitle, kLeft);
-  ASSERT_TRUE(test::eventually(
-      [&] {
-        roll(kWheelUp, 2);
-        return rows<record::RemovalRow>() > 0;
-      }))
-      << "deeper and deeper it comes to the bone";
+  ASSERT_TRUE(test::eventually([&] {
+    roll(kWheelUp, 2);
+    return rows<record::RemovalRow>() > 0;
+  })) << "deeper and deeper it comes to the bone";
   // Strokes across a field, deeper after every eight.
   constexpr int kSteps = 12;
   for (int stroke = 0; stroke < (kept_pictures() != nullptr ? 100 : 4); ++stroke) {

@@ -33,9 +33,6 @@ class LiveMouseTest : public testing::Test {
   static constexpr int kHeight = 600;
 
   void SetUp() override {
-    if (!test::VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
     display_.emplace(kWidth, kHeight);
     test::write_text(folder_ / "study.toml",
                      test::brisk_text({{"conditions", "conditions = [\"visual\"]"},

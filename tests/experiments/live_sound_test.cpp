@@ -57,9 +57,6 @@ TEST(LiveSoundTest, TheCardIsGivenTheDrillsSoundWhileTheLoopKeepsItsTime) {
   const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr(" 0 lost records"));
-  if (ended.output.find("sound card 'default'") != std::string::npos) {
-    GTEST_SKIP() << "ALSA has no plugin here that plays into a file: " << ended.output;
-  }
 
   const std::vector<float> samples = read_samples(folder / "card.raw");
   constexpr double kRate = sound::DrillSound::kRate;

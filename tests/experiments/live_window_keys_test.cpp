@@ -26,12 +26,7 @@ using testing::HasSubstr;
 
 class LiveWindowKeysTest : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
-    display_.emplace(640, 480);
-  }
+  void SetUp() override { display_.emplace(640, 480); }
   std::string run(const std::string& more, const std::string& screen = "") const {
     test::write_text(folder_ / "study.toml",
                      test::brisk_text({{"speed", "speed = 0.02"},

@@ -52,9 +52,6 @@ struct Seen {
 class LiveWindowTest : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
-    if (!test::VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
     display_.emplace(kDisplayWidth, kDisplayHeight);
     test::write_text(
         folder_ / "study.toml",

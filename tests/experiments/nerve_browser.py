@@ -2,8 +2,7 @@
 
     nerve_browser.py URL FOLDER
 
-The session drills beside nerves. Leaves pictures in FOLDER. Exit status 0: all was as it should be;
-77: there is no Chromium that starts.
+The session drills beside nerves. Leaves pictures in FOLDER. Exit status 0: all was as it should be.
 """
 
 import pathlib

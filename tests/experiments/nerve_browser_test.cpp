@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <array>
 #include <atomic>
@@ -23,10 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-bool is_installed(const std::string& program) {
-  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
-}
 
 nerve::NerveSetup setup() {
   nerve::NerveSetup s;
@@ -80,9 +75,6 @@ class Drilling {
 };
 
 TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
-  if (!is_installed("chromedriver") || !is_installed("chromium") || !is_installed("python3")) {
-    GTEST_SKIP() << "needs Debian's chromium, chromium-driver and python3";
-  }
   const test::TemporaryFolder folder;
   SessionControl control;
   ConsoleOptions options;
@@ -103,9 +95,6 @@ TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
     }
   }
   const int status = ::pclose(script);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 77) {
-    GTEST_SKIP() << output;
-  }
   EXPECT_EQ(status, 0) << output;
   if (const char* kept = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
     for (const char* picture : {"nerve-monitor.png", "nerve-monitor-narrow.png"}) {
@@ -136,13 +125,13 @@ TEST(NervePageTest, OrdersAreReadStrictly) {
   const nerve::MonitorOrder probe = protocols::parse_nerve_order(R"({"stimulus": 0.003})");
   EXPECT_EQ(probe.what, What::kStimulus);
   EXPECT_DOUBLE_EQ(probe.current, 0.003);
-  for (const char* wrong : {"", "[]", "{}", R"({"channel": 0})", R"({"muted": true})",
-                            R"({"channel": -1, "muted": true})", R"({"channel": 9, "muted": true})",
-                            R"({"channel": 0, "muted": 1})", R"({"channel": 0, "threshold": 1})",
-                            R"({"channel": 0, "threshold": 0})", R"({"stimulus": 0.01})",
-                            R"({"stimulus": 1e-3, "channel": 0})",
-                            R"({"channel": 0, "search": false})",
-                            R"({"channel": 0, "threshold": 1e-4, "muted": true})"}) {
+  for (const char* wrong :
+       {"", "[]", "{}", R"({"channel": 0})", R"({"muted": true})",
+        R"({"channel": -1, "muted": true})", R"({"channel": 9, "muted": true})",
+        R"({"channel": 0, "muted": 1})", R"({"channel": 0, "threshold": 1})",
+        R"({"channel": 0, "threshold": 0})", R"({"stimulus": 0.01})",
+        R"({"stimulus": 1e-3, "channel": 0})", R"({"channel": 0, "search": false})",
+        R"({"channel": 0, "threshold": 1e-4, "muted": true})"}) {
     EXPECT_THAT(refusal(wrong), HasSubstr("one of \"muted\"")) << wrong;
   }
 }

@@ -211,7 +211,7 @@ class KilledTest : public testing::Test {
 
 TEST_F(KilledTest, ResumedItGoesOnAsItWouldHave) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "a process that has threads is forked";
+    GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
   }
   run_session(short_request("whole.h5", realtime::ClockKind::kSimulated));
   const record::SessionReader whole(folder_ / "whole.h5");

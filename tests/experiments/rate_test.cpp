@@ -118,11 +118,6 @@ TEST_F(RateTest, WhatRatersGetDoesNotDependOnNames) {
   }
 }
 
-constexpr const char* kNoFfmpeg = "ffmpeg or ffprobe is not there; needed: Debian's package ffmpeg";
-bool has_ffmpeg() {
-  return test::run_command("command -v ffmpeg && command -v ffprobe").status == 0;
-}
-
 /// Of the first stream of a film, as ffprobe prints it.
 std::string probed(const fs::path& film, const std::string& entries) {
   const test::CommandResult result =
@@ -133,9 +128,6 @@ std::string probed(const fs::path& film, const std::string& entries) {
 }
 
 TEST_F(RateTest, FilmsAreOfOneKindAndTellNothingElse) {
-  if (!has_ffmpeg()) {
-    GTEST_SKIP() << kNoFfmpeg;
-  }
   prepare(renamed(), *folder_ / "others", false);
   EXPECT_TRUE(files_in(films()) == files_in(*folder_ / "others")) << "names of participants enter";
   std::vector<std::string> kinds;
@@ -160,9 +152,6 @@ TEST_F(RateTest, FilmsAreOfOneKindAndTellNothingElse) {
 }
 
 TEST_F(RateTest, TheEndOfAFilmStandsStillAndItsBeginningMoves) {
-  if (!has_ffmpeg()) {
-    GTEST_SKIP() << kNoFfmpeg;
-  }
   for (const auto& entry : fs::directory_iterator(films())) {
     if (entry.path().extension() != ".mp4") {
       continue;

@@ -40,7 +40,7 @@ class RealAnatomyTest : public testing::TestWithParam<RealEar> {
  protected:
   void SetUp() override {
     if (test::kThreadSanitizer || test::kAddressSanitizer) {
-      GTEST_SKIP() << "bones of millions of voxels take too long here";
+      GTEST_SKIP() << "bones of millions of voxels take too long under a sanitizer";
     }
     const bool large = std::string(GetParam().file).find("256") != std::string::npos;
     if (large && GetParam().left && std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {

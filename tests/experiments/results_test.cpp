@@ -109,7 +109,7 @@ class ScoredResults : public Results {};
 
 TEST_P(ScoredResults, Reproduce) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "whole studies take too long here; other builds make them anew";
+    GTEST_SKIP() << "whole studies take too long under a sanitizer";
   }
   ASSERT_NO_FATAL_FAILURE(make_again(3));
   expect_the_same_rows("scores.csv");
@@ -143,7 +143,7 @@ class EstimatedResults : public Results {};
 
 TEST_P(EstimatedResults, Reproduce) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "whole studies take too long here; other builds make them anew";
+    GTEST_SKIP() << "whole studies take too long under a sanitizer";
   }
   const bool long_one =
       folder_.filename() == "size_by_eye_and_hand" || folder_.filename() == "lump_search";
@@ -167,7 +167,7 @@ class ContactResults : public Results {};
 
 TEST_P(ContactResults, Reproduce) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "renderings take too long here; other builds make them anew";
+    GTEST_SKIP() << "renderings take too long under a sanitizer";
   }
   ASSERT_NO_FATAL_FAILURE(make_again());
   for (const char* name :
@@ -184,7 +184,7 @@ class PowerResults : public Results {};
 
 TEST_P(PowerResults, Reproduce) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "thousands of studies take too long here; other builds make them anew";
+    GTEST_SKIP() << "thousands of studies take too long under a sanitizer";
   }
   const std::string question = "docs/worked/power/" +
                                folder_.filename().string().substr(std::string("power_").size()) +

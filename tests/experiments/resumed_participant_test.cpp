@@ -40,7 +40,7 @@ class ResumedParticipantTest : public testing::Test {
  protected:
   void SetUp() override {
     if (test::kThreadSanitizer) {
-      GTEST_SKIP() << "a process that has threads is forked";
+      GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
     }
   }
   void use(const std::string& definition) {

@@ -319,7 +319,7 @@ class MarkerKillTest : public SessionMarkersTest, public testing::WithParamInter
 /// A line that is slower than the trials, too.
 TEST_P(MarkerKillTest, LeavesTheMarkersOfFinishedTrials) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "a process that has threads is forked";
+    GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
   }
   test::PseudoTerminal line;
   const SessionRequest asked =
@@ -353,9 +353,6 @@ TEST_P(MarkerKillTest, LeavesTheMarkersOfFinishedTrials) {
 INSTANTIATE_TEST_SUITE_P(Pulses, MarkerKillTest, testing::Values(0.001, 0.05));
 
 TEST_F(SessionMarkersTest, TheScreenSaysWhichFrameWasWhite) {
-  if (!test::VirtualDisplay::available()) {
-    GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-  }
   test::VirtualDisplay display(640, 480);
   SessionRequest asked = live(
       "[screen]\nfull_screen = false\nphotodiode = \"onset\"\nphotodiode_time = 0.03\n"

@@ -3,7 +3,7 @@
     trainee_browser.py OVERVIEW FOLDER
 
 OVERVIEW is the page of several procedures. Leaves pictures in FOLDER. Exit status 0: all was as it
-should be; 77: there is no Chromium that starts.
+should be.
 """
 
 import pathlib

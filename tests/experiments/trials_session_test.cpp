@@ -232,7 +232,7 @@ class KilledTrialsTest : public testing::Test {
 
 TEST_F(KilledTrialsTest, TheStaircaseGoesOnAsItWouldHave) {
   if (test::kThreadSanitizer) {
-    GTEST_SKIP() << "a process that has threads is forked";
+    GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
   }
   run_session(short_request("whole.h5", realtime::ClockKind::kSimulated));
   const Done whole = done_of(record::SessionReader(folder_ / "whole.h5"));
@@ -297,9 +297,6 @@ constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();
 class LiveTrialsTest : public testing::TestWithParam<AtTheWindow> {
  protected:
   void SetUp() override {
-    if (!test::VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
     if (!GetParam().always && std::getenv("HAPTRIAL_EVERY_WINDOW") == nullptr) {
       GTEST_SKIP() << "takes half a minute; set HAPTRIAL_EVERY_WINDOW=1 to run it";
     }

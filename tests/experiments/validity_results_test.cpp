@@ -27,7 +27,7 @@ fs::path shipped() { return fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/constru
 
 TEST(ValidityResultsTest, TheFirstProcedureComesOutAgainAndIsRatedTheSame) {
   if (test::kThreadSanitizer || test::kAddressSanitizer) {
-    GTEST_SKIP() << "a whole procedure takes too long here; other builds make it anew";
+    GTEST_SKIP() << "a whole procedure takes too long under a sanitizer";
   }
   const fs::path folder = fs::path(HAPTRIAL_SOURCE_DIR) / "results/construct_validity";
   const auto manifest = nlohmann::json::parse(test::read_text(folder / "manifest.json"));
@@ -65,7 +65,7 @@ TEST(ValidityResultsTest, TheFirstProcedureComesOutAgainAndIsRatedTheSame) {
 
 TEST(ValidityResultsTest, ASmallNullStudyFindsLittle) {
   if (test::kThreadSanitizer || test::kAddressSanitizer) {
-    GTEST_SKIP() << "60 procedures take too long here";
+    GTEST_SKIP() << "60 procedures take too long under a sanitizer";
   }
   const test::TemporaryFolder out;
   test::NullStudy study;

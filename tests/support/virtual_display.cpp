@@ -131,8 +131,6 @@ std::string display_number(int from) {
 
 }  // namespace
 
-bool VirtualDisplay::available() { return access(kServer, X_OK) == 0; }
-
 VirtualDisplay::VirtualDisplay(int width, int height) : width_(width), height_(height) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {

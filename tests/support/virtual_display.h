@@ -14,8 +14,6 @@ namespace haptrial::test {
 /// with a person at its keyboard and mouse.
 class VirtualDisplay {
  public:
-  static bool available();  // whether Xvfb is installed
-
   /// @throws std::runtime_error when the server does not start within 20 s.
   VirtualDisplay(int width, int height);
   ~VirtualDisplay();

@@ -65,7 +65,7 @@ class SecondHand {
                        const TubeInput& input, double dt) noexcept;
   /// The first hand has another tool, or none at work.
   void leave_tool() noexcept { at_tool_.wait(); }
-  /// What dust and blood have of it. @param tools  room for it
+  /// Fills in the tube that sucks dust and the water that rinses blood away.
   void place(const TubeInput& input, DustTool& tube, DustWater& water) const noexcept;
   /// Whether its water gets to a point of W.
   bool rinses(const TubeInput& input, const Eigen::Vector3d& p_W) const noexcept;

@@ -19,15 +19,12 @@ namespace {
 
 class ContourTest : public testing::TestWithParam<char> {};
 
-constexpr const char* kAbsent =
-    "neither HAPTRIAL_DATA nor ../shared/data holds haptic/contour: real contact is not tried";
-
 /// Even samples of a recording fix the pose; the odd ones, which took no part, must lie as close.
 TEST_P(ContourTest, ThePathLiesOnTheBody) {
   const auto file = test::contour_file(GetParam());
   const auto mesh = test::contour_body();
   if (!file || !mesh) {
-    GTEST_SKIP() << kAbsent;
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds haptic/contour";
   }
   const contact::ContactSurface surface(*mesh);
   const contact::SignedDistance distance(*mesh, surface);
@@ -53,7 +50,7 @@ TEST_P(ContourTest, ThePathLiesOnTheBody) {
 TEST_P(ContourTest, TheLagIsFound) {
   const auto file = test::contour_file(GetParam());
   if (!file) {
-    GTEST_SKIP() << kAbsent;
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds haptic/contour";
   }
   const ContactRecording recording = test::read_contour(*file);
   const ForceStream force =
@@ -76,7 +73,7 @@ TEST_P(ContourTest, ARollingToolHasNoFriction) {
   const auto file = test::contour_file(GetParam());
   auto mesh = test::contour_body();
   if (!file || !mesh) {
-    GTEST_SKIP() << kAbsent;
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds haptic/contour";
   }
   const contact::FeltBody body(*std::move(mesh));
   EvaluationOptions options;
@@ -109,7 +106,7 @@ TEST(ContourTableTest, IsWrittenWhereAsked) {
   }
   auto mesh = test::contour_body();
   if (!mesh) {
-    GTEST_SKIP() << kAbsent;
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds haptic/contour";
   }
   const contact::FeltBody body(*std::move(mesh));
   EvaluationOptions options;

@@ -56,9 +56,6 @@ class ExportBidsTest : public testing::Test {
   std::string quoted(const fs::path& path) const { return " '" + path.string() + "'"; }
 
   void expect_equal_to_the_files() {
-    if (std::system("/usr/bin/python3 -c 'import h5py, pandas' 2>/dev/null") != 0) {
-      GTEST_SKIP() << "/usr/bin/python3 has no h5py or no pandas";
-    }
     std::string line =
         "/usr/bin/python3" + quoted(kHere / "read_bids.py") + quoted(folder_ / "out");
     for (const auto& file : files_) {
@@ -126,13 +123,10 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   write("d.h5", {.subject = "P_3", .trials = 0, .pilot = true});
   write("e.h5", {.subject = "P_4", .pilot = true, .practice = 1, .ticks_of_no_pass = 5});
   run({.name = "A study", .authors = {"A. Author", "B. Author"}, .program_version = "0.1.0"});
-  if (shell("command -v node") != 0) {
-    GTEST_SKIP() << "there is no node";
-  }
   const int had = shell("/usr/bin/python3" + quoted(kHere / "bids_validator.py") +
                         quoted(fs::path(HAPTRIAL_BINARY_DIR)));
-  if (had == 3 || had == 127) {
-    GTEST_SKIP() << "the validator cannot be had here: " << output_;
+  if (had == 3) {
+    GTEST_SKIP() << "no network, so no validator: " << output_;
   }
   ASSERT_EQ(had, 0) << output_;
   const std::string validator = "node '" + output_.substr(0, output_.find('\n')) + "'";

@@ -177,7 +177,8 @@ TEST(ReadingWatchTest, AHandOnAVirtualDeviceThatHoldsStillIsNoFault) {
 TEST(ReadingWatchTest, RecordedHandsDoNotJitter) {
   const auto file = test::shared_data("haptic/csrl_ur_admittance_human_500Hz.csv");
   if (!file) {
-    GTEST_SKIP() << "haptic/csrl_ur_admittance_human_500Hz.csv is not there";
+    GTEST_SKIP()
+        << "neither HAPTRIAL_DATA nor ../shared/data holds csrl_ur_admittance_human_500Hz.csv";
   }
   std::ifstream rows(*file);
   std::string row;

@@ -90,9 +90,6 @@ TEST(LaunchRank, IsWhatTheStarterSays) {
 class MpirunTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (run_command("command -v mpirun").status != 0) {
-      GTEST_SKIP() << "mpirun is not installed (Debian: openmpi-bin)";
-    }
     test::write_text(folder_ / "power.toml",
                      "[power]\ndefinition = \"" + test::shipped_definition().string() + R"("
 watch = "planned: visuohaptic < visual, paired t"

@@ -7,18 +7,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "core/base/files/child_process.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::experiments::slurm_test {
 namespace {
@@ -43,24 +41,12 @@ int free_port() {
   return ntohs(address.sin_port);
 }
 
-bool comes_true(const std::function<bool()>& what, std::chrono::seconds within) {
-  const auto end = std::chrono::steady_clock::now() + within;
-  while (!what()) {
-    if (std::chrono::steady_clock::now() > end) {
-      return false;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  return true;
-}
-
 class SlurmTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (run_command("PATH=$PATH:/usr/sbin; command -v slurmctld && command -v slurmd && "
-                    "command -v sbatch")
-            .status != 0) {
-      GTEST_SKIP() << "Slurm is not installed (Debian: slurmctld slurmd slurm-client)";
+    for (const char* program : {"slurmctld", "slurmd", "sbatch"}) {
+      const std::string found = std::string("PATH=$PATH:/usr/sbin; command -v ") + program;
+      ASSERT_EQ(run_command(found).status, 0) << program << " is not installed";
     }
     for (const char* each : {"state", "spool", "bin"}) {
       fs::create_directory(folder_ / each);
@@ -69,17 +55,14 @@ class SlurmTest : public testing::Test {
         run_command("ln -s \"$HAPTRIAL\" '" + (folder_ / "bin/haptrial").string() + "'").status, 0);
     write_settings();
     start();
-    if (!comes_true([&] { return slurm("sinfo -h -o %T").output == "idle\n"; },
-                    std::chrono::seconds(20))) {
-      GTEST_SKIP() << "Slurm does not start here: " << slurm("tail -n 3 controller node").output;
-    }
+    test::wait_until([&] { return slurm("sinfo -h -o %T").output == "idle\n"; });
     write_question();
   }
 
   void TearDown() override {
     if (controller_) {
       slurm("scancel --user=$(id -un)");
-      comes_true([&] { return in_queue() == 0; }, std::chrono::seconds(20));
+      test::wait_until([&] { return in_queue() == 0; });
       node_.reset();
       controller_.reset();
     }
@@ -189,8 +172,7 @@ TEST_F(SlurmTest, AnArrayThatIsKilledAndRequeuedGivesTheBytesOfOneThread) {
                                    std::to_string(kTasks) + " --script power.sbatch");
   ASSERT_EQ(plan.status, 0) << plan.errors;
   const std::string first = submit();
-  ASSERT_TRUE(comes_true([&] { return parts() > 20; }, std::chrono::seconds(30)))
-      << slurm("squeue; cat slurm-*.out").output;
+  test::wait_until([&] { return parts() > 20; });
   const CommandResult requeued = slurm("scontrol requeue " + first + "_2");
   EXPECT_EQ(requeued.status, 0) << requeued.errors;
   slurm("scancel --batch --signal=KILL " + first + "_3");
@@ -200,8 +182,7 @@ TEST_F(SlurmTest, AnArrayThatIsKilledAndRequeuedGivesTheBytesOfOneThread) {
     slurm("scontrol update JobId=" + first + "_2 StartTime=now 2>/dev/null");
     return in_queue() == 0;
   };
-  ASSERT_TRUE(comes_true(over, std::chrono::seconds(60)))
-      << slurm("squeue; tail controller").output;
+  test::wait_until(over);
   const std::string jobs = slurm("scontrol show job " + first).output;
   EXPECT_THAT(jobs, testing::HasSubstr("Restarts=1"));
   const CommandResult early = slurm("haptrial power merge array");
@@ -209,7 +190,7 @@ TEST_F(SlurmTest, AnArrayThatIsKilledAndRequeuedGivesTheBytesOfOneThread) {
   EXPECT_THAT(early.errors, testing::HasSubstr("parts are missing"));
 
   const std::string second = submit();
-  ASSERT_TRUE(comes_true([&] { return in_queue() == 0; }, std::chrono::seconds(60)));
+  test::wait_until([&] { return in_queue() == 0; });
   EXPECT_THAT(slurm("scontrol show job " + second).output,
               testing::Not(testing::HasSubstr("JobState=FAILED")));
   const CommandResult merged = slurm("haptrial power merge array");

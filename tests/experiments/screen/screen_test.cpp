@@ -57,9 +57,6 @@ int largest_difference(const Image& a, const Image& b) {
 class ScreenTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (!VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
     display_.emplace(kWidth, kHeight);
     options_.title = "participant";
   }

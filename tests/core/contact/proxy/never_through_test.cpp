@@ -202,7 +202,7 @@ TEST(NeverThroughTest, SphereOnHardMeshes) {
 TEST(NeverThroughTest, PointAndSphereOnScannedMeshes) {
   const std::vector<HardMesh> meshes = scanned_meshes();
   if (meshes.empty()) {
-    GTEST_SKIP() << "the scanned meshes are not there (HAPTRIAL_DATA)";
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds the scanned meshes";
   }
   std::uint64_t seed = 2000;
   const auto runs = static_cast<double>(meshes.size() * 3);

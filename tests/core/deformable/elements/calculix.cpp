@@ -71,8 +71,6 @@ std::string step_text(const ElasticBody& body, const LoadCase& load, int increme
 
 }  // namespace
 
-bool installed() { return std::system("command -v ccx > /dev/null 2>&1") == 0; }
-
 Vectors displacements(const ElasticBody& body, const LoadCase& load, int increments) {
   const test::TemporaryFolder folder;
   write_text(folder / "body.inp",

@@ -8,8 +8,6 @@
 
 namespace haptrial::deformable::calculix {
 
-bool installed();
-
 /// Displacements by CalculiX, of the same mesh of C3D4 elements and one material: *ELASTIC for the
 /// linear law, *HYPERELASTIC, NEO HOOKE with NLGEOM for the neo-Hookean one.
 /// @param increments  of the load where it is nonlinear

@@ -40,7 +40,7 @@ class TruthCubeTest : public testing::Test {
   void SetUp() override {
     const auto file = test::shared_data("deformable/truth_cube_uniaxial_mm.csv");
     if (!file) {
-      GTEST_SKIP() << "the data of the Truth Cube are not there";
+      GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds the Truth Cube";
     }
     cube_ = test::read_truth_cube(*file);
     ASSERT_EQ(cube_.beads.size(), 343u);

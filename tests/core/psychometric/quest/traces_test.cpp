@@ -103,7 +103,8 @@ class Traces : public ::testing::Test {
   void SetUp() override {
     const auto path = test::shared_data("psychometric/questplus_traces.json");
     if (!path) {
-      GTEST_SKIP() << "psychometric/questplus_traces.json is not in the folder of shared data";
+      GTEST_SKIP()
+          << "neither HAPTRIAL_DATA nor ../shared/data holds psychometric/questplus_traces.json";
     }
     std::ifstream(*path) >> file_;
   }

@@ -248,9 +248,6 @@ TEST(BoneLayerScenesTest, ASurfaceThatPacksItsSlotsIsDrawnAsAWhole) {
 }
 
 TEST(BoneLayerScenesTest, AWindowShowsWhatIsDrawnOffScreen) {
-  if (!test::VirtualDisplay::available()) {
-    GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-  }
   const BoneModel model = bumpy(30);
   const auto drilled = [&](const auto& draw) {
     std::vector<Image> images;

@@ -39,12 +39,7 @@ bool eventually(const std::function<bool()>& good) {
 
 class WindowTest : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!VirtualDisplay::available()) {
-      GTEST_SKIP() << "Xvfb is not installed (Debian's package xvfb)";
-    }
-    display_.emplace(kWidth, kHeight);
-  }
+  void SetUp() override { display_.emplace(kWidth, kHeight); }
   static WindowOptions small() { return {"small", 320, 240, false, 0, false}; }
   Image on_monitor() const { return {kWidth, kHeight, display_->screenshot()}; }
 
