@@ -34,38 +34,41 @@ AgreedPace agreed_pace(bool wants_lock, double monitor_rate, double interval, do
   return agreed;
 }
 
-Pace::Pace(const AgreedPace& agreed)
+Pace::Pace(const AgreedPace& agreed, std::int64_t now_ns)
     : period_ns_(1e9 / agreed.rate),
       locked_(agreed.refresh_locked),
-      last_(screen_ns()),
+      last_(now_ns),
       due_(static_cast<double>(last_)) {}
 
 void Pace::wait() {
+  std::this_thread::sleep_until(
+      ScreenClock::time_point(std::chrono::nanoseconds(next_due(screen_ns()))));
+}
+
+std::int64_t Pace::next_due(std::int64_t now_ns) {
   if (locked_) {
-    return;
+    return now_ns;
   }
   due_ += period_ns_;
-  const auto now = static_cast<double>(screen_ns());
+  const auto now = static_cast<double>(now_ns);
   if (now > due_) {  // at once: to wait for the next in step would make it half a period later yet
     late_ += (now - due_) / period_ns_;
     const double whole = std::floor(late_);
     missed_ += static_cast<std::int32_t>(whole);
     late_ -= whole;
     due_ = now;
-    return;
+    return now_ns;
   }
-  std::this_thread::sleep_until(
-      ScreenClock::time_point(std::chrono::nanoseconds(static_cast<std::int64_t>(due_))));
+  return static_cast<std::int64_t>(due_);
 }
 
-record::FrameRow Pace::shown(std::int64_t draw_ns) {
-  const std::int64_t now = screen_ns();
-  const std::int64_t since = now - std::exchange(last_, now);
+record::FrameRow Pace::shown(std::int64_t draw_ns, std::int64_t now_ns) {
+  const std::int64_t since = now_ns - std::exchange(last_, now_ns);
   if (locked_) {  // pictures come at refreshes, so that their distance tells
     const auto refreshes = std::lround(static_cast<double>(since) / period_ns_);
     missed_ = static_cast<std::int32_t>(std::max(0L, refreshes - 1));
   }
-  return {now, draw_ns, std::exchange(missed_, 0)};
+  return {now_ns, draw_ns, std::exchange(missed_, 0)};
 }
 
 }  // namespace haptrial::experiments

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,7 @@ class RawClient {
   RawClient& operator=(const RawClient&) = delete;
 
   void send(const std::string& text);
+  static constexpr double kForever = std::numeric_limits<double>::infinity();
   /// All that comes until the other side closes, `seconds` have passed or `until` has come.
   std::string receive(double seconds, const std::string& until = "");
   bool closed() const { return closed_; }  // seen by receive()

@@ -84,10 +84,8 @@ TEST(ServoLoopTest, SimulatedIndexGoesOnOverRuns) {
 
 TEST(ServoLoopTest, SimulatedReportsNoTimingAndDoesNotWait) {
   ServoLoop loop(ClockKind::kSimulated, 1000);
-  Recorder task(60000);
-  const auto start = Clock::now();
+  Recorder task(1'200'000);  // twenty minutes, for which no test could wait
   loop.run(task);
-  EXPECT_LT(seconds_since(start), 10.0);  // a minute of ticks
   EXPECT_EQ(loop.timing().period.count(), 0u);
   EXPECT_EQ(loop.timing().lateness.count(), 0u);
   EXPECT_EQ(loop.timing().compute.count(), 0u);
@@ -251,10 +249,8 @@ TEST(ServoLoopTest, AnotherThreadStopsARealLoop) {
   while (loop.ticks() < 50) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const auto asked = Clock::now();
   loop.request_stop();
   servo.join();
-  EXPECT_LT(seconds_since(asked), 1.0);
   EXPECT_EQ(loop.timing().compute.count(), loop.ticks());
 }
 

@@ -3,9 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 namespace haptrial::experiments {
 namespace {
 
@@ -26,54 +23,48 @@ TEST(PaceTest, TheDisplaySetsThePaceIfItKeepsToItsMonitor) {
   EXPECT_THAT(agreed_pace(false, 60.0, 1.0 / 60.0, 60.0).notice, HasSubstr("no refresh lock"));
 }
 
+/// A picture on a simulated clock: waited for, and shown after `work_ns`.
+record::FrameRow picture(Pace& pace, std::int64_t& now_ns, std::int64_t work_ns) {
+  now_ns = pace.next_due(now_ns) + work_ns;
+  return pace.shown(0, now_ns);
+}
+
 // Pictures and those that were missed add up to the time that went by.
 TEST(PaceTest, ATimerCountsWhatItMisses) {
-  constexpr double kRate = 500.0;
-  Pace pace({kRate, false, ""});
-  const std::int64_t start = screen_ns();
+  constexpr std::int64_t kPeriod = 2'000'000;  // [ns]
+  std::int64_t now = 5'000'000'000;
+  const std::int64_t start = now;
+  Pace pace({500.0, false, ""}, start);
   std::int64_t periods = 0;
-  std::int64_t last = start;
-  for (int picture = 0; picture < 30; ++picture) {
-    pace.wait();
-    if (picture == 10) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(21));
-    }
-    const record::FrameRow row = pace.shown(0);
+  for (int i = 0; i < 30; ++i) {
+    const record::FrameRow row = picture(pace, now, i == 10 ? 21'000'000 : 100'000);
+    EXPECT_EQ(row.time_ns, now);
+    EXPECT_EQ(row.dropped, i == 11 ? 9 : 0) << i;
     periods += 1 + row.dropped;
-    EXPECT_GE(row.time_ns, last);
-    last = row.time_ns;
   }
-  const double passed = 1e-9 * static_cast<double>(last - start) * kRate;
-  EXPECT_GE(periods, 30 + 9) << "21 ms are ten periods";
-  EXPECT_NEAR(static_cast<double>(periods), passed, 12.0) << "the last picture may itself be late";
-  EXPECT_LE(static_cast<double>(periods), passed + 1.0);
+  EXPECT_EQ(periods, (now - start) / kPeriod);
 }
 
 // A picture that takes a period and a half comes after that, not after two periods.
 TEST(PaceTest, ATimerDoesNotWaitWhereAPictureIsLate) {
-  constexpr double kRate = 100.0;
-  Pace pace({kRate, false, ""});
-  std::int32_t dropped = 0;
-  double waited = 0.0;
-  constexpr int kPictures = 20;
-  for (int picture = 0; picture < kPictures; ++picture) {
-    const std::int64_t before = screen_ns();
-    pace.wait();
-    waited += picture > 0 ? 1e-9 * static_cast<double>(screen_ns() - before) : 0.0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(15));
-    dropped += pace.shown(0).dropped;
+  constexpr std::int64_t kWork = 15'000'000;  // [ns]
+  std::int64_t now = 0;
+  Pace pace({100.0, false, ""}, now);
+  std::int32_t dropped = picture(pace, now, kWork).dropped;
+  for (int i = 1; i < 20; ++i) {
+    const std::int64_t before = now;
+    dropped += picture(pace, now, kWork).dropped;
+    EXPECT_EQ(now - before, kWork) << i;
   }
-  EXPECT_LT(waited, 0.5 * kPictures * 0.005) << "a step of the timer would take 5 ms each";
-  EXPECT_GE(dropped, kPictures / 2 - 2);
+  EXPECT_EQ(dropped, 9);
 }
 
 // Where the swap waits for the refresh, the distance of two pictures tells how many had none.
 TEST(PaceTest, RefreshesWithoutAPictureAreCounted) {
-  Pace pace({100.0, true, ""});
-  pace.wait();
-  pace.shown(0);
-  std::this_thread::sleep_for(std::chrono::milliseconds(35));
-  EXPECT_GE(pace.shown(0).dropped, 2);
+  std::int64_t now = 0;
+  Pace pace({100.0, true, ""}, now);
+  EXPECT_EQ(picture(pace, now, 10'000'000).dropped, 0);
+  EXPECT_EQ(picture(pace, now, 35'000'000).dropped, 3);
 }
 
 }  // namespace

@@ -6,13 +6,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <thread>
 
 #include "core/base/files/file_text.h"
 #include "tests/support/temporary_folder.h"
@@ -79,11 +77,7 @@ TEST(ChildProcessTest, ACopyCanCrashThrowOrHang) {
   EXPECT_EQ(ChildProcess([] {}).wait(), 0);
   EXPECT_EQ(ChildProcess([] { throw std::runtime_error("no"); }).wait(), 1);
   EXPECT_EQ(ChildProcess([] { std::abort(); }).wait(), -1);
-  const auto start = std::chrono::steady_clock::now();
-  {
-    const ChildProcess left([] { pause(); });
-  }
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+  const ChildProcess left([] { pause(); });  // its end does not wait for the copy's
 }
 
 TEST(ChildProcessTest, WordsOfACopyComeWhole) {

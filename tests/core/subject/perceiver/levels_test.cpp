@@ -148,24 +148,15 @@ TEST(LevelsTest, DetectionHasItsHitsAndFalseAlarms) {
   }
 }
 
-TEST(LevelsTest, AHundredThousandTrialsTakeLessThanASecondAndAllocateNothing) {
-  const auto now = [] {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  };
+TEST(LevelsTest, AHundredThousandTrialsAllocateNothing) {
   constexpr int kTrials = 100000;
   LevelObserver observer(SenseParameters{}, Quantity::kStiffness, {}, {}, kSeed);
   const haptrial::test::AllocationGuard guard;
-  const double begin = now();
   int more = 0;
   for (int trial = 0; trial < kTrials; ++trial) {
     more += observer.between(trial, std::array{300.0, 345.0}, Extreme::kLargest).answer;
   }
-  const double seconds = now() - begin;
   EXPECT_EQ(guard.count(), 0u);
-  RecordProperty("trials_per_second", static_cast<int>(kTrials / seconds));
-  EXPECT_LT(seconds, 1.0);
   EXPECT_GT(more, kTrials / 2);
 }
 
