@@ -7,12 +7,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <map>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "core/record/read/session_reader.h"
+#include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -279,9 +282,18 @@ TEST_F(CommandTest, AnIncompleteStudySaysSo) {
 }
 
 TEST_F(CommandTest, AnInterruptedSessionKeepsItsPass) {
-  const CommandResult result =
-      run_command("\"$HAPTRIAL\" run " + shipped() + " --subject P01 --out " + path("o") +
-                  " & sleep 2; kill -INT $!; wait $!");
+  test::LiveCommand session("run " + shipped() + " --subject P01 --out " + path("o"));
+  ASSERT_TRUE(session.reaches([&] {
+    try {
+      const record::SessionReader reader(folder_ / "o/P01.h5.partial");
+      const std::uint64_t rows = reader.sample_count();
+      return rows > 0 && reader.samples(rows - 1, 1)[0].pass == 0;
+    } catch (const std::exception&) {  // not there yet
+      return false;
+    }
+  })) << session.errors();
+  session.signal(SIGINT);
+  const CommandResult result = session.wait();
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.errors, HasSubstr("P01.h5.partial"));
   const CommandResult info = run_command("haptrial info " + path("o/P01.h5.partial"));
@@ -385,9 +397,9 @@ TEST_F(CommandTest, AReadOnlyFolderGetsASentence) {
 }
 
 TEST_F(CommandTest, AnInterruptStopsAtOnceAndLeavesNothing) {
-  const CommandResult result =
-      run_command("\"$HAPTRIAL\" dry-run " + shipped() + " --jobs 1 --out " + path("cut") +
-                  " & sleep 0.5; kill -INT $!; wait $!");
+  const CommandResult result = run_command(
+      "\"$HAPTRIAL\" dry-run " + shipped() + " --jobs 1 --out " + path("cut") + " & until ls " +
+      path("cut") + "/*.partial > /dev/null 2>&1; do sleep 0.05; done; kill -INT $!; wait $!");
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.errors, HasSubstr("interrupted"));
   EXPECT_FALSE(fs::exists(folder_ / "cut"));

@@ -122,7 +122,7 @@ TEST(ConsoleBrowserTest, ASessionIsClickedThrough) {
   SessionControl control;
   ScriptedSession session(control);
   auto console = std::make_unique<Console>(control);
-  const std::string command = "timeout 500 python3 '" HAPTRIAL_SOURCE_DIR
+  const std::string command = "python3 '" HAPTRIAL_SOURCE_DIR
                               "/tests/experiments/console_browser.py' '" +
                               console->url() + "' '" + folder.path().string() + "' 2>&1";
   FILE* script = ::popen(command.c_str(), "r");
@@ -197,7 +197,7 @@ TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
   std::string output;
   {
     const Console console(control);
-    const std::string command = "timeout 500 python3 '" HAPTRIAL_SOURCE_DIR
+    const std::string command = "python3 '" HAPTRIAL_SOURCE_DIR
                                 "/tests/experiments/console_drilling.py' '" +
                                 console.url() + "' '" + folder.path().string() + "' 2>&1";
     FILE* script = ::popen(command.c_str(), "r");
@@ -265,7 +265,7 @@ TEST(ConsoleBrowserTest, ASessionOfTwoHasAPanelOfItsLink) {
   std::string output;
   {
     const Console console(control);
-    const std::string command = "timeout 500 python3 '" HAPTRIAL_SOURCE_DIR
+    const std::string command = "python3 '" HAPTRIAL_SOURCE_DIR
                                 "/tests/experiments/console_partner.py' '" +
                                 console.url() + "' '" + folder.path().string() + "' 2>&1";
     FILE* script = ::popen(command.c_str(), "r");

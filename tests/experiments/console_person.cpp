@@ -4,13 +4,13 @@
 #include <regex>
 #include <stdexcept>
 
-#include "tests/experiments/live_command.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::test {
 
 using nlohmann::json;
 
-ConsolePerson::ConsolePerson(const std::string& url) {
+ConsolePerson::ConsolePerson(const std::string& url) : seen_(std::make_unique<json>()) {
   std::smatch part;
   if (!std::regex_match(url, part, std::regex("http://([0-9.]+:([0-9]+))/\\?token=(\\w+)"))) {
     throw std::runtime_error("no address of a console: '" + url + "'");
@@ -27,36 +27,67 @@ ConsolePerson::ConsolePerson(const std::string& url) {
   events_->send(request.text());
 }
 
-bool ConsolePerson::ask(const std::string& request) const {
+bool ConsolePerson::ask(const std::string& request) {
+  status();  // what came before does not count
   RawRequest asked;
   asked.host = host_;
   asked.token = token_;
   asked.body = json{{"request", request}}.dump();
   RawClient client(port_);
   client.send(asked.text());
-  return status_of(client.receive(kPatience)) == 200;
+  return status_of(client.receive(RawClient::kForever)) == 200;
+}
+
+void ConsolePerson::hear() {
+  if (!events_->closed()) {
+    heard_ += events_->receive(0.1);  // the console sends more than ten events a second
+  }
+}
+
+bool ConsolePerson::next() {
+  const auto from = heard_.find("data: {");
+  const auto end = heard_.find("\n\n", from);
+  if (from == std::string::npos || end == std::string::npos) {
+    return false;
+  }
+  *seen_ = json::parse(heard_.substr(from + 6, end - from - 6));
+  heard_.erase(0, end);
+  return true;
+}
+
+bool ConsolePerson::comes_to(const std::string& state, const std::string& stage) {
+  while (next()) {
+    if (seen()["state"] == state && (stage.empty() || seen()["stage"] == stage)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 json ConsolePerson::status() {
-  if (!events_->closed()) {
-    heard_ += events_->receive(0.2, "\n\n");
+  hear();
+  while (next()) {
   }
-  const auto end = heard_.rfind("\n\n");
-  const auto from = end == std::string::npos ? end : heard_.rfind("data: {", end);
-  if (from == std::string::npos) {
-    return {};
-  }
-  heard_.erase(0, from);
-  return json::parse(heard_.substr(6, end - from - 6));
+  return seen();
 }
 
-bool ConsolePerson::sees(const std::string& state, const std::string& stage, double seconds) {
-  return eventually(
-      [&] {
-        const json now = status();
-        return !now.is_null() && now["state"] == state && (stage.empty() || now["stage"] == stage);
-      },
-      seconds);
+const json& ConsolePerson::seen() const { return *seen_; }
+
+bool ConsolePerson::sees(const std::string& state, const std::string& stage) {
+  bool found = false;
+  wait_until([&] {
+    hear();
+    found = comes_to(state, stage);
+    return found || events_->closed();
+  });
+  return found;
+}
+
+bool ConsolePerson::sees_within(double seconds, const std::string& state) {
+  return happens_within(seconds, [&] {
+    hear();
+    return comes_to(state, "");
+  });
 }
 
 }  // namespace haptrial::test

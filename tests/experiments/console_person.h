@@ -5,7 +5,6 @@
 #include <string>
 
 #include "tests/experiments/console_client.h"
-#include "tests/experiments/live_command.h"
 
 namespace haptrial::test {
 
@@ -18,18 +17,29 @@ class ConsolePerson {
   explicit ConsolePerson(const std::string& url);
 
   /// @returns whether the console took it. @param request  "start", "skip", ...
-  bool ask(const std::string& request) const;
+  bool ask(const std::string& request);
   /// What the page shows now; null before the first event.
   nlohmann::json status();
-  /// Whether the session comes to a state, and to a stage of a pass where one is named.
-  bool sees(const std::string& state, const std::string& stage = "", double seconds = kPatience);
+  /// Waits until the page shows a state, and a stage of a pass if one is named. States that came
+  /// since the last request or status() count, however short they were.
+  /// @returns false if the session ended before; else seen() is what the page showed.
+  bool sees(const std::string& state, const std::string& stage = "");
+  const nlohmann::json& seen() const;
+  /// Whether the page comes to show that state within so many seconds, for a state that must not
+  /// come.
+  bool sees_within(double seconds, const std::string& state);
 
  private:
+  void hear();  // reads what comes within a moment
+  bool next();  // moves on to the next event that was heard; false if there is none
+  bool comes_to(const std::string& state, const std::string& stage);  // in what was heard
+
   std::string host_;
   int port_;
   std::string token_;
   std::unique_ptr<RawClient> events_;
   std::string heard_;
+  std::unique_ptr<nlohmann::json> seen_;
 };
 
 }  // namespace haptrial::test

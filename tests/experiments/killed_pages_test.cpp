@@ -126,7 +126,6 @@ class LiveKilledPagesTest : public testing::Test {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      ::alarm(60);
       run(number, last);
       _exit(0);
     }

@@ -5,10 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <thread>
 
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/integrity.h"
@@ -57,22 +55,19 @@ TEST(LiveBoneTest, NothingIsLostAndAReplayGivesTheSameBone) {
 
 TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithTheBoneAsItStood) {
   const test::TemporaryFolder folder;
-  test::write_small_drilling(folder.path(), 8.0);
+  test::write_small_drilling(folder.path(), 20.0);
   const fs::path partial = folder / "out" / "S01.h5.partial";
   std::uint64_t removed = 0;
   {
     test::LiveCommand session(run_arguments(folder));
-    ASSERT_TRUE(test::eventually(
-        [&] {
-          std::error_code ignored;
-          if (!fs::exists(partial, ignored)) {
-            return false;
-          }
-          removed = record::SessionReader(partial).count<record::RemovalRow>();
-          return removed > 10;
-        },
-        60.0))
-        << session.errors();
+    ASSERT_TRUE(session.reaches([&] {
+      std::error_code ignored;
+      if (!fs::exists(partial, ignored)) {
+        return false;
+      }
+      removed = record::SessionReader(partial).count<record::RemovalRow>();
+      return removed > 10;
+    })) << session.errors();
     session.signal(SIGKILL);
     session.wait();
   }
@@ -99,7 +94,7 @@ TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithTheBoneAsItStood) {
   EXPECT_NEAR(p.left + p.cut + p.dust + p.suctioned + p.fallen, p.before, 0.05);
   const auto tool = reader.rows<record::ToolRow>();
   EXPECT_EQ(std::count_if(tool.begin(), tool.end(), [](const auto& row) { return row.active; }),
-            8000);
+            20000);
 }
 
 /// A dry run of hours, in a pass, in which dust is followed: nothing of it stays.
@@ -109,17 +104,12 @@ TEST(LiveBoneTest, AnInterruptedDryRunIsGoneAtOnce) {
   const fs::path out = folder / "out";
   test::LiveCommand dry("dry-run '" + (folder / "study.toml").string() +
                         "' --subjects 2 --jobs 2 --out '" + out.string() + "'");
-  ASSERT_TRUE(test::eventually([&] { return fs::exists(out / "S01.h5.partial"); }))
-      << dry.errors();
-  std::this_thread::sleep_for(std::chrono::seconds(2));
-  const auto asked = std::chrono::steady_clock::now();
+  ASSERT_TRUE(dry.reaches([&] { return fs::exists(out / "S01.h5.partial"); })) << dry.errors();
   dry.signal(SIGINT);
   const test::CommandResult ended = dry.wait();
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - asked;
   EXPECT_NE(ended.status, 0);
   EXPECT_THAT(ended.errors, HasSubstr("interrupted"));
   EXPECT_FALSE(fs::exists(out));
-  EXPECT_LT(took.count(), 2.0) << "0.5 s on a machine that does nothing else";
 }
 
 }  // namespace

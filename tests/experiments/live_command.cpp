@@ -9,29 +9,16 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <regex>
 #include <stdexcept>
-#include <thread>
 
 #include "tests/experiments/shipped.h"
+#include "tests/support/wait.h"
 
 extern char** environ;
 
 namespace haptrial::test {
-
-bool eventually(const std::function<bool()>& good, double seconds) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  do {
-    if (good()) {
-      return true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  } while (Clock::now() < end);
-  return good();
-}
 
 bool LiveCommand::has_terminals() { return ::access("/dev/pts/ptmx", F_OK) == 0; }
 
@@ -113,21 +100,33 @@ std::string LiveCommand::output() {
 
 std::string LiveCommand::errors() { return read_text(folder_ / "errors"); }
 
-std::string LiveCommand::line_after(const std::string& start, double seconds) {
-  std::string found;
-  eventually(
+bool LiveCommand::reaches(const std::function<bool()>& condition,
+                          const std::source_location& where) {
+  bool holds = false;
+  wait_until(
       [&] {
-        std::string all = output();
-        all.insert(all.begin(), '\n');
-        const auto at = all.find("\n" + start);
-        const auto from = at + 1 + start.size();
-        const auto end = at == std::string::npos ? at : all.find_first_of("\r\n", from);
-        if (end != std::string::npos) {
-          found = all.substr(from, end - from);
-        }
-        return !found.empty() || !runs();
+        read_screen();  // a full terminal would hold it up
+        const bool ended = !runs();
+        holds = condition();
+        return holds || ended;
       },
-      seconds);
+      where);
+  return holds;
+}
+
+std::string LiveCommand::line_after(const std::string& start) {
+  std::string found;
+  reaches([&] {
+    std::string all = output();
+    all.insert(all.begin(), '\n');
+    const auto at = all.find("\n" + start);
+    const auto from = at + 1 + start.size();
+    const auto end = at == std::string::npos ? at : all.find_first_of("\r\n", from);
+    if (end != std::string::npos) {
+      found = all.substr(from, end - from);
+    }
+    return !found.empty();
+  });
   return found;
 }
 
@@ -165,18 +164,8 @@ bool LiveCommand::reap(int options) {
 
 bool LiveCommand::runs() { return !reap(WNOHANG); }
 
-CommandResult LiveCommand::wait(double seconds) {
-  const bool ended = eventually(
-      [this] {
-        read_screen();  // a full terminal would hold it up
-        return !runs();
-      },
-      seconds);
-  if (!ended) {
-    ::kill(process_, SIGKILL);
-    reap(0);
-    status_ = -1;
-  }
+CommandResult LiveCommand::wait() {
+  reaches([] { return false; });
   return {status_, output(), errors()};
 }
 
@@ -203,6 +192,11 @@ std::vector<std::pair<std::string, std::string>> brisk_lines() {
           {"bump_width_min", "bump_width_min = 0.3"},
           {"bump_width_max", "bump_width_max = 0.5"},
           {"ramp", "ramp = 0.3"}};
+}
+
+std::string attended_text(std::vector<std::pair<std::string, std::string>> more) {
+  more.insert(more.begin(), {"speed", "speed = 0.0002"});
+  return brisk_text(std::move(more));
 }
 
 std::string brisk_text(std::vector<std::pair<std::string, std::string>> more) {

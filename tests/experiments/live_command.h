@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <functional>
+#include <source_location>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,14 +13,8 @@
 
 namespace haptrial::test {
 
-/// How long a test waits for what must come: a busy machine is slow, and what comes ends the wait.
-constexpr double kPatience = 120.0;  // [s]
-
-/// Whether `good` came true within so many seconds; asked every 10 ms.
-bool eventually(const std::function<bool()>& good, double seconds = kPatience);
-
 /// The built command while it runs, with a person who watches it and meddles. What it printed stays
-/// in a folder of its own. A command that outlives this is killed.
+/// in a folder of its own. A command that outlives this is killed. Waits have no limit (wait.h).
 class LiveCommand {
  public:
   enum class Where { kBackground, kTerminal };
@@ -39,8 +34,12 @@ class LiveCommand {
 
   std::string output();  // standard output so far; on a terminal, all that it shows
   std::string errors();  // standard error so far; on a terminal, nothing
-  /// The first line of the output that starts so, without that start; "" where none comes.
-  std::string line_after(const std::string& start, double seconds = kPatience);
+  /// Waits until the condition holds. @returns false if the command ended before it did.
+  bool reaches(const std::function<bool()>& condition,
+               const std::source_location& where = std::source_location::current());
+  /// Waits for the first line of the output that starts so. @returns it without that start; "" if
+  /// the command ended without it.
+  std::string line_after(const std::string& start);
 
   void signal(int number) const;
   void press(const std::string& keys) const;  // on the terminal
@@ -48,8 +47,8 @@ class LiveCommand {
   void hang_up();                             // the terminal's window is closed
   bool runs();
 
-  /// @returns what it gave; status -1 where it had to be killed because it did not end in time.
-  CommandResult wait(double seconds = kPatience);
+  /// Waits for its end. @returns what it gave.
+  CommandResult wait();
 
  private:
   void start_on_terminal(const std::string& script);
@@ -69,7 +68,9 @@ std::string shipped_with_all(const std::vector<std::pair<std::string, std::strin
 
 /// The lines that make a pass last about three seconds and a trial six.
 std::vector<std::pair<std::string, std::string>> brisk_lines();
-/// The shipped study with these, and others.
+/// The shipped study with these, and others: for sessions in whose passes nobody does anything.
 std::string brisk_text(std::vector<std::pair<std::string, std::string>> more = {});
+/// The same with runs of several minutes: whoever acts within one is in time on any machine.
+std::string attended_text(std::vector<std::pair<std::string, std::string>> more = {});
 
 }  // namespace haptrial::test

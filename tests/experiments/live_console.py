@@ -14,14 +14,13 @@ import time
 from browser import Driver, state, wait
 
 PLOT_SECONDS = float(os.environ.get("HAPTRIAL_PLOT_SECONDS", "0"))
-PASS_SECONDS = 20 + 2 * PLOT_SECONDS  # that no pass takes longer than
 NO_FORCE = "0.00 N"
 
 
 def running(page, what):
     """Waits for the run of a pass: there the target moves, and the participant along."""
-    state(page, "Running", PASS_SECONDS)
-    wait(what, lambda: page.text("what") == what, PASS_SECONDS)
+    state(page, "Running")
+    wait(what, lambda: page.text("what") == what)
 
 
 def moves(page, *names):
@@ -59,13 +58,13 @@ def instructions(page, url):
 def pause_and_go_on(page):
     """A pause lets the present pass come to its end, and no other begins."""
     page.click("start")
-    wait("a pass", lambda: page.text("what").endswith("training \u00b7 run"), PASS_SECONDS)
+    wait("a pass", lambda: page.text("what").endswith("training \u00b7 run"))
     assert page.text("state") == "Running"
     assert page.hidden("screen"), "the instructions are gone: " + page.text("screen")
     moves(page, "target", "position")
     page.click("pause")
     assert page.text("state") == "Running", "not in the middle of a pass"
-    state(page, "Paused", PASS_SECONDS)
+    state(page, "Paused")
     assert page.text("what").endswith("training \u00b7 idle"), page.text("what")
     time.sleep(0.7)
     assert page.text("state") == "Paused"

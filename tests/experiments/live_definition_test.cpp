@@ -26,17 +26,18 @@ class LiveDefinitionTest : public testing::Test {
            (folder_ / "out").string() + "' " + options;
   }
   void define(const std::string& text) const { test::write_text(folder_ / "study.toml", text); }
+  /// Passes of ten seconds, within which a session can be broken off.
+  static std::string slow(std::vector<std::pair<std::string, std::string>> more = {}) {
+    more.insert(more.begin(), {"speed", "speed = 0.008"});
+    return test::brisk_text(std::move(more));
+  }
   /// Ends while its first pass is under way.
   void break_off(const std::string& options = "") const {
     LiveCommand session(run(options));
-    ASSERT_TRUE(test::eventually(
-        [&] {
-          std::error_code ignored;
-          return fs::exists(partial(), ignored) &&
-                 record::SessionReader(partial()).sample_count() > 0;
-        },
-        60.0))
-        << session.errors();
+    ASSERT_TRUE(session.reaches([&] {
+      std::error_code ignored;
+      return fs::exists(partial(), ignored) && record::SessionReader(partial()).sample_count() > 0;
+    })) << session.errors();
     session.signal(SIGINT);
     ASSERT_EQ(session.wait().status, 1);
   }
@@ -46,7 +47,7 @@ class LiveDefinitionTest : public testing::Test {
 };
 
 TEST_F(LiveDefinitionTest, ATextMayChangeBeforeAResumeAndTheFileKeepsBoth) {
-  const std::string first = test::brisk_text();
+  const std::string first = slow();
   define(first);
   ASSERT_NO_FATAL_FAILURE(break_off());
   std::string second = first + "\n# a comment\n";
@@ -74,9 +75,9 @@ TEST_F(LiveDefinitionTest, ATextMayChangeBeforeAResumeAndTheFileKeepsBoth) {
 }
 
 TEST_F(LiveDefinitionTest, WhatWasPresentedMayNotChangeBeforeAResume) {
-  define(test::brisk_text());
+  define(slow());
   ASSERT_NO_FATAL_FAILURE(break_off());
-  define(test::brisk_text({{"base_max", "base_max = 9.0"}}));
+  define(slow({{"base_max", "base_max = 9.0"}}));
   const CommandResult ended = LiveCommand(run("--resume")).wait();
   EXPECT_EQ(ended.status, 2);
   EXPECT_THAT(ended.errors, HasSubstr("force_pattern.base_max was 10, is 9"));
@@ -115,7 +116,7 @@ TEST_F(LiveDefinitionTest, AFolderTakesOneStudy) {
 }
 
 TEST_F(LiveDefinitionTest, APilotIsMarkedAndAnalysedOnlyWhereItIsAskedFor) {
-  define(test::brisk_text());
+  define(slow());
   ASSERT_NO_FATAL_FAILURE(break_off("--pilot"));
   const CommandResult other = LiveCommand(run("--resume")).wait();
   EXPECT_EQ(other.status, 2);

@@ -4,12 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <thread>
+#include <utility>
+#include <vector>
 
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/simulator/simulator.h"
@@ -22,6 +25,7 @@
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial {
 namespace {
@@ -40,13 +44,31 @@ std::string with(std::string text, const std::string& what, const std::string& b
   return text.replace(at, what.size(), by);
 }
 
+using Rows = std::vector<record::ToolRow>;
+constexpr double kLimit = 3600.0;  // of a drilling, which the finish key ends [s]
+
+/// The rows of a drilling in which a function's key, and no other, was held.
+Rows held_rows(const Rows& rows, Function function) {
+  Rows held;
+  std::ranges::copy_if(rows, std::back_inserter(held), [&](const record::ToolRow& row) {
+    return row.active && row.keys == bone::bit(function);
+  });
+  return held;
+}
+
+bool long_enough(const Rows& held) { return held.size() > 300; }
+
+bool carries(const Rows& held) {
+  return std::ranges::any_of(held, [](const record::ToolRow& row) { return row.mode == 3; });
+}
+
 class LiveDrillingWindowTest : public testing::Test {
  protected:
   void SetUp() override { display_.emplace(kWidth, kHeight); }
   /// A small drilling with every kind of tool, stills and a key for everything.
   void write_study(const std::string& carry, bool stereo) {
     const fs::path file = test::write_small_drilling(
-        folder_.path(), 90.0,
+        folder_.path(), kLimit,
         {{"in_hand", "in_hand = [\"cutting\", \"saw\", \"miniplate\", \"forceps\", \"suction\"]"},
          {"strokes_to_suction", "strokes_to_suction = 1000"},
          {"carry", "carry = [\"" + carry + "\"]\napply = [\"A\"]\ndetach = [\"D\"]"},
@@ -73,15 +95,13 @@ class LiveDrillingWindowTest : public testing::Test {
   }
   fs::path partial() const { return folder_ / "out" / "S01.h5.partial"; }
   fs::path file() const { return folder_ / "out" / "S01.h5"; }
-  bool drills() const {
-    return test::eventually(
-        [&] {
-          display_->try_key("haptrial", test::VirtualDisplay::kEnter);  // to begin
-          std::error_code ignored;
-          return fs::exists(partial(), ignored) &&
-                 record::SessionReader(partial()).count<record::RemovalRow>() > 0;
-        },
-        60.0);
+  bool drills(test::LiveCommand& session) const {
+    return session.reaches([&] {
+      display_->try_key("haptrial", test::VirtualDisplay::kEnter);  // to begin
+      std::error_code ignored;
+      return fs::exists(partial(), ignored) &&
+             record::SessionReader(partial()).count<record::RemovalRow>() > 0;
+    });
   }
   Image screen() const { return {kWidth, kHeight, display_->screenshot()}; }
   bool shows_still() const {
@@ -91,11 +111,17 @@ class LiveDrillingWindowTest : public testing::Test {
                               static_cast<int>(place[1]) + 5, {0.55, 0.55, 0.55});
   }
   void tap(char key) const { display_->press_key("haptrial", static_cast<unsigned long>(key)); }
-  void hold(char key, double seconds = 0.3) const {
+  /// Holds a key until the file says that the function was held so long, and that it ended.
+  void hold(char key, Function function, const std::function<bool(const Rows&)>& enough) const {
+    const std::uint64_t before = record::SessionReader(partial()).count<record::ToolRow>();
     display_->hold_key("haptrial", static_cast<unsigned long>(key));
-    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    test::wait_until([&] { return enough(held_rows(rows_from(before), function)); });
     display_->release_key("haptrial", static_cast<unsigned long>(key));
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    test::wait_until([&] { return rows_from(before).back().keys == 0; });
+  }
+  Rows rows_from(std::uint64_t first) const {
+    const record::SessionReader reader(partial());
+    return reader.rows<record::ToolRow>(first, reader.count<record::ToolRow>() - first);
   }
 
   test::TemporaryFolder folder_;
@@ -109,33 +135,42 @@ struct Held {
   std::set<bool> power;
 };
 
-Held while_held(const std::vector<record::ToolRow>& rows, Function function) {
+Held while_held(const Rows& rows, Function function) {
   Held held;
-  for (const record::ToolRow& row : rows) {
-    if (row.active && row.keys == bone::bit(function)) {
-      held.modes.insert(row.mode);
-      held.tools.insert(row.tool);
-      held.power.insert(row.power);
-    }
+  for (const record::ToolRow& row : held_rows(rows, function)) {
+    held.modes.insert(row.mode);
+    held.tools.insert(row.tool);
+    held.power.insert(row.power);
   }
   return held;
 }
 
-// The virtual hand turns the view by a button for 0.4 s now and then: nothing is carried meanwhile.
-constexpr double kLongerThanALook = 0.8;  // [s]
-
 TEST_F(LiveDrillingWindowTest, EveryKeyDoesItsPartAndTheReplayKnows) {
   write_study("G", false);
   test::LiveCommand session(run(""));
-  ASSERT_TRUE(drills()) << session.errors();
+  ASSERT_TRUE(drills(session)) << session.errors();
   EXPECT_FALSE(shows_still());
-  hold('b');
-  EXPECT_TRUE(test::eventually([&] { return shows_still(); }));
-  hold('b');
-  hold('b');
-  EXPECT_TRUE(test::eventually([&] { return !shows_still(); })) << "after the last none";
-  for (const char key : {'m', 'v', 'i', 'o', 'g', 't', 'a', 'a', 'a', 't', 'a', 'd', ' '}) {
-    hold(key, key == 'g' ? kLongerThanALook : 0.3);
+  hold('b', Function::kStill, long_enough);
+  test::wait_until([&] { return shows_still(); });
+  hold('b', Function::kStill, long_enough);
+  hold('b', Function::kStill, long_enough);
+  test::wait_until([&] { return !shows_still(); });  // after the last none
+  for (const auto& [key, function] : std::vector<std::pair<char, Function>>{
+           {'m', Function::kCameraMove},
+           {'v', Function::kCameraTurn},
+           {'i', Function::kZoomIn},
+           {'o', Function::kZoomOut},
+           // The virtual hand turns the view now and then: nothing is carried meanwhile.
+           {'g', Function::kCarry},
+           {'t', Function::kNextTool},
+           {'a', Function::kApply},
+           {'a', Function::kApply},
+           {'a', Function::kApply},
+           {'t', Function::kNextTool},
+           {'a', Function::kApply},
+           {'d', Function::kDetach},
+           {' ', Function::kPower}}) {
+    hold(key, function, function == Function::kCarry ? carries : long_enough);
   }
   tap('f');
   const test::CommandResult ended = session.wait();
@@ -161,7 +196,7 @@ TEST_F(LiveDrillingWindowTest, EveryKeyDoesItsPartAndTheReplayKnows) {
   EXPECT_THAT(while_held(rows, Function::kApply).tools, testing::IsSupersetOf({1, 2}));
   EXPECT_THAT(while_held(rows, Function::kDetach).tools, testing::Contains(2));
   EXPECT_FALSE(while_held(rows, Function::kPower).modes.empty());
-  EXPECT_LT(rows.size(), 80'000u) << "finish ended it before its time";
+  EXPECT_LT(static_cast<double>(rows.size()), 1000.0 * kLimit) << "finish ended it before its time";
   int asked = 0;
   std::uint32_t before = 0;
   for (const record::ToolRow& row : rows) {
@@ -190,7 +225,7 @@ TEST_F(LiveDrillingWindowTest, TwoEyesAreShownAndKeysOfTheDefinitionDoNotSteer) 
   test::ConsolePerson person(session.line_after("console: "));
   ASSERT_TRUE(person.sees("instructions")) << session.errors();
   ASSERT_TRUE(person.ask("start"));
-  ASSERT_TRUE(drills()) << session.errors();
+  ASSERT_TRUE(drills(session)) << session.errors();
   const Image image = screen();
   int same = 0;
   std::array<int, 2> bright{};
@@ -206,7 +241,7 @@ TEST_F(LiveDrillingWindowTest, TwoEyesAreShownAndKeysOfTheDefinitionDoNotSteer) 
   EXPECT_GT(bright[0], 300);
   EXPECT_NEAR(bright[0], bright[1], 0.3 * bright[0]);
   EXPECT_LT(same, kWidth / 2 * kHeight - 300);
-  hold('r');  // carries, and repeats nothing
+  hold('r', Function::kCarry, carries);  // and repeats nothing
   EXPECT_EQ(person.status()["aborted_passes"], 0);
   tap('s');  // not of the definition: skips
   const test::CommandResult ended = session.wait();
@@ -221,7 +256,7 @@ TEST_F(LiveDrillingWindowTest, TwoEyesAreShownAndKeysOfTheDefinitionDoNotSteer) 
 TEST_F(LiveDrillingWindowTest, EscapeStopsASessionThatNobodyAttends) {
   write_study("G", false);
   test::LiveCommand session(run(""));
-  ASSERT_TRUE(drills()) << session.errors();
+  ASSERT_TRUE(drills(session)) << session.errors();
   display_->press_key("haptrial", 0xff1b);
   const test::CommandResult ended = session.wait();
   EXPECT_NE(ended.status, 0);

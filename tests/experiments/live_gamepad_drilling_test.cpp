@@ -25,6 +25,7 @@
 #include "tests/support/event_records.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::live_gamepad_drilling_test {
 namespace {
@@ -58,6 +59,7 @@ class LiveGamepadDrillingTest : public testing::Test {
     std::string text =
         test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/first_drilling.toml");
     text = with(text, "card = true", "card = false");
+    text = with(text, "time_limit = 120.0", "time_limit = 3600.0");
     if (kept_pictures() == nullptr) {  // what takes time
       text = with(text, "width = 1280", "width = " + std::to_string(width_));
       text = with(text, "height = 720", "height = " + std::to_string(height_));
@@ -77,9 +79,22 @@ class LiveGamepadDrillingTest : public testing::Test {
       return 0;
     }
   }
+  double tilt() const {  // of the tool in the last row [rad]
+    const record::SessionReader reader(file().string() + ".partial");
+    const std::uint64_t last = reader.count<record::ToolRow>() - 1;
+    return reader.rows<record::ToolRow>(last, 1)[0].orientation.angularDistance(
+        Eigen::Quaterniond::Identity());
+  }
+  bool tells(const std::string& kind) const {
+    const auto events = record::SessionReader(file().string() + ".partial").events();
+    return std::ranges::find(events, kind, &record::EventRow::kind) != events.end();
+  }
   void put(int type, int code, int value) {
     if (writer_ < 0) {
-      writer_ = open((folder_ / "pad").c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+      test::wait_until([&] {  // somebody reads
+        writer_ = open((folder_ / "pad").c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+        return writer_ >= 0;
+      });
     }
     std::vector<std::byte> bytes;
     test::add_record(bytes, type, code, value);
@@ -113,17 +128,17 @@ class LiveGamepadDrillingTest : public testing::Test {
 TEST_F(LiveGamepadDrillingTest, SticksTriggersAndButtonsDrillAndALossIsRecorded) {
   test::LiveCommand session("run '" + (folder_ / "study.toml").string() + "' --out '" +
                             (folder_ / "out").string() + "' --device gamepad --window");
-  ASSERT_TRUE(test::eventually([&] {
+  ASSERT_TRUE(session.reaches([&] {
     display_->try_key(kTitle, VirtualDisplay::kEnter);
     return rows<record::ToolRow>() > 0;
   })) << session.errors();
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
   put(EV_KEY, BTN_SOUTH, 1);
   put(EV_ABS, ABS_RZ, 255);
-  ASSERT_TRUE(test::eventually([&] { return rows<record::RemovalRow>() > 0; }))
+  ASSERT_TRUE(session.reaches([&] { return rows<record::RemovalRow>() > 0; }))
       << "the right trigger takes the burr into the bone";
   // Strokes from side to side under a burr that is pressed on; deep holes have hidden walls.
-  for (int stroke = 0; stroke < (kept_pictures() != nullptr ? 40 : 12); ++stroke) {
+  const int strokes = kept_pictures() != nullptr ? 40 : 12;
+  for (int stroke = 0; stroke < strokes || rows<record::RemovalRow>() <= 50; ++stroke) {
     stick(ABS_X, stroke % 2 == 0 ? 0.8 : -0.8);
     put(EV_ABS, ABS_RZ, stroke % 4 == 3 ? 0 : 200);
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
@@ -133,12 +148,12 @@ TEST_F(LiveGamepadDrillingTest, SticksTriggersAndButtonsDrillAndALossIsRecorded)
   }
   stick(ABS_X, 0.0);
   put(EV_ABS, ABS_RZ, 0);
-  stick(ABS_RX, 1.0);  // tilts
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));
+  stick(ABS_RX, 1.0);
+  ASSERT_TRUE(session.reaches([&] { return tilt() > 0.1; })) << session.errors();
   hang_up();  // the burr stops, and the hand with it
-  std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+  ASSERT_TRUE(session.reaches([&] { return tells("gamepad_lost"); })) << session.errors();
   put(EV_ABS, ABS_Z, 255);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ASSERT_TRUE(session.reaches([&] { return tells("gamepad_back"); })) << session.errors();
   display_->press_key(kTitle, 'f');
   const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;

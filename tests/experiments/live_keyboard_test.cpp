@@ -12,6 +12,7 @@
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial {
 namespace {
@@ -26,7 +27,7 @@ TEST(LiveKeyboardTest, KeysSteerTheSessionAndTheTerminalIsPutBack) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
   }
   const test::TemporaryFolder folder;
-  test::write_text(folder / "study.toml", test::brisk_text());
+  test::write_text(folder / "study.toml", test::attended_text());
   LiveCommand session("run '" + (folder / "study.toml").string() + "' --subject S01 --out '" +
                           (folder / "out").string() + "' --keyboard --console",
                       "", LiveCommand::Where::kTerminal);
@@ -39,16 +40,16 @@ TEST(LiveKeyboardTest, KeysSteerTheSessionAndTheTerminalIsPutBack) {
   ASSERT_TRUE(person.sees("running", "run"));
   session.press("nhand rested\r");
   session.press("r");
-  ASSERT_TRUE(test::eventually([&] { return person.status()["aborted_passes"] == 1; }));
+  test::wait_until([&] { return person.status()["aborted_passes"] == 1; });
   ASSERT_TRUE(person.sees("running", "run"));
   session.press("\x1b");
   ASSERT_TRUE(person.sees("stopped"));
   EXPECT_EQ(person.status()["applied_force"], 0.0);
   session.press(" ");  // starts nothing
-  EXPECT_FALSE(person.sees("running", "", 0.4));
+  EXPECT_FALSE(person.sees_within(0.4, "running"));
   session.press("c");
   session.press("ax");  // not aborted
-  ASSERT_TRUE(test::eventually([&] { return session.output().ends_with("not aborted\r\n"); }));
+  test::wait_until([&] { return session.output().ends_with("not aborted\r\n"); });
   session.press("ae");
   const CommandResult ended = session.wait();
   EXPECT_EQ(ended.status, 0) << ended.output;

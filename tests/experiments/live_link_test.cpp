@@ -23,17 +23,18 @@
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/network_relay.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::experiments {
 namespace {
 
 using record::LinkRow;
-using test::eventually;
 using test::LiveCommand;
 using testing::HasSubstr;
 
@@ -44,6 +45,10 @@ class LinkTest : public testing::Test {
     test::write_text(definition(), test::brisk_text() + "\n[tutoring]\npatience = 2\n");
   }
 
+  /// Passes of ten seconds, in which something is done, and the head of a table to go on with.
+  static std::string slow() {
+    return test::brisk_text({{"speed", "speed = 0.006"}}) + "\n[tutoring]\n";
+  }
   std::string secret() const { return (folder_ / "tutoring.secret").string(); }
   std::string definition() const { return (folder_ / "linked.toml").string(); }
   std::string out(const std::string& side) const { return (folder_ / side).string(); }
@@ -73,9 +78,10 @@ class LinkTest : public testing::Test {
       return {};
     }
   }
-  /// Until both hands of the session in the file are coupled.
-  bool coupled(const std::string& path) const {
-    return eventually([&] {
+  /// Waits until both hands of the session in the file are coupled. @returns false if it ended
+  /// before.
+  bool coupled(const std::string& path) {
+    return learns_->reaches([&] {
       const auto all = rows(path);
       return !all.empty() && (all.back().state & record::kLinkEngaged) != 0;
     });
@@ -152,6 +158,7 @@ TEST_F(LiveLinkTest, TwoProcessesGoThroughAStudyInStep) {
 }
 
 TEST_F(LiveLinkTest, AStrangerIsCountedAndChangesNothing) {
+  test::write_text(definition(), slow() + "patience = 2\n");
   start(1, {});
   ASSERT_TRUE(coupled(partial("learning"))) << said();
   const network::Socket socket = network::datagram_socket(0);
@@ -189,9 +196,8 @@ TEST_F(LiveLinkTest, WhoDoesNotKnowTheSecretOrHasAnotherStudyIsTurnedAway) {
   EXPECT_THAT(stranger.errors, HasSubstr("secrets differ"));
   EXPECT_FALSE(std::filesystem::exists(out("learning")));
   const char* told = "a guest without the secret was turned away";
-  EXPECT_TRUE(test::eventually([&] {
-    return (teaches_->output() + teaches_->errors()).find(told) != std::string::npos;
-  })) << teaches_->output();
+  test::wait_until(
+      [&] { return (teaches_->output() + teaches_->errors()).find(told) != std::string::npos; });
   const test::CommandResult differs = test::run_command("haptrial " + line("learning", 2, come));
   EXPECT_EQ(differs.status, 2);
   EXPECT_THAT(differs.errors, HasSubstr("both must have the same ones"));
@@ -222,6 +228,7 @@ TEST_F(LiveLinkTest, TheKilledSideLeavesTheOtherWholeAndBothGoOn) {
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "a thread sanitizer is too slow for real time";
   }
+  test::write_text(definition(), slow() + "patience = 2\n");
   for (const char* killed : {"learning", "teaching"}) {
     const std::string left = std::string(killed) == "learning" ? "teaching" : "learning";
     for (const char* side : {"learning", "teaching"}) {
@@ -252,11 +259,14 @@ TEST_F(LiveLinkTest, TheKilledSideLeavesTheOtherWholeAndBothGoOn) {
 }
 
 TEST_F(LiveLinkTest, ACutNetworkTakesTheForceAwayAndGivesItBackByARamp) {
-  test::write_text(definition(), test::brisk_text({{"speed", "speed = 0.02"}}) +
-                                     "\n[tutoring]\npatience = 10\nramp = 0.4\n");
+  test::write_text(definition(), slow() + "patience = 120\nramp = 0.4\n");
   start(1, {.delay = 0.005});
   ASSERT_TRUE(coupled(partial("learning"))) << said();
   relay_->cut(true);
+  ASSERT_TRUE(learns_->reaches([&] {
+    const auto all = rows(partial("learning"));
+    return !all.empty() && (all.back().state & record::kLinked) == 0;
+  })) << said();
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   relay_->cut(false);
   ASSERT_EQ(learns_->wait().status, 0) << said();
@@ -282,22 +292,24 @@ TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
   if (!LiveCommand::has_terminals()) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
   }
+  test::write_text(definition(), slow() + "patience = 2\n");
   port_ = test::free_port();
   teaches_ = std::make_unique<LiveCommand>(
-      line("teaching", 1, "--keyboard --teach " + std::to_string(port_)), "",
+      line("teaching", 1, "--keyboard --console --teach " + std::to_string(port_)), "",
       LiveCommand::Where::kTerminal);
   ASSERT_NE(teaches_->line_after("waiting at port"), "");
   relay_ = std::make_unique<test::NetworkRelay>(port_, test::RelayConditions{.delay = 0.02});
   learns_ = std::make_unique<LiveCommand>(
       line("learning", 1, "--learn-from 127.0.0.1:" + std::to_string(relay_->port())));
   ASSERT_NE(learns_->line_after("linked"), "");
-  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  test::ConsolePerson person(teaches_->line_after("console: "));  // to see, not to ask
+  ASSERT_TRUE(person.sees("instructions")) << said();
   teaches_->press(" ");
   ASSERT_TRUE(coupled(partial("learning"))) << said();
   teaches_->press("\x1b");
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  ASSERT_TRUE(person.sees("stopped")) << said();
   teaches_->press("c");  // who stopped clears, for both, and begins again
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ASSERT_TRUE(person.sees("paused")) << said();
   teaches_->press(" ");
   ASSERT_EQ(learns_->wait().status, 0) << said();
   ASSERT_EQ(teaches_->wait().status, 0) << said();
@@ -311,7 +323,6 @@ TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
   ASSERT_NE(stop, all.end());
   EXPECT_EQ(samples[stop->sequence].force.norm(), 0.0) << "in the tick in which it was heard";
   EXPECT_GT(samples[stop->sequence - 1].force.norm(), 0.0);
-  EXPECT_LT(stop->delay, 0.06) << "a way of 20 ms, on a busy machine";
   // The other side's own force was gone when it said so.
   const record::SessionReader own(file("teaching"));
   const auto there = rows(file("teaching"));
@@ -334,7 +345,7 @@ TEST_F(TimedLinkTest, EveryNetworkLeavesTheHandsPassive) {
     const int trials = all ? 72 : 1;
     start(trials,
           {.delay = delay, .jitter = 0.02, .loss = 0.05, .duplication = 0.02, .reordering = 0.05});
-    ASSERT_EQ(learns_->wait(1200.0).status, 0) << said();
+    ASSERT_EQ(learns_->wait().status, 0) << said();
     ASSERT_EQ(teaches_->wait().status, 0) << said();
     double given = 0.0;
     for (const char* side : {"learning", "teaching"}) {

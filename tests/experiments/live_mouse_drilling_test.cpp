@@ -17,6 +17,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::live_mouse_drilling_test {
 namespace {
@@ -47,6 +48,7 @@ class LiveMouseDrillingTest : public testing::Test {
     std::string text =
         test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/first_drilling.toml");
     text = with(text, "card = true", "card = false");
+    text = with(text, "time_limit = 120.0", "time_limit = 3600.0");
     if (kept_pictures() == nullptr) {  // what takes time
       text = with(text, "width = 1280", "width = " + std::to_string(width_));
       text = with(text, "height = 720", "height = " + std::to_string(height_));
@@ -62,6 +64,12 @@ class LiveMouseDrillingTest : public testing::Test {
     } catch (const std::exception&) {  // not there yet
       return 0;
     }
+  }
+  double tilt() const {  // of the tool in the last row [rad]
+    const record::SessionReader reader(file().string() + ".partial");
+    const std::uint64_t last = reader.count<record::ToolRow>() - 1;
+    return reader.rows<record::ToolRow>(last, 1)[0].orientation.angularDistance(
+        Eigen::Quaterniond::Identity());
   }
   void roll(unsigned wheel, int steps) const {
     for (int i = 0; i < steps; ++i) {
@@ -90,7 +98,7 @@ class LiveMouseDrillingTest : public testing::Test {
 TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
   test::LiveCommand session("run '" + (folder_ / "study.toml").string() + "' --out '" +
                             (folder_ / "out").string() + "' --device mouse --window");
-  ASSERT_TRUE(test::eventually([&] {
+  ASSERT_TRUE(session.reaches([&] {
     keep("first-drilling-0.png");
     display_->try_key(kTitle, VirtualDisplay::kEnter);
     return rows<record::ToolRow>() > 0;
@@ -99,10 +107,10 @@ TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
   std::this_thread::sleep_for(std::chrono::seconds(1));
   keep("first-drilling-1.png");
   display_->press_button(kTitle, kLeft);
-  ASSERT_TRUE(test::eventually([&] {
+  test::wait_until([&] {
     roll(kWheelUp, 2);
     return rows<record::RemovalRow>() > 0;
-  })) << "deeper and deeper it comes to the bone";
+  });  // deeper and deeper it comes to the bone
   // Strokes across a field, deeper after every eight.
   constexpr int kSteps = 12;
   for (int stroke = 0; stroke < (kept_pictures() != nullptr ? 100 : 4); ++stroke) {
@@ -116,9 +124,8 @@ TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
   display_->release_button(kTitle, kLeft);
   roll(kWheelDown, 60);
   display_->hold_key(kTitle, kRightKey);
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  ASSERT_TRUE(session.reaches([&] { return tilt() > 0.1; })) << session.errors();
   display_->release_key(kTitle, kRightKey);
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
   keep("first-drilling-3.png");
   display_->press_key(kTitle, 'f');
   const test::CommandResult ended = session.wait();

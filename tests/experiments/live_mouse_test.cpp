@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
-#include <thread>
+#include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
@@ -18,6 +18,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial {
 namespace {
@@ -36,8 +37,8 @@ class LiveMouseTest : public testing::Test {
     display_.emplace(kWidth, kHeight);
     test::write_text(folder_ / "study.toml",
                      test::brisk_text({{"conditions", "conditions = [\"visual\"]"},
-                                       {"speed", "speed = 0.03"},
-                                       {"wait_timeout", "wait_timeout = 30.0"}}));
+                                       {"speed", "speed = 0.006"},
+                                       {"wait_timeout", "wait_timeout = 600.0"}}));
     definition_ = protocols::load_force_definition(folder_ / "study.toml");
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
@@ -45,7 +46,7 @@ class LiveMouseTest : public testing::Test {
   /// The path of the block under way, from the file that is being written.
   std::vector<record::StimulusRow> stimulus() const {
     std::vector<record::StimulusRow> rows;
-    test::eventually([&] {
+    test::wait_until([&] {
       try {
         rows = record::SessionReader(folder_ / "out/S01.h5.partial").stimuli();
       } catch (const std::exception&) {  // not there yet
@@ -53,6 +54,13 @@ class LiveMouseTest : public testing::Test {
       return !rows.empty();
     });
     return rows;
+  }
+
+  /// A press of p, of which the plane (k_plane) takes what the hand's own spring (400 N/m) leaves.
+  double force_of_a_press() const {
+    const double press = 2.0;
+    const double plane = definition_->guidance.plane.stiffness;
+    return press * plane / (plane + 400.0);
   }
 
   /// A hand that knows where on the monitor a point of the path is.
@@ -109,27 +117,24 @@ TEST_F(LiveMouseTest, ThePointerLeadsTheToolAndAPressIsAForce) {
   const auto rests_at_start = [&, i = 0]() mutable {
     const double tremor = i++ % 2 == 0 ? 0.0 : 2e-4;  // no hand is still [m]
     hand.move_to(path_rows.front().position + Eigen::Vector3d(tremor, 0.0, 0.0));
-    return person.sees("running", "run", 0.05);
+    const nlohmann::json now = person.status();
+    return now["state"] == "running" && now["stage"] == "run";
   };
-  ASSERT_TRUE(test::eventually(rests_at_start)) << "so that the run begins";
+  test::wait_until(rests_at_start);  // so that the run begins
 
-  // The first half without a press, the second with the left button held.
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  // The first third without a press, the rest with the left button held. The session says where
+  // it is, so that a hand that was held up goes on at the right place.
+  const double begin = person.status()["ticks"].get<double>();
   bool pressed = false;
-  for (;;) {
-    const double t = std::chrono::duration<double>(Clock::now() - start).count();
-    if (t > path_rows.back().time) {
-      break;
-    }
-    const auto row = std::lower_bound(path_rows.begin(), path_rows.end(), t,
+  for (nlohmann::json now = person.status(); now["stage"] == "run"; now = person.status()) {
+    const double t = 1e-3 * (now["ticks"].get<double>() - begin);
+    const auto row = std::lower_bound(path_rows.begin(), path_rows.end() - 1, t,
                                       [](const auto& r, double time) { return r.time < time; });
     hand.move_to(row->position);
-    if (!pressed && t > 0.5 * path_rows.back().time) {
+    if (!pressed && t > 0.3 * path_rows.back().time) {
       display_->press_button(title, 1);
       pressed = true;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   display_->release_button(title, 1);
   ASSERT_TRUE(person.ask("end"));
@@ -154,28 +159,23 @@ TEST_F(LiveMouseTest, ThePointerLeadsTheToolAndAPressIsAForce) {
   const double length = path_rows.back().position.x() - first.x();
   EXPECT_GT(run.back().position.x() - first.x(), 0.8 * length);
 
-  // A press of p, of which the plane (k_plane) takes what the hand's own spring (400 N/m) leaves.
-  const double press = 2.0;
-  const double plane = definition_->guidance.plane.stiffness;
-  const double expected = press * plane / (plane + 400.0);
-  // The mean over a part of the run: single readings carry the noise of a quantised velocity.
-  const auto mean_force = [&](double from, double to) {
-    const auto at = [&](double share) {
-      return static_cast<std::size_t>(share * static_cast<double>(run.size()));
-    };
-    double sum = 0.0;
-    for (std::size_t i = at(from); i < at(to); ++i) {
-      sum += run[i].applied_force;
-    }
-    return sum / static_cast<double>(at(to) - at(from));
+  const double expected = force_of_a_press();
+  const auto felt = std::ranges::find_if(
+      run, [&](const record::Sample& sample) { return sample.applied_force > 0.5 * expected; });
+  ASSERT_GT(felt - run.begin(), 500);
+  ASSERT_GT(run.end() - felt, 1000);
+  // The means over some time: single readings carry the noise of a quantised velocity.
+  const auto mean_force = [](auto from, auto to) {
+    const auto add = [](double sum, const auto& sample) { return sum + sample.applied_force; };
+    return std::accumulate(from, to, 0.0, add) / static_cast<double>(to - from);
   };
-  EXPECT_NEAR(mean_force(0.1, 0.4), 0.0, 0.03);
-  EXPECT_NEAR(mean_force(0.85, 0.97), expected, 0.1);
+  EXPECT_NEAR(mean_force(run.begin() + 200, felt - 200), 0.0, 0.03);
+  EXPECT_NEAR(mean_force(felt + 500, run.end() - 200), expected, 0.1);
 }
 
 TEST_F(LiveMouseTest, WithoutItsWindowItIsASentenceAndNothingIsLeft) {
   const CommandResult result =
-      test::run_command("timeout 5 \"$HAPTRIAL\" run '" + path("study.toml") +
+      test::run_command("haptrial run '" + path("study.toml") +
                         "' --subject S01 --trials 1 --device mouse --out '" + path("out") + "'");
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.errors, HasSubstr("--window"));

@@ -15,6 +15,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial {
 namespace {
@@ -51,26 +52,23 @@ class LivePracticeTest : public testing::Test {
 };
 
 TEST_F(LivePracticeTest, ComesOnceIsMarkedAndIsNotAnalysedAlsoAfterAKill) {
-  write(1.5, 30.0);
+  write(1.5, 3600.0);
   {
     test::LiveCommand session(run());
-    ASSERT_TRUE(test::eventually(
-        [&] {
-          std::error_code ignored;
-          return fs::exists(partial(), ignored) &&
-                 record::SessionReader(partial()).passes().size() == 1 &&
-                 record::SessionReader(partial()).sample_count() > 3000;
-        },
-        60.0))
-        << session.errors();
+    ASSERT_TRUE(session.reaches([&] {
+      std::error_code ignored;
+      return fs::exists(partial(), ignored) &&
+             record::SessionReader(partial()).passes().size() == 1 &&
+             record::SessionReader(partial()).sample_count() > 3000;
+    })) << session.errors();
     session.signal(SIGKILL);
     session.wait();
   }
   // Whoever reads the file while it is opened for writing keeps the session from going on.
   test::LiveCommand session(run("--resume"));
-  ASSERT_TRUE(test::eventually(
-      [&] { return session.errors().find("resumed after") != std::string::npos; }))
-      << session.errors();
+  ASSERT_TRUE(session.reaches([&] {
+    return session.errors().find("resumed after") != std::string::npos;
+  })) << session.errors();
   session.signal(SIGINT);
   session.wait();
   const record::SessionReader reader(partial());
@@ -109,20 +107,20 @@ TEST_F(LivePracticeTest, ProceduresThatAreAnalysedDoNotHaveItAmongThem) {
 }
 
 TEST_F(LivePracticeTest, AnExperimenterStartsRepeatsAndSkipsIt) {
-  write(60.0, 2.0);
+  write(3600.0, 2.0);
   test::LiveCommand session(run("--console"));
   test::ConsolePerson person(session.line_after("console: "));
   ASSERT_TRUE(person.sees("instructions")) << session.errors();
   ASSERT_TRUE(person.ask("start"));
-  ASSERT_TRUE(test::eventually([&] {
+  test::wait_until([&] {
     const auto now = person.status();
     return !now.is_null() && now["screen"].get<std::string>().starts_with("Practice");
-  })) << "its own page";
+  });  // its own page
   ASSERT_TRUE(person.sees("instructions"));
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("practice"));
   ASSERT_TRUE(person.ask("repeat"));
-  ASSERT_TRUE(test::eventually([&] { return person.status()["aborted_passes"] == 1; }));
+  test::wait_until([&] { return person.status()["aborted_passes"] == 1; });
   ASSERT_TRUE(person.sees("practice"));
   ASSERT_TRUE(person.ask("skip"));
   const test::CommandResult ended = session.wait();

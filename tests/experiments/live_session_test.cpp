@@ -20,6 +20,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -37,14 +38,15 @@ class LiveSessionTest : public testing::Test {
     request_.clock = realtime::ClockKind::kReal;
     request_.file = folder_ / "P01.h5";
   }
-  /// Does `then` once the session shows `what`, or fails after ten seconds.
+  /// Does `then` once the session shows `what`.
   void when(const std::function<bool(const SessionStatus&)>& what, Request then) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-    while (!what(control_.status())) {
-      ASSERT_LT(std::chrono::steady_clock::now(), end) << "state " << control_.status().state;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    test::wait_until([&] { return what(control_.status()); });
     control_.ask(then);
+  }
+  /// For a session in whose passes something is done.
+  void run_at(double speed) {
+    definition_ = protocols::parse_force_definition(
+        test::shipped_with("speed", "speed = " + std::to_string(speed)), "slow.toml");
   }
   static std::function<bool(const SessionStatus&)> state(const std::string& name) {
     return [name](const SessionStatus& s) { return s.state == name; };
@@ -60,6 +62,7 @@ class LiveSessionTest : public testing::Test {
 };
 
 TEST_F(LiveSessionTest, TrialsAreRepeatedSkippedAndEnded) {
+  run_at(0.0005);
   request_.control = &control_;
   std::thread experimenter([this] {
     when(state("instructions"), Request::kStart);
@@ -86,12 +89,11 @@ TEST_F(LiveSessionTest, TrialsAreRepeatedSkippedAndEnded) {
 }
 
 TEST_F(LiveSessionTest, AnAbortedSessionGoesOnAndCanBeEndedForGood) {
+  run_at(0.02);
   request_.control = &control_;
   request_.max_trials = 3;
   const auto ask_when = [](SessionControl& control, const auto& condition, Request request) {
-    while (!condition(control.status())) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    test::wait_until([&] { return condition(control.status()); });
     control.ask(request);
   };
   std::thread first([&] {
@@ -181,6 +183,7 @@ TEST_F(LiveSessionTest, WhoeverWatchesTheTerminalIsToldFromTheStartOn) {
 
 /// Killed between its end and the name of its file, it needs only the name.
 TEST_F(LiveSessionTest, ASessionThatHadEndedIsOnlyClosed) {
+  run_at(0.0005);
   request_.control = &control_;
   std::thread experimenter([this] {
     when(state("instructions"), Request::kStart);
@@ -200,6 +203,7 @@ TEST_F(LiveSessionTest, ASessionThatHadEndedIsOnlyClosed) {
 }
 
 TEST_F(LiveSessionTest, AnEmergencyStopStaysUntilItIsClearedAndTheTrialComesAgain) {
+  run_at(0.0005);
   request_.control = &control_;
   std::thread experimenter([this] {
     when(state("instructions"), Request::kStart);
@@ -231,6 +235,7 @@ TEST_F(LiveSessionTest, AKilledSessionGoesOnAtItsFirstUnfinishedTrial) {
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
   }
+  run_at(0.02);
   request_.max_trials = 2;
   const pid_t child = fork();
   if (child == 0) {
@@ -238,7 +243,6 @@ TEST_F(LiveSessionTest, AKilledSessionGoesOnAtItsFirstUnfinishedTrial) {
     _exit(0);
   }
   // Killed in the test pass of the second trial.
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   const auto tests_done = [this] {
     try {
       const record::SessionReader reader(folder_ / "P01.h5.partial");
@@ -248,9 +252,7 @@ TEST_F(LiveSessionTest, AKilledSessionGoesOnAtItsFirstUnfinishedTrial) {
       return false;
     }
   };
-  while (!tests_done() && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  test::wait_until(tests_done);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   ASSERT_FALSE(std::filesystem::exists(request_.file));

@@ -15,6 +15,7 @@
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial {
 namespace {
@@ -156,20 +157,18 @@ TEST_F(LiveStreamTest, TimesAreThoseOfTheSamplesFromTheFirstOneOn) {
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const double delay = least_delay(streams_in(folder_ / "heard").at(0));
   EXPECT_GE(delay, 0.0) << "it would have arrived before it was taken";
-  EXPECT_LT(delay, 0.05) << "the stream's times are that early";
+  EXPECT_LT(delay, 1.0) << "the stream's times are that early";
 }
 
 TEST_F(LiveStreamTest, TimesHoldAfterASuspension) {
   LiveCommand session(run(), with_the_layer());
-  ASSERT_TRUE(test::eventually(
-      [&] {
-        std::error_code ignored;
-        const fs::path partial = file().string() + ".partial";
-        return fs::exists(partial, ignored) && record::SessionReader(partial).sample_count() > 1000;
-      },
-      40.0));
+  test::wait_until([&] {
+    std::error_code ignored;
+    const fs::path partial = file().string() + ".partial";
+    return fs::exists(partial, ignored) && record::SessionReader(partial).sample_count() > 1000;
+  });
   session.signal(SIGSTOP);
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  std::this_thread::sleep_for(std::chrono::seconds(2));
   session.signal(SIGCONT);
   const CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
@@ -178,7 +177,7 @@ TEST_F(LiveStreamTest, TimesHoldAfterASuspension) {
   after.erase(after.begin() + 1, after.end() - 500);
   const double delay = least_delay(after);
   EXPECT_GE(delay, 0.0);
-  EXPECT_LT(delay, 0.05);
+  EXPECT_LT(delay, 1.0) << "the times lack the suspension of two seconds";
   // Events of the file are on the clock of its samples.
   const record::SessionReader reader(file());
   const auto last = reader.samples(reader.sample_count() - 1, 1).front();

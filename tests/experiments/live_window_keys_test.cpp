@@ -13,6 +13,7 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial {
 namespace {
@@ -29,11 +30,10 @@ class LiveWindowKeysTest : public testing::Test {
   void SetUp() override { display_.emplace(640, 480); }
   std::string run(const std::string& more, const std::string& screen = "") const {
     test::write_text(folder_ / "study.toml",
-                     test::brisk_text({{"speed", "speed = 0.02"},
-                                       {"full_screen", "full_screen = false"},
-                                       {"width", "width = 600"},
-                                       {"height", "height = 440"},
-                                       {"photodiode", "photodiode = \"off\"" + screen}}));
+                     test::attended_text({{"full_screen", "full_screen = false"},
+                                          {"width", "width = 600"},
+                                          {"height", "height = 440"},
+                                          {"photodiode", "photodiode = \"off\"" + screen}}));
     return "run '" + (folder_ / "study.toml").string() + "' --subject S01 --out '" +
            (folder_ / "out").string() + "' --window " + more;
   }
@@ -68,31 +68,31 @@ TEST_F(LiveWindowKeysTest, StopTheSessionAndDoNothingElse) {
   EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("A square in the"));
   press(' ');
   press(VirtualDisplay::kEnter);
-  EXPECT_FALSE(person.sees("running", "", 0.5)) << "the experimenter starts";
+  EXPECT_FALSE(person.sees_within(0.5, "running")) << "the experimenter starts";
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("running", "run"));
   for (const char key : {'s', 'r', 'p'}) {
     press(static_cast<unsigned long>(key));
   }
-  EXPECT_FALSE(person.sees("paused", "", 0.5));
+  EXPECT_FALSE(person.sees_within(0.5, "paused"));
   EXPECT_EQ(person.status()["aborted_passes"], 0);
   press(VirtualDisplay::kEscape);  // anybody may stop
   ASSERT_TRUE(person.sees("stopped"));
   EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("The forces are off"));
   press('c');
   press(' ');
-  EXPECT_FALSE(person.sees("paused", "", 0.5));
+  EXPECT_FALSE(person.sees_within(0.5, "paused"));
   EXPECT_EQ(person.status()["state"], "stopped");
   ASSERT_TRUE(person.ask("clear"));
   ASSERT_TRUE(person.sees("paused"));
   EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("pause"));
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("running", "run"));
-  EXPECT_EQ(person.status()["screen"], "") << "the trial is shown again";
+  EXPECT_EQ(person.seen()["screen"], "") << "the trial is shown again";
   display_->ask_to_close("haptrial");  // no way out of a session either, but a stop
   ASSERT_TRUE(person.sees("stopped"));
   ASSERT_TRUE(person.ask("abort"));
-  EXPECT_NE(session.wait().status, -1);
+  session.wait();
   const bool closed = std::filesystem::exists(folder_ / "out/S01.h5");
   EXPECT_THAT(
       events(closed ? "out/S01.h5" : "out/S01.h5.partial"),
@@ -111,7 +111,7 @@ TEST_F(LiveWindowKeysTest, SteerWhereTheDefinitionSaysSo) {
   press('c');
   ASSERT_TRUE(person.sees("paused"));
   ASSERT_TRUE(person.ask("abort"));
-  EXPECT_NE(session.wait().status, -1);
+  session.wait();
   const bool closed = std::filesystem::exists(folder_ / "out/S01.h5");
   EXPECT_THAT(
       events(closed ? "out/S01.h5" : "out/S01.h5.partial"),
@@ -120,10 +120,9 @@ TEST_F(LiveWindowKeysTest, SteerWhereTheDefinitionSaysSo) {
 
 TEST_F(LiveWindowKeysTest, BeginASessionWithoutAnExperimenter) {
   LiveCommand session(run(""));
-  ASSERT_TRUE(
-      test::eventually([this] { return std::filesystem::exists(folder_ / "out/S01.h5.partial"); }));
-  EXPECT_FALSE(test::eventually([this] { return passes() > 0; }, 2.0)) << "nobody said so";
-  EXPECT_TRUE(test::eventually([this] {
+  test::wait_until([this] { return std::filesystem::exists(folder_ / "out/S01.h5.partial"); });
+  EXPECT_FALSE(test::happens_within(2.0, [this] { return passes() > 0; })) << "nobody said so";
+  EXPECT_TRUE(session.reaches([this] {
     display_->try_key("haptrial", VirtualDisplay::kEnter);
     return passes() > 0;
   })) << session.errors();

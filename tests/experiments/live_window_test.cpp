@@ -14,10 +14,12 @@
 #include "protocols/force_training/force_definition.h"
 #include "tests/core/render/flat/pixels.h"
 #include "tests/experiments/console_person.h"
+#include "tests/experiments/frame_periods.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::live_window_test {
 namespace {
@@ -55,12 +57,11 @@ class LiveWindowTest : public testing::TestWithParam<bool> {
     display_.emplace(kDisplayWidth, kDisplayHeight);
     test::write_text(
         folder_ / "study.toml",
-        test::brisk_text({{"conditions", "conditions = [\"visuohaptic\"]"},
-                          {"speed", "speed = 0.03"},
-                          {"full_screen", full() ? "full_screen = true" : "full_screen = false"},
-                          {"width", "width = 800"},
-                          {"height", "height = 600"},
-                          {"photodiode", "photodiode = \"run\""}}));
+        test::attended_text({{"conditions", "conditions = [\"visuohaptic\"]"},
+                             {"full_screen", full() ? "full_screen = true" : "full_screen = false"},
+                             {"width", "width = 800"},
+                             {"height", "height = 600"},
+                             {"photodiode", "photodiode = \"run\""}}));
     definition_ = protocols::load_force_definition(folder_ / "study.toml");
     style_ = definition_->display;
     if (full()) {
@@ -83,9 +84,8 @@ class LiveWindowTest : public testing::TestWithParam<bool> {
   double shade_of_patch() const { return render::pixel(on_screen(), 5, style_.height - 6).x(); }
 
   void expect_instructions() const {
-    EXPECT_TRUE(test::eventually([&] {
-      return render::find(on_screen(), style_.marker_colour).count > 1000;
-    })) << "letters";
+    test::wait_until(
+        [&] { return render::find(on_screen(), style_.marker_colour).count > 1000; });  // letters
     const Image page = on_screen();
     EXPECT_EQ(render::find(page, style_.target_colour).count, 0) << "no bar";
     EXPECT_EQ(render::find(page, style_.trajectory_colour).count, 0) << "no path";
@@ -168,20 +168,16 @@ void LiveWindowTest::expect_file_agrees(const std::vector<Seen>& pictures) const
 
 void LiveWindowTest::expect_frames(const record::SessionReader& reader) const {
   const std::vector<record::FrameRow> frames = reader.frames();
-  ASSERT_GT(frames.size(), 30u);
+  ASSERT_GT(frames.size(), 40u);
   // Xvfb has no refresh, so a timer of 60 Hz sets the pace: each period has a picture, or is
   // counted as missed. The first pictures of a kind take longer.
-  const std::size_t steady = 10;
-  std::int64_t pictures = 0;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     EXPECT_GT(frames[i].time_ns, frames[i - 1].time_ns);
-    pictures += i > steady ? 1 + frames[i].dropped : 0;
   }
-  const double span = 1e-9 * static_cast<double>(frames.back().time_ns - frames[steady].time_ns);
-  EXPECT_NEAR(static_cast<double>(pictures), 60.0 * span, 6.0);
+  EXPECT_LT(test::unaccounted_periods(frames, 60.0), 2.0);
   const record::Sample end = reader.samples(reader.sample_count() - 1, 1).front();
-  EXPECT_NEAR(1e-9 * static_cast<double>(frames.back().time_ns - end.time_ns), 0.0, 1.0)
-      << "to the session's end, on its clock";
+  EXPECT_NEAR(1e-9 * static_cast<double>(frames.back().time_ns - end.time_ns), 0.0, 60.0)
+      << "to the session's end, on its clock, which did not begin with the machine's";
 }
 
 TEST_P(LiveWindowTest, ShowsWhatTheFileHolds) {
@@ -193,18 +189,18 @@ TEST_P(LiveWindowTest, ShowsWhatTheFileHolds) {
   ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("running", "run"));
   std::vector<Seen> pictures;
-  EXPECT_TRUE(test::eventually([&] {
+  test::wait_until([&] {
     if (const auto seen = look()) {
       pictures.push_back(*seen);
     }
     return pictures.size() == 5;
-  })) << "path, cursor and both bars";
-  EXPECT_TRUE(test::eventually([&] { return patch_is_white(); }));
+  });  // path, cursor and both bars
+  test::wait_until([&] { return patch_is_white(); });
 
   display_->press_key(definition_->screen.title, 0xff1b);  // Escape at the participant's keyboard
   ASSERT_TRUE(person.sees("stopped"));
   EXPECT_EQ(person.status()["applied_force"], 0.0);
-  EXPECT_TRUE(test::eventually([&] { return shade_of_patch() == 0.0; })) << "the run is over";
+  test::wait_until([&] { return shade_of_patch() == 0.0; });  // the run is over
   ASSERT_TRUE(person.ask("end"));
   const CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;

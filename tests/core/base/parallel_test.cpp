@@ -85,7 +85,7 @@ TEST(SharedWorkTest, CanBeWatchedAndLeft) {
   std::atomic<int> begun{0};
   std::jthread release;
   {
-    SharedWork shared(1000, 2, [&] {
+    SharedWork shared(1'000'000, 2, [&] {
       return [&](std::size_t) {
         ++begun;
         while (!go) {
@@ -100,7 +100,7 @@ TEST(SharedWorkTest, CanBeWatchedAndLeft) {
       go = true;
     });
   }
-  EXPECT_LT(begun, 1000);
+  EXPECT_LT(begun, 1'000'000);
 }
 
 TEST(SharedWorkTest, EndsWithItsItems) {

@@ -142,12 +142,15 @@ TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
   std::uint64_t most_lost = 0;
   int without_file = 0;
   std::ofstream list(folder / "files.txt");
-  for (int run = 0; run < kKills; ++run) {
+  // More of them, and later ones, on a machine so slow that these meet too little.
+  const auto met = [&] { return std::min(doing[kWriting], doing[kPausing]) > 10; };
+  for (int run = 0; run < kKills || !met(); ++run) {
     const fs::path file = folder / fmt::format("{:03}.h5", run);
     const fs::path partial = file.string() + ".partial";
     // Each file is killed twice: new, and resumed.
     for (int life = 0; life < 2; ++life) {
-      const auto instant = static_cast<useconds_t>(random.uniform(0.0, life == 0 ? 2e5 : 5e4));
+      const double latest = (life == 0 ? 2e5 : 5e4) * (1 + run / kKills);
+      const auto instant = static_cast<useconds_t>(random.uniform(0.0, latest));
       const Killed killed = start_and_kill(file, samples, instant);
       ++doing[static_cast<std::size_t>(killed.doing)];
       if (!fs::exists(partial)) {
@@ -171,8 +174,6 @@ TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
       "there was a file; at most %.3f s lost\n",
       2 * kKills, doing[kStarting], doing[kWriting], doing[kFlushing], doing[kSyncing],
       doing[kPausing], without_file, 1e-3 * static_cast<double>(most_lost));
-  EXPECT_GT(doing[kWriting], 10);
-  EXPECT_GT(doing[kPausing], 10);
 
   // As a user without our code opens them: all in one process.
   std::ofstream(folder / "open.py")

@@ -5,6 +5,7 @@
 
 #include "tests/support/message_of.h"
 #include "tests/support/scripted_device.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -38,10 +39,7 @@ struct Parts {
   std::atomic<bool> hang{false};
 
   void run_until(std::uint64_t ticks) const {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (loop.ticks() < ticks && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    test::wait_until([&] { return loop.ticks() >= ticks; });
   }
 };
 
@@ -87,13 +85,7 @@ TEST(ServoThreadTest, ALibraryThatHangsIsASentence) {
   servo->start();
   parts->run_until(50);
   StallWatch watch(parts->loop);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  bool stalled = false;
-  while (!stalled && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    stalled = watch.stalled();
-  }
-  EXPECT_TRUE(stalled);
+  test::wait_until([&] { return watch.stalled(); });
   EXPECT_TRUE(parts->hang);
   EXPECT_THAT(test::message_of<DeviceHangs>([&] { servo->end(); }),
               testing::HasSubstr("does not come back"));

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <thread>
+#include <iterator>
 
 #include "analysis/power/power_report.h"
 #include "analysis/statistics/tests/repeated_power.h"
@@ -20,6 +20,7 @@
 #include "experiments/power/power_run.h"
 #include "protocols/trials/trials_protocol.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -59,8 +60,8 @@ class NormalRehearsal final : public Rehearsal {
     for (long p = 0; p < participants_; ++p) {
       const double person = random.normal();
       const auto noise = [&] { return noise_ * random.normal(); };
-      rows.push_back({person + noise(), person + effect_ + noise(),
-                      person + 0.5 * effect_ + noise()});
+      rows.push_back(
+          {person + noise(), person + effect_ + noise(), person + 0.5 * effect_ + noise()});
       a.push_back(rows.back()[0]);
       b.push_back(rows.back()[1]);
     }
@@ -224,10 +225,17 @@ TEST(PowerEngine, GivesTheSameBytesInSharesOfAnyOrder) {
   EXPECT_EQ(analysis::power_json(parts.merged()), first);
 }
 
+long count_parts(const fs::path& folder) {
+  return fs::exists(folder)
+             ? std::distance(fs::directory_iterator(folder), fs::directory_iterator())
+             : 0;
+}
+
 TEST(PowerEngine, GivesTheSameBytesAfterTwentyKills) {
   const TemporaryFolder folder;
   const PowerQuestion q = question_of(4000, {4, 8}, {0.5, 1.0});
   const auto whole = analysis::power_json(simulated_in(folder.path() / "whole", q, 2));
+  const long all = count_parts(folder.path() / "whole" / "parts");
   const fs::path killed = folder.path() / "killed";
   RandomStream random(7, "kills");
   std::size_t before = 0;
@@ -237,7 +245,8 @@ TEST(PowerEngine, GivesTheSameBytesAfterTwentyKills) {
       const PowerFolder parts(killed, q);
       fill(parts, q, {1});
     });
-    std::this_thread::sleep_for(std::chrono::milliseconds(5 + random.below(100)));
+    const long more = count_parts(killed / "parts") + 1 + static_cast<long>(random.below(3));
+    test::wait_until([&] { return count_parts(killed / "parts") >= std::min(more, all); });
     child.kill();
     child.wait();
     if (fs::exists(killed / "program")) {

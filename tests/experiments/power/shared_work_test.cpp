@@ -46,7 +46,7 @@ TEST(UnitLocks, AProcessThatDiesGivesItsUnitsBack) {
     const UnitLocks its(folder / "lock");
     its.take(1);
     test::write_text(folder / "taken", "");
-    std::this_thread::sleep_for(std::chrono::minutes(1));
+    ::pause();
   });
   while (!fs::exists(folder / "taken")) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -13,8 +13,10 @@
 #include "core/stimulus/stimulus.h"
 #include "protocols/force_training/path_drawing.h"
 #include "tests/core/render/flat/pixels.h"
+#include "tests/experiments/frame_periods.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -60,16 +62,6 @@ class ScreenTest : public testing::Test {
     display_.emplace(kWidth, kHeight);
     options_.title = "participant";
   }
-  bool eventually(const std::function<bool()>& good) {
-    const auto end = std::chrono::steady_clock::now() + 10s;
-    while (std::chrono::steady_clock::now() < end) {
-      if (good()) {
-        return true;
-      }
-      std::this_thread::sleep_for(5ms);
-    }
-    return false;
-  }
   render::TrialDisplayStyle style() const {
     render::TrialDisplayStyle style;
     style.width = kWidth;
@@ -111,14 +103,14 @@ TEST_F(ScreenTest, ShowsATrialAsTheRendererDrawsItOffScreen) {
   screen.show(protocols::path_drawing(style(), path()));
   screen.observe(running(), kNoForce, 1e-3);
   const Image expected = render::render_presentation(style(), path(), running());
-  EXPECT_TRUE(eventually([&] { return largest_difference(screen.screenshot(), expected) <= 2; }));
-  EXPECT_TRUE(eventually([&] { return largest_difference(on_monitor(), expected) <= 2; }))
-      << "on the monitor too";
+  test::wait_until([&] { return largest_difference(screen.screenshot(), expected) <= 2; });
+  test::wait_until(
+      [&] { return largest_difference(on_monitor(), expected) <= 2; });  // on the monitor too
   Presentation moved = running();
   moved.tool = path().back();
   screen.observe(moved, kNoForce, 1e-3);
   const Image later = render::render_presentation(style(), path(), moved);
-  EXPECT_TRUE(eventually([&] { return largest_difference(on_monitor(), later) <= 2; }));
+  test::wait_until([&] { return largest_difference(on_monitor(), later) <= 2; });
   EXPECT_EQ(screen.trouble(), "");
 }
 
@@ -126,15 +118,15 @@ TEST_F(ScreenTest, ShowsTextsAndCountsDownByItself) {
   Screen screen(options_, style());
   screen.show_text({"Rest", "Let go of the handle.", "", 30.0});
   const auto shown = [&] { return render::find(on_monitor(), style().target_colour).count; };
-  ASSERT_TRUE(eventually([&] { return shown() > 300; })) << "the countdown's colour";
+  test::wait_until([&] { return shown() > 300; });  // the countdown's colour
   const Image first = on_monitor();
-  EXPECT_TRUE(eventually([&] { return on_monitor().rgb != first.rgb; })) << "a second later";
+  test::wait_until([&] { return on_monitor().rgb != first.rgb; });  // a second later
   screen.show_text({"Thanks", "", "", std::nullopt});
-  EXPECT_TRUE(eventually([&] { return shown() == 0; }));
+  test::wait_until([&] { return shown() == 0; });
   EXPECT_GT(render::find(on_monitor(), style().marker_colour).count, 300);
   screen.show(protocols::path_drawing(style(), path()));
   screen.observe(running(), kNoForce, 1e-3);
-  EXPECT_TRUE(eventually([&] { return shown() > 1000; })) << "back to the trial";
+  test::wait_until([&] { return shown() > 1000; });  // back to the trial
 }
 
 TEST_F(ScreenTest, CountsItsFramesFromTheFirstTickOn) {
@@ -148,32 +140,29 @@ TEST_F(ScreenTest, CountsItsFramesFromTheFirstTickOn) {
   EXPECT_TRUE(screen.take_frames().empty()) << "no tick yet";
   screen.show(protocols::path_drawing(style(), path()));
   screen.observe(running(), kNoForce, 1e-3);
-  std::this_thread::sleep_for(2s);
-  const std::vector<record::FrameRow> frames = screen.take_frames();
-  ASSERT_GT(frames.size(), 10u);
-  // Every refresh after the first picture held one or is counted as dropped.
-  std::int64_t dropped = -frames.front().dropped;
+  std::vector<record::FrameRow> frames;
+  test::wait_until([&] {
+    std::ranges::copy(screen.take_frames(), std::back_inserter(frames));
+    return frames.size() > 60;
+  });
   std::int64_t last = 0;
   for (const record::FrameRow& frame : frames) {
     EXPECT_GT(frame.time_ns, last);
     EXPECT_GT(frame.frame_time_ns, 0);
     EXPECT_LT(frame.frame_time_ns, frame.time_ns + 1'000'000'000);
     EXPECT_GE(frame.dropped, 0);
-    dropped += frame.dropped;
     last = frame.time_ns;
   }
-  const double span = 1e-9 * static_cast<double>(frames.back().time_ns - frames.front().time_ns);
-  EXPECT_NEAR(static_cast<double>(frames.size() - 1) + static_cast<double>(dropped), 60.0 * span,
-              10.0);
-  EXPECT_LT(frames.size(), 130u) << "no faster than the timer";
-  EXPECT_LE(screen.take_frames().size(), 10u) << "taken once";
+  EXPECT_LT(test::unaccounted_periods(frames, Screen::kTimerRate), 2.0);
+  for (const record::FrameRow& frame : screen.take_frames()) {
+    EXPECT_GT(frame.time_ns, last) << "taken once";
+  }
   const ScreenSummary after = screen.summary();
   EXPECT_GE(after.frames, frames.size());
   EXPECT_GT(after.draw_median_ms, 0.0);
   EXPECT_GE(after.draw_worst_ms, after.draw_median_ms);
-  std::printf("%zu pictures in %.2f s, %lld dropped, drawn in %.2f ms (median), %.2f ms (worst)\n",
-              frames.size(), span, static_cast<long long>(dropped), after.draw_median_ms,
-              after.draw_worst_ms);
+  std::printf("%zu pictures, drawn in %.2f ms (median), %.2f ms (worst)\n", frames.size(),
+              after.draw_median_ms, after.draw_worst_ms);
 }
 
 TEST_F(ScreenTest, ThePhotodiodesSquareIsWhiteDuringTheRunOnly) {
@@ -182,16 +171,16 @@ TEST_F(ScreenTest, ThePhotodiodesSquareIsWhiteDuringTheRunOnly) {
   const auto corner = [&] { return render::pixel(on_monitor(), 5, kHeight - 6); };
   const Eigen::Vector3d white = Eigen::Vector3d::Constant(255.0);
   screen.show(protocols::path_drawing(style(), path()));
-  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }));
+  test::wait_until([&] { return corner() == Eigen::Vector3d::Zero(); });
   screen.observe(running(), kNoForce, 1e-3);
-  EXPECT_TRUE(eventually([&] { return corner() == white; }));
+  test::wait_until([&] { return corner() == white; });
   Presentation waiting = running();
   waiting.instruction = stimulus::Instruction::kRest;
   screen.observe(waiting, kNoForce, 1e-3);
-  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }));
+  test::wait_until([&] { return corner() == Eigen::Vector3d::Zero(); });
   screen.observe(running(), kNoForce, 1e-3);
   screen.show_text({"Rest", "", "", std::nullopt});
-  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); })) << "no trial";
+  test::wait_until([&] { return corner() == Eigen::Vector3d::Zero(); });  // no trial
 }
 
 TEST_F(ScreenTest, ThePhotodiodesSquareTogglesEveryFrame) {
@@ -199,19 +188,17 @@ TEST_F(ScreenTest, ThePhotodiodesSquareTogglesEveryFrame) {
   Screen screen(options_, style());
   int white = 0;
   int black = 0;
-  for (int i = 0; i < 200 && (white < 3 || black < 3); ++i) {
+  test::wait_until([&] {
     const double shade = render::pixel(screen.screenshot(), 5, kHeight - 6).x();
     white += shade == 255.0;
     black += shade == 0.0;
-    std::this_thread::sleep_for(std::chrono::milliseconds(i % 23));
-  }
-  EXPECT_GE(white, 3);
-  EXPECT_GE(black, 3);
+    return white >= 3 && black >= 3;
+  });
 }
 
 TEST_F(ScreenTest, ThePhotodiodesSquareFlashesWithAnOnset) {
   options_.photodiode = protocols::Photodiode::kOnset;
-  options_.photodiode_time = 0.5;
+  options_.photodiode_time = 5.0;  // long enough to be seen on a busy machine
   markers::OnsetLog log;
   Screen screen(options_, style());
   screen.flash_with(&log);
@@ -219,14 +206,13 @@ TEST_F(ScreenTest, ThePhotodiodesSquareFlashesWithAnOnset) {
   screen.observe(running(), kNoForce, 1e-3);
   const auto corner = [&] { return render::pixel(on_monitor(), 5, kHeight - 6); };
   const Eigen::Vector3d white = Eigen::Vector3d::Constant(255.0);
-  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }));
+  test::wait_until([&] { return corner() == Eigen::Vector3d::Zero(); });
   EXPECT_TRUE(screen.take_flashes().empty());
   markers::TickOnsets begun;
   begun.add({});
   log.put(begun);
-  EXPECT_TRUE(eventually([&] { return corner() == white; }));
-  EXPECT_TRUE(eventually([&] { return corner() == Eigen::Vector3d::Zero(); }))
-      << "half a second on";
+  test::wait_until([&] { return corner() == white; });
+  test::wait_until([&] { return corner() == Eigen::Vector3d::Zero(); });  // its time is over
   const std::vector<Flash> flashes = screen.take_flashes();
   ASSERT_EQ(flashes.size(), 1u);
   EXPECT_EQ(flashes[0].onsets, 1u);
@@ -260,10 +246,10 @@ TEST_F(ScreenTest, KeysPointerAndCloseButtonReachTheCallbacks) {
   display_->press_key("participant", ' ');
   display_->press_key("participant", 'x');  // asks for nothing
   display_->press_key("participant", 0xff1b);
-  EXPECT_TRUE(eventually([&] {
+  test::wait_until([&] {
     const std::lock_guard lock(mutex);
     return requests.size() == 2;
-  }));
+  });
   EXPECT_THAT(requests, ElementsAre(Request::kStart, Request::kEmergencyStop));
 
   // Where the renderer draws the end of the path, the pointer is at the end of the path.
@@ -274,14 +260,13 @@ TEST_F(ScreenTest, KeysPointerAndCloseButtonReachTheCallbacks) {
   const render::Blob marker = render::find(image, style().marker_colour);
   display_->move_pointer(static_cast<int>(marker.centre.x()), static_cast<int>(marker.centre.y()));
   display_->press_button("participant", 4);
-  EXPECT_TRUE(eventually([&] {
+  test::wait_until([&] {
     const std::lock_guard lock(mutex);
     return std::abs(pointer.x - path().back().x()) < 5e-4 &&
            std::abs(pointer.z - path().back().z()) < 5e-4 && pointer.wheel == 1.0;
-  })) << pointer.x
-      << " " << pointer.z;
+  });
   display_->ask_to_close("participant");
-  EXPECT_TRUE(eventually([&] { return closed == 1; }));
+  test::wait_until([&] { return closed == 1; });
 }
 
 TEST_F(ScreenTest, APointerThatRestsIsWhereTheNewTrialShowsIt) {
@@ -304,12 +289,11 @@ TEST_F(ScreenTest, APointerThatRestsIsWhereTheNewTrialShowsIt) {
   Screen screen(options_, style(), callbacks);  // with a view of its own, and no trial
   std::this_thread::sleep_for(200ms);
   screen.show(protocols::path_drawing(style(), path()));
-  EXPECT_TRUE(eventually([&] {
+  test::wait_until([&] {
     const std::lock_guard lock(mutex);
     return std::abs(pointer.x - path().back().x()) < 5e-4 &&
            std::abs(pointer.z - path().back().z()) < 5e-4;
-  })) << pointer.x
-      << " " << pointer.z;
+  });
 }
 
 TEST_F(ScreenTest, ObserveDoesNotAllocate) {
@@ -335,7 +319,7 @@ TEST_F(ScreenTest, AServoThreadAndASessionThreadUseItAtOnce) {
     }
   });
   std::size_t frames = 0;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 20 || frames <= 5; ++i) {
     if (i % 2 == 0) {
       screen.show_text({"Page", "", "", 5.0});
     } else {
@@ -347,7 +331,6 @@ TEST_F(ScreenTest, AServoThreadAndASessionThreadUseItAtOnce) {
   }
   over = true;
   servo.join();
-  EXPECT_GT(frames, 5u);
   EXPECT_EQ(screen.trouble(), "");
 }
 
@@ -384,10 +367,10 @@ TEST_F(ScreenTest, AKeyThatIsTappedBetweenTwoPicturesIsHeldForOne) {
   constexpr std::size_t kTaps = 5;
   for (std::size_t tap = 1; tap <= kTaps; ++tap) {
     display_->press_key("participant", 't');
-    EXPECT_TRUE(eventually([&] {
+    test::wait_until([&] {
       const std::lock_guard lock(mutex);
       return held.size() == 2 * tap;
-    })) << "down and up";
+    });  // down and up
   }
   const std::lock_guard lock(mutex);
   ASSERT_EQ(held.size(), 2 * kTaps);

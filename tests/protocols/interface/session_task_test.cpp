@@ -527,9 +527,7 @@ class RealThreadTest : public SessionTaskTest {
     }
   }
   void wait_idle() {
-    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!task_.idle()) {
-      ASSERT_LT(std::chrono::steady_clock::now(), limit);
       std::this_thread::sleep_for(std::chrono::microseconds(50));
       samples();  // the consumer's side of the log, at the same time
     }

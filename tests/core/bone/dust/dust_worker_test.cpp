@@ -7,6 +7,7 @@
 
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::bone {
 namespace {
@@ -19,15 +20,9 @@ BoneModel block_of_bone() {
   return model;
 }
 
-/// Waits until the worker's books show everything, at most ten seconds.
-bool comes_to(const DustWorker& worker, double deposited) {
-  for (int i = 0; i < 1000; ++i) {
-    if (std::abs(worker.balance().deposited - deposited) < 1e-3) {
-      return true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
+/// Waits until the worker's books show everything.
+void wait_for(const DustWorker& worker, double deposited) {
+  test::wait_until([&] { return std::abs(worker.balance().deposited - deposited) < 1e-3; });
 }
 
 TEST(DustWorkerTest, TakesWhatAServoThreadDrillsWithoutHoldingItUp) {
@@ -70,7 +65,7 @@ TEST(DustWorkerTest, TakesWhatAServoThreadDrillsWithoutHoldingItUp) {
   }
   servo.join();
   EXPECT_EQ(allocations, 0U);
-  EXPECT_TRUE(comes_to(worker, drilled)) << worker.balance().deposited << " of " << drilled;
+  wait_for(worker, drilled);
   EXPECT_GT(drilled, 500.0);
   pictures += worker.quads(quads, version) ? 1 : 0;
   EXPECT_GT(pictures, 0);
@@ -86,9 +81,9 @@ TEST(DustWorkerTest, WhatFindsTheChannelFullGoesWithTheNext) {
   for (int i = 0; i < 20'000; ++i) {  // more than the channel holds, within one period
     worker.deposit({Eigen::Vector3d(0.01, 0.03, 0.01), 1e-3, 0.25});
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  test::wait_until([&] { return worker.balance().deposited > 0.0; });  // there is room again
   worker.deposit({Eigen::Vector3d(0.01, 0.03, 0.01), 1e-3, 1.0});
-  EXPECT_TRUE(comes_to(worker, 5001.0)) << worker.balance().deposited;
+  wait_for(worker, 5001.0);
 }
 
 /// However slow its rounds are, and though no other deposit takes along what found no room.

@@ -8,9 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <functional>
-#include <thread>
 
 #include "core/base/definition/table.h"
 #include "core/base/files/file_text.h"
@@ -18,6 +16,7 @@
 #include "tests/support/event_records.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::device::gamepad_test {
 namespace {
@@ -92,15 +91,8 @@ class GamepadPipeTest : public testing::Test {
       writer_ = -1;
     }
   }
-  bool comes_to(const std::function<bool(const GamepadState&)>& wanted) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
-    while (!wanted(pad_->state())) {
-      if (std::chrono::steady_clock::now() > end) {
-        return false;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return true;
+  void wait_for(const std::function<bool(const GamepadState&)>& wanted) {
+    test::wait_until([&] { return wanted(pad_->state()); });
   }
 
   test::TemporaryFolder folder_;
@@ -110,23 +102,23 @@ class GamepadPipeTest : public testing::Test {
 
 TEST_F(GamepadPipeTest, EachPartMovesWhatItIsFor) {
   put(EV_ABS, ABS_X, 32767);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.move.x() == 1.0; }));
+  wait_for([](const auto& s) { return s.move.x() == 1.0; });
   put(EV_ABS, ABS_Y, -32768);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.move.y() == 1.0; })) << "away from the player";
+  wait_for([](const auto& s) { return s.move.y() == 1.0; });  // away from the player
   put(EV_ABS, ABS_RZ, 255);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.depth == 1.0; }));
+  wait_for([](const auto& s) { return s.depth == 1.0; });
   put(EV_ABS, ABS_Z, 255);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.depth == 0.0; })) << "both are down";
+  wait_for([](const auto& s) { return s.depth == 0.0; });  // both are down
   put(EV_ABS, ABS_RX, -32768);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.turn.y() == -1.0; }));
+  wait_for([](const auto& s) { return s.turn.y() == -1.0; });
   put(EV_ABS, ABS_RY, 32767);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.turn.x() == 1.0; }));
+  wait_for([](const auto& s) { return s.turn.x() == 1.0; });
   put(EV_ABS, ABS_HAT0X, -1);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.turn.z() == 1.0; }));
+  wait_for([](const auto& s) { return s.turn.z() == 1.0; });
   put(EV_KEY, BTN_SOUTH, 1);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.buttons == 1; }));
+  wait_for([](const auto& s) { return s.buttons == 1; });
   put(EV_KEY, BTN_START, 1);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.buttons == (1U | 1U << 7); }));
+  wait_for([](const auto& s) { return s.buttons == (1U | 1U << 7); });
   const test::AllocationGuard guard;
   EXPECT_EQ(pad_->state().buttons, 1U | 1U << 7);
   EXPECT_EQ(guard.count(), 0u);
@@ -135,21 +127,21 @@ TEST_F(GamepadPipeTest, EachPartMovesWhatItIsFor) {
 TEST_F(GamepadPipeTest, ALostOneIsAtRestUntilItIsBackAndSaysSo) {
   put(EV_ABS, ABS_X, 32767);
   put(EV_KEY, BTN_SOUTH, 1);
-  ASSERT_TRUE(comes_to([](const auto& s) { return s.move.x() == 1.0 && s.buttons == 1; }));
+  wait_for([](const auto& s) { return s.move.x() == 1.0 && s.buttons == 1; });
   hang_up();
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.move.x() == 0.0 && s.buttons == 0; }));
+  wait_for([](const auto& s) { return s.move.x() == 0.0 && s.buttons == 0; });
   std::vector<InputChange> changes;
-  for (int tries = 0; tries < 600 && changes.size() < 2; ++tries) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  test::wait_until([&] {
     const auto more = pad_->take_changes();
     changes.insert(changes.end(), more.begin(), more.end());
-  }
+    return changes.size() >= 2;
+  });
   ASSERT_EQ(changes.size(), 2u);
   EXPECT_FALSE(changes[0].back);
   EXPECT_EQ(changes[0].why, "the writer of the pipe has closed it");
   EXPECT_TRUE(changes[1].back);
   put(EV_KEY, BTN_EAST, 1);
-  EXPECT_TRUE(comes_to([](const auto& s) { return s.buttons == 2; }));
+  wait_for([](const auto& s) { return s.buttons == 2; });
 }
 
 TEST(GamepadTest, WhatIsNoneIsRefusedInASentence) {

@@ -21,6 +21,7 @@
 #include "tests/support/event_records.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::device::pedal_test {
 namespace {
@@ -97,24 +98,15 @@ class PedalPipeTest : public testing::Test {
       writer_ = -1;
     }
   }
-  /// Whether the depth comes to a value within two seconds.
-  static bool comes_to(Pedal& pedal, double depth) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
-    while (pedal.depth() != depth) {
-      if (std::chrono::steady_clock::now() > end) {
-        return false;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return true;
+  static void wait_for(Pedal& pedal, double depth) {
+    test::wait_until([&] { return pedal.depth() == depth; });
   }
   static std::vector<Pedal::Change> change_of(Pedal& pedal) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
     std::vector<Pedal::Change> changes;
-    while (changes.empty() && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    test::wait_until([&] {
       changes = pedal.take_changes();
-    }
+      return !changes.empty();
+    });
     return changes;
   }
 
@@ -126,11 +118,11 @@ TEST_F(PedalPipeTest, TheNewestDepthIsThereWithoutWaiting) {
   Pedal pedal(parameters());
   EXPECT_EQ(pedal.depth(), 0.0) << "up until something is heard of it";
   put(25);
-  EXPECT_TRUE(comes_to(pedal, 0.25));
+  wait_for(pedal, 0.25);
   for (int value = 0; value <= 100; ++value) {
     put(value);
   }
-  EXPECT_TRUE(comes_to(pedal, 1.0));
+  wait_for(pedal, 1.0);
   const test::AllocationGuard guard;
   double sum = 0.0;
   for (int i = 0; i < 1000; ++i) {
@@ -144,9 +136,9 @@ TEST_F(PedalPipeTest, TheNewestDepthIsThereWithoutWaiting) {
 TEST_F(PedalPipeTest, ALostPedalIsUpUntilItIsBackAndSaysSo) {
   Pedal pedal(parameters());
   put(80);
-  ASSERT_TRUE(comes_to(pedal, 0.8));
+  wait_for(pedal, 0.8);
   hang_up();
-  EXPECT_TRUE(comes_to(pedal, 0.0)) << "nobody holds a pedal that is not there";
+  wait_for(pedal, 0.0);  // nobody holds a pedal that is not there
   const auto lost = change_of(pedal);
   ASSERT_EQ(lost.size(), 1u);
   EXPECT_FALSE(lost[0].back);
@@ -155,7 +147,7 @@ TEST_F(PedalPipeTest, ALostPedalIsUpUntilItIsBackAndSaysSo) {
   ASSERT_EQ(back.size(), 1u);
   EXPECT_TRUE(back[0].back);
   put(60);
-  EXPECT_TRUE(comes_to(pedal, 0.6));
+  wait_for(pedal, 0.6);
 }
 
 TEST_F(PedalPipeTest, WhatIsNoPedalIsRefusedInASentence) {
@@ -241,17 +233,14 @@ TEST(PedalDeviceTest, ADeviceOfTheKernelStatesItsRangeAndIsMissed) {
   p.axis = ABS_BRAKE;
   p.dead_zone = 0.0;
   Pedal pedal(p);
-  const auto comes_to = [&pedal](double depth) {
-    for (int tries = 0; tries < 2000 && pedal.depth() != depth; ++tries) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return pedal.depth() == depth;
+  const auto wait_for = [&pedal](double depth) {
+    test::wait_until([&] { return pedal.depth() == depth; });
   };
-  EXPECT_TRUE(comes_to(0.05)) << "its value at the opening";
+  wait_for(0.05);  // its value at the opening
   device.put(180);
-  EXPECT_TRUE(comes_to(0.5));
+  wait_for(0.5);
   device.remove();
-  EXPECT_TRUE(comes_to(0.0));
+  wait_for(0.0);
   EXPECT_EQ(pedal.take_changes().size(), 1u);
 }
 

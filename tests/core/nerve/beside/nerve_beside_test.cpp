@@ -125,9 +125,10 @@ TEST(NerveBesideTest, PlantedEventsAreFoundByKind) {
 }
 
 TEST(NerveBesideTest, APushDoesNotAllocateAndFullLogsAreCounted) {
+  std::atomic<bool> all_pushed{false};
   ThreadedNerves beside(
-      [](std::uint64_t) -> std::unique_ptr<NerveSimulation> {
-        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      [&](std::uint64_t) -> std::unique_ptr<NerveSimulation> {
+        all_pushed.wait(false);
         return std::make_unique<NerveSimulation>(two_nerves(), 1000.0, 1);
       },
       1000.0, {});
@@ -141,6 +142,8 @@ TEST(NerveBesideTest, APushDoesNotAllocateAndFullLogsAreCounted) {
     }
     EXPECT_EQ(guard.count(), 0u);
   }
+  all_pushed = true;
+  all_pushed.notify_all();
   beside.settle();
   EXPECT_GT(beside.dropped(), 0u) << "8,192 find room while nobody takes them";
   EXPECT_EQ(beside.take().emg.size(), (pushed - beside.dropped()) * 8);

@@ -102,7 +102,7 @@ TEST(ReadableTest, WhatH5pyCannotReadIsFound) {
   }
   list.close();
   std::ofstream(folder / "read.py")
-      << "import h5py, os, signal, sys\n"
+      << "import h5py, os, resource, sys\n"
          "def read(name):\n"
          "  with h5py.File(name, 'r') as f:\n"
          "    dict(f.attrs)\n"
@@ -110,7 +110,7 @@ TEST(ReadableTest, WhatH5pyCannotReadIsFound) {
          "for name in open(sys.argv[1]).read().split():\n"
          "  child = os.fork()  # a process each: h5py may crash or hang on it\n"
          "  if child == 0:\n"
-         "    signal.alarm(20)\n"
+         "    resource.setrlimit(resource.RLIMIT_CPU, (20, 20))\n"
          "    try: read(name)\n"
          "    except BaseException: os._exit(1)\n"
          "    os._exit(0)\n"

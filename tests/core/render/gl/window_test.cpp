@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdlib>
-#include <functional>
 #include <optional>
 #include <thread>
 
@@ -15,6 +13,7 @@
 #include "core/render/trial/trial_display.h"
 #include "tests/core/render/flat/pixels.h"
 #include "tests/support/virtual_display.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::render {
 namespace {
@@ -25,17 +24,6 @@ using testing::HasSubstr;
 
 constexpr int kWidth = 800;
 constexpr int kHeight = 600;
-
-bool eventually(const std::function<bool()>& good) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (std::chrono::steady_clock::now() < end) {
-    if (good()) {
-      return true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return false;
-}
 
 class WindowTest : public testing::Test {
  protected:
@@ -75,8 +63,8 @@ TEST_F(WindowTest, DrawsAsOffScreen) {
     largest = std::max(largest, std::abs(int{drawn.rgb[i]} - int{expected.rgb[i]}));
   }
   EXPECT_LE(largest, 2);
-  EXPECT_TRUE(eventually([&] { return on_monitor().rgb == drawn.rgb; }))
-      << "the monitor shows what was drawn";
+  test::wait_until(
+      [&] { return on_monitor().rgb == drawn.rgb; });  // the monitor shows what was drawn
   EXPECT_GT(find(drawn, style.target_colour).count, 1000);
 }
 
@@ -99,7 +87,7 @@ TEST_F(WindowTest, ShowsTextInAWindowInTheMiddle) {
     }
     return true;
   };
-  EXPECT_TRUE(eventually(shown));
+  test::wait_until(shown);
 }
 
 TEST_F(WindowTest, KeysMouseAndCloseButtonArrive) {
@@ -107,7 +95,7 @@ TEST_F(WindowTest, KeysMouseAndCloseButtonArrive) {
   EXPECT_FALSE(window.close_asked());
   std::vector<KeyPress> keys;
   const auto polled = [&](const auto& good) {
-    return eventually([&] {
+    test::wait_until([&] {
       window.poll();
       for (const KeyPress& key : window.take_keys()) {
         keys.push_back(key);
@@ -118,21 +106,21 @@ TEST_F(WindowTest, KeysMouseAndCloseButtonArrive) {
   for (const unsigned long keysym : {0xff1bul, 0x70ul, 0x20ul, 0xff0dul, 0xffc0ul}) {
     display_->press_key("small", keysym);  // Escape, p, space, Enter, F3
   }
-  EXPECT_TRUE(polled([&] { return keys.size() == 7; }));
+  polled([&] { return keys.size() == 7; });
   EXPECT_THAT(keys, ElementsAre(KeyPress{KeyPress::kEscape}, KeyPress{'P'},
                                 KeyPress{KeyPress::kOther, U'p'}, KeyPress{KeyPress::kSpace},
                                 KeyPress{KeyPress::kOther, U' '}, KeyPress{KeyPress::kEnter},
                                 KeyPress{KeyPress::kOther}));
   display_->move_pointer((kWidth - 320) / 2 + 30, (kHeight - 240) / 2 + 70);
-  EXPECT_TRUE(polled([&] { return window.pointer().position == Eigen::Vector2d(30.0, 70.0); }));
+  polled([&] { return window.pointer().position == Eigen::Vector2d(30.0, 70.0); });
   display_->press_button("small", 4);
   display_->press_button("small", 4);
   display_->press_button("small", 5);
   display_->press_button("small", 1);
-  EXPECT_TRUE(polled([&] { return window.pointer().buttons == 1u; }));
+  polled([&] { return window.pointer().buttons == 1u; });
   EXPECT_EQ(window.pointer().wheel, 1.0);
   display_->ask_to_close("small");
-  EXPECT_TRUE(polled([&] { return window.close_asked(); }));
+  polled([&] { return window.close_asked(); });
 }
 
 TEST_F(WindowTest, OneAtATimeAndAgainAfterwards) {

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 #include "core/base/error.h"
 #include "core/sound/cues/cue_player.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::sound::mixer_test {
 namespace {
@@ -113,10 +113,10 @@ TEST(CuePlayerTest, SaysWhenTheCardTookWhatWasStarted) {
   const std::int64_t begin = now();
   player.start(0, 17);
   std::vector<StartedCue> started;
-  for (int i = 0; i < 200 && started.empty(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  test::wait_until([&] {
     started = player.take_started();
-  }
+    return !started.empty();
+  });
   ASSERT_EQ(started.size(), 1u);
   EXPECT_EQ(started[0].ticket, 17u);
   EXPECT_GE(started[0].handed_ns, begin);

@@ -106,7 +106,7 @@ TEST_F(MeshCommandTest, AnInterruptLeavesNothingHalfWritten) {
       run("haptrial mesh make gear g.ply\n"
           "\"$HAPTRIAL\" mesh tetrahedralize g.ply g.node --resolution 300 > /dev/null &\n"
           "child=$!\n"
-          "for i in $(seq 600); do [ -e g.node.partial-1 ] && break; sleep 0.05; done\n"
+          "while kill -0 $child && [ ! -e g.node.partial-1 ]; do sleep 0.05; done\n"
           "[ -e g.node.partial-1 ] || echo never began\n"
           "kill -INT $child; wait $child; echo status $?; ls");
   EXPECT_EQ(result.output, "wrote       g.ply: 992 triangles\nstatus 1\ng.ply\n");
