@@ -16,15 +16,8 @@ export TSAN_OPTIONS=suppressions=$root/tests/support/tsan.supp
 data=${HAPTRIAL_DATA:-$root/../shared/data}
 [ -d "$data" ] || say "no folder $data: tests on real data will skip"
 
-# Many tests watch a session in real time, and a machine that stands still for a moment is no fault of
-# the program: a few that failed beside others run once more, alone, and are named.
 run_tests() {
-  local few=6 failed=$root/$1/Testing/Temporary/LastTestsFailed.log
-  rm -f "$failed"
-  ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j $((4 * $(nproc))) && return
-  [ -s "$failed" ] && [ "$(wc -l <"$failed")" -le $few ] || return 1
-  say "failed beside others, and run once more, alone: $(cut -d: -f2- "$failed" | paste -sd ' ')"
-  ctest --test-dir "$root/$1" --output-on-failure --rerun-failed
+  ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j $((4 * $(nproc)))
 }
 
 case "${1:-release}" in
