@@ -9,25 +9,25 @@
 namespace haptrial::control {
 namespace {
 
-constexpr double kSwing = 1.5;           // peak to peak [N]
-constexpr double kLargeSwing = 2.0;      // [N]
-constexpr double kLongestGap = 0.062;    // between turns; those of a slower hand are its own [s]
-constexpr double kOfAHand = 0.033;       // turns of a hand by itself are longer apart [s]
-constexpr int kTurns = 3;                // that make an oscillation
-constexpr double kStep = 1.2;            // of g, for each turn and each N of its swing
-constexpr double kLargestStep = 2.5;     // swing that counts [N]
-constexpr double kDying = 0.96;          // of the swing before
-constexpr double kForDying = 1.5;        // g
-constexpr double kRemembered = 2.0;      // [s]
-constexpr double kStiffnessFrom = 3.0;   // g above which stiffness gives way
-constexpr double kMostGiven = 8.0;       // g
-constexpr double kMargin = 0.4;          // of g, over what was too little
-constexpr double kQuiet = 0.08;          // without a turn [s]
-constexpr double kGivingBack = 7.5;      // of g [1/s]
-constexpr double kTryingAnew = 0.2;      // of what was too little, damping [1/s]
-constexpr double kTryingStiffness = 0.3; // [1/s]
-constexpr double kFastest = 80.0;        // change of a share, so that 6 N change by 0.5 N in 1 ms [1/s]
-constexpr double kSlow = 4.0;            // a hand's own movement ends about there [Hz]
+constexpr double kSwing = 1.5;            // peak to peak [N]
+constexpr double kLargeSwing = 2.0;       // [N]
+constexpr double kLongestGap = 0.062;     // between turns; those of a slower hand are its own [s]
+constexpr double kOfAHand = 0.033;        // turns of a hand by itself are longer apart [s]
+constexpr int kTurns = 3;                 // that make an oscillation
+constexpr double kStep = 1.2;             // of g, for each turn and each N of its swing
+constexpr double kStiffnessStep = 2.5;    // of g above kStiffnessFrom, for each turn
+constexpr double kDying = 0.96;           // of the swing before
+constexpr double kForDying = 1.5;         // g at most, for what dies away by itself
+constexpr double kRemembered = 2.0;       // [s]
+constexpr double kStiffnessFrom = 3.0;    // g above which stiffness gives way
+constexpr double kMostGiven = 8.0;        // g
+constexpr double kMargin = 0.4;           // of g, over what was too little
+constexpr double kQuiet = 0.08;           // without a turn [s]
+constexpr double kGivingBack = 7.5;       // of g [1/s]
+constexpr double kTryingAnew = 0.2;       // of what was too little, damping [1/s]
+constexpr double kTryingStiffness = 0.3;  // [1/s]
+constexpr double kFastest = 80.0;  // change of a share, so that 6 N change by 0.5 N in 1 ms [1/s]
+constexpr double kSlow = 4.0;      // a hand's own movement ends about there [Hz]
 
 }  // namespace
 
@@ -53,15 +53,30 @@ const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eige
   const auto go_towards = [dt](double& share, double wanted) {
     share += std::clamp(wanted - share, -kFastest * dt, kFastest * dt);
   };
-  go_towards(shares_.damping, std::exp(-given_));
-  go_towards(shares_.stiffness, std::exp(-std::max(0.0, given_ - kStiffnessFrom)));
+  const GainShares wanted = wanted_shares();
+  go_towards(shares_.damping, wanted.damping);
+  go_towards(shares_.stiffness, wanted.stiffness);
   calm(velocity, dt);
   return shares_;
 }
 
-/// What dies away by itself, as after a knock, is only damped; a hand may shake by itself, if slowly
-/// and weakly, and then only damping goes.
+GainShares HandleGuard::wanted_shares() const noexcept {
+  return {std::exp(-std::max(0.0, given_ - kStiffnessFrom)), std::exp(-given_)};
+}
+
+bool HandleGuard::settled() const noexcept {
+  constexpr double kNearly = 0.02;
+  const GainShares wanted = wanted_shares();
+  return shares_.damping < wanted.damping + kNearly &&
+         shares_.stiffness < wanted.stiffness + kNearly;
+}
+
+/// What dies away by itself, as after a knock, is only damped; a hand may shake by itself, if
+/// slowly and weakly, and then only damping goes.
 void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
+  if (!settled()) {
+    return;  // what was given up last has not come to act
+  }
   const bool dies = train.swing < kDying * train.swing_before;
   const bool by_a_hand = train.gap > kOfAHand && train.swing < kLargeSwing;
   if (recovers_ && !dies) {
@@ -69,8 +84,10 @@ void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
     recovers_ = false;
   }
   const double most = dies ? kForDying : by_a_hand ? kStiffnessFrom : kMostGiven;
-  const double step = kStep * std::min(train.swing, kLargestStep);
-  given_ = std::max(given_, std::min(most, given_ + step));
+  const double step = given_ < kStiffnessFrom ? kStep * train.swing : kStiffnessStep;
+  const double next =
+      given_ < kStiffnessFrom ? std::min(kStiffnessFrom, given_ + step) : given_ + step;
+  given_ = std::max(given_, std::min(most, next));
 }
 
 void HandleGuard::recover(double dt) noexcept {

@@ -13,19 +13,21 @@ namespace haptrial::control {
 /// A force that follows late or held readings feeds energy into a light hand instead of taking it
 /// out: the handle oscillates at 8 Hz and more. The guard counts the turns of the force that the
 /// program commands. From the third turn of 1.5 N or more on (the
-/// noise of an encoder of 10 um in the source's plane is 1.2 N), each turn makes it give way by a step g:
+/// noise of an encoder of 10 um in the source's plane is 1.2 N), each turn makes it give way by a
+/// step g:
 ///
 ///     share of damping    s_b = exp(-g)
 ///     share of stiffness  s_k = exp(-(g - 3)) above g = 3, else 1
 ///     calming damper      f = -(1 - s_b) b_0 v_h
 ///
-/// so that damping and virtual mass go first, stiffness last, and in place of both comes the damping
-/// b_0 that the bare handle carries (damping_of_bare_handle()), on the part v_h of the velocity above
-/// 4 Hz, so that it does not hold back a hand that moves. Turns that are slower than those of 15 Hz
-/// may be a hand's own; they take no more than the damping away, as long as they stay below 2 N.
-/// When it has become quiet, the gains come back within half a second. Where the oscillation then
-/// comes back, g stays a little above that value, which is tried anew only slowly. So a heavy hand
-/// has all the gains, a light one what it carries. docs/algorithms/every-hand.md has the figures.
+/// so that damping and virtual mass go first, stiffness last, and in place of both comes the
+/// damping b_0 that the bare handle carries (damping_of_bare_handle()), on the part v_h of the
+/// velocity above 4 Hz, so that it does not hold back a hand that moves. Turns that are slower than
+/// those of 15 Hz may be a hand's own; they take no more than the damping away, as long as they
+/// stay below 2 N. When it has become quiet, the gains come back within half a second. Where the
+/// oscillation then comes back, g stays a little above that value, which is tried anew only slowly.
+/// So a heavy hand has all the gains, a light one what it carries. docs/algorithms/every-hand.md
+/// has the figures.
 ///
 /// Servo thread, all but the constructor: no allocation, lock, I/O or throw.
 class HandleGuard {
@@ -45,6 +47,8 @@ class HandleGuard {
   const Eigen::Vector3d& calming() const noexcept { return calming_; }
 
  private:
+  GainShares wanted_shares() const noexcept;
+  bool settled() const noexcept;
   void give_way(const SwingCounter::Train& train) noexcept;
   void recover(double dt) noexcept;
   void calm(const Eigen::Vector3d& velocity, double dt) noexcept;
@@ -52,11 +56,11 @@ class HandleGuard {
   double calm_damping_;  // b_0 [N·s/m]
   SwingCounter turns_;
   GainShares shares_;
-  double given_{0.0};       // g
-  double too_little_{0.0};  // g at which the oscillation came back
-  double quiet_for_{1.0};   // [s]
-  bool recovers_{false};    // has become quiet after it had given way
-  double remembered_for_{0.0};  // since all the gains are back [s]
+  double given_{0.0};                                 // g
+  double too_little_{0.0};                            // g at which the oscillation came back
+  double quiet_for_{1.0};                             // [s]
+  bool recovers_{false};                              // has become quiet after it had given way
+  double remembered_for_{0.0};                        // since all the gains are back [s]
   Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};     // velocity below 4 Hz [m/s]
   Eigen::Vector3d calming_{Eigen::Vector3d::Zero()};  // [N]
 };

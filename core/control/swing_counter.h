@@ -9,8 +9,8 @@ namespace haptrial::control {
 /// swing, with not too long between two turns, belongs to a train.
 ///
 /// A part of the force may be accounted for, because it alternates by itself (a vibration, a relief
-/// under a moving hand). It is taken out, and the least swing grows by the swing of that part, since
-/// what answers to it is at most about as large.
+/// under a moving hand). It is taken out, and the least swing grows by the swing of that part,
+/// since what answers to it is at most about as large.
 ///
 /// Servo thread: no allocation, lock, I/O or throw.
 class SwingCounter {
@@ -41,9 +41,9 @@ class SwingCounter {
     double lowest{0.0};
     double highest_at{0.0};  // [s]
     double lowest_at{0.0};
-    int direction{0};        // +1 rising, -1 falling; 0: not known yet
-    double turned_at{0.0};   // of the last turn [s]
-    double turned_from{0.0}; // the force there [N]
+    int direction{0};         // +1 rising, -1 falling; 0: not known yet
+    double turned_at{0.0};    // of the last turn [s]
+    double turned_from{0.0};  // the force there [N]
     Train train{};
   };
   double accounted_swing(const Eigen::Vector3d& accounted, double dt) noexcept;

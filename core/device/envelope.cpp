@@ -11,11 +11,11 @@
 namespace haptrial::device {
 namespace {
 
-constexpr double kGrowthInDoubt = 2.0;  // times the holding force, while readings are suspicious
-constexpr double kFallInDoubt = 20.0;   // while the position may be frozen [N/s]
-constexpr double kShortestFade = 0.05;  // [s]
-constexpr double kLongestAtLimit = 3.0;     // [s]
-constexpr double kLargestHolding = 2.0;     // [N]
+constexpr double kGrowthInDoubt = 2.0;   // times the holding force, while readings are suspicious
+constexpr double kFallInDoubt = 20.0;    // while the position may be frozen [N/s]
+constexpr double kShortestFade = 0.05;   // [s]
+constexpr double kLongestAtLimit = 3.0;  // [s]
+constexpr double kLargestHolding = 2.0;  // [N]
 constexpr double kFastestForce = 10'000.0;  // [N/s]
 
 }  // namespace
@@ -46,8 +46,8 @@ Envelope::Envelope(const EnvelopeLimits& limits)
   const bool positive = limits.max_force > 0.0 && limits.max_force_rate > 0.0 &&
                         limits.workspace_radius > 0.0 && limits.max_speed > 0.0 &&
                         limits.max_jump > 0.0 && limits.ramp_in >= 0.0 && limits.ramp_out >= 0.0 &&
-                        limits.change_time >= 0.0 &&
-                        limits.max_saturation > 0.0 && limits.holding_force > 0.0;
+                        limits.change_time >= 0.0 && limits.max_saturation > 0.0 &&
+                        limits.holding_force > 0.0;
   if (!positive) {
     throw std::invalid_argument("Envelope: every limit must be above 0, and no ramp below");
   }

@@ -71,8 +71,8 @@ class Envelope {
   /// The protocol goes over to other forces with the next limit(): what changes by that, but for
   /// the stimulus of its intent, fades over change_time.
   void go_over() noexcept { goes_over_ = true; }
-  /// The loop has not run for a while, so the force that it gave last is no longer due: it begins at
-  /// zero and ramps in. The next reading may be far from the last.
+  /// The loop has not run for a while, so the force that it gave last is no longer due: it begins
+  /// at zero and ramps in. The next reading may be far from the last.
   void resume() noexcept;
 
   const EnvelopeLimits& limits() const noexcept { return limits_; }
@@ -106,7 +106,7 @@ class Envelope {
   ForceIntent last_intent_;                                     // of last_force_
   ForceIntent before_last_intent_;                              // of before_last_force_
   Eigen::Vector3d watched_position_{Eigen::Vector3d::Zero()};   // at the last limit() [m]
-  Eigen::Vector3d followed_{Eigen::Vector3d::Zero()};  // before the ramp, without the stimulus [N]
+  Eigen::Vector3d followed_{Eigen::Vector3d::Zero()};   // before the ramp, without the stimulus [N]
   Eigen::Vector3d left_over_{Eigen::Vector3d::Zero()};  // of the force before go_over() [N]
   double since_change_{0.0};                            // [s]
   bool goes_over_{false};

@@ -15,9 +15,9 @@ constexpr int kTurnsNearLimit = 4;
 constexpr double kLastingNearLimit = 0.065;  // [s]
 
 // Anywhere: what no hand does by itself.
-constexpr double kSwing = 2.0;        // peak to peak [N]
-constexpr double kGap = 1.0 / 30.0;   // between the turns of 15 Hz [s]
-constexpr double kLasting = 0.2;      // [s]
+constexpr double kSwing = 2.0;       // peak to peak [N]
+constexpr double kGap = 1.0 / 30.0;  // between the turns of 15 Hz [s]
+constexpr double kLasting = 0.2;     // [s]
 
 }  // namespace
 

@@ -33,9 +33,9 @@ VirtualDevice::VirtualDevice(const VirtualDeviceParameters& parameters, HandlePh
       physics_(physics),
       period_(1.0 / rate) {
   const int n = readings_;
-  if (parameters.velocity_window < 2 || parameters.velocity_window > 64 || n > kMaxWindow || !(rate > 0.0) || !(parameters.max_force > 0.0) ||
-      !(parameters.position_quantum >= 0.0) || parameters.force_delay < 1 ||
-      parameters.force_delay > kMaxDelay) {
+  if (parameters.velocity_window < 2 || parameters.velocity_window > 64 || n > kMaxWindow ||
+      !(rate > 0.0) || !(parameters.max_force > 0.0) || !(parameters.position_quantum >= 0.0) ||
+      parameters.force_delay < 1 || parameters.force_delay > kMaxDelay) {
     throw std::invalid_argument(
         "VirtualDevice: rate and max_force must be above 0, position_quantum at least 0, "
         "velocity_window from 2 to 64 ms and at most 1024 readings, and force_delay from 1 to 8");

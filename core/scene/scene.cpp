@@ -236,8 +236,7 @@ void Scene::lay_reliefs(const Vector3d& p) noexcept {
   }
 }
 
-void Scene::feel(Part& part, const PointState& hand,
-                 const control::GainShares& shares) noexcept {
+void Scene::feel(Part& part, const PointState& hand, const control::GainShares& shares) noexcept {
   SurfaceTouch touch;
   Felt felt{hand, part.time, nullptr, shares};
   if (part.on != kFreeSpace) {

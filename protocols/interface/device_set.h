@@ -15,7 +15,8 @@
 namespace haptrial::protocols {
 
 /// The devices of a session, each with its reading, the guard that keeps its handle calm, and its
-/// envelope. One for whom something is wrong stops all of them in the same tick. Servo thread, unless a function says otherwise.
+/// envelope. One for whom something is wrong stops all of them in the same tick. Servo thread,
+/// unless a function says otherwise.
 class DeviceSet {
  public:
   /// One device; it outlives the set.

@@ -43,8 +43,8 @@ struct PassOutput : Drive {  // of the first device
   double target_force{0.0};   // [N]
   double applied_force{0.0};  // by the participant, downward > 0 [N]
   record::Stage stage{record::Stage::kIdle};
-  bool saturated{false};      // the device's force limit was reached
-  markers::Onsets onsets;     // what begins on this tick, if the pass names its onsets
+  bool saturated{false};   // the device's force limit was reached
+  markers::Onsets onsets;  // what begins on this tick, if the pass names its onsets
 };
 
 enum class PassState : std::uint8_t { kRunning, kCompleted, kAborted };

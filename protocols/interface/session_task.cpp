@@ -6,7 +6,7 @@
 namespace haptrial::protocols {
 namespace {
 
-constexpr double kNoticed = 0.9;                      // share of the damping
+constexpr double kNoticed = 0.9;                     // share of the damping
 constexpr std::int64_t kLongestGap_ns = 50'000'000;  // between ticks
 
 bool begins_stage(const PassOutput& out) noexcept {

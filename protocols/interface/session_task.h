@@ -41,10 +41,10 @@ struct Origin {
 ///     devices -> envelopes -> pass -> envelopes -> devices, observers, logs
 ///
 /// The same on a real and on a simulated clock. Where a pass goes over to another stage, the force
-/// changes by degrees; after a gap of the loop (a suspended process) it ramps in anew. After a pass the force is let go over the
-/// envelope's ramp_out, and the next one begins when it has gone and the device is ready; between
-/// passes it is zero, and ticks are recorded all the same. The servo thread calls tick(); the
-/// session's thread calls the rest.
+/// changes by degrees; after a gap of the loop (a suspended process) it ramps in anew. After a pass
+/// the force is let go over the envelope's ramp_out, and the next one begins when it has gone and
+/// the device is ready; between passes it is zero, and ticks are recorded all the same. The servo
+/// thread calls tick(); the session's thread calls the rest.
 class SessionTask final : public realtime::ServoTask {
  public:
   using Log = realtime::BlockLog<record::Sample>;
@@ -142,8 +142,8 @@ class SessionTask final : public realtime::ServoTask {
   bool begins_{false};                              // the pass has had no tick yet
   record::Stage told_stage_{record::Stage::kIdle};  // of the pass
   record::Stage felt_stage_{record::Stage::kIdle};
-  std::int64_t last_tick_ns_{-1};                   // -1: there was none
-  PassResult result_;                               // published by busy_
+  std::int64_t last_tick_ns_{-1};  // -1: there was none
+  PassResult result_;              // published by busy_
 };
 
 }  // namespace haptrial::protocols

@@ -300,24 +300,6 @@ TEST(ArchitectureTest, NoFilePairIncludesItselfByWayOfOthers) {
   }
 }
 
-TEST(ArchitectureTest, FoldersHoldOneIdea) {
-  constexpr std::size_t kMostPairs = 14;
-  for (const char* layer : kLayers) {
-    std::set<std::string> ideas;
-    for (const auto& [pair, includes] : pairs_below(kRoot, layer)) {
-      ideas.insert(idea_of(pair));
-    }
-    std::map<std::string, std::size_t> counts;
-    for (const std::string& idea : ideas) {
-      ++counts[fs::path(idea).parent_path().generic_string()];
-    }
-    EXPECT_GT(counts.size(), 3u);
-    for (const auto& [name, count] : counts) {
-      EXPECT_LE(count, kMostPairs) << name;
-    }
-  }
-}
-
 TEST(ArchitectureTest, HeavyLibrariesStayOutOfHeaders) {
   const std::regex heavy(
       "(toml\\+\\+/|toml\\.hpp|nlohmann/|gsl/|hdf5|H5|GL/|GLFW/|X11/|ft2build|freetype/|pango/"

@@ -30,9 +30,9 @@ struct Felt {
 
 /// What a protocol can read of a field after a tick, to end a stage or to know what was felt.
 struct FieldState {
-  Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // on the hand, limited and faded [N]
-  /// The part of `force` whose course in time is itself the stimulus: a vibration, a tap, a pulse, a
-  /// relief under the hand. Laws set it; the scene limits and fades it with the force. [N]
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the hand, limited and faded [N]
+  /// The part of `force` whose course in time is itself the stimulus: a vibration, a tap, a pulse,
+  /// a relief under the hand. Laws set it; the scene limits and fades it with the force. [N]
   Eigen::Vector3d stimulus{Eigen::Vector3d::Zero()};
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // as the field filtered it [m/s]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};   // of a surface, towards the free side

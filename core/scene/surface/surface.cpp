@@ -26,9 +26,8 @@ SurfaceDistance Surface::free_side(const Vector3d& p) const noexcept {
 
 /// Without the relief, which is what is felt of it beyond.
 Vector3d Surface::flat_force(const SurfaceDistance& here, const Felt& felt) const noexcept {
-  const double wanted =
-      -felt.shares.stiffness * gains_.stiffness * here.distance -
-      felt.shares.damping * gains_.damping * here.normal.dot(felt.hand.velocity);
+  const double wanted = -felt.shares.stiffness * gains_.stiffness * here.distance -
+                        felt.shares.damping * gains_.damping * here.normal.dot(felt.hand.velocity);
   return here.distance < 0.0 ? Vector3d(std::clamp(wanted, 0.0, limit_) * here.normal)
                              : Vector3d(Vector3d::Zero());
 }

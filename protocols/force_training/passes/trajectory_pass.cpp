@@ -221,7 +221,8 @@ void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading)
   Eigen::Vector3d played = Eigen::Vector3d::Zero();
   if (run_lead() == RunLead::kPlayed) {
     const control::TutoringGains& gains = parameters_.tutoring.gains;
-    const Eigen::Vector3d coupling = share * control::coupling_force(gains, model.tool, tool, reading.shares);
+    const Eigen::Vector3d coupling =
+        share * control::coupling_force(gains, model.tool, tool, reading.shares);
     played = share * gains.force_share * model.force + coupling;
     Eigen::Vector3d own = out.force;
     own.y() *= 1.0 - share;
@@ -275,8 +276,7 @@ PassOutput TrajectoryPass::output(const device::DeviceReading& reading,
 /// The springs follow their target; what pushes the hand up is meant to.
 device::ForceIntent TrajectoryPass::intent(const PointState& target,
                                            const device::DeviceReading& reading,
-                                           const Eigen::Vector3d& force,
-                                           bool pushes) noexcept {
+                                           const Eigen::Vector3d& force, bool pushes) noexcept {
   const Eigen::Vector3d stretch = target.position - reading.tool.position;
   const double limit = parameters_.force_limit;
   device::ForceIntent intent;

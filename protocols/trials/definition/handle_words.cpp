@@ -152,9 +152,9 @@ void HandleReport::judge(Load& load) const {
   const control::PdGains gains{load.stiffness, load.damping};
   const auto mass_carried_by = [&](double hand) {
     return load.mass == 0.0 ||
-           load.mass < scene::largest_stable_mass(load.cutoff, {loop.handle_mass + hand, loop.rate,
-                                                                loop.velocity_window,
-                                                                loop.force_delay});
+           load.mass <
+               scene::largest_stable_mass(load.cutoff, {loop.handle_mass + hand, loop.rate,
+                                                        loop.velocity_window, loop.force_delay});
   };
   load.lightest = control::lightest_calm_hand(gains, loop);
   if (load.lightest > control::kHeaviestHand || !mass_carried_by(control::kHeaviestHand)) {
@@ -231,7 +231,8 @@ HandleWords HandleReport::words() const {
                            ? fmt::format(" of the damping {:.1f} N·s/m", bare.damping)
                            : "";
     if (load.stiffness > bare.stiffness) {
-      less += fmt::format("{} of the stiffness {:.0f} N/m", less.empty() ? "" : ",", bare.stiffness);
+      less +=
+          fmt::format("{} of the stiffness {:.0f} N/m", less.empty() ? "" : ",", bare.stiffness);
     }
     if (load.mass > 0.0) {
       less += fmt::format("{} of the virtual mass what it carries", less.empty() ? "" : ",");

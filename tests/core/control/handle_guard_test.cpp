@@ -34,8 +34,8 @@ Hand like_the_shipped(double mass) { return {mass, 15.0 * mass / 0.8, 250.0 * ma
 struct Law {
   const char* name;
   PdGains gains;
-  double mass{0.0};     // virtual [kg]
-  double limit{12.0};   // of the force, as a field has one [N]
+  double mass{0.0};       // virtual [kg]
+  double limit{12.0};     // of the force, as a field has one [N]
   bool one_sided{false};  // a wall at 0
 };
 
@@ -242,8 +242,7 @@ TEST(HandleGuardTest, VelocitiesThatAreNoNumbersDoNotSpoilIt) {
   HandleGuard guard({});
   for (const double v :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    const GainShares& shares =
-        guard.watch({v, 0.0, 0.0}, Vector3d::Zero(), Vector3d::Zero(), 1e-3);
+    const GainShares& shares = guard.watch({v, 0.0, 0.0}, Vector3d::Zero(), Vector3d::Zero(), 1e-3);
     EXPECT_EQ(shares.damping, 1.0);
     EXPECT_TRUE(guard.calming().allFinite());
   }

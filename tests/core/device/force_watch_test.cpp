@@ -24,7 +24,8 @@ double found_after(double rate, Fault expected, double seconds, Course course,
   ForceWatch watch(12.0, 3.0);
   const double dt = 1.0 / rate;
   for (int i = 0; i < static_cast<int>(seconds * rate); ++i) {
-    const Fault fault = watch.look(course(i * dt), stimulus ? stimulus(i * dt) : Vector3d::Zero(), dt);
+    const Fault fault =
+        watch.look(course(i * dt), stimulus ? stimulus(i * dt) : Vector3d::Zero(), dt);
     if (fault != Fault::kNone) {
       EXPECT_EQ(fault, expected);
       return i * dt;
@@ -59,11 +60,11 @@ TEST(ForceWatchTest, WhatAHandAndAPatternDoIsNoOscillation) {
   const auto vibration = [](double t) {
     return Vector3d(0.0, 1.5 * std::sin(2.0 * kPi * 40.0 * t), 0.0);
   };
-  EXPECT_EQ(found_after(
-                1000.0, Fault::kNone, 10.0,
-                [&](double t) { return Vector3d(Vector3d(0.0, 6.0, 0.0) + vibration(t)); },
-                vibration),
-            -1.0)
+  EXPECT_EQ(
+      found_after(
+          1000.0, Fault::kNone, 10.0,
+          [&](double t) { return Vector3d(Vector3d(0.0, 6.0, 0.0) + vibration(t)); }, vibration),
+      -1.0)
       << "a vibration of 3 N";
   EXPECT_EQ(found_after(
                 1000.0, Fault::kNone, 10.0,
@@ -107,8 +108,8 @@ TEST(EnergyWatchTest, ASpringThatGivesBackWhatItTookIsNoFault) {
   for (int i = 1; i < 20'000; ++i) {
     const double x = 0.02 * std::sin(2.0 * kPi * 2.0 * 1e-3 * i);
     const Vector3d force(-900.0 * 0.5 * (x + before), 0.0, 0.0);
-    ASSERT_FALSE(watch.look(force, Vector3d(x - before, 0.0, 0.0),
-                            {.stored = 450.0 * x * x}, 1e-3));
+    ASSERT_FALSE(
+        watch.look(force, Vector3d(x - before, 0.0, 0.0), {.stored = 450.0 * x * x}, 1e-3));
     before = x;
   }
   EXPECT_LT(watch.generated(), 0.01);
@@ -119,7 +120,8 @@ TEST(EnergyWatchTest, WhatIsMeantToWorkOnTheHandIsNoFault) {
   for (int i = 0; i < 2000; ++i) {  // pushed up with 10 N, led along with 5 N: 1 W
     const Vector3d force(5.0, 10.0, 0.0);
     const Vector3d moved(1e-4, 5e-5, 0.0);
-    ASSERT_FALSE(watch.look(force, moved, {.drive = {0.1, 0.0, 0.0}, .push = {0.0, 10.0, 0.0}}, 1e-3));
+    ASSERT_FALSE(
+        watch.look(force, moved, {.drive = {0.1, 0.0, 0.0}, .push = {0.0, 10.0, 0.0}}, 1e-3));
   }
 }
 

@@ -45,8 +45,8 @@ TEST(ReadingWatchTest, AReadingThatStaysWhileItsVelocityDoesIsFoundWithin50Milli
   EXPECT_GE(ticks, 20);
 }
 
-/// 900 N/m that are stretched at 16 mm/s are the slowest: there it is in doubt after 60 ms, when the
-/// force has grown by 1 N. From then on the force falls, as the envelope lets it.
+/// 900 N/m that are stretched at 16 mm/s are the slowest: there it is in doubt after 60 ms, when
+/// the force has grown by 1 N. From then on the force falls, as the envelope lets it.
 TEST(ReadingWatchTest, AFrozenReadingIsInDoubtWithin50MillisecondsAndAFaultWhenTheForceHasFallen) {
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
     for (const double slope : {14.4, 25.0, 100.0, 1000.0}) {  // of the force [N/s]

@@ -10,6 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/record/rows/common_tables.h"
+#include "core/record/rows/trial_facts.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/write/session_writer.h"
@@ -62,11 +64,17 @@ class BoneRestoreTest : public testing::Test {
   }
   static record::SessionReader whole() { return record::SessionReader(*shared_ / "whole.h5"); }
 
+  /// That a session of drilling has.
+  static record::TableList tables() {
+    return record::with_tables(record::drilling_tables(),
+                               {&record::table_of<record::DampingRow>()});
+  }
+
   /// FILE.partial as a crash leaves it: without a row for the pass that was under way.
   /// @param spoil  changes the voxels that were emptied
   void crash(const std::function<void(std::vector<record::RemovalRow>&)>& spoil = {}) const {
     const record::SessionReader reader = whole();
-    record::SessionWriter writer(file_, reader.info(), record::drilling_tables(),
+    record::SessionWriter writer(file_, reader.info(), tables(),
                                  record::rows_of(record::recorded_bones(reader)));
     writer.begin_pass(reader.begun().at(0));
     auto removals = rows_before<record::RemovalRow>(reader, kCrash);
@@ -199,7 +207,7 @@ TEST_F(BoneRestoreTest, ASecondCrashIsOnTheSameBone) {
   constexpr std::uint64_t kSecond = kCrash + 2000;
   {
     const record::SessionReader reader(file_);
-    record::SessionWriter writer(again, reader.info(), record::drilling_tables(),
+    record::SessionWriter writer(again, reader.info(), tables(),
                                  record::rows_of(record::recorded_bones(reader)));
     for (const record::BegunRow& begun : reader.begun()) {
       writer.begin_pass(begun);

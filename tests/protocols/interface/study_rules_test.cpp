@@ -1,3 +1,4 @@
+#include "protocols/definition/handle_loop.h"
 #include "protocols/interface/study_rules.h"
 
 #include <gmock/gmock.h>
