@@ -1,5 +1,5 @@
-// A handle that is let go in the middle of a pass, with and without the damping being governed, and
-// what governing and watching cost on a tick. bench_every_hand [FILE]: the forces over time go to
+// A handle that is let go in the middle of a pass, with and without the guard, and what guarding
+// and watching cost on a tick. bench_every_hand [FILE]: the forces over time go to
 // FILE, one row a tick: milliseconds since the handle was let go, force [N] without, with.
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/control/handle_guard.h"
 #include "core/device/envelope.h"
 #include "protocols/force_training/passes/recall.h"
 #include "tests/support/pass_run.h"
@@ -17,12 +18,28 @@ namespace {
 
 using namespace haptrial;
 
+/// A pass that uses all of its gains, whatever the handle carries.
+class Unguarded final : public protocols::Pass {
+ public:
+  explicit Unguarded(protocols::Pass& inner) : inner_(inner) {}
+  void begin(std::uint64_t sequence) noexcept override { inner_.begin(sequence); }
+  protocols::PassOutput tick(const protocols::Readings& readings, double dt) noexcept override {
+    device::DeviceReading whole = readings[0];
+    whole.shares = {};
+    return inner_.tick(whole, dt);
+  }
+  protocols::PassState state() const noexcept override { return inner_.state(); }
+
+ private:
+  protocols::Pass& inner_;
+};
+
 /// Along y, from 100 ms before the handle is let go.
-std::vector<double> let_go(const stimulus::Stimulus& stimulus, bool governed) {
+std::vector<double> let_go(const stimulus::Stimulus& stimulus, bool guarded) {
   const test::Loop loop{1000.0, 1};
-  protocols::GuidanceParameters guidance = test::published(loop);
-  guidance.loop.handle_mass = governed ? 0.22 : 1000.0;  // so heavy that it carries everything
-  protocols::RecallTest pass(stimulus, guidance, 1);
+  protocols::RecallTest recall(stimulus, protocols::GuidanceParameters{}, 1);
+  Unguarded unguarded(recall);
+  protocols::Pass& pass = guarded ? static_cast<protocols::Pass&>(recall) : unguarded;
   test::PassRun run(pass, loop, 0.8);
   run.advance_to(record::Stage::kRun);
   run.hand().press = 2.0;
@@ -58,11 +75,14 @@ double cost(Call call) {
 }
 
 void print_costs(const stimulus::Stimulus& stimulus) {
-  control::DampingGovernor governor(300.0, {});
+  control::HandleGuard guard({});
   double sum = 0.0;
-  fmt::print("governor        {:6.1f} ns\n", cost([&](int i) {
-               sum += governor.share({0.0, 1e-3 * (i % 7), 0.0});
-             }));
+  fmt::print(
+      "guard           {:6.1f} ns\n", cost([&](int i) {
+        const Eigen::Vector3d force(0.0, 1e-2 * (i % 50), 0.0);
+        sum +=
+            guard.watch({0.0, 1e-3 * (i % 7), 0.0}, force, Eigen::Vector3d::Zero(), 1e-3).damping;
+      }));
   device::Envelope envelope{device::EnvelopeLimits{}};
   device::DeviceReading reading;
   fmt::print("envelope        {:6.1f} ns, watching included\n", cost([&](int i) {
@@ -71,7 +91,7 @@ void print_costs(const stimulus::Stimulus& stimulus) {
                sum += envelope.limit({0.0, 2.0, 0.0}, 1e-3).y();
              }));
   protocols::RecallTest pass(stimulus, {}, 1);
-  fmt::print("pass            {:6.1f} ns, both governors included\n", cost([&](int i) {
+  fmt::print("pass            {:6.1f} ns\n", cost([&](int i) {
                reading.tool.position.x() = 1e-6 * (i % 100);
                sum += pass.tick(reading, 1e-9).force.y();
              }));

@@ -235,6 +235,17 @@ TEST(CalmHandleTest, TheForceStudyBuzzesUnderNoHand) {
   }
 }
 
+TEST(CalmHandleTest, NothingStepsWhereALedRunEnds) {
+  protocols::ForceDefinition d = protocols::load_force_definition(
+      test::shipped_definition().parent_path() / "tutoring_study.toml");
+  for (const double mass : {0.8, 2.0}) {
+    give_hand(d, mass);
+    const Outcome outcome = session_of(protocols::force_training(), d, 4);
+    EXPECT_LE(outcome.step, 0.8) << mass << " kg; an encoder's step makes 0.5 N";
+    EXPECT_EQ(outcome.aborted, 0);
+  }
+}
+
 /// The time over which velocity is estimated does not follow the rate: an encoder's step is no
 /// force of 1.5 N.
 TEST(CalmHandleTest, At4000HertzThePlaneDoesNotChatter) {

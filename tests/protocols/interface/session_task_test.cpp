@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <thread>
@@ -453,6 +454,53 @@ TEST_F(SessionTaskTest, ObserversSeeWhatTheEnvelopeLeavesOfTheForce) {
     EXPECT_EQ(witness.forces.back(), device_.written.back());
   }
   EXPECT_EQ(witness.forces, witness_.forces) << "all observers see the same";
+}
+
+/// A process that was stopped for a second.
+TEST_F(RampedTaskTest, AfterAGapTheForceRampsInAgain) {
+  ConstantPass pass({0, 5, 0}, 200);
+  task_.start(pass, 1);
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const std::int64_t suspended = i < 30 ? 0 : 1'000'000'000;
+    task_.tick({i, static_cast<std::int64_t>(i) * 1'000'000 + suspended, kDt});
+    const double share = std::min(1.0, 0.1 * static_cast<double>(i < 30 ? i + 1 : i - 29));
+    EXPECT_NEAR(device_.written.back().y(), 5.0 * share, 1e-9) << i;
+  }
+}
+
+/// A pass that turns its force about with its stage.
+class TwoStagePass final : public Pass {
+ public:
+  PassOutput tick(const Readings&, double) noexcept override {
+    PassOutput out;
+    const bool first = ++done_ <= 300;
+    out.stage = first ? record::Stage::kRun : record::Stage::kReturn;
+    out.force.y() = first ? 5.0 : -3.0;
+    return out;
+  }
+  PassState state() const noexcept override {
+    return done_ < 600 ? PassState::kRunning : PassState::kCompleted;
+  }
+
+ private:
+  int done_{0};
+};
+
+TEST_F(SessionTaskTest, WhatChangesWithAStageFades) {
+  TwoStagePass pass;
+  device_.on_read = [](std::size_t tick, DeviceReading& reading) {
+    reading.tool.position.x() = 1e-6 * static_cast<double>(tick);
+    return true;
+  };
+  task_.start(pass, 1);
+  ticks(300);
+  EXPECT_EQ(device_.written.back(), Vector3d(0, 5, 0));
+  for (int i = 0; i < 60; ++i) {
+    const Vector3d before = device_.written.back();
+    tick();
+    ASSERT_LE((device_.written.back() - before).norm(), 0.25) << i;
+  }
+  EXPECT_EQ(device_.written.back(), Vector3d(0, -3, 0));
 }
 
 TEST_F(SessionTaskTest, ATickDoesNotAllocate) {
