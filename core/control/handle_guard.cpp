@@ -13,8 +13,10 @@ constexpr double kSwing = 1.5;            // peak to peak [N]
 constexpr double kLargeSwing = 2.0;       // [N]
 constexpr double kLongestGap = 0.062;     // between turns; those of a slower hand are its own [s]
 constexpr double kOfAHand = 0.033;        // turns of a hand by itself are longer apart [s]
+constexpr int kFastTurns = 2;             // that make an oscillation, if large and no hand's own
 constexpr int kTurns = 3;                 // that make an oscillation
 constexpr double kStep = 1.2;             // of g, for each turn and each N of its swing
+constexpr int kTurnsWithoutDamping = 2;   // that do not die away, before stiffness gives way
 constexpr double kStiffnessStep = 2.5;    // of g above kStiffnessFrom, for each turn
 constexpr double kDying = 0.96;           // of the swing before
 constexpr double kForDying = 1.5;         // g at most, for what dies away by itself
@@ -44,7 +46,8 @@ const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eige
                                      const Eigen::Vector3d& accounted, double dt) noexcept {
   const SwingCounter::Train train = turns_.look(force, accounted, dt);
   quiet_for_ += dt;
-  if (train.turned && train.turns >= kTurns) {
+  const bool fast = train.gap < kOfAHand && train.swing >= kLargeSwing;
+  if (train.turned && train.turns >= (fast ? kFastTurns : kTurns)) {
     give_way(train);
     quiet_for_ = 0.0;
   } else if (quiet_for_ > kQuiet) {
@@ -75,19 +78,25 @@ bool HandleGuard::settled() const noexcept {
 /// slowly and weakly, and then only damping goes.
 void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
   if (!settled()) {
+    still_ = 0;
     return;  // what was given up last has not come to act
   }
   const bool dies = train.swing < kDying * train.swing_before;
   const bool by_a_hand = train.gap > kOfAHand && train.swing < kLargeSwing;
+  still_ = dies ? 0 : still_ + 1;
   if (recovers_ && !dies) {
     too_little_ = std::min(kMostGiven, std::max(too_little_, given_ + kMargin));
     recovers_ = false;
   }
-  const double most = dies ? kForDying : by_a_hand ? kStiffnessFrom : kMostGiven;
-  const double step = given_ < kStiffnessFrom ? kStep * train.swing : kStiffnessStep;
-  const double next =
-      given_ < kStiffnessFrom ? std::min(kStiffnessFrom, given_ + step) : given_ + step;
-  given_ = std::max(given_, std::min(most, next));
+  if (given_ >= kStiffnessFrom) {
+    if (still_ >= kTurnsWithoutDamping && !by_a_hand) {
+      given_ = std::min(kMostGiven, given_ + kStiffnessStep);
+      still_ = 0;
+    }
+    return;
+  }
+  const double most = dies ? kForDying : kStiffnessFrom;
+  given_ = std::max(given_, std::min(most, given_ + kStep * train.swing));
 }
 
 void HandleGuard::recover(double dt) noexcept {

@@ -13,7 +13,8 @@ namespace haptrial::control {
 /// A force that follows late or held readings feeds energy into a light hand instead of taking it
 /// out: the handle oscillates at 8 Hz and more. The guard counts the turns of the force that the
 /// program commands. From the third turn of 1.5 N or more on (the noise of an encoder of 10 um in
-/// the source's plane is 1.2 N) it gives way by g, further with each turn:
+/// the source's plane is 1.2 N), or from the second of 2 N or more that come faster than those of
+/// 15 Hz, it gives way by g, further with each turn:
 ///
 ///     share of damping    s_b = exp(-g)
 ///     share of stiffness  s_k = exp(-(g - 3)) above g = 3, else 1
@@ -58,6 +59,7 @@ class HandleGuard {
   double given_{0.0};                                 // g
   double too_little_{0.0};                            // g at which the oscillation came back
   double quiet_for_{1.0};                             // [s]
+  int still_{0};                                      // turns that did not die away
   bool recovers_{false};                              // has become quiet after it had given way
   double remembered_for_{0.0};                        // since all the gains are back [s]
   Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};     // velocity below 4 Hz [m/s]

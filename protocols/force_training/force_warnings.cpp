@@ -22,7 +22,7 @@ void warn_of_loop(const ForceDefinition& d, Warnings& warnings) {
     if (is_dangerous(margin)) {
       warnings.push_back(fmt::format(
           "guidance.{}.stiffness is {} N/m; a released handle oscillates above {:.0f} N/m at "
-          "{} Hz, and the envelope then ends the pass",
+          "{} Hz, so that stiffness is reduced for it",
           name, gains.stiffness, margin.bare_stiffness, d.rate));
     } else if (margin.lightest > d.hand.hand_mass) {
       warnings.push_back(fmt::format(

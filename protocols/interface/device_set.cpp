@@ -11,7 +11,7 @@ namespace haptrial::protocols {
 
 using device::Fault;
 
-DeviceSet::DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& loop) {
+DeviceSet::DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& loop) : loop_(loop) {
   if (arms.empty() || arms.size() > kMostDevices) {
     throw std::invalid_argument(
         fmt::format("DeviceSet: {} devices; allowed: 1 to {}", arms.size(), kMostDevices));
@@ -115,8 +115,9 @@ void DeviceSet::trip(Fault fault) noexcept {
 }
 
 void DeviceSet::reset() noexcept {
-  for (device::Envelope& envelope : envelopes_) {
-    envelope.reset();
+  for (std::size_t arm = 0; arm < envelopes_.size(); ++arm) {
+    envelopes_[arm].reset();
+    guards_[arm] = control::HandleGuard(loop_);
   }
 }
 

@@ -67,6 +67,7 @@ class DeviceSet {
   void stop_together() noexcept;
   void note_trouble() noexcept;
 
+  control::HandleLoop loop_;
   std::vector<device::Device*> devices_;
   std::vector<device::Envelope> envelopes_;
   std::vector<control::HandleGuard> guards_;

@@ -21,7 +21,7 @@ std::vector<Loop> loops() {
           {2000.0, 3}, {4000.0, 1}, {4000.0, 3}};
 }
 
-constexpr double kBurst = 0.030;  // [s]
+constexpr double kBurst = 0.045;  // [s]
 
 TEST(EveryHandTest, APassIsQuietWithEveryHandOnEveryLoop) {
   const stimulus::Stimulus stimulus = stimulus::make_stimulus({}, {}, 8);

@@ -63,9 +63,10 @@ class PassRun {
     parameters.velocity_window = 8;
     device_ = std::make_unique<device::VirtualDevice>(parameters, hand_, loop.rate);
     task_ = std::make_unique<protocols::SessionTask>(
-        protocols::SessionTask::Parts{.devices = {{device_.get(), device::EnvelopeLimits{}}},
-                                      .loop = {0.22, loop.rate, 8, loop.delay},
-                                      .log = log_},
+        protocols::SessionTask::Parts{
+            .devices = {{device_.get(), device::EnvelopeLimits{}}},
+            .loop = {0.22, loop.rate, device::readings_in_window(8, loop.rate), loop.delay},
+            .log = log_},
         protocols::SessionTask::Leave::kNever);
     task_->start(pass, 0);
   }

@@ -15,7 +15,7 @@ envelope.max_speed | | of the hand; above it the force goes off
 envelope.max_jump | | greatest change of position between two ticks
 envelope.ramp_in | | time over which the force of a pass grows
 envelope.ramp_out | | time over which it falls after a normal end
-envelope.change_time | 0.05 | time over which the force goes over to that of another stage, question or object
+envelope.change_time | | time over which the force goes over to that of another stage, question or object
 envelope.max_saturation | 3 | longest time without a break at max_force
 envelope.holding_force | from the friction of [hand] | change of force that friction and a still hand may hide
 device.max_force | | at which the virtual device's motors saturate
