@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kGrowthInDoubt = 2.0;   // times the holding force, while readings are suspicious
 constexpr double kFallInDoubt = 20.0;    // while the position may be frozen [N/s]
+constexpr double kNotFelt = 0.2;         // change of force in a tick [N]
 constexpr double kShortestFade = 0.05;   // [s]
 constexpr double kLongestAtLimit = 3.0;  // [s]
 constexpr double kLargestHolding = 2.0;  // [N]
@@ -169,6 +170,10 @@ Eigen::Vector3d Envelope::blend(const Eigen::Vector3d& wanted, double dt) noexce
   if (std::exchange(goes_over_, false)) {
     left_over_ = followed_ - wanted;
     since_change_ = 0.0;
+    if (!longer(left_over_, kNotFelt)) {
+      left_over_
+          .setZero();  // what the hand's own movement changes from tick to tick stays as it is
+    }
   }
   since_change_ += dt;
   const double u = since_change_ / limits_.change_time;

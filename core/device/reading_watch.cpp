@@ -60,7 +60,8 @@ bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) n
     return force.norm() <= std::max(0.0, doubted_ - kProof);
   }
   const Eigen::Vector3d change = force - held_;
-  if (!longer(change, holding_force_)) {
+  // A force that friction alone could hold can take nothing from a hand, either.
+  if (!longer(change, holding_force_) || !longer(force, holding_force_)) {
     free_speed_.setZero();
     free_way_.setZero();
     return false;

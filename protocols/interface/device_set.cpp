@@ -115,9 +115,8 @@ void DeviceSet::trip(Fault fault) noexcept {
 }
 
 void DeviceSet::reset() noexcept {
-  for (std::size_t arm = 0; arm < envelopes_.size(); ++arm) {
-    envelopes_[arm].reset();
-    guards_[arm] = control::HandleGuard(loop_);
+  for (device::Envelope& envelope : envelopes_) {
+    envelope.reset();
   }
 }
 
@@ -127,9 +126,12 @@ void DeviceSet::release() noexcept {
   }
 }
 
+/// Guards begin anew, so that a resumed session goes on as it would have.
 void DeviceSet::engage() noexcept {
-  for (device::Envelope& envelope : envelopes_) {
-    envelope.engage();
+  for (std::size_t arm = 0; arm < envelopes_.size(); ++arm) {
+    envelopes_[arm].engage();
+    guards_[arm] = control::HandleGuard(loop_);
+    stimuli_[arm].setZero();
   }
 }
 

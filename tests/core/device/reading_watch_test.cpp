@@ -76,6 +76,16 @@ TEST(ReadingWatchTest, AFrozenReadingIsInDoubtWithin50MillisecondsAndAFaultWhenT
   }
 }
 
+/// A hand that comes to rest where nothing pushes it, as in a detent.
+TEST(ReadingWatchTest, AHandThatStopsWhereTheForceIsGoneIsNoDoubt) {
+  ReadingWatch watch(0.5);
+  for (int i = 0; i < 2000; ++i) {
+    const double x = std::max(0.0, 1e-4 - 1e-6 * i);
+    watch.look({x, 0.0, 0.0}, Vector3d::Zero(), {-2e4 * x, 0.0, 0.0}, 1e-3);
+    ASSERT_FALSE(watch.in_doubt()) << i;
+  }
+}
+
 /// The change is 3 N and alternates: no handle moves by more than its encoder resolves.
 TEST(ReadingWatchTest, AVibrationThatMovesNothingIsNoDoubt) {
   for (const double hertz : {100.0, 250.0}) {
