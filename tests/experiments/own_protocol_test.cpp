@@ -171,7 +171,7 @@ class KilledTest : public testing::Test {
     };
     put("trials", "14");
     put("interval", "0.2");
-    put("ramp_out", "0.02");
+    put("ramp_out", "0.05");
     test::write_text(folder_ / "short.toml", text);
     static_cast<void>(experiment());  // the study is known
     short_ = load_experiment(folder_ / "short.toml");
