@@ -74,8 +74,8 @@ bool HandleGuard::settled() const noexcept {
          shares_.stiffness < wanted.stiffness + kNearly;
 }
 
-/// What dies away by itself, as after a knock, is only damped; a hand may shake by itself, if
-/// slowly and weakly, and then only damping goes.
+/// A swing that dies away by itself, as after a knock, is only damped. A hand may shake by itself,
+/// if slowly and weakly; then only damping goes.
 void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
   if (!settled()) {
     still_ = 0;

@@ -43,7 +43,7 @@ class HandleGuard {
   const GainShares& watch(const Eigen::Vector3d& velocity, const Eigen::Vector3d& force,
                           const Eigen::Vector3d& accounted, double dt) noexcept;
 
-  /// Of the calming damper, on this tick [N].
+  /// The force of the calming damper on this tick [N].
   const Eigen::Vector3d& calming() const noexcept { return calming_; }
 
  private:

@@ -21,7 +21,7 @@ struct LoopMargin {
 /// Heaviest hand that is looked at [kg].
 constexpr double kHeaviestHand = 2.0;
 
-/// What the bare handle gets at least of a spring and a damper.
+/// The least that the bare handle gets of a spring and a damper.
 struct BareHandle {
   double damping{0.0};    // [N·s/m]
   double stiffness{0.0};  // that it carries with that damping [N/m]

@@ -165,7 +165,7 @@ void Envelope::watch_force(const Eigen::Vector3d& force, double dt,
   }
 }
 
-/// What was felt before the protocol went over to other forces, less and less of it.
+/// The rest of the force from before the protocol went over to others; it fades.
 Eigen::Vector3d Envelope::blend(const Eigen::Vector3d& wanted, double dt) noexcept {
   if (std::exchange(goes_over_, false)) {
     left_over_ = followed_ - wanted;

@@ -219,7 +219,7 @@ PassOutput SessionTask::nothing() const noexcept {
   return out;
 }
 
-/// Of the first device.
+/// Looks at the first device alone.
 void SessionTask::note_gains(const PassOutput& out) noexcept {
   const control::GainShares& shares = devices_.readings()[0].shares;
   if (out.stage == record::Stage::kRun && shares.damping < kNoticed) {

@@ -15,7 +15,7 @@ struct HandleWords {
   std::vector<std::string> warnings;  // what the hand of [hand] does not carry
 };
 
-/// Of one set of values: adds what is not said yet of a stage, or is worse than what was said.
+/// Gathers these words over sets of values: of each stage it keeps the sum that asks for most.
 /// @throws InputError for gains that no hand carries
 class HandleReport {
  public:
