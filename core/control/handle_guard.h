@@ -25,7 +25,7 @@ namespace haptrial::control {
 /// velocity above 4 Hz, so that it does not hold back a hand that moves. What dies away by itself,
 /// as after a knock, is only damped. Turns that are slower than those of 15 Hz may be a hand's own;
 /// they take no more than the damping away, as long as they stay below 2 N. When it has become
-/// quiet, the gains come back within half a second. Where the oscillation then comes back, g stays
+/// quiet, the gains come back within a second. Where the oscillation then comes back, g stays
 /// a little above that value, which is tried anew only slowly. So a heavy hand has all the gains, a
 /// light one what it carries. docs/algorithms/every-hand.md has the figures.
 ///
