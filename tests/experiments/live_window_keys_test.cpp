@@ -69,29 +69,29 @@ TEST_F(LiveWindowKeysTest, StopTheSessionAndDoNothingElse) {
   press(' ');
   press(VirtualDisplay::kEnter);
   EXPECT_FALSE(person.sees_within(0.5, "running")) << "the experimenter starts";
-  ASSERT_TRUE(person.ask("start"));
-  ASSERT_TRUE(person.sees("running", "run"));
+  ASSERT_TRUE(person.ask("start")) << session.errors();
+  ASSERT_TRUE(person.sees("running", "run")) << session.errors();
   for (const char key : {'s', 'r', 'p'}) {
     press(static_cast<unsigned long>(key));
   }
   EXPECT_FALSE(person.sees_within(0.5, "paused"));
   EXPECT_EQ(person.status()["aborted_passes"], 0);
   press(VirtualDisplay::kEscape);  // anybody may stop
-  ASSERT_TRUE(person.sees("stopped"));
+  ASSERT_TRUE(person.sees("stopped")) << session.errors();
   EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("The forces are off"));
   press('c');
   press(' ');
   EXPECT_FALSE(person.sees_within(0.5, "paused"));
   EXPECT_EQ(person.status()["state"], "stopped");
-  ASSERT_TRUE(person.ask("clear"));
-  ASSERT_TRUE(person.sees("paused"));
+  ASSERT_TRUE(person.ask("clear")) << session.errors();
+  ASSERT_TRUE(person.sees("paused")) << session.errors();
   EXPECT_THAT(person.status()["screen"].get<std::string>(), HasSubstr("pause"));
-  ASSERT_TRUE(person.ask("start"));
-  ASSERT_TRUE(person.sees("running", "run"));
+  ASSERT_TRUE(person.ask("start")) << session.errors();
+  ASSERT_TRUE(person.sees("running", "run")) << session.errors();
   EXPECT_EQ(person.seen()["screen"], "") << "the trial is shown again";
   display_->ask_to_close("haptrial");  // no way out of a session either, but a stop
-  ASSERT_TRUE(person.sees("stopped"));
-  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_TRUE(person.sees("stopped")) << session.errors();
+  ASSERT_TRUE(person.ask("abort")) << session.errors();
   session.wait();
   const bool closed = std::filesystem::exists(folder_ / "out/S01.h5");
   EXPECT_THAT(
@@ -105,12 +105,12 @@ TEST_F(LiveWindowKeysTest, SteerWhereTheDefinitionSaysSo) {
   ConsolePerson person(session.line_after("console: "));
   ASSERT_TRUE(person.sees("instructions")) << session.errors();
   press(' ');
-  ASSERT_TRUE(person.sees("running", "run"));
+  ASSERT_TRUE(person.sees("running", "run")) << session.errors();
   press(VirtualDisplay::kEscape);
-  ASSERT_TRUE(person.sees("stopped"));
+  ASSERT_TRUE(person.sees("stopped")) << session.errors();
   press('c');
-  ASSERT_TRUE(person.sees("paused"));
-  ASSERT_TRUE(person.ask("abort"));
+  ASSERT_TRUE(person.sees("paused")) << session.errors();
+  ASSERT_TRUE(person.ask("abort")) << session.errors();
   session.wait();
   const bool closed = std::filesystem::exists(folder_ / "out/S01.h5");
   EXPECT_THAT(
