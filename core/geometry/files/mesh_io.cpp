@@ -101,11 +101,12 @@ void write_mesh(const fs::path& file, const Mesh& mesh, bool overwrite) {
 }
 
 std::uint64_t reading_memory(std::uint64_t file_bytes, MeshFormat format) {
-  // A vertex takes 24 bytes, a triangle 12, thrice that while a vector grows. The shortest ways to
-  // write them: "v 0 0 0\n", and " 1" for one more corner of a face in text, one byte for it in
-  // PLY; 50 bytes a triangle with up to three new vertices and their slots in STL.
-  constexpr std::uint64_t kText = 18;
-  constexpr std::uint64_t kPly = 36;
+  // A vertex takes 24 bytes, a triangle 12, a face of four corners 24 beside its triangles, thrice
+  // that while a vector grows. The shortest ways to write them: "v 0 0 0\n", and " 1" for one more
+  // corner of a face in text, one byte for it in PLY; 50 bytes a triangle with up to three new
+  // vertices and their slots in STL.
+  constexpr std::uint64_t kText = 36;
+  constexpr std::uint64_t kPly = 54;
   constexpr std::uint64_t kStl = 6;
   switch (format) {
     case MeshFormat::kPly:

@@ -19,13 +19,14 @@ MeshFormat mesh_format(const std::filesystem::path& file);
 /// Coordinates beyond this are refused: squares and cubes of them must stay finite in floats.
 inline constexpr double kMaxCoordinate = 1e12;
 
-/// Reads a mesh. Faces with more than three corners become fans of triangles; normals, colours,
-/// texture coordinates, names and materials are left out. OBJ, PLY and OFF keep their vertices as
-/// they are, referenced or not; STL has none of its own, so corners with equal coordinates become
-/// one vertex.
+/// Reads a mesh. Faces with more than three corners, concave ones too, are cut into triangles
+/// (FaceCutter); normals, colours, texture coordinates, names and materials are left out. OBJ, PLY
+/// and OFF keep their vertices as they are, referenced or not; STL has none of its own, so corners
+/// with equal coordinates become one vertex.
 /// @param name  stands in messages for the file
 /// @throws InputError with one sentence (file, line or byte, what was found, what is allowed) for
-/// whatever is no such mesh: empty, truncated, not finite, an index without a vertex, no triangle.
+/// whatever is no such mesh: empty, truncated, not finite, an index without a vertex, a face that
+/// crosses itself, no triangle.
 /// What is read fits the file's size: no count in it is believed before the bytes are seen.
 Mesh parse_mesh(std::string_view bytes, MeshFormat format, std::string_view name,
                 const WorkReport& report = {});

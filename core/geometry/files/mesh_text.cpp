@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/files/cut_face.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/files/mesh_text_internal.h"
 
@@ -152,9 +153,31 @@ void Gathering::reserve(std::uint64_t vertices, std::uint64_t triangles) {
 }
 
 void Gathering::add_face(std::span<const std::int32_t> corners) {
+  ++faces_;
+  if (corners.size() > 3) {
+    polygons_.push_back({mesh_.triangles.size(), corners.size(), faces_});
+  }
   for (std::size_t i = 2; i < corners.size(); ++i) {
     mesh_.triangles.push_back({corners[0], corners[i - 1], corners[i]});
   }
+}
+
+Mesh Gathering::take(std::string_view name) && {
+  FaceCutter cutter;
+  std::vector<std::int32_t> corners;
+  for (const Polygon& polygon : polygons_) {
+    const std::span<Triangle> fan(mesh_.triangles.data() + polygon.first, polygon.corners - 2);
+    corners.assign({fan[0][0], fan[0][1]});
+    for (const Triangle& triangle : fan) {
+      corners.push_back(triangle[2]);
+    }
+    if (const std::string_view problem = cutter.cut(mesh_.vertices, corners, fan);
+        !problem.empty()) {
+      throw InputError(fmt::format("{}: face {} with {} corners {}", name, polygon.face,
+                                   corners.size(), problem));
+    }
+  }
+  return std::move(mesh_);
 }
 
 bool Gathering::full() const {

@@ -61,7 +61,7 @@ class Text {
 /// A coordinate from outside. @returns what is wrong with it, empty where nothing is.
 std::string coordinate_problem(double value);
 
-/// Gathers vertices and faces.
+/// Gathers vertices and faces; a vertex may come after its face.
 class Gathering {
  public:
   void reserve(std::uint64_t vertices, std::uint64_t triangles);
@@ -70,10 +70,21 @@ class Gathering {
   /// Corners are indices from 0, checked by the caller.
   void add_face(std::span<const std::int32_t> corners);
   bool full() const;  // no further vertex has an index
-  Mesh take() && { return std::move(mesh_); }
+  /// Cuts the faces with more than three corners (FaceCutter).
+  /// @throws InputError naming the file and the face that cannot be cut.
+  Mesh take(std::string_view name) &&;
 
  private:
+  /// A face with more than three corners, as the fan of triangles that keeps them.
+  struct Polygon {
+    std::size_t first;  // triangle
+    std::size_t corners;
+    std::size_t face;  // in the file, from 1
+  };
+
   Mesh mesh_;
+  std::vector<Polygon> polygons_;
+  std::size_t faces_{0};
 };
 
 Mesh read_obj(std::string_view bytes, std::string_view name, const WorkReport& report);

@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 21> kPassedOver{
 class Obj {
  public:
   Obj(std::string_view bytes, std::string_view name, const WorkReport& report)
-      : text_(bytes, name, report) {
+      : text_(bytes, name, report), name_(name) {
     text_.set_continuation(true);
   }
 
@@ -40,7 +40,7 @@ class Obj {
       text_.fail_at(largest_line_, fmt::format("a face has the corner {}; allowed: 1 to {}",
                                                largest_ + 1, mesh_.vertex_count()));
     }
-    return std::move(mesh_).take();
+    return std::move(mesh_).take(name_);
   }
 
  private:
@@ -83,6 +83,7 @@ class Obj {
   }
 
   Text text_;
+  std::string_view name_;
   Gathering mesh_;
   std::vector<std::int32_t> corners_;
   std::int64_t largest_{-1};

@@ -8,7 +8,7 @@ namespace {
 class Off {
  public:
   Off(std::string_view bytes, std::string_view name, const WorkReport& report)
-      : text_(bytes, name, report) {}
+      : text_(bytes, name, report), name_(name) {}
 
   Mesh read() && {
     read_head();
@@ -18,7 +18,7 @@ class Off {
     for (std::int64_t i = 0; i < faces_; ++i) {
       read_face();
     }
-    return std::move(mesh_).take();
+    return std::move(mesh_).take(name_);
   }
 
  private:
@@ -85,6 +85,7 @@ class Off {
   }
 
   Text text_;
+  std::string_view name_;
   Gathering mesh_;
   std::int64_t vertices_{0};
   std::int64_t faces_{0};

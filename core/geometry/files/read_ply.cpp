@@ -250,7 +250,10 @@ class Numbers {
 class Ply {
  public:
   Ply(Text& text, std::string_view bytes, std::string_view name)
-      : head_(HeadReader(text).read()), numbers_(text, bytes, name, head_.coding), text_(text) {}
+      : head_(HeadReader(text).read()),
+        numbers_(text, bytes, name, head_.coding),
+        text_(text),
+        name_(name) {}
 
   Mesh read() && {
     check_head();
@@ -269,7 +272,7 @@ class Ply {
         }
       }
     }
-    return std::move(mesh_).take();
+    return std::move(mesh_).take(name_);
   }
 
  private:
@@ -389,6 +392,7 @@ class Ply {
   Head head_;
   Numbers numbers_;
   Text& text_;
+  std::string_view name_;
   Gathering mesh_;
   std::int64_t vertices_{0};
   std::vector<std::int32_t> corners_;
