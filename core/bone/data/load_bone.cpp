@@ -266,6 +266,12 @@ GreyLevels levels_of(const Import& job, const VolumeHead& head, std::span<const 
   GreyLevels levels{};
   levels.threshold =
       options.find_threshold ? find_threshold(values) : options.threshold.value_or(kThreshold);
+  if (options.find_threshold && hounsfield && !(levels.threshold >= 0.0)) {
+    tell_findings(job, values, std::nullopt);
+    throw InputError(fmt::format(
+        "{}: the threshold that 'auto' finds is {:.6g} HU, where there is no bone; give a number",
+        job.name, levels.threshold));
+  }
   constexpr double kMostBone = 0.99;
   const bool usual = hounsfield && levels.threshold < kDense;
   levels.dense =

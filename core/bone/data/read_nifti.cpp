@@ -16,14 +16,19 @@ struct ForgetNifti {
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 
-double nifti_metres(int unit) {
+/// @throws InputError for a unit that is none of length.
+double nifti_metres(const std::string& name, int unit) {
   switch (unit) {
     case NIFTI_UNITS_METER:
       return 1.0;
     case NIFTI_UNITS_MICRON:
       return 1e-6;
-    default:
+    case NIFTI_UNITS_MM:
+    case NIFTI_UNITS_UNKNOWN:  // millimetres by the custom of all programs
       return 1e-3;
+    default:
+      throw InputError(fmt::format(
+          "{}: its unit of length is code {}; allowed: 0 to 3 (none, m, mm, um)", name, unit));
   }
 }
 
@@ -50,7 +55,7 @@ VolumeHead nifti_head(const std::string& name, const nifti_image& image) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     head.size[axis] = static_cast<std::int32_t>(std::clamp<std::int64_t>(sizes[axis], 0, 1 << 30));
   }
-  const double unit = nifti_metres(image.xyz_units);
+  const double unit = nifti_metres(name, image.xyz_units);
   if (image.sform_code > 0) {
     take_nifti_places(image.sto_xyz, unit, head);
   } else if (image.qform_code > 0) {

@@ -2,8 +2,10 @@
 #include <teem/nrrd.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/base/files/file_text.h"
@@ -29,18 +31,43 @@ void check_magic(const std::string& name) {
   }
 }
 
-double metres(const char* unit) {
-  const std::string name = unit == nullptr ? "" : unit;
-  if (name == "m") {
-    return 1.0;
+/// @throws InputError for a unit that is not known. Files without one are in millimetres by the
+/// custom of all programs.
+double metres(const std::string& name, const char* unit) {
+  static const std::map<std::string_view, double> kUnits{{"", 1e-3},
+                                                         {"m", 1.0},
+                                                         {"meter", 1.0},
+                                                         {"meters", 1.0},
+                                                         {"metre", 1.0},
+                                                         {"metres", 1.0},
+                                                         {"cm", 1e-2},
+                                                         {"centimeter", 1e-2},
+                                                         {"centimeters", 1e-2},
+                                                         {"centimetre", 1e-2},
+                                                         {"centimetres", 1e-2},
+                                                         {"mm", 1e-3},
+                                                         {"millimeter", 1e-3},
+                                                         {"millimeters", 1e-3},
+                                                         {"millimetre", 1e-3},
+                                                         {"millimetres", 1e-3},
+                                                         {"um", 1e-6},
+                                                         {"\u00b5m", 1e-6},
+                                                         {"\u03bcm", 1e-6},
+                                                         {"micron", 1e-6},
+                                                         {"microns", 1e-6},
+                                                         {"micrometer", 1e-6},
+                                                         {"micrometers", 1e-6},
+                                                         {"micrometre", 1e-6},
+                                                         {"micrometres", 1e-6},
+                                                         {"in", 25.4e-3},
+                                                         {"inch", 25.4e-3},
+                                                         {"inches", 25.4e-3}};
+  const auto known = kUnits.find(unit == nullptr ? "" : unit);
+  if (known == kUnits.end()) {
+    throw InputError(fmt::format(
+        "{}: its unit of length is '{}'; allowed: m, cm, mm, um, in, or their names", name, unit));
   }
-  if (name == "cm") {
-    return 1e-2;
-  }
-  if (name == "um" || name == "microns") {
-    return 1e-6;
-  }
-  return 1e-3;  // as good as every program takes it
+  return known->second;
 }
 
 /// From the file's space to LPS: signs of x and y.
@@ -74,16 +101,17 @@ void take_places(const std::string& name, const Nrrd& nrrd, unsigned first, Volu
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     if (placed) {
       for (int i = 0; i < 3; ++i) {
-        step[i] = (*signs)[i] * info.spaceDirection[i] * metres(nrrd.spaceUnits[i]);
+        step[i] = (*signs)[i] * info.spaceDirection[i] * metres(name, nrrd.spaceUnits[i]);
       }
     } else {
-      step[axis] = info.spacing * metres(info.units);
+      step[axis] = info.spacing * metres(name, info.units);
     }
     head.steps.col(axis) = step;
   }
   for (int i = 0; i < 3 && placed; ++i) {
     const double place = nrrd.spaceOrigin[i];
-    head.origin[i] = std::isfinite(place) ? (*signs)[i] * place * metres(nrrd.spaceUnits[i]) : 0.0;
+    head.origin[i] =
+        std::isfinite(place) ? (*signs)[i] * place * metres(name, nrrd.spaceUnits[i]) : 0.0;
   }
   if (!head.steps.allFinite()) {
     throw InputError(
@@ -117,7 +145,9 @@ VolumeHead head_of(const std::string& name, const Nrrd& nrrd) {
   if (nrrd.dim < 3 || nrrd.dim > 4 || (first == 1 && nrrd.axis[0].size > most)) {
     throw InputError(fmt::format(
         "{}: has {} axes{}; allowed: 3, with one value per voxel", name, nrrd.dim,
-        first == 1 ? fmt::format(", {} values along the first", nrrd.axis[0].size) : ""));
+        first == 1 ? fmt::format(" of {} x {} x {} x {}", nrrd.axis[0].size, nrrd.axis[1].size,
+                                 nrrd.axis[2].size, nrrd.axis[3].size)
+                   : ""));
   }
   if (nrrd.type == nrrdTypeBlock || nrrd.type <= nrrdTypeUnknown || nrrd.type >= nrrdTypeLast) {
     throw InputError(

@@ -125,10 +125,14 @@ BigArray<float> fetch(const std::string& name, int memory, std::size_t count) {
   return values;
 }
 
-void make_finite(BigArray<float>& values) {
+/// @throws InputError where no value is finite.
+void make_finite(const std::string& name, BigArray<float>& values) {
   float lowest = std::numeric_limits<float>::max();
   for (const float value : values) {
     lowest = std::isfinite(value) ? std::min(lowest, value) : lowest;
+  }
+  if (lowest == std::numeric_limits<float>::max()) {
+    throw InputError(fmt::format("{}: none of its values is a finite number", name));
   }
   for (float& value : values) {
     value = std::isfinite(value) ? value : lowest;
@@ -219,7 +223,7 @@ SourceVolume read_volume(const fs::path& file, const Room& room,
   SourceVolume volume{heard(answer.at("head")), {}};
   const auto components = static_cast<std::size_t>(volume.head.components);
   volume.values = fetch(file.string(), memory.get(), components * volume.head.count());
-  make_finite(volume.values);
+  make_finite(file.string(), volume.values);
   return volume;
 }
 

@@ -2,12 +2,17 @@
 
 #include <gdcm-3.0/gdcmAttribute.h>
 #include <gdcm-3.0/gdcmImageWriter.h>
+#include <gdcm-3.0/gdcmSequenceOfItems.h>
 #include <gdcm-3.0/gdcmUIDGenerator.h>
+#include <gdcm-3.0/gdcmWriter.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -111,6 +116,220 @@ TEST_F(DicomTest, AnObliqueSeriesToo) {
   EXPECT_NEAR(1e9 * summary.volume, 1920.0, 0.08 * 1920.0);
   const Eigen::Vector3d middle = axes * Eigen::Vector3d(0.5 * 11.5, 11.5, 2.0 * 9.5);
   EXPECT_LT((1e3 * summary.box.center() - middle).norm(), 0.7);
+}
+
+/// The bar of DicomTest as one file with many frames.
+struct Frames {
+  static constexpr int kPixels = 24;
+  bool enhanced{true};
+  std::vector<int> order{};          // slice of each frame
+  double rescale_step{0.0};          // slope and offset change from frame to frame
+  std::optional<double> distance{};  // SpacingBetweenSlices [mm]
+  std::optional<int> padding{};      // stored number, in the two outermost columns
+
+  static gdcm::Item item_with(const gdcm::Tag& group, const gdcm::DataSet& inner) {
+    gdcm::Item within;
+    within.SetVLToUndefined();
+    within.SetNestedDataSet(inner);
+    const gdcm::SmartPointer<gdcm::SequenceOfItems> sequence = new gdcm::SequenceOfItems;
+    sequence->SetLengthToUndefined();
+    sequence->AddItem(within);
+    gdcm::DataElement element(group);
+    element.SetVR(gdcm::VR::SQ);
+    element.SetValue(*sequence);
+    element.SetVLToUndefined();
+    gdcm::Item outer;
+    outer.SetVLToUndefined();
+    outer.GetNestedDataSet().Insert(element);
+    return outer;
+  }
+  template <class Attribute, class... Values>
+  static void put(gdcm::DataSet& set, Values... values) {
+    Attribute attribute;
+    unsigned i = 0;
+    (attribute.SetValue(values, i++), ...);
+    set.Replace(attribute.GetAsDataElement());
+  }
+  template <class Attribute, class Value>
+  static void put_one(gdcm::DataSet& set, Value value) {
+    Attribute attribute;
+    attribute.SetValue(static_cast<typename Attribute::ArrayType>(value));
+    set.Replace(attribute.GetAsDataElement());
+  }
+  static void copy(const gdcm::Tag& group, const gdcm::DataSet& inner, gdcm::Item& to) {
+    const gdcm::Item from = item_with(group, inner);
+    to.GetNestedDataSet().Insert(from.GetNestedDataSet().GetDataElement(group));
+  }
+
+  double slope(int frame) const { return 1.0 + rescale_step * frame; }
+  double offset(int frame) const { return -1024.0 - 100.0 * rescale_step * frame; }
+
+  std::vector<std::uint16_t> pixels() const {
+    std::vector<std::uint16_t> stored;
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      const int frame = static_cast<int>(n);
+      for (int j = 0; j < kPixels; ++j) {
+        for (int i = 0; i < kPixels; ++i) {
+          const bool bone = i >= 4 && i < 20 && j >= 6 && j < 18 && order[n] >= 5 && order[n] < 15;
+          if (padding && (i < 2 || i >= kPixels - 2)) {
+            stored.push_back(static_cast<std::uint16_t>(*padding));
+            continue;
+          }
+          stored.push_back(static_cast<std::uint16_t>(
+              std::lround(((bone ? 1200.0 : -1000.0) - offset(frame)) / slope(frame))));
+        }
+      }
+    }
+    return stored;
+  }
+  gdcm::DataElement groups() const {
+    const gdcm::SmartPointer<gdcm::SequenceOfItems> all = new gdcm::SequenceOfItems;
+    all->SetLengthToUndefined();
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      gdcm::Item item;
+      item.SetVLToUndefined();
+      gdcm::DataSet place;
+      put<gdcm::Attribute<0x0020, 0x0032>>(place, 0.0, 0.0, 2.0 * order[n]);
+      copy({0x0020, 0x9113}, place, item);
+      gdcm::DataSet turn;
+      put<gdcm::Attribute<0x0020, 0x0037>>(turn, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+      copy({0x0020, 0x9116}, turn, item);
+      gdcm::DataSet measures;
+      put<gdcm::Attribute<0x0028, 0x0030>>(measures, 1.0, 0.5);
+      copy({0x0028, 0x9110}, measures, item);
+      gdcm::DataSet rescale;
+      put_one<gdcm::Attribute<0x0028, 0x1053>>(rescale, slope(static_cast<int>(n)));
+      put_one<gdcm::Attribute<0x0028, 0x1052>>(rescale, offset(static_cast<int>(n)));
+      copy({0x0028, 0x9145}, rescale, item);
+      all->AddItem(item);
+    }
+    gdcm::DataElement element(gdcm::Tag(0x5200, 0x9230));
+    element.SetVR(gdcm::VR::SQ);
+    element.SetValue(*all);
+    element.SetVLToUndefined();
+    return element;
+  }
+  void write(const std::filesystem::path& file) const {
+    gdcm::Writer writer;
+    gdcm::DataSet& set = writer.GetFile().GetDataSet();
+    writer.GetFile().GetHeader().SetDataSetTransferSyntax(
+        gdcm::TransferSyntax::ExplicitVRLittleEndian);
+    put_one<gdcm::Attribute<0x0008, 0x0016>>(
+        set, enhanced ? "1.2.840.10008.5.1.4.1.1.2.1" : "1.2.840.10008.5.1.4.1.1.2");
+    put_one<gdcm::Attribute<0x0008, 0x0018>>(set, "1.2.3.4");
+    put_one<gdcm::Attribute<0x0008, 0x0060>>(set, "CT");
+    put_one<gdcm::Attribute<0x0020, 0x000e>>(set, "1.2.3");
+    put_one<gdcm::Attribute<0x0028, 0x0002>>(set, 1);
+    put_one<gdcm::Attribute<0x0028, 0x0004>>(set, "MONOCHROME2");
+    put_one<gdcm::Attribute<0x0028, 0x0008>>(set, static_cast<int>(order.size()));
+    put_one<gdcm::Attribute<0x0028, 0x0010>>(set, kPixels);
+    put_one<gdcm::Attribute<0x0028, 0x0011>>(set, kPixels);
+    put_one<gdcm::Attribute<0x0028, 0x0100>>(set, 16);
+    put_one<gdcm::Attribute<0x0028, 0x0101>>(set, 16);
+    put_one<gdcm::Attribute<0x0028, 0x0102>>(set, 15);
+    put_one<gdcm::Attribute<0x0028, 0x0103>>(set, 0);
+    if (padding) {
+      const auto value = static_cast<std::uint16_t>(*padding);
+      gdcm::DataElement element(gdcm::Tag(0x0028, 0x0120));
+      element.SetVR(gdcm::VR::US);
+      element.SetByteValue(reinterpret_cast<const char*>(&value), sizeof value);
+      set.Insert(element);
+    }
+    if (enhanced) {
+      set.Insert(groups());
+    } else {
+      put<gdcm::Attribute<0x0020, 0x0032>>(set, 0.0, 0.0, 0.0);
+      put<gdcm::Attribute<0x0020, 0x0037>>(set, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+      put<gdcm::Attribute<0x0028, 0x0030>>(set, 1.0, 0.5);
+      put_one<gdcm::Attribute<0x0028, 0x1052>>(set, -1024.0);
+      put_one<gdcm::Attribute<0x0028, 0x1053>>(set, 1.0);
+      if (distance) {
+        put_one<gdcm::Attribute<0x0018, 0x0088>>(set, *distance);
+      }
+    }
+    const std::vector<std::uint16_t> stored = pixels();
+    gdcm::DataElement data(gdcm::Tag(0x7fe0, 0x0010));
+    data.SetVR(gdcm::VR::OW);
+    data.SetByteValue(reinterpret_cast<const char*>(stored.data()),
+                      static_cast<unsigned>(stored.size() * sizeof(std::uint16_t)));
+    set.Insert(data);
+    writer.SetFileName(file.c_str());
+    writer.SetCheckFileMetaInformation(true);
+    ASSERT_TRUE(writer.Write());
+  }
+};
+
+class DicomFramesTest : public DicomTest {
+ protected:
+  static std::vector<int> slices(const std::function<int(int)>& of) {
+    std::vector<int> order;
+    for (int k = 0; k < kSize; ++k) {
+      order.push_back(of(k));
+    }
+    return order;
+  }
+  void expect_bar(const BoneModel& model) const {
+    const BoneSummary summary = summary_of(model);
+    EXPECT_NEAR(1e9 * summary.volume, 1920.0, 0.08 * 1920.0);
+    const Eigen::Vector3d middle(0.5 * 11.5, 11.5, 2.0 * 9.5);
+    EXPECT_LT((1e3 * summary.box.center() - middle).norm(), 0.3);
+  }
+  std::string refused() const {
+    try {
+      load_bone(file_);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "none";
+  }
+  std::filesystem::path file_{folder_ / "frames.dcm"};
+};
+
+TEST_F(DicomFramesTest, FramesLieWhereTheirGroupsSayWhateverTheirOrder) {
+  for (const int factor : {1, 7, 23}) {
+    Frames{.order = slices([&](int k) { return factor * k % kSize; })}.write(file_);
+    expect_bar(load_bone(file_));
+  }
+}
+
+TEST_F(DicomFramesTest, MissingFramesAreNamed) {
+  Frames frames{.order = slices([](int k) { return k; })};
+  frames.order.erase(frames.order.begin() + 10, frames.order.begin() + 13);
+  frames.write(file_);
+  EXPECT_THAT(refused(), HasSubstr("frame 10 of frames.dcm and frame 11 of frames.dcm lie 8 mm"));
+}
+
+TEST_F(DicomFramesTest, EveryFrameHasARescaleOfItsOwn) {
+  const auto order = slices([](int k) { return k; });
+  Frames{.order = order}.write(file_);
+  const BoneModel even = load_bone(file_);
+  Frames{.order = order, .rescale_step = 0.03}.write(file_);
+  const BoneModel model = load_bone(file_);
+  expect_bar(model);
+  ASSERT_EQ(model.density.size(), even.density.size());
+  for (std::size_t i = 0; i < model.density.size(); ++i) {
+    ASSERT_NEAR(model.density[i], even.density[i], 0.02F);
+  }
+}
+
+TEST_F(DicomFramesTest, FramesWithoutGroupsNeedTheirDistance) {
+  Frames frames{.enhanced = false, .order = slices([](int k) { return k; })};
+  frames.write(file_);
+  EXPECT_THAT(refused(), HasSubstr("does not give the place of its slice"));
+  frames.distance = 2.0;
+  frames.write(file_);
+  expect_bar(load_bone(file_));
+}
+
+TEST_F(DicomFramesTest, PaddingIsNoValue) {
+  // Stored 50,000 would be 48,976 HU.
+  for (const std::optional<int> padding : {std::optional(50'000), std::optional<int>()}) {
+    Frames frames{.order = slices([](int k) { return k; }), .padding = padding};
+    frames.write(file_);
+    const BoneModel model = load_bone(file_);
+    expect_bar(model);
+    EXPECT_EQ(model.source.find("pixels of padding") != std::string::npos, padding.has_value());
+  }
 }
 
 TEST_F(DicomTest, MissingRepeatedAndMixedSlicesAreNamed) {

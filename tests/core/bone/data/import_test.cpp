@@ -203,6 +203,36 @@ TEST_F(ImportTest, NumbersThatAreNotHounsfieldUnitsNeedAThreshold) {
   EXPECT_EQ(summary_of(load("v.nrrd", nrrd_of(volume), options)).voxels, 12U * 20U * 20U);
 }
 
+TEST_F(ImportTest, AThresholdBelowBoneIsNotFound) {
+  PlainVolume volume({20, 20, 20});
+  volume.fill([](const Eigen::Vector3d& p) {
+    return p.head<2>().norm() > 18.0 ? -2000.0 : p.x() < 8 ? -1000.0 + p.y() : 20.0 + p.z();
+  });
+  LoadOptions options;
+  options.find_threshold = true;
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume), options), HasSubstr("where there is no bone"));
+}
+
+TEST_F(ImportTest, UnitsAreKnownOrRefused) {
+  PlainVolume volume({20, 20, 20});
+  volume.steps *= 20.0;
+  volume.at(3, 4, 5) = 1;
+  for (const char* unit : {"um", "micrometer", "micron", "microns", "\u00b5m", "\u03bcm"}) {
+    volume.more = fmt::format("space units: \"{0}\" \"{0}\" \"{0}\"\nlabel_01:=Bone\n", unit);
+    const Eigen::Vector3d place = place_of(load("v.nrrd", nrrd_of(volume)), 1);
+    EXPECT_LT((place - Eigen::Vector3d(0.06, 0.08, 0.1)).norm(), 1e-6) << unit;
+  }
+  volume.steps = Eigen::Matrix3d::Identity();
+  volume.more = "space units: \"in\" \"in\" \"in\"\nlabel_01:=Bone\n";
+  EXPECT_LT((place_of(load("v.nrrd", nrrd_of(volume)), 1) - 25.4 * Eigen::Vector3d(3, 4, 5)).norm(),
+            1e-6);
+  volume.more = "space units: \"ells\" \"ells\" \"ells\"\n";
+  EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume)), HasSubstr("its unit of length is 'ells'"));
+  std::string nifti = nifti_of(volume);
+  nifti[123] = 5;
+  EXPECT_THAT(refusal("v.nii", nifti), HasSubstr("its unit of length is code 5"));
+}
+
 TEST_F(ImportTest, FewWholeNumbersAreLabelsAndManyAreGrey) {
   PlainVolume labels({8, 8, 8});
   labels.fill([](const Eigen::Vector3d& p) { return p.x() > 3 ? 3 : 0; });
