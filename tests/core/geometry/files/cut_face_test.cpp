@@ -84,7 +84,7 @@ double area(const Mesh& mesh) {
   return sum;
 }
 
-std::string refusal(const Prism& prism) {
+std::string refusal_of_prism(const Prism& prism) {
   try {
     parse_mesh(prism.bytes(MeshFormat::kObj), MeshFormat::kObj, "m");
   } catch (const InputError& error) {
@@ -147,18 +147,18 @@ TEST(CutFaceTest, AFaceWithAHoleThroughABridgeIsCut) {
 }
 
 TEST(CutFaceTest, AFaceThatCrossesItselfIsNamed) {
-  EXPECT_THAT(refusal({{{0, 0}, {4, 0}, {0, 3}, {4, 4}}}),
+  EXPECT_THAT(refusal_of_prism({{{0, 0}, {4, 0}, {0, 3}, {4, 4}}}),
               HasSubstr("m: face 1 with 4 corners crosses itself"));
   Corners pentagram;
   for (int i = 0; i < 5; ++i) {
     const double angle = 0.8 * std::numbers::pi * i;
     pentagram.emplace_back(std::cos(angle), std::sin(angle));
   }
-  EXPECT_THAT(refusal({pentagram}), HasSubstr("crosses itself"));
+  EXPECT_THAT(refusal_of_prism({pentagram}), HasSubstr("crosses itself"));
 }
 
 TEST(CutFaceTest, AFoldAsThinAsRoundingIsRead) {
-  EXPECT_EQ(refusal({{{0, 0}, {1, 0}, {2, 1e-9}, {3, 0}, {2, -1e-9}, {2, 1}}}), "read");
+  EXPECT_EQ(refusal_of_prism({{{0, 0}, {1, 0}, {2, 1e-9}, {3, 0}, {2, -1e-9}, {2, 1}}}), "read");
 }
 
 }  // namespace
