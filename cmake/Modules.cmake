@@ -163,7 +163,8 @@ function(haptrial_test name link)
     set(live "*Live*:KilledTest.*:KilledTrialsTest.*:LostDiskTest.*:ResumedParticipantTest.*")
     string(APPEND live ":RoundTripTest.ARec*:SessionMarkersTest.*:SessionTest.RealClock*")
     haptrial_discover(test_${name} "-${live}:Timed*:${together}" 4)
-    haptrial_discover(test_${name} "${live}" 1)
+    haptrial_discover(test_${name} "${live}:-LiveConsoleTest.*" 2)
+    haptrial_discover(test_${name} "LiveConsoleTest.*" 6)  # a browser and a session take their time
     haptrial_discover(test_${name} "Timed*" 4 RUN_SERIAL TRUE)  # a busy machine is a fault here
   else()
     haptrial_discover(test_${name} "-${together}" 4)
@@ -187,7 +188,7 @@ function(haptrial_whole_suites target)
 endfunction()
 
 # Tests run on four times as many places as there are processors. One that computes takes four; one
-# of a live session, which sleeps most of its time, takes one.
+# of a live session, which sleeps half of its time, takes two.
 function(haptrial_discover target filter places)
   gtest_discover_tests(${target} TEST_FILTER ${filter} DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 600 PROCESSORS ${places} ${ARGN})

@@ -27,6 +27,7 @@
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/network_relay.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/free_port.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
@@ -42,7 +43,7 @@ class LinkTest : public testing::Test {
  protected:
   LinkTest() {
     test::run_command("haptrial secret " + secret());
-    test::write_text(definition(), test::brisk_text() + "\n[tutoring]\npatience = 2\n");
+    test::write_text(definition(), test::brisk_text() + "\n[tutoring]\npatience = 20\n");
   }
 
   /// Passes of ten seconds, in which something is done, and the head of a table to go on with.
@@ -158,7 +159,7 @@ TEST_F(LiveLinkTest, TwoProcessesGoThroughAStudyInStep) {
 }
 
 TEST_F(LiveLinkTest, AStrangerIsCountedAndChangesNothing) {
-  test::write_text(definition(), slow() + "patience = 2\n");
+  test::write_text(definition(), slow() + "patience = 20\n");
   start(1, {});
   ASSERT_TRUE(coupled(partial("learning"))) << said();
   const network::Socket socket = network::datagram_socket(0);
@@ -228,7 +229,7 @@ TEST_F(LiveLinkTest, TheKilledSideLeavesTheOtherWholeAndBothGoOn) {
   if (test::kThreadSanitizer) {
     GTEST_SKIP() << "a thread sanitizer is too slow for real time";
   }
-  test::write_text(definition(), slow() + "patience = 2\n");
+  test::write_text(definition(), slow() + "patience = 10\n");
   for (const char* killed : {"learning", "teaching"}) {
     const std::string left = std::string(killed) == "learning" ? "teaching" : "learning";
     for (const char* side : {"learning", "teaching"}) {
@@ -292,7 +293,7 @@ TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
   if (!LiveCommand::has_terminals()) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
   }
-  test::write_text(definition(), slow() + "patience = 2\n");
+  test::write_text(definition(), slow() + "patience = 20\n");
   port_ = test::free_port();
   teaches_ = std::make_unique<LiveCommand>(
       line("teaching", 1, "--keyboard --console --teach " + std::to_string(port_)), "",
@@ -336,7 +337,7 @@ TEST_F(LiveLinkTest, AStopOnOneSideStopsBoth) {
 /// presses has nothing but the spring of the law to rest on.
 TEST_F(TimedLinkTest, EveryNetworkLeavesTheHandsPassive) {
   test::write_text(definition(),
-                   test::brisk_text() + "\n[tutoring]\npatience = 2\nauthority = 0.5\n");
+                   test::brisk_text() + "\n[tutoring]\npatience = 20\nauthority = 0.5\n");
   const bool all = std::getenv("HAPTRIAL_EVERY_NETWORK") != nullptr;
   for (const double delay : all ? std::vector{0.0, 0.05, 0.2} : std::vector{0.05}) {
     for (const char* side : {"learning", "teaching"}) {

@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/free_port.h"
+
 namespace haptrial::test {
 namespace {
 
@@ -38,13 +40,6 @@ int bound(int type, std::uint16_t port) {
     return -1;
   }
   return fd;
-}
-
-std::uint16_t port_of(int fd) {
-  sockaddr_in address{};
-  socklen_t size = sizeof(address);
-  ::getsockname(fd, reinterpret_cast<sockaddr*>(&address), &size);
-  return ntohs(address.sin_port);
 }
 
 /// Hands bytes on until one side closes. @returns false then
@@ -99,20 +94,6 @@ class Way {
 };
 
 }  // namespace
-
-std::uint16_t free_port() {
-  for (int i = 0; i < 100; ++i) {
-    const int stream = bound(SOCK_STREAM, 0);
-    const std::uint16_t port = port_of(stream);
-    const int datagrams = bound(SOCK_DGRAM, port);
-    ::close(stream);
-    if (datagrams >= 0) {
-      ::close(datagrams);
-      return port;
-    }
-  }
-  throw std::runtime_error("no free port");
-}
 
 NetworkRelay::NetworkRelay(std::uint16_t to, const RelayConditions& conditions, std::uint64_t seed)
     : to_(to), conditions_(conditions), seed_(seed), port_(free_port()) {

@@ -48,7 +48,4 @@ class NetworkRelay {
   std::thread thread_;
 };
 
-/// A port of this machine that nobody uses at the moment, for connections and for datagrams.
-std::uint16_t free_port();
-
 }  // namespace haptrial::test

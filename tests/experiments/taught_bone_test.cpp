@@ -31,6 +31,7 @@
 #include "tests/experiments/network_relay.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
+#include "tests/support/free_port.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::taught_bone_test {
@@ -273,7 +274,7 @@ class LiveTaughtBoneTest : public TaughtBoneTest {
 };
 
 TEST_F(LiveTaughtBoneTest, TwoProcessesHaveOneBone) {
-  const fs::path study = definition("patience = 3\n", 6.0);
+  const fs::path study = definition("patience = 20\n", 6.0);
   start(study, study);
   const test::CommandResult a = learns_->wait();
   const test::CommandResult b = teaches_->wait();
@@ -283,7 +284,7 @@ TEST_F(LiveTaughtBoneTest, TwoProcessesHaveOneBone) {
 }
 
 TEST_F(LiveTaughtBoneTest, AnotherBoneInTheFileIsSaidOnBothSides) {
-  const fs::path study = definition("patience = 3\n", 2.0);
+  const fs::path study = definition("patience = 20\n", 2.0);
   fs::create_directory(folder_ / "other");
   fs::copy(study, folder_ / "other" / study.filename());
   bone::BoneModel bone = test::two_slabs();
@@ -334,7 +335,7 @@ class KilledBoneTest : public LiveTaughtBoneTest, public testing::WithParamInter
 };
 
 TEST_P(KilledBoneTest, TheTrialIsDoneAgainFromItsBeginningAndEarlierBonesStay) {
-  const fs::path study = definition("patience = 2\n", 8.0, {{"procedures", "procedures = 2"}});
+  const fs::path study = definition("patience = 10\n", 8.0, {{"procedures", "procedures = 2"}});
   kill_and_go_on(study);
   std::vector<std::vector<record::ProcedureRow>> bones;
   for (const char* side : {"learning", "teaching"}) {

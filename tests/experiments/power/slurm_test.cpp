@@ -1,9 +1,7 @@
 // The batch script of `haptrial power plan`, as an array of a Slurm of the test's own.
 
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "core/base/files/child_process.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/free_port.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
@@ -26,20 +25,6 @@ using test::CommandResult;
 using test::run_command;
 
 constexpr int kTasks = 4;
-
-/// A port of this machine that nothing listens to.
-int free_port() {
-  const Descriptor socket(::socket(AF_INET, SOCK_STREAM, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* any = reinterpret_cast<sockaddr*>(&address);
-  if (bind(socket.get(), any, size) != 0 || getsockname(socket.get(), any, &size) != 0) {
-    return 0;
-  }
-  return ntohs(address.sin_port);
-}
 
 class SlurmTest : public testing::Test {
  protected:
@@ -121,8 +106,8 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 NodeName=HOST NodeAddr=127.0.0.1 CPUs=4 RealMemory=8192 State=UNKNOWN
 )";
     test::write_text(folder_ / "slurm.conf",
-                     settings + "SlurmctldPort=" + std::to_string(free_port()) + "\nSlurmdPort=" +
-                         std::to_string(free_port()) + "\nStateSaveLocation=" + at +
+                     settings + "SlurmctldPort=" + std::to_string(test::free_port()) + "\nSlurmdPort=" +
+                         std::to_string(test::free_port()) + "\nStateSaveLocation=" + at +
                          "/state\nSlurmdSpoolDir=" + at + "/spool\nSlurmctldPidFile=" + at +
                          "/controller.pid\nSlurmdPidFile=" + at + "/node.pid\n");
     run_command("sed -i \"s/HOST/$(hostname -s)/; s/USER/$(id -un)/\" '" + at + "/slurm.conf'");

@@ -21,6 +21,7 @@
 #include "core/network/link/sealer.h"
 #include "core/network/link/secret.h"
 #include "core/network/link/waiting_guests.h"
+#include "tests/support/free_port.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
@@ -157,9 +158,6 @@ TEST(SealerTest, NothingOfTheMessageCanBeReadOff) {
   EXPECT_LT(same, 8) << "of 200 bytes, by chance one or so";
 }
 
-/// A port that was free a moment ago.
-std::uint16_t free_port() { return port_of(datagram_socket(0)); }
-
 struct Pair {
   Met host;
   Met guest;
@@ -194,7 +192,7 @@ auto soon(Call call) -> decltype(call()) {
 }
 
 Pair met() {
-  const std::uint16_t port = free_port();
+  const std::uint16_t port = test::free_port();
   std::optional<Met> host;
   std::thread waiting([&] { host = meet(secret(), as_host(port)); });
   Met guest = soon([&] { return meet(secret(), as_guest(port)); });
@@ -203,7 +201,7 @@ Pair met() {
 }
 
 TEST(MeetingTest, AGuestWithoutTheSecretIsTurnedAwayAndTheNextLetIn) {
-  const std::uint16_t port = free_port();
+  const std::uint16_t port = test::free_port();
   std::vector<std::string> notices;
   std::optional<Met> host;
   std::thread waiting([&] {
@@ -233,7 +231,7 @@ Socket silent_guest(std::uint16_t port) {
 }
 
 TEST(MeetingTest, SilentGuestsHoldUpNobody) {
-  const std::uint16_t port = free_port();
+  const std::uint16_t port = test::free_port();
   std::optional<Met> host;
   std::thread waiting([&] { host = meet(secret(), as_host(port)); });
   std::vector<Socket> silent;
@@ -251,7 +249,7 @@ TEST(MeetingTest, SilentGuestsHoldUpNobody) {
 }
 
 TEST(MeetingTest, OfTooManyTheOneThatHasWaitedLongestIsToldThatTheHostIsBusy) {
-  const std::uint16_t port = free_port();
+  const std::uint16_t port = test::free_port();
   std::optional<Met> host;
   std::thread waiting([&] { host = meet(secret(), as_host(port)); });
   bool told = false;
@@ -271,7 +269,7 @@ TEST(MeetingTest, OfTooManyTheOneThatHasWaitedLongestIsToldThatTheHostIsBusy) {
 
 TEST(MeetingTest, AGuestThatIsToldSoSaysThatTheHostIsBusy) {
   for (const bool at_once : {true, false}) {
-    const std::uint16_t port = free_port();
+    const std::uint16_t port = test::free_port();
     const Socket listener = listening(port);
     std::string said;
     std::thread guest(
@@ -294,7 +292,7 @@ TEST(MeetingTest, AGuestThatIsToldSoSaysThatTheHostIsBusy) {
 }
 
 TEST(MeetingTest, AnotherStudyIsRefusedOnBothSides) {
-  const std::uint16_t port = free_port();
+  const std::uint16_t port = test::free_port();
   std::string told;
   std::thread waiting([&] {
     MeetingRequest request = as_host(port);
@@ -308,10 +306,10 @@ TEST(MeetingTest, AnotherStudyIsRefusedOnBothSides) {
 }
 
 TEST(MeetingTest, WhatCannotBeIsSaid) {
-  MeetingRequest request = as_host(free_port());
+  MeetingRequest request = as_host(test::free_port());
   request.patience = 0s;
   EXPECT_THAT(message_of<RunError>([&] { meet(secret(), request); }), HasSubstr("nobody came"));
-  EXPECT_THAT(message_of<RunError>([&] { meet(secret(), as_guest(free_port())); }),
+  EXPECT_THAT(message_of<RunError>([&] { meet(secret(), as_guest(test::free_port())); }),
               HasSubstr("cannot be reached"));
   for (const char* address : {"host", "host:", ":7400", "host:0", "host:70000", "host:7x"}) {
     request.guest_of = address;
