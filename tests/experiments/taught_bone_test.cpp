@@ -335,7 +335,7 @@ class KilledBoneTest : public LiveTaughtBoneTest, public testing::WithParamInter
 };
 
 TEST_P(KilledBoneTest, TheTrialIsDoneAgainFromItsBeginningAndEarlierBonesStay) {
-  const fs::path study = definition("patience = 10\n", 8.0, {{"procedures", "procedures = 2"}});
+  const fs::path study = definition("patience = 5\n", 8.0, {{"procedures", "procedures = 2"}});
   kill_and_go_on(study);
   std::vector<std::vector<record::ProcedureRow>> bones;
   for (const char* side : {"learning", "teaching"}) {

@@ -109,12 +109,7 @@ void read_function(Table& table, const PlanDefaults& defaults, TrialsPlan& plan)
     plan.function_name = table.text("function");
   }
   try {
-    const psychometric::SigmoidForm form = psychometric::sigmoid_named(plan.function_name);
-    plan.function.sigmoid = form.sigmoid;
-    plan.function.falling = form.falling;
-    if (form.logarithmic && plan.function.axis.scale == Scale::kLinear) {
-      plan.function.axis.scale = Scale::kNaturalLog;
-    }
+    psychometric::set_sigmoid(plan.function, plan.function_name, Scale::kNaturalLog);
   } catch (const std::invalid_argument& error) {
     table.reject("function", fmt::format("cannot be read: {}", error.what()));
   }

@@ -97,7 +97,7 @@ std::optional<PsychometricParameters> read_expectation(Table& procedure, const A
   }
   try {
     if (table.has("function")) {
-      p.sigmoid = sigmoid_named(table.text("function")).sigmoid;
+      set_sigmoid(p, table.text("function"), axis.scale);
     }
     static_cast<void>(PsychometricFunction(p));
   } catch (const std::invalid_argument& error) {

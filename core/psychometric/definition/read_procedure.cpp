@@ -243,11 +243,7 @@ PsiParameters read_psi_function(const TrackKeys& keys, Track& track) {
   p.function.guess = number_or(keys, "guess", 0.5, {0.0, 0.99}, "1");
   if (keys.has("function")) {
     try {
-      const SigmoidForm named = sigmoid_named(keys.of("function").text("function"));
-      p.function.sigmoid = named.sigmoid;
-      if (named.logarithmic && p.function.axis.scale == Scale::kLinear) {
-        p.function.axis.scale = Scale::kLog10;
-      }
+      set_sigmoid(p.function, keys.of("function").text("function"), Scale::kLog10);
     } catch (const std::invalid_argument& error) {
       keys.of("function").reject("function", fmt::format("is refused: {}", error.what()));
     }

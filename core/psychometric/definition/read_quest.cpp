@@ -207,11 +207,7 @@ QuestDefinition take_function(const TrackKeys& keys, const std::string& name,
   p.levels = quest.stimulus.front().values;
   p.function.axis = track.axis = read_axis(keys, track);
   p.function.guess = 0.5;
-  const SigmoidForm named = sigmoid_named(name);
-  p.function.sigmoid = named.sigmoid;
-  if (named.logarithmic && p.function.axis.scale == Scale::kLinear) {
-    p.function.axis.scale = Scale::kLog10;
-  }
+  set_sigmoid(p.function, name, Scale::kLog10);
   if (quest.stimulus.size() > 1) {
     throw InputError(
         fmt::format("is of one stimulus, and there are {}; state a probability, a "

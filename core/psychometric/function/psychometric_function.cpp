@@ -48,13 +48,19 @@ double spread(Sigmoid sigmoid, double tail) {
 }  // namespace
 
 PsychometricParameters parameters_named(std::string_view name, double guess) {
-  const SigmoidForm form = sigmoid_named(name);
   PsychometricParameters parameters;
-  parameters.sigmoid = form.sigmoid;
-  parameters.axis.scale = form.logarithmic ? Scale::kNaturalLog : Scale::kLinear;
-  parameters.falling = form.falling;
+  set_sigmoid(parameters, name, Scale::kNaturalLog);
   parameters.guess = guess;
   return parameters;
+}
+
+void set_sigmoid(PsychometricParameters& parameters, std::string_view name, Scale logarithmic) {
+  const SigmoidForm form = sigmoid_named(name);
+  parameters.sigmoid = form.sigmoid;
+  parameters.falling = form.falling;
+  if (form.logarithmic && parameters.axis.scale == Scale::kLinear) {
+    parameters.axis.scale = logarithmic;
+  }
 }
 
 SigmoidCurve curve_of(const PsychometricParameters& p) {

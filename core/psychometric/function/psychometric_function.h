@@ -25,6 +25,12 @@ struct PsychometricParameters {
 /// logarithms, as psignifit has it. @throws std::invalid_argument with the names that are allowed
 PsychometricParameters parameters_named(std::string_view name, double guess = 0.0);
 
+/// Gives a function the sigmoid and the direction of a name, and its linear axis the scale
+/// `logarithmic` if the name is that of a logarithmic sigmoid. The one way from a name to a
+/// function, so that no reader of a name forgets the direction.
+/// @throws std::invalid_argument as parameters_named()
+void set_sigmoid(PsychometricParameters& parameters, std::string_view name, Scale logarithmic);
+
 /// @throws std::invalid_argument naming share or tail if it breaks its bound.
 SigmoidCurve curve_of(const PsychometricParameters& parameters);
 

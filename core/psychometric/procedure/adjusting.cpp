@@ -81,10 +81,11 @@ void Adjusting::report(double answer, const Level& applied) {
   const double level = checks::single_level(applied, kAdjusting);
   checks::require(answer == -1.0 || answer == 0.0 || answer == 1.0, kAdjusting,
                   "answer must be -1, 0 or 1");
+  began_ = presentations_ == 0 ? level : began_;
   ++presentations_;
   if (answer == 0.0) {
     settings_.push_back(level);
-    from_above_.push_back(starts_[at_] > level);
+    from_above_.push_back(began_ > level);
   }
   if (answer == 0.0 || presentations_ >= parameters_.most_presentations) {
     given_up_ += answer == 0.0 ? 0 : 1;

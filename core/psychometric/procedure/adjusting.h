@@ -23,7 +23,8 @@ struct AdjustingParameters {
 /// setting, and the next adjustment begins at its own start. At every turn the steps get finer.
 /// Estimate: the mean of the settings, with its standard error. Settings from above end higher than
 /// those from below. With two or more of either kind the estimate is the mean of the means of both
-/// sides, and its error has only the scatter within them.
+/// sides, and its error has only the scatter within them. An adjustment began at the level that was
+/// first presented, so estimates follow from the outcomes alone, whatever order the starts had.
 class Adjusting final : public Procedure {
  public:
   /// @param seed, name  of the stream that shuffles the starts
@@ -47,6 +48,7 @@ class Adjusting final : public Procedure {
   std::vector<bool> from_above_;  // (settings) whether the start lay above the setting
   std::size_t at_{0};             // of starts_
   Level level_;
+  double began_{0.0};    // level first presented in this adjustment
   std::size_t step_{0};  // of the parameters' steps
   int direction_{0};     // of the last step; 0: none yet
   int presentations_{0};

@@ -117,6 +117,7 @@ TEST(AdjustingTest, SettingsFromEitherSideCountAlikeAndTheirDifferenceIsNoScatte
       }
       continue;
     }
+    procedure.report(under ? 1.0 : -1.0, Level(procedure.next()));
     procedure.report(0.0, {left.front()});
     left.erase(left.begin());
   }
@@ -140,6 +141,34 @@ TEST(AdjustingTest, ARepetitionOfTheOutcomesGivesTheSameLevels) {
   replay(again, outcomes);
   EXPECT_EQ(again.settings(), first.settings());
   EXPECT_EQ(again.finished(), first.finished());
+}
+
+// Everybody ends at 280 from below and at 340 from above, so neither side has any scatter.
+TEST(AdjustingTest, AnotherOrderOfStartsDoesNotMixTheSides) {
+  AdjustingParameters p;
+  p.starts = {{100.0, 800.0}, 4, false};
+  p.steps = {20.0};
+  p.low = 50.0;
+  p.high = 900.0;
+  Adjusting session(p, 3, "S02");
+  std::vector<Outcome> outcomes;
+  bool below = true, fresh = true;
+  while (!session.finished()) {
+    const double level = session.next().front();
+    below = fresh ? level < 300.0 : below;
+    const double answer = below ? (level < 278.0 ? 1.0 : 0.0) : (level > 342.0 ? -1.0 : 0.0);
+    fresh = answer == 0.0;
+    outcomes.push_back({answer, session.next()});
+    session.report(answer, outcomes.back().applied);
+  }
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    Adjusting again(p, seed, "another order");
+    replay(again, outcomes);
+    const auto estimate = again.estimates().at(0);
+    EXPECT_EQ(estimate.name, "mean of 8 settings, both sides alike");
+    EXPECT_DOUBLE_EQ(estimate.value, 310.0);
+    EXPECT_DOUBLE_EQ(estimate.deviation.value(), 0.0);
+  }
 }
 
 TEST(AdjustingTest, RefusesWhatItCannotUse) {

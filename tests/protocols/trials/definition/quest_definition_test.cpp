@@ -78,6 +78,30 @@ TEST(QuestDefinitionTest, OfOneDimensionItSuggestsWhatPsiSuggests) {
   EXPECT_NEAR(formula->estimates().front().value, psi->estimates().front().value, 1e-9);
 }
 
+// Right answers get rarer towards 450: a comparison below a standard.
+TEST(QuestDefinitionTest, AFunctionThatFallsFindsItsThreshold) {
+  const auto named = procedure_of(after_kind(kSameGrids, "function = \"neg_norm\"\n"));
+  const auto formula = procedure_of(after_kind(
+      kSameGrids,
+      "probability = \"0.5 + (0.5 - $lapse) * normcdf(3.2897072539029444 * ($threshold - $level) "
+      "/ $width)\"\n"));
+  std::string text = kPsi;
+  text.replace(text.find("\"norm\""), 6, "\"neg_norm\"");
+  const auto psi = procedure_of(text);
+  RandomStream random(4, "answers");
+  while (!psi->finished()) {
+    const psychometric::Level level = psi->next();
+    ASSERT_EQ(named->next(), level);
+    ASSERT_EQ(formula->next(), level);
+    const double answer = random.uniform() < 0.5 + 0.48 / (1.0 + std::exp((level[0] - 450) / 20.0));
+    for (auto* each : {psi.get(), named.get(), formula.get()}) {
+      each->report(answer, level);
+    }
+  }
+  EXPECT_NEAR(psi->estimates().front().value, 450.0, 30.0);
+  EXPECT_NEAR(formula->estimates().front().value, psi->estimates().front().value, 1e-9);
+}
+
 const char* const kPlane = R"toml([experiment]
 protocol = "trials"
 name = "plane"
