@@ -168,6 +168,8 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"break_left", s.break_left},
       {"target_force", s.target_force},
       {"applied_force", s.applied_force},
+      {"force_on_hand", s.force_on_hand},
+      {"force_limit", s.force_limit},
       {"position", {s.position.x(), s.position.y(), s.position.z()}},
       {"device", s.device},
       {"fault", s.fault},

@@ -41,6 +41,7 @@ void LiveStatus::fill(SessionStatus& status) const {
   status.position = last_.position;
   status.target_force = last_.target_force;
   status.applied_force = last_.applied_force;
+  status.force_on_hand = last_.force.norm();
   status.stage = name_of(last_.stage);
   if (lateness_.count() > 0) {
     status.lateness_median_us = 1e-3 * lateness_.percentile(50.0);

@@ -49,6 +49,8 @@ struct SessionStatus {
   double break_left{0.0};                             // [s]
   double target_force{0.0};                           // [N]
   double applied_force{0.0};                          // [N]
+  double force_on_hand{0.0};                          // length of the commanded force [N]
+  double force_limit{0.0};                            // the longest that may be commanded [N]
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // [m]
   std::string device;
   std::string fault;  // one sentence; empty where there is none

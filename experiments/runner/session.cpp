@@ -179,6 +179,7 @@ Session::Session(const SessionRequest& request)
   status.device = request.device.name;
   status.simulated = rig_->device().info().simulated;
   status.rate = d_.rate;
+  status.force_limit = std::min(d_.envelope.max_force, rig_->device().info().max_force);
   status.has_target = d_.has_target();
   if (real_) {
     watched_.emplace(stop_);

@@ -172,7 +172,6 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   out.intent.push = reading.shares.stiffness * done.drag + shake;
   out.intent.stimulus = shake;
   out.saturated = wanted.norm() > parameters_.force_limit;
-  out.applied_force = out.force.y();
   out.stage = record::Stage::kRun;
   bone::DrillingView seen = view_of(simulator_, input);
   seen.progress = static_cast<double>(ticks_) / static_cast<double>(time_limit_);

@@ -160,7 +160,6 @@ PassOutput LedPass::output(const Readings& readings) noexcept {
   out.intent.push = share * felt.drag + shake;
   out.intent.stimulus = shake;
   out.saturated = wanted.norm() > p_.parameters.force_limit;
-  out.applied_force = out.force.y();
   out.stage = record::Stage::kRun;
   bone::DrillingView seen = view_of(p_.simulator, own);
   seen.progress = std::min(

@@ -40,8 +40,7 @@ struct Drive {
 /// What one tick of a pass asks for.
 struct PassOutput : Drive {  // of the first device
   stimulus::Shown shown;
-  double target_force{0.0};   // [N]
-  double applied_force{0.0};  // by the participant, downward > 0 [N]
+  double target_force{0.0};  // [N]
   record::Stage stage{record::Stage::kIdle};
   bool saturated{false};   // the device's force limit was reached
   markers::Onsets onsets;  // what begins on this tick, if the pass names its onsets

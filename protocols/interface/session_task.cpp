@@ -140,7 +140,7 @@ void SessionTask::record(const realtime::Tick& tick, const PassOutput& out) noex
   sample.position = readings[0].tool.position;
   sample.velocity = readings[0].tool.velocity;
   sample.force = forces[0];
-  sample.applied_force = out.applied_force;
+  sample.applied_force = out.force.y();  // the device pushes back with what the hand presses
   sample.target_force = out.target_force;
   sample.pass = pass_ != nullptr ? row_ : -1;
   sample.stage = out.stage;

@@ -106,6 +106,7 @@ class ScriptedSession {
     const bool moving = status_.state == "running";
     status_.target_force = moving ? 2.2 + 1.1 * std::sin(1.26 * t) + 0.5 * std::sin(2.9 * t) : 0.0;
     status_.applied_force = moving ? 0.93 * status_.target_force + 0.15 * std::sin(7.0 * t) : 0.0;
+    status_.force_on_hand = std::abs(status_.applied_force);
     status_.position = {0.05 * std::sin(0.3 * t), 0.0004 * std::sin(5.0 * t),
                         0.02 * std::cos(0.7 * t)};
   }
@@ -187,6 +188,8 @@ TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
           status.rate_measured = 998.3;
           status.figures = drilled();
           status.has_target = false;
+          status.force_on_hand = 11.0;
+          status.force_limit = 12.0;
         }
       }
       status.ticks += 20;

@@ -36,6 +36,12 @@ def look(page, url, folder):
     state(page, "Running")
     wait("the panel", lambda: not page.hidden("figures"))
     assert page.hidden("target_row"), "no force to follow in a drilling"
+    assert page.hidden("applied_row"), "nothing to compare with a target"
+    assert page.text("hand") == "\u26a0\ufe0e 11.00 N", page.text("hand")
+    assert page.run("return document.getElementById('hand_row').classList.contains('near')")
+    width = page.run("return document.getElementById('hand_bar').getAttribute('width')")
+    assert abs(float(width) - 100 * 11 / 12) < 0.01, width
+    assert "limit of 12.0 N" in page.text("scale"), page.text("scale")
     for name, wanted in EXPECTED.items():
         shown = page.text(name).strip().removeprefix("\u26a0\ufe0e").strip()
         assert shown == wanted, f"{name} is {shown!r}, not {wanted!r}"

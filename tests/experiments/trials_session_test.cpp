@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <span>
 #include <thread>
 
 #include "core/base/error.h"
@@ -20,6 +21,7 @@
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/trials/trial_rows.h"
+#include "experiments/control/live_status.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
@@ -101,6 +103,28 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedTrialsTest,
                                          "viscosity_magnitude", "shape_recognition", "curl_field",
                                          "size_by_eye_and_hand", "lump_search"),
                          [](const auto& tested) { return std::string(tested.param); });
+
+TEST(TrialsSessionTest, TheConsoleShowsTheForceOfAStaircase) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(shipped("stiffness_discrimination"));
+  run_session(request_for(experiment, folder / "S01.h5", 2));
+  const record::SessionReader file(folder / "S01.h5");
+  const std::vector<record::Sample> samples = file.samples(0, file.sample_count());
+  LiveStatus live;
+  double greatest = 0.0;
+  double pressed = 0.0;
+  for (const record::Sample& sample : samples) {
+    live.follow(std::span(&sample, 1), 1e6);
+    SessionStatus status;
+    live.fill(status);
+    ASSERT_NEAR(status.force_on_hand,
+                std::hypot(sample.force.x(), sample.force.y(), sample.force.z()), 1e-9);
+    greatest = std::max(greatest, status.force_on_hand);
+    pressed = std::max(pressed, status.applied_force);
+  }
+  EXPECT_GT(greatest, 0.4) << "a finger presses a wall of 300 N/m";
+  EXPECT_GT(pressed, 0.4) << "and the wall pushes back as much";
+}
 
 TEST(TrialsSessionTest, WhatWasPresentedIsWhatIsRecorded) {
   const test::TemporaryFolder folder;

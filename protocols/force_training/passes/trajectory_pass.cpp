@@ -228,13 +228,12 @@ void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading)
     own.y() *= 1.0 - share;
     out.force = control::saturate(own + played, parameters_.force_limit);
     out.saturated = longer(own + played, parameters_.force_limit);
-    out.applied_force = out.force.y();
     const double stretch = (model.tool.position - tool.position).squaredNorm();
     out.intent.push = out.force - Eigen::Vector3d(own.x(), 0.0, own.z()) - coupling;
     out.intent.drive = model.tool.velocity;
     out.intent.stored += 0.5 * share * reading.shares.stiffness * gains.stiffness * stretch;
     out.shown = presentation(
-        {tool.position, stage_, along_, out.target_force, out.applied_force, out.saturated});
+        {tool.position, stage_, along_, out.target_force, out.force.y(), out.saturated});
   }
   if (log_ != nullptr) {
     const double lead = run_lead() == RunLead::kPlayed ? share : 0.0;
@@ -262,10 +261,8 @@ PassOutput TrajectoryPass::output(const device::DeviceReading& reading,
   out.force = control::saturate(wanted, parameters_.force_limit);
   out.intent = intent(target, reading, out.force, pushes);
   out.saturated = longer(wanted, parameters_.force_limit);
-  out.applied_force = out.force.y();
 
-  PassMoment moment{tool.position,     stage_,       along_, out.target_force,
-                    out.applied_force, out.saturated};
+  PassMoment moment{tool.position, stage_, along_, out.target_force, out.force.y(), out.saturated};
   if (runs && guide_) {
     moment.direction = guide_->direction();
   }

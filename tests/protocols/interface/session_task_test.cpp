@@ -37,7 +37,6 @@ class ConstantPass final : public Pass {
     out.force = force_;
     out.stage = record::Stage::kRun;
     out.target_force = 1.5;
-    out.applied_force = 2.5;
     stimulus::Presentation seen;
     seen.tool = readings[0].tool.position;
     seen.block = 9;
@@ -142,7 +141,7 @@ TEST_F(SessionTaskTest, APassRunsAndEverythingElseIsRest) {
     EXPECT_EQ(row.stage, within ? record::Stage::kRun : record::Stage::kIdle);
     EXPECT_EQ(row.force, within ? Vector3d(0, 5, 0) : Vector3d(0, 0, 0));
     EXPECT_EQ(row.target_force, within ? 1.5 : 0.0);
-    EXPECT_EQ(row.applied_force, within ? 2.5 : 0.0);
+    EXPECT_EQ(row.applied_force, within ? 5.0 : 0.0) << "no pass says it";
     EXPECT_EQ(witness_.blocks[row.sequence], within ? 9 : 0);
   }
   EXPECT_NEAR(witness_.time, 40 * kDt, 1e-12);

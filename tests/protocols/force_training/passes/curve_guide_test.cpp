@@ -194,7 +194,7 @@ TEST(CurveGuideTest, AReplayFindsThePlacesAgain) {
     s.velocity = m.tool.velocity;
     s.stage = m.out.stage;
     s.target_force = m.out.target_force;
-    s.applied_force = m.out.applied_force;
+    s.applied_force = m.out.force.y();
     s.saturated = m.out.saturated;
     samples.push_back(s);
   }
