@@ -12,6 +12,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_progress.h"
 #include "experiments/study/session_name.h"
+#include "experiments/study/study_files.h"
 #include "protocols/definition/groups.h"
 #include "protocols/interface/study_rules.h"
 
@@ -33,6 +34,9 @@ struct FoundFile {
 SessionState state_of(const fs::path& file, const record::SessionReader& reader) {
   if (file.extension() == ".partial") {
     return record::FileLock::taken(file) ? SessionState::kRunning : SessionState::kUnfinished;
+  }
+  if (is_declined(reader)) {
+    return SessionState::kDeclined;
   }
   const auto events = reader.events();
   const bool aborted = std::any_of(events.begin(), events.end(), [](const record::EventRow& event) {
@@ -166,7 +170,8 @@ class RosterMaker {
     person.group = group_of(person.number);
     std::sort(person.sessions.begin(), person.sessions.end(),
               [](const auto& a, const auto& b) { return a.session < b.session; });
-    for (int session = roster_.sessions; session >= 1 && !person.excluded; --session) {
+    for (int session = roster_.sessions; session >= 1 && !person.excluded && !person.declined();
+         --session) {
       const RosterSession* there = person.session(session);
       if (there == nullptr || there->state == SessionState::kUnfinished) {
         person.next = session;
@@ -181,7 +186,7 @@ class RosterMaker {
     }
     std::map<int, std::string> holders;
     for (const RosterPerson& person : roster_.persons) {
-      if (person.pilot || person.excluded) {
+      if (person.pilot || person.excluded || person.never_took_part()) {
         continue;
       }
       if (person.number < 1 || person.number > planned()) {
@@ -197,7 +202,7 @@ class RosterMaker {
       }
       RosterGroup& group = of(person.group);
       ++group.begun;
-      group.finished += person.next == 0 ? 1 : 0;
+      group.finished += person.next == 0 && !person.declined() ? 1 : 0;
       taken_.insert(person.number);
     }
   }
@@ -299,6 +304,8 @@ const char* name_of(SessionState state) {
   switch (state) {
     case SessionState::kAborted:
       return "aborted";
+    case SessionState::kDeclined:
+      return "declined";
     case SessionState::kUnfinished:
       return "unfinished";
     case SessionState::kRunning:
@@ -313,6 +320,17 @@ const RosterSession* RosterPerson::session(int wanted) const {
   const auto at = std::find_if(sessions.begin(), sessions.end(),
                                [&](const RosterSession& each) { return each.session == wanted; });
   return at != sessions.end() ? &*at : nullptr;
+}
+
+bool RosterPerson::declined() const {
+  return std::any_of(sessions.begin(), sessions.end(), [](const RosterSession& each) {
+    return each.state == SessionState::kDeclined;
+  });
+}
+
+bool RosterPerson::never_took_part() const {
+  return declined() && std::all_of(sessions.begin(), sessions.end(),
+                                   [](const RosterSession& each) { return each.trials == 0; });
 }
 
 Roster make_roster(const RosterRequest& request) { return RosterMaker(request).make(); }

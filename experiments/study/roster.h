@@ -14,6 +14,7 @@ namespace haptrial::experiments {
 enum class SessionState : std::uint8_t {
   kDone,
   kAborted,     // ended for good by the experimenter, with trials left
+  kDeclined,    // the participant did not consent
   kUnfinished,  // stopped or killed: --resume goes on with it
   kRunning      // another process is recording it
 };
@@ -39,6 +40,10 @@ struct RosterPerson {
   int next{0};                          // session; 0: none is left
 
   const RosterSession* session(int number) const;
+  /// Did not consent, so nothing more is to be run.
+  bool declined() const;
+  /// Declined before any trial was done, so the number is free again.
+  bool never_took_part() const;
 };
 
 /// A session that could be run now.
@@ -56,7 +61,7 @@ struct RosterNext {
 struct RosterGroup {
   std::string name;
   int planned{0};   // participants
-  int begun{0};     // of them; neither pilots nor excluded ones
+  int begun{0};     // of them; no pilots, excluded ones or ones who never took part
   int finished{0};  // with every session
 };
 
@@ -85,8 +90,8 @@ struct RosterRequest {
 
 /// Numbers 1 to n are the participants that the definition plans, and a number says the group
 /// (groups.h). A new participant gets the lowest free number of the group that has the smallest
-/// share of its participants; the number of an excluded participant is free again, and its next
-/// holder has another identifier.
+/// share of its participants; the number of a participant who was excluded or declined before
+/// any trial is free again, and its next holder has another identifier.
 /// @throws InputError for a file of another study or seed; names it
 Roster make_roster(const RosterRequest& request);
 

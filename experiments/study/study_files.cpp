@@ -21,14 +21,6 @@ struct Sorted {
   std::vector<fs::path> declined;
 };
 
-/// Whether the participant did not agree to take part, so that nothing was presented.
-bool is_declined(const record::SessionReader& reader) {
-  const auto answers = reader.rows<record::AnswerRow>();
-  return std::any_of(answers.begin(), answers.end(), [](const record::AnswerRow& row) {
-    return row.item == "consent" && row.text == "declined";
-  });
-}
-
 Sorted sorted_files(const fs::path& folder) {
   Sorted sorted;
   for (const fs::path& file : session_files(folder)) {
@@ -75,6 +67,13 @@ std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
 }
 
 }  // namespace
+
+bool is_declined(const record::SessionReader& reader) {
+  const auto answers = reader.rows<record::AnswerRow>();
+  return std::any_of(answers.begin(), answers.end(), [](const record::AnswerRow& row) {
+    return row.item == "consent" && row.text == "declined";
+  });
+}
 
 std::vector<std::string> unfinished_sessions(const fs::path& folder) {
   std::vector<std::string> names;

@@ -30,6 +30,9 @@ std::vector<std::string> unfinished_sessions(const std::filesystem::path& folder
 /// Whether a folder holds session files, finished or not.
 bool holds_sessions(const std::filesystem::path& folder);
 
+/// Whether the participant did not consent, so that nothing was presented.
+bool is_declined(const record::SessionReader& reader);
+
 /// Sessions that belong to one study.
 struct StudyFiles {
   std::vector<std::filesystem::path> files;

@@ -6,12 +6,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/control/session_control.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_name.h"
@@ -70,6 +74,34 @@ class RosterTest : public testing::Test {
     request.pilot = pilot;
     request.file = sessions_ / session_file_name(subject, session, 2);
     run_session(request);
+  }
+  /// A session whose participant answers every question with its second choice.
+  void decline(const std::string& subject) const {
+    SessionControl control;
+    SessionRequest request;
+    request.protocol = &experiment_.study->protocol();
+    request.definition = experiment_.definition.get();
+    request.subject = subject;
+    request.participant = number_of_subject(subject) - 1;
+    request.session = 1;
+    request.seed = 1;
+    request.control = &control;
+    request.clock = realtime::ClockKind::kReal;
+    request.device = {"virtual", "", 0};
+    request.file = sessions_ / session_file_name(subject, 1, 2);
+    std::atomic<bool> done{false};
+    std::thread person([&] {
+      for (int answered = 0; !done; std::this_thread::sleep_for(std::chrono::milliseconds(2))) {
+        const SessionStatus status = control.status();
+        if (status.asked.number > answered) {
+          answered = status.asked.number;
+          control.answer(answered, "2");
+        }
+      }
+    });
+    run_session(request);
+    done = true;
+    person.join();
   }
   Roster roster() const {
     return make_roster({&experiment_.study->protocol(),
@@ -167,6 +199,27 @@ TEST_F(RosterTest, TheNumberOfAnExcludedParticipantIsFreeAgain) {
   EXPECT_EQ(now.persons[0].next, 0);
   EXPECT_EQ(now.next.front().subject, "Pb01");
   EXPECT_EQ(now.next.front().number, 1);
+}
+
+TEST_F(RosterTest, WhoDeclinesTakesNoPlace) {
+  test::write_text(definition_, std::string(kGroups) + R"([pages]
+before = ["agree"]
+[pages.agree]
+kind = "consent"
+text = "Do you take part?"
+)");
+  experiment_ = load_experiment(definition_);
+  decline("P01");
+  const Roster now = roster();
+  ASSERT_EQ(now.persons.size(), 1u);
+  EXPECT_STREQ(name_of(now.persons[0].sessions.at(0).state), "declined");
+  EXPECT_EQ(now.persons[0].next, 0);
+  EXPECT_EQ(now.groups[0].begun, 0);
+  EXPECT_EQ(now.groups[0].finished, 0);
+  EXPECT_EQ(now.next.front().number, 1) << "the number is free again";
+  EXPECT_EQ(now.next.front().subject, "Pb01") << "the identifier is not";
+  const auto shown = haptrial("roster " + quoted(definition_) + " " + quoted(sessions_));
+  EXPECT_THAT(shown.output, testing::ContainsRegex("P01 .*declined"));
 }
 
 TEST_F(RosterTest, WhoIsExcludedIsReplacedByTheNextOne) {

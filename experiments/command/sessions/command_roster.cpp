@@ -33,10 +33,11 @@ std::string sessions_in(const RosterPerson& person, SessionState state, int sess
 }
 
 std::string standing_of(const RosterPerson& person) {
-  return person.pilot       ? "pilot"
-         : person.excluded  ? "excluded"
-         : person.simulated ? "simulated"
-                            : "";
+  return person.pilot        ? "pilot"
+         : person.excluded   ? "excluded"
+         : person.declined() ? "declined"
+         : person.simulated  ? "simulated"
+                             : "";
 }
 
 /// Columns as wide as their longest entry.
