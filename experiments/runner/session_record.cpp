@@ -223,7 +223,7 @@ std::size_t SessionRecord::collect(const Follower& follow) {
   return count;
 }
 
-/// What befell the file.
+/// Says what befell the file.
 void SessionRecord::tell_notices() {
   for (const std::string& notice : writer_.take_notices()) {
     fmt::print(stderr, "{}\n", notice);

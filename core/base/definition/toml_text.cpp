@@ -67,7 +67,7 @@ class ParserGuard : private TomlCursor {
     }
   }
 
-  /// What is wrong with the character at this place, or nothing.
+  /// Says what is wrong with the character at this place, or nothing.
   std::string judge_character() {
     const char c = peek();
     if (static_cast<unsigned char>(c) >= 0x80) {

@@ -16,7 +16,7 @@
 namespace haptrial {
 namespace {
 
-/// What the library throws if a program uses it wrongly; no input should lead there.
+/// The library throws this if a program uses it wrongly; no input should lead there.
 bool is_own_fault(const std::exception& error) {
   const auto is = [&]<class... Kind>() {
     return (... || (dynamic_cast<const Kind*>(&error) != nullptr));

@@ -5,7 +5,7 @@
 
 namespace haptrial {
 
-/// What a user reads of an exception: its own sentence, or one for those of the standard library,
+/// The text a user reads of an exception: its own, or a sentence for those of the standard library,
 /// whose words name functions ("std::bad_alloc").
 std::string sentence_of(const std::exception& error);
 

@@ -30,7 +30,7 @@ struct Rescale {
   double offset{0.0};
 };
 
-/// What a file says of one of its frames, in millimetres.
+/// One frame as its file states it, in millimetres.
 struct Slice {
   fs::path file;
   int frame{0};

@@ -47,7 +47,7 @@ class Handshake {
   using Answer = std::array<unsigned char, kAnswerBytes>;
   using Closing = std::array<unsigned char, kClosingBytes>;
 
-  /// What a host says in place of its opening or closing if it has no time for a guest.
+  /// A host says this in place of its opening or closing if it has no time for a guest.
   template <class Message>
   static Message busy() noexcept {
     Message message{};

@@ -11,7 +11,7 @@
 namespace haptrial::network {
 namespace {
 
-/// What fits into the buffer of a connection that carried little before.
+/// This much fits into the buffer of a connection that carried little before.
 bool send_at_once(const Socket& to, std::span<const unsigned char> bytes) noexcept {
   return ::send(to.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
          static_cast<ssize_t>(bytes.size());

@@ -172,7 +172,7 @@ void TrialPass::note_stage(const IntervalRun& run, PassOutput& out) noexcept {
                   static_cast<std::int16_t>(run.sights[stage].sound)});
 }
 
-/// What the fields of the interval give; after the last one, those that fade out.
+/// The fields of the interval give this; after the last one, those that fade out do.
 void TrialPass::feel(const Readings& readings) noexcept {
   IntervalRun& run = setup_.intervals[interval_];
   const std::size_t devices = std::min(device_count_, run.scenes.size());

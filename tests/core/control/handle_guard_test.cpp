@@ -30,7 +30,7 @@ struct Hand {
 /// A hand of this mass like that of the shipped study (0.8 kg, 15 N·s/m, 250 N/m).
 Hand like_the_shipped(double mass) { return {mass, 15.0 * mass / 0.8, 250.0 * mass / 0.8}; }
 
-/// What is felt along one axis.
+/// The feeling along one axis.
 struct Law {
   const char* name;
   PdGains gains;

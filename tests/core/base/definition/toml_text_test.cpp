@@ -1,4 +1,4 @@
-// What would reach undefined behaviour of the TOML parser is refused before it.
+// Text that would reach undefined behaviour of the TOML parser is refused before it.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -22,7 +22,7 @@ unsigned read_attempts(const fs::path& path) {
   return attempts;
 }
 
-/// What looks torn becomes whole only while somebody writes; a damaged file would cost the wait for
+/// A torn look becomes whole only while somebody writes; a damaged file would cost the wait for
 /// each of its chunks.
 TEST(Hdf5FilesTest, OnlyAFileThatIsWrittenIsReadAgain) {
   const test::TemporaryFolder folder;
