@@ -29,7 +29,7 @@ VirtualDeviceParameters read_virtual_device_parameters(Table& table);
 /// A device without hardware. Each write() advances the physics by one period; the force of a tick
 /// acts force_delay ticks later, by default during the next one, as it does through a bus.
 /// Velocity is the least-squares slope over the last readings, as drivers estimate it: over those
-/// of velocity_window, whatever the rate, but two at least.
+/// within velocity_window at any rate, and over at least two.
 class VirtualDevice final : public Device {
  public:
   /// @param physics  outlives the device.

@@ -1,5 +1,5 @@
-// What tests may not do. check.sh installs every Debian package that a test needs. A test may
-// therefore skip only if something else is missing, and its message names it: a variable
+// Rules for every test. check.sh installs each Debian package that a test needs, so a test may
+// skip only if something else is missing, and its message names it: a variable
 // HAPTRIAL_... (data that the project does not ship, or a test that takes minutes), a device file,
 // root's rights or the network; or the sanitizer under which the test cannot run.
 // A machine may be slow or stand still for a moment: a test waits for what it needs as long as it

@@ -25,8 +25,7 @@ class ConsolePerson {
   /// @returns false if the session ended before; else seen() is what the page showed.
   bool sees(const std::string& state, const std::string& stage = "");
   const nlohmann::json& seen() const;
-  /// Whether the page comes to show that state within so many seconds, for a state that must not
-  /// come.
+  /// Watches for a state that must not come. @returns whether the page showed it in these seconds
   bool sees_within(double seconds, const std::string& state);
 
  private:

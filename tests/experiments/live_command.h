@@ -70,7 +70,8 @@ std::string shipped_with_all(const std::vector<std::pair<std::string, std::strin
 std::vector<std::pair<std::string, std::string>> brisk_lines();
 /// The shipped study with these, and others: for sessions in whose passes nobody does anything.
 std::string brisk_text(std::vector<std::pair<std::string, std::string>> more = {});
-/// The same with runs of several minutes: whoever acts within one is in time on any machine.
+/// The shipped study with runs of several minutes: whoever acts within one is in time on any
+/// machine.
 std::string attended_text(std::vector<std::pair<std::string, std::string>> more = {});
 
 }  // namespace haptrial::test

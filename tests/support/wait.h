@@ -13,7 +13,7 @@ void wait_until(const std::function<bool()>& condition,
 
 /// Watches for something that must not happen. A slow machine may miss it, so that a test may
 /// expect false, never true.
-/// @returns whether the condition held at some time within so many seconds
+/// @returns whether the condition held at any time during these seconds
 bool happens_within(double seconds, const std::function<bool()>& condition);
 
 }  // namespace haptrial::test

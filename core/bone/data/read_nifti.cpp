@@ -16,7 +16,7 @@ struct ForgetNifti {
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 
-/// @throws InputError for a unit that is none of length.
+/// @throws InputError for a unit that does not measure length.
 double nifti_metres(const std::string& name, int unit) {
   switch (unit) {
     case NIFTI_UNITS_METER:
