@@ -11,11 +11,13 @@ namespace {
 
 constexpr double kSwing = 1.5;            // peak to peak [N]
 constexpr double kLargeSwing = 2.0;       // [N]
+constexpr double kOfATremor = 4.0;        // at most, in resonance with a wall [N]
 constexpr double kLongestGap = 0.062;     // between turns; those of a slower hand are its own [s]
 constexpr double kOfAHand = 0.033;        // turns of a hand by itself are longer apart [s]
-constexpr int kFastTurns = 2;             // that make an oscillation, if large and no hand's own
 constexpr int kTurns = 3;                 // that make an oscillation
+constexpr int kLargeTurns = 2;            // the same, if large
 constexpr double kStep = 1.2;             // of g, for each turn and each N of its swing
+constexpr int kTurnsInCalm = 1;           // slow ones that do not die away, before anything goes
 constexpr int kTurnsWithoutDamping = 2;   // that do not die away, before stiffness gives way
 constexpr double kStiffnessStep = 2.5;    // of g above kStiffnessFrom, for each turn
 constexpr double kDying = 0.96;           // of the swing before
@@ -28,6 +30,7 @@ constexpr double kQuiet = 0.08;           // without a turn [s]
 constexpr double kGivingBack = 7.5;       // of g [1/s]
 constexpr double kTryingAnew = 0.2;       // of what was too little, damping [1/s]
 constexpr double kTryingStiffness = 0.3;  // [1/s]
+constexpr double kCalmingEnds = 0.5;      // of c [1/s]
 constexpr double kFastest = 80.0;  // change of a share, so that 6 N change by 0.5 N in 1 ms [1/s]
 constexpr double kSlow = 4.0;      // a hand's own movement ends about there [Hz]
 
@@ -46,8 +49,7 @@ const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eige
                                      const Eigen::Vector3d& accounted, double dt) noexcept {
   const SwingCounter::Train train = turns_.look(force, accounted, dt);
   quiet_for_ += dt;
-  const bool fast = train.gap < kOfAHand && train.swing >= kLargeSwing;
-  if (train.turned && train.turns >= (fast ? kFastTurns : kTurns)) {
+  if (oscillates(train)) {
     give_way(train);
     quiet_for_ = 0.0;
   } else if (quiet_for_ > kQuiet) {
@@ -59,6 +61,7 @@ const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eige
   const GainShares wanted = wanted_shares();
   go_towards(shares_.damping, wanted.damping);
   go_towards(shares_.stiffness, wanted.stiffness);
+  go_towards(calm_now_, calm_);
   calm(velocity, dt);
   return shares_;
 }
@@ -74,22 +77,36 @@ bool HandleGuard::settled() const noexcept {
          shares_.stiffness < wanted.stiffness + kNearly;
 }
 
-/// A swing that dies away by itself, as after a knock, is only damped. A hand may shake by itself,
-/// if slowly and weakly; then only damping goes.
+/// A hand may shake by itself against what is stiff, if slowly: that is calmed, and nothing goes.
+bool HandleGuard::oscillates(const SwingCounter::Train& train) noexcept {
+  const bool large = train.swing >= kLargeSwing;
+  if (!train.turned || train.turns < (large ? kLargeTurns : kTurns)) {
+    return false;
+  }
+  if (train.gap <= kOfAHand) {
+    slow_turns_ = 0;
+    return true;
+  }
+  calm_ = 1.0;
+  const bool dies = train.swing < kDying * train.swing_before;
+  slow_turns_ = dies || train.swing < kOfATremor ? 0 : slow_turns_ + 1;
+  return slow_turns_ >= kTurnsInCalm;
+}
+
+/// A swing that dies away by itself, as after a knock, is only damped.
 void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
   if (!settled()) {
     still_ = 0;
     return;  // what was given up last has not come to act
   }
   const bool dies = train.swing < kDying * train.swing_before;
-  const bool by_a_hand = train.gap > kOfAHand && train.swing < kLargeSwing;
   still_ = dies ? 0 : still_ + 1;
   if (recovers_ && !dies) {
     too_little_ = std::min(kMostGiven, std::max(too_little_, given_ + kMargin));
     recovers_ = false;
   }
   if (given_ >= kStiffnessFrom) {
-    if (still_ >= kTurnsWithoutDamping && !by_a_hand) {
+    if (still_ >= kTurnsWithoutDamping) {
       given_ = std::min(kMostGiven, given_ + kStiffnessStep);
       still_ = 0;
     }
@@ -100,6 +117,7 @@ void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
 }
 
 void HandleGuard::recover(double dt) noexcept {
+  calm_ = std::max(0.0, calm_ - kCalmingEnds * dt);
   remembered_for_ = given_ > 0.0 ? 0.0 : remembered_for_ + dt;
   recovers_ = remembered_for_ < kRemembered && (recovers_ || given_ > 0.0);
   const double anew = too_little_ > kStiffnessFrom ? kTryingStiffness : kTryingAnew;
@@ -110,7 +128,7 @@ void HandleGuard::recover(double dt) noexcept {
 void HandleGuard::calm(const Eigen::Vector3d& velocity, double dt) noexcept {
   const Eigen::Vector3d v = velocity.allFinite() ? velocity : Eigen::Vector3d(slow_);
   slow_ += std::min(1.0, 2.0 * std::numbers::pi * kSlow * dt) * (v - slow_);
-  calming_ = -(1.0 - shares_.damping) * calm_damping_ * (v - slow_);
+  calming_ = -std::max(1.0 - shares_.damping, calm_now_) * calm_damping_ * (v - slow_);
 }
 
 }  // namespace haptrial::control

@@ -18,16 +18,17 @@ namespace haptrial::control {
 ///
 ///     share of damping    s_b = exp(-g)
 ///     share of stiffness  s_k = exp(-(g - 3)) above g = 3, else 1
-///     calming damper      f = -(1 - s_b) b_0 v_h
+///     calming damper      f = -max(1 - s_b, c) b_0 v_h
 ///
 /// so that damping and virtual mass go first, stiffness last, and in place of both comes the
 /// damping b_0 that the bare handle carries (damping_of_bare_handle()), on the part v_h of the
 /// velocity above 4 Hz, so that it does not hold back a hand that moves. What dies away by itself,
-/// as after a knock, is only damped. Turns that are slower than those of 15 Hz may be a hand's own;
-/// they take no more than the damping away, as long as they stay below 2 N. When it has become
-/// quiet, the gains come back within a second. Where the oscillation then comes back, g stays
-/// a little above that value, which is tried anew only slowly. So a heavy hand has all the gains, a
-/// light one what it carries. docs/algorithms/every-hand.md has the figures.
+/// as after a knock, is only damped. Turns that are slower than those of 15 Hz may be a hand's own,
+/// and a damper still takes energy from them: they bring in the calming damper (c = 1) and take
+/// nothing away, unless they reach 4 N, more than a tremor does, and do not die away. When it has
+/// become quiet, the gains come back within a second. Where the oscillation then comes back, g
+/// stays a little above that value, which is tried anew only slowly. So a heavy hand has all the
+/// gains, a light one what it carries. docs/algorithms/every-hand.md has the figures.
 ///
 /// Servo thread, all but the constructor: no allocation, lock, I/O or throw.
 class HandleGuard {
@@ -49,6 +50,7 @@ class HandleGuard {
  private:
   GainShares wanted_shares() const noexcept;
   bool settled() const noexcept;
+  bool oscillates(const SwingCounter::Train& train) noexcept;
   void give_way(const SwingCounter::Train& train) noexcept;
   void recover(double dt) noexcept;
   void calm(const Eigen::Vector3d& velocity, double dt) noexcept;
@@ -57,9 +59,12 @@ class HandleGuard {
   SwingCounter turns_;
   GainShares shares_;
   double given_{0.0};                                 // g
+  double calm_{0.0};                                  // wanted c
+  double calm_now_{0.0};                              // c
   double too_little_{0.0};                            // g at which the oscillation came back
   double quiet_for_{1.0};                             // [s]
   int still_{0};                                      // turns that did not die away
+  int slow_turns_{0};                                 // large ones that did not die away
   bool recovers_{false};                              // has become quiet after it had given way
   double remembered_for_{0.0};                        // since all the gains are back [s]
   Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};     // velocity below 4 Hz [m/s]

@@ -23,7 +23,7 @@ SwingCounter::Train SwingCounter::look(const Eigen::Vector3d& force,
     Axis& axis = axes_[static_cast<std::size_t>(i)];
     const double rest = force[i] - accounted[i];
     if (first) {
-      axis.highest = axis.lowest = rest;
+      axis.highest = axis.lowest = {rest, time_, time_};
     }
     look_at(axis, rest, swing);
     const bool longer = axis.train.turns > longest.turns ||
@@ -48,42 +48,40 @@ double SwingCounter::accounted_swing(const Eigen::Vector3d& accounted, double dt
 
 void SwingCounter::look_at(Axis& axis, double force, double swing) const noexcept {
   axis.train.turned = false;
-  if (force > axis.highest) {
-    axis.highest = force;
-    axis.highest_at = time_;
+  if (force >= axis.highest.force) {
+    axis.highest = {force, force > axis.highest.force ? time_ : axis.highest.from, time_};
   }
-  if (force < axis.lowest) {
-    axis.lowest = force;
-    axis.lowest_at = time_;
+  if (force <= axis.lowest.force) {
+    axis.lowest = {force, force < axis.lowest.force ? time_ : axis.lowest.from, time_};
   }
-  if (axis.direction >= 0 && axis.highest - force >= swing) {
+  if (axis.direction >= 0 && axis.highest.force - force >= swing) {
     axis.direction = -1;
-    note_turn(axis, axis.highest_at, axis.highest);
-  } else if (axis.direction <= 0 && force - axis.lowest >= swing) {
+    note_turn(axis, axis.highest);
+  } else if (axis.direction <= 0 && force - axis.lowest.force >= swing) {
     axis.direction = 1;
-    note_turn(axis, axis.lowest_at, axis.lowest);
+    note_turn(axis, axis.lowest);
   } else {
     if (time_ - axis.turned_at > 2.0 * longest_gap_) {  // the next turn may have been already
       axis.train = {};
     }
     return;
   }
-  axis.highest = axis.lowest = force;
-  axis.highest_at = axis.lowest_at = time_;
+  axis.highest = axis.lowest = {force, time_, time_};
 }
 
-void SwingCounter::note_turn(Axis& axis, double at, double from) const noexcept {
+void SwingCounter::note_turn(Axis& axis, const Extreme& extreme) const noexcept {
   Train& train = axis.train;
+  const double at = 0.5 * (extreme.from + extreme.until);
   train.gap = at - axis.turned_at;
   train.swing_before = train.swing;
-  train.swing = std::abs(from - axis.turned_from);
-  train.largest = std::max(std::abs(from), std::abs(axis.turned_from));
+  train.swing = std::abs(extreme.force - axis.turned_from);
+  train.largest = std::max(std::abs(extreme.force), std::abs(axis.turned_from));
   const bool follows = train.turns > 0 && train.gap <= longest_gap_;
   train.turns = follows ? train.turns + 1 : 1;
   train.lasted = follows ? train.lasted + train.gap : 0.0;
   train.turned = true;
   axis.turned_at = at;
-  axis.turned_from = from;
+  axis.turned_from = extreme.force;
 }
 
 }  // namespace haptrial::control

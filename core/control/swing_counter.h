@@ -36,19 +36,23 @@ class SwingCounter {
   Train look(const Eigen::Vector3d& force, const Eigen::Vector3d& accounted, double dt) noexcept;
 
  private:
+  /// A force may stay at its extreme, at a limit or without contact.
+  struct Extreme {
+    double force{0.0};  // [N]
+    double from{0.0};   // [s]
+    double until{0.0};  // [s]
+  };
   struct Axis {
-    double highest{0.0};  // since the last turn [N]
-    double lowest{0.0};
-    double highest_at{0.0};  // [s]
-    double lowest_at{0.0};
+    Extreme highest;  // since the last turn
+    Extreme lowest;
     int direction{0};         // +1 rising, -1 falling; 0: not known yet
-    double turned_at{0.0};    // of the last turn [s]
+    double turned_at{0.0};    // of the last turn, the middle of its extreme [s]
     double turned_from{0.0};  // the force there [N]
     Train train{};
   };
   double accounted_swing(const Eigen::Vector3d& accounted, double dt) noexcept;
   void look_at(Axis& axis, double force, double swing) const noexcept;
-  void note_turn(Axis& axis, double at, double from) const noexcept;
+  void note_turn(Axis& axis, const Extreme& extreme) const noexcept;
 
   double least_swing_;
   double longest_gap_;

@@ -11,13 +11,14 @@ constexpr double kAtTheLimit = 0.98;  // of it
 constexpr double kShareOfLimit = 0.5;    // of the limit, peak to peak
 constexpr double kNear = 0.7;            // of the limit
 constexpr double kGapNearLimit = 0.080;  // [s]
-constexpr int kTurnsNearLimit = 4;
+constexpr int kTurnsNearLimit = 5;
 constexpr double kLastingNearLimit = 0.065;  // [s]
 
 // Anywhere: what no hand does by itself.
 constexpr double kSwing = 2.0;       // peak to peak [N]
 constexpr double kGap = 1.0 / 30.0;  // between the turns of 15 Hz [s]
 constexpr double kLasting = 0.2;     // [s]
+constexpr double kDying = 0.96;      // of the swing before: what dies away, as after a knock
 
 }  // namespace
 
@@ -34,7 +35,8 @@ Fault ForceWatch::look(const Eigen::Vector3d& force, const Eigen::Vector3d& stim
   const SwingCounter::Train any = swings_.look(force, stimulus, dt);
   const bool oscillates = (near.turned && near.turns >= kTurnsNearLimit &&
                            near.lasted >= kLastingNearLimit && near.largest > kNear * limit_) ||
-                          (any.turned && any.lasted >= kLasting);
+                          (any.turned && any.lasted >= kLasting &&
+                           any.swing >= kDying * any.swing_before);
   if (oscillates) {
     return Fault::kOscillation;
   }

@@ -11,6 +11,7 @@ namespace {
 constexpr double kHeaviestHand = 2.0;    // with the handle [kg]
 constexpr double kFrozenWay = 6e-5;      // [m]
 constexpr double kProof = 1.5;           // of force that a hand does not lose without moving [N]
+constexpr double kGone = 0.25;           // without a force, which is proof of itself [s]
 constexpr double kForceMemory = 0.020;   // of what the hand held against before [s]
 constexpr double kRest = 1e-4;           // [m/s]
 constexpr double kStaleAfter = 0.020;    // [s]
@@ -52,12 +53,13 @@ bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) n
     equal_for_ = equal ? dt : 0.0;
     free_speed_.setZero();
     free_way_.setZero();
-    doubted_ = 0.0;
+    doubted_ = gone_for_ = 0.0;
     return false;
   }
   equal_for_ += dt;
   if (doubted_ > 0.0) {
-    return force.norm() <= std::max(0.0, doubted_ - kProof);
+    gone_for_ = force.isZero(0.0) ? gone_for_ + dt : 0.0;
+    return doubted_ - force.norm() >= kProof || gone_for_ >= kGone;
   }
   const Eigen::Vector3d change = force - held_;
   // A force that friction alone could hold can take nothing from a hand, either.

@@ -34,8 +34,8 @@ class ReadingWatch {
   /// hold against, for so long that a free hand of 2 kg would have moved by 0.06 mm, or by twice
   /// the smallest step that was seen. It may be frozen, or a hand tenses against just this force:
   /// the force should now fall. A hand that tenses moves before it has lost 1.5 N, which ends the
-  /// doubt; if the position is still the same when the force has lost as much, or is gone, it is
-  /// frozen.
+  /// doubt; if the position is still the same when the force has lost as much, or has been gone for
+  /// a quarter of a second, it is frozen.
   bool in_doubt() const noexcept { return doubted_ > 0.0; }
 
   /// Something is odd and may become a fault: the force should not grow until this is clear.
@@ -64,7 +64,8 @@ class ReadingWatch {
   Eigen::Vector3d held_{Eigen::Vector3d::Zero()};        // mean force while the hand moved last [N]
   Eigen::Vector3d free_speed_{Eigen::Vector3d::Zero()};  // of a free hand since then [m/s]
   Eigen::Vector3d free_way_{Eigen::Vector3d::Zero()};    // [m]
-  double doubted_{0.0};  // force when the position was first in doubt; 0: it is not [N]
+  double doubted_{0.0};   // force when the position was first in doubt; 0: it is not [N]
+  double gone_for_{0.0};  // since the force has gone in doubt [s]
   double odd_for_{0.0};  // left, after an odd step [s]
   std::array<double, kJitterTicks - 1> odd_at_{};  // ring of times [s]
   int odd_{0};

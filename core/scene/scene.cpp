@@ -193,6 +193,7 @@ void Scene::switch_to(std::uint64_t mask) noexcept {
 
 void Scene::start_from(const Scene& before) noexcept {
   before_ = before.before_;
+  share_ = before.share_;
   const std::size_t shared = std::min(parts_.size(), before.parts_.size());
   for (std::size_t i = 0; i < shared; ++i) {
     Part& part = parts_[i];
@@ -268,6 +269,20 @@ void Scene::feel(Part& part, const PointState& hand, const control::GainShares& 
   state.force = passed * force;
   state.stimulus *= passed;
   state.max_force = std::max(state.max_force, part.fade.weight() * std::min(size, part.limit));
+  store(part, shares.stiffness);
+}
+
+/// The energy of the springs that the hand loads, and what of it comes from their stiffness alone.
+void Scene::store(Part& part, double share) noexcept {
+  FieldState& state = part.state;
+  std::visit(
+      [&](const auto& law) {
+        if constexpr (requires { law.stored(state.depth, share); }) {
+          state.stored = part.fade.weight() * law.stored(state.depth, share);
+          state.added = state.stored - part.fade.weight() * law.stored(state.depth, share_);
+        }
+      },
+      part.law);
 }
 
 Vector3d Scene::force(const PointState& hand, const control::GainShares& shares) noexcept {
@@ -279,6 +294,7 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares)
     part.state.weight = part.fade.weight();
     part.state.force.setZero();
     part.state.stimulus.setZero();
+    part.state.stored = part.state.added = 0.0;
     if (!part.acts()) {
       part.state.contact = part.state.limited = part.state.sliding = false;
     }
@@ -302,6 +318,7 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares)
       part.fade.next(period_);
     }
   }
+  share_ = shares.stiffness;
   return sum;
 }
 

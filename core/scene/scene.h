@@ -67,6 +67,7 @@ class Scene {
  private:
   struct Part;
   void feel(Part& part, const PointState& hand, const control::GainShares& shares) noexcept;
+  void store(Part& part, double share) noexcept;
   void lay_reliefs(const Eigen::Vector3d& p) noexcept;
 
   std::vector<Part> parts_;
@@ -75,6 +76,7 @@ class Scene {
   std::vector<std::size_t> forces_;  // surfaces, then what may lie on them: all but reliefs
   double period_;
   Eigen::Vector3d before_{Eigen::Vector3d::Zero()};  // the hand a tick ago [m]
+  double share_{1.0};                                // of stiffness, a tick ago
 };
 
 }  // namespace haptrial::scene

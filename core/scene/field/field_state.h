@@ -42,6 +42,8 @@ struct FieldState {
   double depth{0.0};
   Eigen::Vector3d proxy{Eigen::Vector3d::Zero()};  // of a solid, in W [m]
   double weight{0.0};                              // of the fade, 0 to 1
+  double stored{0.0};   // in the spring of a surface or a mesh, faded >= 0 [J]
+  double added{0.0};    // of `stored`, since the share of its stiffness changed in this tick [J]
   bool contact{false};  // touches the surface; of other fields: gives a force
   bool limited{false};  // the limit cut the force of this tick
   bool sliding{false};  // friction: slides rather than sticks

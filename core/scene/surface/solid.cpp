@@ -91,6 +91,11 @@ Vector3d Solid::push(const contact::Contact& contact, const Felt& felt,
   return force;
 }
 
+double Solid::stored(double depth, double share) const noexcept {
+  return control::PdController(parameters_.gains)
+      .stored(depth, limit_ / (1.0 + relief_.steepest), share);
+}
+
 Vector3d Solid::force(const Felt& felt, FieldState& state) noexcept {
   state.contact = state.sliding = false;
   state.depth = 0.0;

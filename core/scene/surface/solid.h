@@ -45,6 +45,8 @@ class Solid {
   void lay(const ReliefHere& relief) noexcept { relief_ = relief; }  // before force()
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
   const SurfaceTouch& touch() const noexcept { return touch_; }
+  /// As Surface has it; what friction holds is left out.
+  double stored(double depth, double share) const noexcept;
 
  private:
   Eigen::Vector3d to_body(const Eigen::Vector3d& p) const noexcept;

@@ -60,9 +60,11 @@ Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
 }
 
 double Surface::energy(const Vector3d& p) const noexcept {
-  const double depth = relief_.height - free_side(p).distance;
-  return control::PdController(gains_).stored(std::max(depth, 0.0),
-                                              limit_ / (1.0 + relief_.steepest));
+  return stored(std::max(relief_.height - free_side(p).distance, 0.0), 1.0);
+}
+
+double Surface::stored(double depth, double share) const noexcept {
+  return control::PdController(gains_).stored(depth, limit_ / (1.0 + relief_.steepest), share);
 }
 
 }  // namespace haptrial::scene

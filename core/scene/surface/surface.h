@@ -38,6 +38,8 @@ class Surface {
   void lay(const ReliefHere& relief) noexcept { relief_ = relief; }  // before force() or energy()
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
   double energy(const Eigen::Vector3d& p) const noexcept;  // [J]
+  /// The energy at a depth [m], with a share of the stiffness [J].
+  double stored(double depth, double share) const noexcept;
   const SurfaceTouch& touch() const noexcept { return touch_; }
 
  private:

@@ -118,6 +118,8 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
       drive.intent.push += scene.state(field).force;
     }
     drive.intent.stimulus += scene.state(field).stimulus;
+    drive.intent.stored += scene.state(field).stored;
+    drive.intent.added += scene.state(field).added;
     saturated_ = saturated_ || scene.state(field).limited;
   }
   if (const double size = force.norm(); size > setup_.max_force) {

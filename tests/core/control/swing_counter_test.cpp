@@ -42,6 +42,13 @@ TEST(SwingCounterTest, ASineTurnsTwiceAPeriodAndSwingsByTwiceItsAmplitude) {
   }
 }
 
+/// As a hand that trembles at a wall and leaves it in between.
+TEST(SwingCounterTest, AForceThatStaysAtItsExtremeTurnsInTheMiddleOfThat) {
+  const auto train =
+      longest([](double t) { return std::max(0.0, 3.0 * sine(10.0, t) - 0.5); }, kNothing);
+  EXPECT_NEAR(train.gap, 0.05, 1.5 * kTick);
+}
+
 TEST(SwingCounterTest, WhatIsTooSmallOrTooSlowIsNoTrain) {
   EXPECT_EQ(longest([](double t) { return 0.49 * sine(40.0, t); }, kNothing).turns, 0);
   EXPECT_LE(longest([](double t) { return 5.0 * sine(8.0, t); }, kNothing).turns, 2);

@@ -384,7 +384,7 @@ std::vector<SlowBreach> slow_breaches() {
        [](double t, const Vector3d&) { return Vector3d(0.0, 11.0 * std::sin(280.0 * t), 0.0); }},
       {Fault::kSaturation, 3.1, lies,
        [](double, const Vector3d&) { return Vector3d(0.0, 12.0, 0.0); }},
-      {Fault::kFrozen, 0.15, [](double) { return Vector3d(0.01, 0.0, 0.0); },
+      {Fault::kFrozen, 0.4, [](double) { return Vector3d(0.01, 0.0, 0.0); },
        [](double t, const Vector3d&) { return Vector3d(0.0, std::min(12.0, 14.4 * t), 0.0); }},
       {Fault::kJitter, 0.05,
        [](double t) { return Vector3d(std::lround(1e3 * t) % 2 == 0 ? 0.004 : 0.0, 0.0, 0.0); },

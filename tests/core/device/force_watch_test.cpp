@@ -34,7 +34,7 @@ double found_after(double rate, Fault expected, double seconds, Course course,
   return -1.0;
 }
 
-TEST(ForceWatchTest, AnOscillationNearTheLimitIsFoundWithin100Milliseconds) {
+TEST(ForceWatchTest, AnOscillationNearTheLimitIsFoundWithin120Milliseconds) {
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
     for (const double f : {22.0, 36.0, 45.0, 100.0, 0.1 * rate}) {
       for (const double offset : {0.0, 6.0}) {  // about zero, or off and on against a wall
@@ -43,7 +43,7 @@ TEST(ForceWatchTest, AnOscillationNearTheLimitIsFoundWithin100Milliseconds) {
           return Vector3d(0.3, offset + size * std::sin(2.0 * kPi * f * t), 0.0);
         });
         EXPECT_GE(at, 0.0) << f;
-        EXPECT_LE(at, 0.100) << rate << " Hz: " << f << " Hz about " << offset;
+        EXPECT_LE(at, 0.120) << rate << " Hz: " << f << " Hz about " << offset;
       }
     }
   }

@@ -71,7 +71,8 @@ TEST(ReadingWatchTest, AFrozenReadingIsInDoubtWithin50MillisecondsAndAFaultWhenT
       EXPECT_GT(doubted, kBegin);
       EXPECT_LE(doubted, kBegin + (slope < 20.0 ? 0.060 : 0.050));
       EXPECT_GT(found, doubted);
-      EXPECT_LE(found, doubted + 1.6 / 20.0 + 2.0 / rate) << "1.5 N fall at 20 N/s";
+      const double gone = slope < 30.0 ? 0.25 : 0.0;  // there is less than 1.5 N to lose
+      EXPECT_LE(found, doubted + gone + 1.6 / 20.0 + 2.0 / rate) << "1.5 N fall at 20 N/s";
     }
   }
 }
