@@ -17,9 +17,10 @@ def rows():
             people = int(cell["levels"]["design.participants"])
             for name, test in cell["studies"]["tests"].items():
                 low, high = test["null_band_99"]
-                yield [folder.name, people, name, test["made"], test["rejected"],
-                       f"{test['rejected'] / test['made']:.4f}", low, high,
-                       "yes" if low <= test["rejected"] <= high else "no"]
+                rejected = test["rejected"]
+                yield [folder.name, people, name, test["made"], rejected,
+                       f"{rejected / test['made']:.4f}", low, high,
+                       "no" if rejected > high else "cautious" if rejected < low else "yes"]
 
 
 with open(sys.argv[2], "w", newline="") as out:

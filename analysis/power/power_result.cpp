@@ -63,7 +63,10 @@ Level level_of(const PowerResult& result, const std::string& test) {
   return level;
 }
 
-bool is_power(const PowerResult& result) { return level_of(result, result.watch) == Level::kKept; }
+bool is_power(const PowerResult& result) {
+  const Level level = level_of(result, result.watch);
+  return level == Level::kKept || level == Level::kBelow;
+}
 
 std::string words_of(const PowerResult& result, const PowerCell& cell) {
   std::string words;

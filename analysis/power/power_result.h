@@ -92,7 +92,8 @@ Level level_of(const PowerResult& result, const std::string& test);
 /// The same in one cell.
 Level level_in(const PowerCell& cell, const std::string& test, double alpha);
 
-/// Whether rejections may be called power: the watched test keeps its level.
+/// Whether rejections may be called power: the watched test is known not to exceed its level. A
+/// p value that is adjusted for other tests, or of few ranks, rejects less often than the level.
 bool is_power(const PowerResult& result);
 
 /// "design.participants 12, observer.drift 0.01".

@@ -42,19 +42,20 @@ std::string verdict(const PowerResult& result) {
         "its true level is not known and no share below is a power.",
         result.watch);
   }
-  double rate = level == Level::kAbove ? 0.0 : 1.0;
+  double rate = 0.0;
   for (const PowerCell& cell : result.nulls) {
     const TestCount count = cell.counts.of(result.watch);
-    const double here = static_cast<double>(count.rejected) /
-                        static_cast<double>(std::max<std::size_t>(1, count.made));
-    rate = level == Level::kAbove ? std::max(rate, here) : std::min(rate, here);
+    rate = std::max(rate, static_cast<double>(count.rejected) / static_cast<double>(count.made));
   }
-  return fmt::format(
-      "Without any effect the test \"{}\" rejects in {:.1f} % of studies where {:g} % are allowed: "
-      "it "
-      "{}. Shares of rejections below are therefore not called power.",
-      result.watch, 100.0 * rate, 100.0 * result.alpha,
-      level == Level::kAbove ? "finds effects that are not there" : "is too careful");
+  const std::string found = fmt::format(
+      "Without any effect the test \"{}\" rejects in {:.1f} % of studies where {:g} % "
+      "are allowed: it ",
+      result.watch, 100.0 * rate, 100.0 * result.alpha);
+  return level == Level::kBelow
+             ? found + "is cautious, and the shares below are its power."
+             : found +
+                   "finds effects that are not there. Shares of rejections below are "
+                   "therefore not called power.";
 }
 
 std::string mean_words(const RunningMean& mean) {

@@ -102,6 +102,26 @@ std::string design_in_words(const DesignTable& table) {
 
 }  // namespace
 
+std::vector<NamedTest> named_tests(const TestFamily& family, const std::string& prefix) {
+  std::vector<NamedTest> named;
+  for (const SideTest& test : family.tests) {
+    const auto note = [&](const std::string& kind, const auto& found, const auto& adjusted) {
+      if (!found) {
+        return;
+      }
+      const std::string name = prefix + text_of(test.sides) + ", " + kind;
+      named.push_back({name, *adjusted});
+      if (family.tests.size() > 1) {
+        named.push_back({name + kUnadjusted, found->p});
+      }
+    };
+    note(name_of_test(test), test.t, test.holm);
+    note("ranks", test.ranks, test.ranks_holm);
+    note("permutation", test.permutation, test.permutation_holm);
+  }
+  return named;
+}
+
 void check_plan(const DesignTable& table, const AnalysisPlan& plan) {
   const auto known = known_sides(table);
   const auto require = [&](const std::string& side, const char* what) {

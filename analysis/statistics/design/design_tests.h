@@ -21,6 +21,19 @@ struct TestFamily {
   std::vector<SideTest> tests;
 };
 
+/// A test by the name under which simulated studies count it.
+struct NamedTest {
+  std::string name;
+  double p{1.0};
+};
+
+inline constexpr const char* kUnadjusted = ", unadjusted";
+
+/// Tests of a family with the p values by which a report decides: Holm's. The p value before the
+/// adjustment is a test of its own, if the family has several tests.
+/// @param prefix  in front of each name: "planned: "
+std::vector<NamedTest> named_tests(const TestFamily& family, const std::string& prefix);
+
 /// What a study's design calls for, with participants as the unit.
 struct DesignTests {
   std::string design;                   // in words: "one factor within participants: condition"

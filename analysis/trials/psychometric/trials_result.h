@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "analysis/trials/data/page_scores.h"
+#include "analysis/trials/fit/function_fit.h"
+#include "analysis/trials/fit/serial.h"
+#include "analysis/trials/fit/track_estimate.h"
 #include "analysis/trials/psychometric/cue_study.h"
 #include "analysis/trials/psychometric/detected.h"
-#include "analysis/trials/fit/function_fit.h"
 #include "analysis/trials/psychometric/magnitudes.h"
 #include "analysis/trials/psychometric/population.h"
 #include "analysis/trials/psychometric/quantity.h"
-#include "analysis/trials/fit/serial.h"
-#include "analysis/trials/fit/track_estimate.h"
 #include "analysis/trials/reaching/reaching_study.h"
 #include "analysis/trials/surface/surface_study.h"
 
@@ -28,12 +28,6 @@ struct ParticipantTrials {
   std::size_t aborted{0};                                           // passes
   Defined<double> reaction_time{Undefined{"it was not measured"}};  // median [s]
   double saturated{0.0};  // share of the counted trials that reached the force limit
-};
-
-/// A named test of a report, for the level of null studies.
-struct NamedTest {
-  std::string name;
-  double p{1.0};
 };
 
 /// What the sessions of a study gave.

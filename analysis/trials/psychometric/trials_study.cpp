@@ -205,19 +205,8 @@ void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {
     tests.push_back({q.title + ": on ranks", q.tests.ranks->p});
   }
   const auto add_family = [&](const TestFamily& family) {
-    for (const SideTest& test : family.tests) {
-      const std::string name =
-          fmt::format("{}: {} {}, ", q.title, family.name, text_of(test.sides));
-      if (test.t) {
-        tests.push_back({name + name_of_test(test), test.t->p});
-      }
-      if (test.ranks) {
-        tests.push_back({name + "ranks", test.ranks->p});
-      }
-      if (test.permutation) {
-        tests.push_back({name + "permutation", test.permutation->p});
-      }
-    }
+    const auto named = named_tests(family, fmt::format("{}: {} ", q.title, family.name));
+    tests.insert(tests.end(), named.begin(), named.end());
   };
   add_family(q.tests.planned);
   for (const TestFamily& family : q.tests.families) {

@@ -57,14 +57,13 @@ std::optional<ScoreParts> read_parts(const std::vector<NamedText>& definition,
 }
 
 void note_tests(const analysis::TestFamily& family, Rehearsed& r) {
+  for (const analysis::NamedTest& test : named_tests(family, family.name + ": ")) {
+    r.tests.push_back({test.name, test.p});
+  }
   for (const analysis::SideTest& test : family.tests) {
-    const std::string name = fmt::format("{}: {}", family.name, text_of(test.sides));
     if (test.t) {
-      r.tests.push_back({name + ", " + name_of_test(test), test.t->p});
+      const std::string name = fmt::format("{}: {}", family.name, text_of(test.sides));
       r.values.push_back({name + ", " + name_of_test(test), test.t->difference});
-    }
-    if (test.ranks) {
-      r.tests.push_back({name + ", ranks", test.ranks->p});
     }
   }
 }

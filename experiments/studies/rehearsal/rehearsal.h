@@ -17,7 +17,7 @@ struct NamedNumber {
 
 /// What the report of one simulated study says.
 struct Rehearsed {
-  std::vector<NamedNumber> tests;     // p value of every test that could be made
+  std::vector<NamedNumber> tests;     // p by which the report decides each test
   std::vector<NamedNumber> values;    // on the report's scale; that of a test has the test's name
   std::vector<std::string> failures;  // reasons, each as often as it came up
   std::uint64_t trials{0};            // of the study proper

@@ -83,7 +83,7 @@ void note_values(const trials::Quantity& q, std::vector<NamedNumber>& values) {
 
 Rehearsed rehearsed_of(const trials::TrialsResult& result) {
   Rehearsed r;
-  for (const trials::NamedTest& test : trials::tests_of(result)) {
+  for (const analysis::NamedTest& test : trials::tests_of(result)) {
     r.tests.push_back({test.name, test.p});
   }
   for (const trials::Quantity& q : result.quantities) {
@@ -125,7 +125,8 @@ class TrialsRehearsal final : public Rehearsal {
     plan_.posteriors = false;
     plan_.serial = watched.find(": ") == std::string::npos;  // names of other tests have one
     plan_.population = !plan_.by.empty();                    // it tests nothing but conditions
-    plan_.permutations = watched.ends_with("permutation") ? plan_.permutations : 0;
+    plan_.permutations =
+        watched.find(", permutation") != std::string::npos ? plan_.permutations : 0;
     if (plan_.kind == trials::AnalysisKind::kReaching || plan_.cues) {
       throw InputError(fmt::format(
           "{}: power by simulation does not know analyses of movements or of two cues; watch a "

@@ -71,10 +71,14 @@ PowerResult result_with(std::size_t null_rejected) {
   return result;
 }
 
-TEST(PowerResult, RejectionsArePowerOnlyWhereTheTestKeepsItsLevel) {
+TEST(PowerResult, RejectionsArePowerOnlyIfTheTestDoesNotExceedItsLevel) {
   EXPECT_TRUE(is_power(result_with(100)));
   EXPECT_EQ(level_of(result_with(127), "t"), Level::kAbove);
+  EXPECT_FALSE(is_power(result_with(127)));
   EXPECT_EQ(level_of(result_with(75), "t"), Level::kBelow);
+  EXPECT_TRUE(is_power(result_with(75))) << "rejections of a cautious test are its power";
+  EXPECT_THAT(verdict(result_with(50)), HasSubstr("rejects in 2.5 % of studies where 5 % are "
+                                                  "allowed: it is cautious"));
   EXPECT_EQ(level_of(result_with(100), "another"), Level::kUnknown);
   PowerResult none = result_with(100);
   none.nulls.clear();

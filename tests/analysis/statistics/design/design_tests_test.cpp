@@ -308,6 +308,33 @@ PlannedTest test_of(const std::string& text) {
   return parse_analysis_plan({text}, "", "--planned").tests.at(0);
 }
 
+// Holm's rule over two tests: the smaller p doubled, the larger at least as large.
+TEST(DesignTests, AreNamedWithThePThatDecides) {
+  Made made("named");
+  for (int i = 0; i < 8; ++i) {
+    for (const char* level : {"a", "b", "c"}) {
+      made.add(person("P", i), {level}, level[0] == 'c' ? 1.0 : 0.0);
+    }
+  }
+  AnalysisPlan plan;
+  plan.tests = {test_of("a < b"), test_of("b < c")};
+  const TestFamily planned =
+      design_tests(design_table(made.observations, {"condition"}), plan, kNone).planned;
+  const auto named = named_tests(planned, "planned: ");
+  std::map<std::string, double> p;
+  for (const NamedTest& test : named) {
+    p[test.name] = test.p;
+  }
+  const double first = p.at("planned: a < b, paired t, unadjusted");
+  const double second = p.at("planned: b < c, paired t, unadjusted");
+  EXPECT_EQ(first, planned.tests[0].t->p);
+  EXPECT_NEAR(std::min(p.at("planned: a < b, paired t"), p.at("planned: b < c, paired t")),
+              2.0 * std::min(first, second), 1e-15);
+  EXPECT_EQ(named.size(), 8u);  // t and ranks of two tests, with and without Holm's adjustment
+  const TestFamily one{"planned", {planned.tests[0]}};
+  EXPECT_EQ(named_tests(one, "").size(), 2u) << "nothing to adjust";
+}
+
 TEST(AnalysisPlan, IsReadAndWrittenAlike) {
   for (const char* text : {"visual < haptic", "a b > c", "x, y != x, z"}) {
     EXPECT_EQ(text_of(test_of(text)), text);

@@ -114,7 +114,7 @@ std::vector<NullLevel> null_reaches(const std::vector<std::string>& by, std::siz
     TrialsResult result;
     result.quantities = reach_quantities(made.data, made.reaching, plan);
     NullLevels levels;
-    for (const NamedTest& test : tests_of(result)) {
+    for (const analysis::NamedTest& test : tests_of(result)) {
       levels.note(test.name, true, test.p < 0.05);
     }
     return levels;
