@@ -28,8 +28,7 @@ void add_family(Document& document, const TestFamily& family) {
                               number(test.t->high))
                 : "–",
          test.t ? (test.paired ? "paired " : "Welch's ") + t_result(test.t) : t_result(test.t),
-         p_result(test.holm), effect(test.size), p_result(test.ranks_holm),
-         p_result(test.permutation_holm)});
+         p_result(test.holm), effect(test.size), ranks_p(test), p_result(test.permutation_holm)});
   }
   if (!rows.empty()) {
     document.table(

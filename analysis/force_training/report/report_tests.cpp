@@ -41,7 +41,7 @@ std::string sentence(const StudyStatistics& s, const SideTest& test, const std::
 /// A test on ranks and its adjusted p.
 std::string ranks_result(const SideTest& test) {
   return test.ranks ? fmt::format("{} = {:g}, {}", test.paired ? "V" : "U", test.ranks->statistic,
-                                  p_result(test.ranks_holm))
+                                  ranks_p(test))
                     : "not defined, because " + test.ranks.because();
 }
 

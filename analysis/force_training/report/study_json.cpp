@@ -39,7 +39,7 @@ Json to_json(const RepeatedAnova& a) {
 }
 
 Json to_json(const RankAnova& r) {
-  return {{"chi_squared", r.chi_squared}, {"df", r.df}, {"p", r.p}};
+  return {{"chi_squared", r.chi_squared}, {"df", r.df}, {"p", r.p}, {"exact", r.exact}};
 }
 
 Json to_json(const ShapiroWilk& s) { return {{"w", s.w}, {"p", s.p}}; }

@@ -15,53 +15,67 @@ namespace {
 
 constexpr std::size_t kExactBelow = 50;
 
-// Probabilities of V = 0, 1, ...: each rank is positive or not.
-std::vector<double> signed_rank_distribution(std::size_t n) {
-  std::vector<double> p(n * (n + 1) / 2 + 1, 0.0);
-  p[0] = 1.0;
-  for (std::size_t rank = 1; rank <= n; ++rank) {
-    for (std::size_t v = rank * (rank + 1) / 2 + 1; v-- > 0;) {
-      p[v] = 0.5 * (p[v] + (v >= rank ? p[v - rank] : 0.0));
-    }
+using Ways = std::vector<double>;  // in which a sum of ranks of 0, 1, ... units can arise
+
+/// Ranks as whole numbers of units: of halves where values tie.
+struct WholeRanks {
+  std::vector<long> ranks;
+  long unit{1};  // of a rank
+};
+
+WholeRanks whole(const Ranks& ranks) {
+  WholeRanks result{{}, ranks.ties > 0.0 ? 2 : 1};
+  for (const double rank : ranks.ranks) {
+    result.ranks.push_back(std::lround(static_cast<double>(result.unit) * rank));
   }
-  return p;
+  return result;
 }
 
-// Probabilities of U = 0 .. m n. The largest of all values is of the first sample, and adds n to U,
-// or of the second:  (m + n) P(u; m, n) = m P(u - n; m - 1, n) + n P(u; m, n - 1).
-std::vector<double> mann_whitney_distribution(std::size_t m, std::size_t n) {
-  std::vector<std::vector<double>> p(m + 1, std::vector<double>{1.0});  // by size of the first
-  for (std::size_t second = 1; second <= n; ++second) {
-    for (std::size_t first = 1; first <= m; ++first) {
-      const std::vector<double> without = std::move(p[first]);
-      const std::vector<double>& smaller = p[first - 1];
-      const double of_first = static_cast<double>(first) / static_cast<double>(first + second);
-      p[first].assign(first * second + 1, 0.0);
-      for (std::size_t u = 0; u < without.size(); ++u) {
-        p[first][u] += (1.0 - of_first) * without[u];
-      }
-      for (std::size_t u = 0; u < smaller.size(); ++u) {
-        p[first][u + second] += of_first * smaller[u];
+/// Sums of the positive ranks: each rank is positive or not.
+Ways signed_rank_ways(const WholeRanks& ranks) {
+  const auto total = std::accumulate(ranks.ranks.begin(), ranks.ranks.end(), 0L);
+  Ways ways(static_cast<std::size_t>(total) + 1, 0.0);
+  ways[0] = 1.0;
+  for (const long rank : ranks.ranks) {
+    for (long sum = total; sum >= rank; --sum) {
+      ways[static_cast<std::size_t>(sum)] += ways[static_cast<std::size_t>(sum - rank)];
+    }
+  }
+  return ways;
+}
+
+/// Sums of the ranks of a sample: every choice of `count` ranks.
+Ways chosen_rank_ways(const WholeRanks& ranks, std::size_t count) {
+  const auto total = std::accumulate(ranks.ranks.begin(), ranks.ranks.end(), 0L);
+  std::vector<Ways> ways(count + 1, Ways(static_cast<std::size_t>(total) + 1, 0.0));
+  ways[0][0] = 1.0;
+  long most = 0;  // sum of the ranks so far
+  for (const long rank : ranks.ranks) {
+    most += rank;
+    for (std::size_t chosen = count; chosen > 0; --chosen) {
+      for (long sum = most; sum >= rank; --sum) {
+        ways[chosen][static_cast<std::size_t>(sum)] +=
+            ways[chosen - 1][static_cast<std::size_t>(sum - rank)];
       }
     }
   }
-  return p[m];
+  return ways[count];
 }
 
-double exact_p(const std::vector<double>& distribution, double statistic, Tail tail) {
-  const auto place = static_cast<std::ptrdiff_t>(std::llround(statistic));
-  const auto at_most = std::accumulate(distribution.begin(), distribution.begin() + place + 1, 0.0);
-  // Summed from its small end.
-  const auto at_least = std::accumulate(distribution.rbegin(), distribution.rend() - place, 0.0);
-  switch (tail) {
-    case Tail::kLess:
-      return std::min(1.0, at_most);  // sums may round to just above 1
-    case Tail::kGreater:
-      return std::min(1.0, at_least);
-    case Tail::kTwoSided:
-      break;
+/// The share of the ways whose sum is as far out as the one found.
+/// @param twice_middle  twice the expected sum
+double exact_p(const Ways& ways, long found, long twice_middle, Tail tail) {
+  double beyond = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const auto sum = static_cast<long>(i);
+    const bool far = tail == Tail::kLess ? sum <= found
+                     : tail == Tail::kGreater
+                         ? sum >= found
+                         : std::abs(2 * sum - twice_middle) >= std::abs(2 * found - twice_middle);
+    beyond += far ? ways[i] : 0.0;
+    all += ways[i];
   }
-  return std::min(1.0, 2.0 * std::min(at_most, at_least));
+  return beyond / all;
 }
 
 // @param excess  statistic less its expectation.
@@ -105,12 +119,17 @@ Defined<RankTest> wilcoxon_signed_rank(std::span<const double> a, std::span<cons
   for (std::size_t i = 0; i < differences.size(); ++i) {
     result.statistic += differences[i] > 0.0 ? ranks.ranks[i] : 0.0;
   }
-  result.exact = result.count < kExactBelow && ranks.ties == 0.0 && result.count == a.size();
+  result.exact = result.count < kExactBelow;
   const auto n = static_cast<double>(result.count);
-  result.p = result.exact
-                 ? exact_p(signed_rank_distribution(result.count), result.statistic, tail)
-                 : normal_p(result.statistic - n * (n + 1.0) / 4.0,
-                            n * (n + 1.0) * (2.0 * n + 1.0) / 24.0 - ranks.ties / 48.0, tail);
+  if (result.exact) {
+    const WholeRanks units = whole(ranks);
+    const Ways ways = signed_rank_ways(units);
+    result.p = exact_p(ways, std::lround(static_cast<double>(units.unit) * result.statistic),
+                       static_cast<long>(ways.size()) - 1, tail);
+  } else {
+    result.p = normal_p(result.statistic - n * (n + 1.0) / 4.0,
+                        n * (n + 1.0) * (2.0 * n + 1.0) / 24.0 - ranks.ties / 48.0, tail);
+  }
   return result;
 }
 
@@ -132,15 +151,20 @@ Defined<RankTest> mann_whitney(std::span<const double> a, std::span<const double
   const auto nb = static_cast<double>(b.size());
   RankTest result;
   result.count = all.size();
-  result.statistic = std::accumulate(ranks.ranks.begin(),
-                                     ranks.ranks.begin() + static_cast<std::ptrdiff_t>(a.size()),
-                                     -na * (na + 1.0) / 2.0);
-  result.exact = a.size() < kExactBelow && b.size() < kExactBelow && ranks.ties == 0.0;
+  const double sum = std::accumulate(
+      ranks.ranks.begin(), ranks.ranks.begin() + static_cast<std::ptrdiff_t>(a.size()), 0.0);
+  result.statistic = sum - na * (na + 1.0) / 2.0;
+  result.exact = a.size() < kExactBelow && b.size() < kExactBelow;
   const double n = na + nb;
-  result.p = result.exact
-                 ? exact_p(mann_whitney_distribution(a.size(), b.size()), result.statistic, tail)
-                 : normal_p(result.statistic - na * nb / 2.0,
-                            na * nb / 12.0 * (n + 1.0 - ranks.ties / (n * (n - 1.0))), tail);
+  if (result.exact) {
+    const WholeRanks units = whole(ranks);
+    result.p = exact_p(chosen_rank_ways(units, a.size()),
+                       std::lround(static_cast<double>(units.unit) * sum),
+                       units.unit * static_cast<long>(a.size() * (all.size() + 1)), tail);
+  } else {
+    result.p = normal_p(result.statistic - na * nb / 2.0,
+                        na * nb / 12.0 * (n + 1.0 - ranks.ties / (n * (n - 1.0))), tail);
+  }
   return result;
 }
 

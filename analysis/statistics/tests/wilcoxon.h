@@ -8,9 +8,10 @@
 
 namespace haptrial::analysis {
 
-/// A test on ranks. p is exact with fewer than 50 values (in either sample) and without ties or
-/// equal pairs; otherwise from the normal approximation, its variance corrected for ties, with half
-/// a unit of correction for continuity: the choices of R's wilcox.test.
+/// A test on ranks. With fewer than 50 values (in either sample) p is exact: the share of all
+/// signs, or of all choices of the first sample, whose statistic is as far from its expectation,
+/// given the ranks as they are, ties included. With more it is from the normal approximation, its
+/// variance corrected for ties, with half a unit of correction for continuity.
 struct RankTest {
   double statistic{0.0};
   double p{0.0};  // for the tail asked for

@@ -1,17 +1,23 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "analysis/statistics/base/defined.h"
 
 namespace haptrial::analysis {
 
-/// A test of several groups or conditions on ranks; p from chi squared, corrected for ties.
+/// A test of several groups or conditions on ranks, corrected for ties. Up to kExactRanks
+/// participants p is exact, the share of all arrangements of the ranks that are as far out, unless
+/// there are too many conditions to look at them (about five); else it is from chi squared.
 struct RankAnova {
   double chi_squared{0.0};
   double df{0.0};
   double p{0.0};
+  bool exact{false};
 };
+
+inline constexpr std::size_t kExactRanks = 12;
 
 /// Kruskal and Wallis' test that no group tends to larger values: one-way analysis of ranks.
 /// @param groups  sizes may differ.

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 Json to_json(double value) { return value; }
 
 Json to_json(const RankAnova& r) {
-  return {{"chi_squared", r.chi_squared}, {"df", r.df}, {"p", r.p}};
+  return {{"chi_squared", r.chi_squared}, {"df", r.df}, {"p", r.p}, {"exact", r.exact}};
 }
 
 Json to_json(const RankTest& r) {

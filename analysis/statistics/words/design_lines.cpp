@@ -59,9 +59,8 @@ std::vector<std::string> lines_of(const TestFamily& family) {
                                 test.paired ? "d_z" : "d",
                                 (test.size ? " = " : " ") + effect(test.size)));
     lines.push_back(fmt::format("    {} {}; permutation {}; bootstrap 95 % CI {}",
-                                test.paired ? "Wilcoxon" : "Mann–Whitney",
-                                p_result(test.ranks_holm), p_result(test.permutation_holm),
-                                bootstrap_result(test)));
+                                test.paired ? "Wilcoxon" : "Mann–Whitney", ranks_p(test),
+                                p_result(test.permutation_holm), bootstrap_result(test)));
   }
   return lines;
 }

@@ -8,6 +8,8 @@
 namespace haptrial::analysis {
 namespace {
 
+constexpr const char* kApproximate = " (approximate)";
+
 std::string not_defined(const std::string& because) { return "not defined, because " + because; }
 
 // Degrees of freedom are whole but for Welch's test.
@@ -67,15 +69,12 @@ std::string rank_result(const Defined<RankAnova>& test) {
   if (!test) {
     return not_defined(test.because());
   }
-  return fmt::format("χ²({}) = {}, {}", degrees(test->df), number(test->chi_squared),
-                     p_value(test->p));
+  return fmt::format("χ²({}) = {}, {}{}", degrees(test->df), number(test->chi_squared),
+                     p_value(test->p), test->exact ? "" : kApproximate);
 }
 
-std::string rank_result(const Defined<RankTest>& test) {
-  if (!test) {
-    return not_defined(test.because());
-  }
-  return fmt::format("V = {:g}, {}", test->statistic, p_value(test->p));
+std::string ranks_p(const SideTest& test) {
+  return p_result(test.ranks_holm) + (test.ranks && !test.ranks->exact ? kApproximate : "");
 }
 
 std::string effect_result(const EffectTest& effect) {

@@ -6,7 +6,6 @@
 #include "analysis/statistics/design/design_tests.h"
 #include "analysis/statistics/tests/shapiro_wilk.h"
 #include "analysis/statistics/tests/t_tests.h"
-#include "analysis/statistics/tests/wilcoxon.h"
 #include "analysis/statistics/variance/anova.h"
 #include "analysis/statistics/variance/effect_size.h"
 #include "analysis/statistics/variance/rank_anova.h"
@@ -32,10 +31,10 @@ std::string anova_result(const Defined<Anova>& anova);
 std::string anova_result(const Defined<RepeatedAnova>& anova);
 /// "t(574) = -2.91, p = 0.002".
 std::string t_result(const Defined<TTest>& test);
-/// "χ²(2) = 9.1, p = 0.011".
+/// "χ²(2) = 9.1, p = 0.011", " (approximate)" behind a p value that is not exact.
 std::string rank_result(const Defined<RankAnova>& test);
-/// "V = 12, p = 0.034".
-std::string rank_result(const Defined<RankTest>& test);
+/// Holm's p of the test on ranks of two sides: "p = 0.034", likewise.
+std::string ranks_p(const SideTest& test);
 /// "F(2, 22) = 12.3, p = 0.013 (repeated-measures analysis of variance, Greenhouse–Geisser ε =
 /// 0.64), partial η² = 0.40".
 std::string effect_result(const EffectTest& effect);

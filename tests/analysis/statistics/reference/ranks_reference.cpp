@@ -18,10 +18,12 @@ Values shifted(Values values) {
   return values;
 }
 
-// @param kind  of p, which the test must choose by itself.
+std::string kind_of(bool exact) { return exact ? ": exact" : ": approximate"; }
+
 void compare_test(Answers& r, const std::string& procedure, const std::string& name, Test& test,
                   const Values& a, const Values& b) {
-  const std::string kind = test(a, b, Tail::kLess)->exact ? ": exact" : ": approximate";
+  const std::string kind = kind_of(test(a, b, Tail::kLess)->exact) +
+                           (name.find("tie") == std::string::npos ? "" : " with ties");
   for (const auto& [tail, tail_name] :
        {std::pair{Tail::kTwoSided, " two.sided"}, std::pair{Tail::kLess, " less"},
         std::pair{Tail::kGreater, " greater"}}) {
@@ -82,14 +84,17 @@ void compare_mann_whitney(Answers& r) {
   compare("49 and 49", a, b);
 }
 
-void compare_several(Answers& r, const char* procedure, const char* name,
+void compare_several(Answers& r, const std::string& procedure, const char* name,
                      Defined<RankAnova> (*test)(const Table&), Table table) {
   for (const bool offset : {false, true}) {
     for (auto& row : table) {
       row = offset ? shifted(row) : row;
     }
     const auto found = test(table);
-    r.at(procedure, name).is("chi", found->chi_squared).is("df", found->df).is("p", found->p);
+    r.at(procedure + kind_of(found->exact), name)
+        .is("chi", found->chi_squared)
+        .is("df", found->df)
+        .is("p", found->p);
   }
 }
 
@@ -102,6 +107,8 @@ void compare(Answers& r) {
   }
   compare_several(r, "Kruskal-Wallis", "study", kruskal_wallis,
                   DataSet("study").groups("score", "condition"));
+  compare_several(r, "Kruskal-Wallis", "few", kruskal_wallis,
+                  {{1, 2, 2, 5}, {3, 4, 4, 7}, {5, 6, 8}});
   for (const char* name : {"times", "ratings"}) {
     compare_several(r, "Friedman", name, friedman,
                     DataSet(name).means("value", "subject", "condition"));

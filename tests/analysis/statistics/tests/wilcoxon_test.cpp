@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
+#include "analysis/statistics/base/ranks.h"
+#include "analysis/statistics/tests/permutation.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis::wilcoxon_test {
@@ -133,28 +136,56 @@ TEST(RankTests, SeeOnlyTheOrder) {
             mann_whitney(bent(a), bent(b), Tail::kTwoSided)->p);
 }
 
-// One tie forces the approximation. Where it joins two neighbours it moves the statistic by half a
-// unit of hundreds, so that the approximation must nearly be the exact p.
+// Ratings tie. Six pairs that rise by one have the smallest p there is, 2 of 64 signs; the first
+// sample has the four smallest of eight values in one choice of 70.
+TEST(RankTests, AreExactWithTies) {
+  const Values before{3, 2, 4, 1, 2, 3}, after{4, 3, 5, 2, 3, 4};
+  const auto pairs = wilcoxon_signed_rank(before, after, Tail::kTwoSided);
+  EXPECT_TRUE(pairs->exact);
+  EXPECT_DOUBLE_EQ(pairs->p, 2.0 / 64.0);
+  EXPECT_DOUBLE_EQ(wilcoxon_signed_rank(before, after, Tail::kLess)->p, 1.0 / 64.0);
+  const auto groups = mann_whitney(Values{1, 1, 2, 2}, Values{3, 3, 3, 4}, Tail::kTwoSided);
+  EXPECT_TRUE(groups->exact);
+  EXPECT_DOUBLE_EQ(groups->p, 2.0 / 70.0);
+}
+
+// An equal pair tells nothing: without it the test is the same.
+TEST(WilcoxonSignedRank, IsExactWithEqualPairs) {
+  const auto with = wilcoxon_signed_rank(Values{1, 5, 2, 7, 4}, Values{1, 3, 1, 2, 7}, Tail::kLess);
+  const auto without = wilcoxon_signed_rank(Values{5, 2, 7, 4}, Values{3, 1, 2, 7}, Tail::kLess);
+  EXPECT_TRUE(with->exact);
+  EXPECT_EQ(with->count, 4u);
+  EXPECT_EQ(with->p, without->p);
+}
+
+// Fifty values are approximated, and so are their ranks' sums by drawn arrangements.
 TEST(RankTests, ApproximateTheExactP) {
   RandomStream random(45, "approximation");
-  Values a = drawn(random, 49), b = drawn(random, 49), zero(49, 0.0);
-  const auto exact = mann_whitney(a, b, Tail::kTwoSided);
+  Values a = drawn(random, 50), b = drawn(random, 50);
+  Values all = a;
+  all.insert(all.end(), b.begin(), b.end());
+  const Values ranks = midranks(all)->ranks;
+  const auto approximate = mann_whitney(a, b, Tail::kTwoSided);
+  EXPECT_FALSE(approximate->exact);
+  const Resampling many{1, "ranks", 100'000, 2};
+  const std::span<const double> ranked(ranks);
+  EXPECT_NEAR(approximate->p,
+              permutation_test(ranked.first(50), ranked.last(50), Tail::kTwoSided, many)->p, 0.01);
+  const Values zero(50, 0.0);
   const auto signs = wilcoxon_signed_rank(b, zero, Tail::kTwoSided);
-  double* nearest = nullptr;
-  for (double& value : b) {
-    nearest =
-        nearest == nullptr || std::abs(value - a[0]) < std::abs(*nearest - a[0]) ? &value : nearest;
+  EXPECT_FALSE(signs->exact);
+  Values signed_ranks = midranks([&] {
+                          Values sizes = b;
+                          for (double& size : sizes) {
+                            size = std::abs(size);
+                          }
+                          return sizes;
+                        }())
+                            ->ranks;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    signed_ranks[i] = std::copysign(signed_ranks[i], b[i]);
   }
-  a[0] = *nearest;
-  const auto near = mann_whitney(a, b, Tail::kTwoSided);
-  EXPECT_NEAR(near->statistic, exact->statistic, 3.0);
-  std::sort(b.begin(), b.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
-  b[20] = std::copysign(b[21], b[20]);
-  const auto signs_near = wilcoxon_signed_rank(b, zero, Tail::kTwoSided);
-  EXPECT_TRUE(exact->exact && signs->exact);
-  EXPECT_FALSE(near->exact || signs_near->exact);
-  EXPECT_NEAR(near->p, exact->p, 0.02);
-  EXPECT_NEAR(signs_near->p, signs->p, 0.02);
+  EXPECT_NEAR(signs->p, sign_flip_test(signed_ranks, zero, Tail::kTwoSided, many)->p, 0.01);
 }
 
 TEST(RankTests, RejectAsOftenAsTheySay) {
