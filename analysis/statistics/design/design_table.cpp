@@ -1,16 +1,40 @@
 #include "analysis/statistics/design/design_table.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <map>
 #include <set>
+#include <system_error>
+#include <tuple>
 
 #include "analysis/statistics/base/descriptive.h"
 
 namespace haptrial::analysis {
 namespace {
 
-std::vector<std::string> ordered(std::set<std::string> found,
-                                 const std::vector<std::string>& first) {
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  return read.ec == std::errc() && read.ptr == end && std::isfinite(value) ? std::optional(value)
+                                                                           : std::nullopt;
+}
+
+/// Numbers by their value, before names by their letters.
+struct LevelOrder {
+  bool operator()(const std::string& a, const std::string& b) const {
+    const auto key = [](const std::string& text) {
+      const auto number = number_in(text);
+      return std::tuple(!number, number.value_or(0.0), text);
+    };
+    return key(a) < key(b);
+  }
+};
+
+using Levels = std::set<std::string, LevelOrder>;
+
+std::vector<std::string> ordered(Levels found, const std::vector<std::string>& first) {
   std::vector<std::string> result;
   for (const std::string& wanted : first) {
     if (found.erase(wanted) > 0) {
@@ -23,7 +47,7 @@ std::vector<std::string> ordered(std::set<std::string> found,
 
 Factor factor_of(std::span<const Observation> observations, std::size_t place,
                  const std::string& name, const std::vector<std::string>& first) {
-  std::set<std::string> levels;
+  Levels levels;
   std::map<std::string, std::set<std::string>> by_subject;
   for (const Observation& o : observations) {
     levels.insert(o.levels[place]);

@@ -40,7 +40,8 @@ struct DesignTable {
 };
 
 /// @param factors  names, as many as every observation has levels.
-/// @param first    levels in the order wanted; others follow by name. Only levels that occur stay.
+/// @param first    levels in the order wanted; others follow, numbers by value before names by
+///   letters. Only levels that occur stay.
 DesignTable design_table(std::span<const Observation> observations,
                          const std::vector<std::string>& factors,
                          const std::vector<std::string>& first = {});

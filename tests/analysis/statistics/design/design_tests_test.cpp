@@ -71,6 +71,15 @@ TEST(DesignTable, FindsWhatVariesWithinAndBetween) {
   EXPECT_TRUE(table.crossed);
 }
 
+TEST(DesignTable, LevelsThatAreNumbersStandInTheirOrder) {
+  Made made("numbers");
+  for (const char* level : {"10", "assisted", "2", "-0.5", "100", "0.03"}) {
+    made.add("P1", {level}, 0.0);
+  }
+  EXPECT_THAT(design_table(made.observations, {"level"}).factors[0].levels,
+              ElementsAre("-0.5", "0.03", "2", "10", "100", "assisted"));
+}
+
 TEST(DesignTable, WhoLacksACellOfTheirOwnLevelsIsIncomplete) {
   Made made("incomplete");
   for (int i = 0; i < 3; ++i) {
