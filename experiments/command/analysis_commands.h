@@ -28,8 +28,9 @@ int analyze(const AnalyzeOptions& options);
 /// The tests that the design of a table calls for.
 struct StatisticsOptions {
   std::string table;
-  std::string subject{"subject"};    // columns
+  std::vector<std::string> subject;  // columns; default: subject
   std::vector<std::string> factors;  // default: condition
+  std::vector<std::string> between;  // factors of which a participant has one level
   std::string value{"score"};
   std::vector<std::string> planned;
   std::string reference;

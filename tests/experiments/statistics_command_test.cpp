@@ -65,6 +65,52 @@ TEST_F(StatisticsCommandTest, FindsTheDesignOfSeveralFactors) {
   EXPECT_THAT(run.output, HasSubstr("Mann–Whitney"));
 }
 
+// Eight people in two groups, both numbered from 1; R: t.test(score ~ group).
+TEST_F(StatisticsCommandTest, PeopleWhoseNumbersAreUsedAgainAreDifferentPeople) {
+  const std::string table =
+      "haptrial statistics " +
+      file("again.csv",
+           "subject,group,score\n1,novice,4.1\n2,novice,5.0\n3,novice,4.6\n4,novice,5.3\n"
+           "1,expert,6.0\n2,expert,5.1\n3,expert,6.3\n4,expert,5.2\n") +
+      " --factor group";
+  EXPECT_THAT(run_command(table).output, HasSubstr("novice); 4 participants\n"));
+  const CommandResult stated = run_command(table + " --between group");
+  EXPECT_EQ(stated.status, 2);
+  EXPECT_THAT(stated.errors,
+              HasSubstr("1, 2, 3, 4 have several levels of group (expert, novice); correct the "
+                        "rows, or, if it is another person under each level, add --subject group"));
+  const CommandResult people = run_command(table + " --subject subject --subject group");
+  ASSERT_EQ(people.status, 0) << people.errors;
+  EXPECT_THAT(people.output, HasSubstr("between participants: group (expert, novice); 8 "));
+  EXPECT_THAT(people.output, HasSubstr("Welch's t(5.9) = 2.29, p = 0.063"));
+  EXPECT_THAT(run_command(table + " --between speed").errors,
+              HasSubstr("--between names 'speed', which is no factor; allowed: 'group'"));
+}
+
+TEST_F(StatisticsCommandTest, OneWrongRowIsNamed) {
+  const CommandResult run = run_command(
+      "haptrial statistics " +
+      file("wrong.csv",
+           "subject,group,time,score\nc1,con,pre,10.1\nc1,con,post,10.9\nc2,con,pre,9.4\n"
+           "c2,con,post,10.2\nc3,con,pre,10.8\nc3,pat,post,11.1\np1,pat,pre,12.0\n"
+           "p1,pat,post,13.1\np2,pat,pre,11.6\np2,pat,post,12.2\n") +
+      " --factor group --factor time");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("c3 has several levels of group (con, pat), and most "
+                                    "participants have one; correct the rows"));
+}
+
+TEST_F(StatisticsCommandTest, ANumberIsNotTakenForGroups) {
+  std::string text = "subject,age,score\n";
+  for (int i = 0; i < 20; ++i) {
+    text += fmt::format("P{},{},{}\n", i, 20 + i % 16, i * i % 7);
+  }
+  const CommandResult run =
+      run_command("haptrial statistics " + file("ages.csv", text) + " --factor age");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("age has 16 levels for 20 participants, too few in each"));
+}
+
 TEST_F(StatisticsCommandTest, WarnsOfLevelsThatDifferOnlyInCapitals) {
   const std::string table = file("t.csv",
                                  "subject,condition,score\nA,visual,1\nA,haptic,2\nB,Visual,3\n"

@@ -141,6 +141,29 @@ std::size_t DesignTable::participants(std::size_t cell) const {
       means.begin(), means.end(), [&](const auto& row) { return row[cell].has_value(); }));
 }
 
+std::vector<std::string> DesignTable::levels_of(std::size_t subject, std::size_t factor) const {
+  std::vector<std::string> found;
+  for (std::size_t level = 0; level < factors[factor].levels.size(); ++level) {
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+      if (cells[cell][factor] == level && means[subject][cell]) {
+        found.push_back(factors[factor].levels[level]);
+        break;
+      }
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> DesignTable::with_several(std::size_t factor) const {
+  std::vector<std::string> several;
+  for (std::size_t s = 0; s < subjects.size(); ++s) {
+    if (levels_of(s, factor).size() > 1) {
+      several.push_back(subjects[s]);
+    }
+  }
+  return several;
+}
+
 DesignTable design_table(std::span<const Observation> observations,
                          const std::vector<std::string>& factors,
                          const std::vector<std::string>& first) {

@@ -37,6 +37,10 @@ struct DesignTable {
   /// Participants that have every cell of their own levels between participants.
   std::vector<std::size_t> complete() const;
   std::size_t participants(std::size_t cell) const;
+  /// The levels of a factor under which a participant has values.
+  std::vector<std::string> levels_of(std::size_t subject, std::size_t factor) const;
+  /// Participants with several levels of a factor, by name.
+  std::vector<std::string> with_several(std::size_t factor) const;
 };
 
 /// @param factors  names, as many as every observation has levels.

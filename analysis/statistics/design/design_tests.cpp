@@ -81,13 +81,24 @@ TestFamily neighbouring_cells(const DesignTable& table, const Resampling& resamp
   return family;
 }
 
+/// ", as S03 has several" where a few participants alone make a factor one within; else empty.
+std::string exceptions(const DesignTable& table, std::size_t factor) {
+  const auto several = table.with_several(factor);
+  return !several.empty() && 2 * several.size() < table.subjects.size()
+             ? fmt::format(", as {} {} several", fmt::join(several, ", "),
+                           several.size() == 1 ? "has" : "have")
+             : "";
+}
+
 std::string design_in_words(const DesignTable& table) {
   std::string text;
   for (const bool within : {true, false}) {
     std::vector<std::string> names;
-    for (const Factor& factor : table.factors) {
+    for (std::size_t f = 0; f < table.factors.size(); ++f) {
+      const Factor& factor = table.factors[f];
       if (factor.within == within && factor.levels.size() > 1) {
-        names.push_back(fmt::format("{} ({})", factor.name, fmt::join(factor.levels, ", ")));
+        names.push_back(fmt::format("{} ({}{})", factor.name, fmt::join(factor.levels, ", "),
+                                    exceptions(table, f)));
       }
     }
     if (!names.empty()) {

@@ -88,7 +88,8 @@ std::vector<std::string> design_lines(const DesignTable& table, const DesignTest
   const auto append = [&](const std::vector<std::string>& more) {
     lines.insert(lines.end(), more.begin(), more.end());
   };
-  lines.push_back("Varied " + tests.design);
+  lines.push_back(
+      fmt::format("Varied {}; {}", tests.design, counted(table.subjects.size(), "participant")));
   if (!tests.incomplete.empty()) {
     lines.push_back(fmt::format("Left out for lack of a value in some condition: {}",
                                 fmt::join(tests.incomplete, ", ")));
@@ -112,15 +113,20 @@ std::vector<std::string> design_lines(const DesignTable& table, const DesignTest
   return lines;
 }
 
-std::vector<Observation> read_observations(const std::string& file, const std::string& subject,
+std::vector<Observation> read_observations(const std::string& file,
+                                           const std::vector<std::string>& subject,
                                            const std::vector<std::string>& factors,
                                            const std::string& value) {
   const CsvTable table = CsvTable::load(file);
-  const std::size_t who = table.column(subject);
-  std::vector<std::size_t> columns;
-  for (const std::string& factor : factors) {
-    columns.push_back(table.column(factor));
-  }
+  const auto columns_of = [&](const std::vector<std::string>& names) {
+    std::vector<std::size_t> columns;
+    for (const std::string& name : names) {
+      columns.push_back(table.column(name));
+    }
+    return columns;
+  };
+  const auto who = columns_of(subject);
+  const auto columns = columns_of(factors);
   const std::vector<double> values = table.numbers(table.column(value));
   const auto name = [&](std::size_t row, std::size_t column) {
     const auto text = table.text(row, column);
@@ -131,7 +137,10 @@ std::vector<Observation> read_observations(const std::string& file, const std::s
   };
   std::vector<Observation> result;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    Observation o{name(row, who), {}, values[row]};
+    Observation o{name(row, who.front()), {}, values[row]};
+    for (std::size_t k = 1; k < who.size(); ++k) {
+      o.subject += " " + name(row, who[k]);
+    }
     for (const std::size_t column : columns) {
       o.levels.push_back(name(row, column));
     }

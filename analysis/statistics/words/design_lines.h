@@ -15,8 +15,10 @@ std::vector<std::string> planned_lines(const DesignTests& tests);
 std::vector<std::string> design_lines(const DesignTable& table, const DesignTests& tests);
 
 /// Observations of a table with a row for each value.
+/// @param subject  columns that together name a participant.
 /// @throws InputError with file and line where a name is empty or a value is not a number.
-std::vector<Observation> read_observations(const std::string& file, const std::string& subject,
+std::vector<Observation> read_observations(const std::string& file,
+                                           const std::vector<std::string>& subject,
                                            const std::vector<std::string>& factors,
                                            const std::string& value);
 

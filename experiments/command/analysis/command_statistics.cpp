@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -14,16 +15,64 @@
 namespace haptrial::experiments {
 namespace {
 
-/// Every column has one part. @throws InputError
-void check_columns(const StatisticsOptions& options, const std::vector<std::string>& factors) {
-  std::vector<std::string> columns{options.subject, options.value};
+/// Every column has one part; only a second column of the participants may be a factor, too.
+/// @throws InputError
+void check_columns(const StatisticsOptions& options, const std::vector<std::string>& subject,
+                   const std::vector<std::string>& factors) {
+  std::vector<std::string> columns{options.value};
   columns.insert(columns.end(), factors.begin(), factors.end());
+  for (const std::string& column : subject) {
+    if (subject.size() == 1 || std::ranges::count(factors, column) == 0) {
+      columns.push_back(column);
+    }
+  }
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (std::find(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(i), columns[i]) !=
         columns.begin() + static_cast<std::ptrdiff_t>(i)) {
       throw InputError(fmt::format(
           "--subject, --value and --factor name the column '{}' twice; name each column once",
           columns[i]));
+    }
+  }
+  for (const std::string& name : options.between) {
+    if (std::ranges::count(factors, name) == 0) {
+      throw InputError(fmt::format("--between names '{}', which is no factor; allowed: '{}'", name,
+                                   fmt::join(factors, "', '")));
+    }
+  }
+}
+
+/// A participant with two levels of a factor that all others have one of is a mistake in a row.
+/// @throws InputError naming the participants
+void check_between(const analysis::DesignTable& table, const std::vector<std::string>& between) {
+  for (std::size_t f = 0; f < table.factors.size(); ++f) {
+    const std::string& factor = table.factors[f].name;
+    const std::vector<std::string> several = table.with_several(f);
+    const bool stated = std::ranges::count(between, factor) > 0;
+    if (several.empty() || (!stated && 2 * several.size() >= table.subjects.size())) {
+      continue;
+    }
+    const auto who = std::ranges::find(table.subjects, several.front()) - table.subjects.begin();
+    throw InputError(fmt::format(
+        "{} {} several levels of {} ({}){}; correct the rows, or, if it is another person under "
+        "each level, add --subject {}",
+        fmt::join(several, ", "), several.size() == 1 ? "has" : "have", factor,
+        fmt::join(table.levels_of(static_cast<std::size_t>(who), f), ", "),
+        stated ? "" : ", and most participants have one", factor));
+  }
+}
+
+/// Many groups of one or two people are a number that was taken for names of groups.
+/// @throws InputError
+void check_groups(const analysis::DesignTable& table) {
+  constexpr std::size_t kManyGroups = 5;
+  for (const analysis::Factor& factor : table.factors) {
+    const std::size_t groups = factor.levels.size();
+    if (!factor.within && groups >= kManyGroups && table.subjects.size() < 3 * groups) {
+      throw InputError(fmt::format(
+          "{} has {} levels for {} participants, too few in each to be compared; give a column of "
+          "fewer groups, such as classes of {}",
+          factor.name, groups, table.subjects.size(), factor.name));
     }
   }
 }
@@ -52,13 +101,17 @@ int statistics(const StatisticsOptions& options) {
       analysis::parse_analysis_plan(options.planned, options.reference, "--planned");
   const std::vector<std::string> factors =
       options.factors.empty() ? std::vector<std::string>{"condition"} : options.factors;
-  check_columns(options, factors);
+  const std::vector<std::string> subject =
+      options.subject.empty() ? std::vector<std::string>{"subject"} : options.subject;
+  check_columns(options, subject, factors);
   if (!options.json.empty() && std::filesystem::exists(options.json)) {
     throw InputError(fmt::format("{}: exists already; choose another --json", options.json));
   }
   const analysis::DesignTable table = analysis::design_table(
-      analysis::read_observations(options.table, options.subject, factors, options.value), factors,
+      analysis::read_observations(options.table, subject, factors, options.value), factors,
       plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});
+  check_between(table, options.between);
+  check_groups(table);
   analysis::check_plan(table, plan);
   warn_of_alike_levels(table);
   const analysis::DesignTests tests = analysis::design_tests(table, plan, resampling);

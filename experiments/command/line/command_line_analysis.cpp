@@ -117,8 +117,14 @@ void add_statistics(CLI::App& app, int& status) {
   auto& o = options_of<StatisticsOptions>(*sub, status, statistics);
   sub->add_option("TABLE", o.table, "Table (.csv), or - for standard input")->required();
   sub->add_option("--value", o.value, "Column of the values (default: score)");
-  sub->add_option("--subject", o.subject, "Column of the participants (default: subject)");
+  sub->add_option("--subject", o.subject,
+                  "Column of the participants (default: subject); may be repeated, with the column "
+                  "of the group if each group numbers its people anew")
+      ->allow_extra_args(false);
   sub->add_option("--factor", o.factors, "Column of a factor; may be repeated (default: condition)")
+      ->allow_extra_args(false);
+  sub->add_option("--between", o.between,
+                  "Factor of which each participant has one level; may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--planned", o.planned,
                   "Planned test, 'A < B', 'A > B' or 'A != B'; may be repeated")

@@ -95,6 +95,16 @@ TEST(DesignTable, WhoLacksACellOfTheirOwnLevelsIsIncomplete) {
   EXPECT_THAT(tests.incomplete, ElementsAre("N10"));
 }
 
+TEST(DesignTests, SayWhoAloneMakesAFactorVaryWithin) {
+  Made made("one wrong");
+  for (int i = 0; i < 6; ++i) {
+    made.add(person("S", i), {i < 3 ? "con" : "pat"}, 0.0);
+  }
+  made.add(person("S", 2), {"pat"}, 0.0);
+  EXPECT_EQ(design_tests(design_table(made.observations, {"group"}), {}, kNone).design,
+            "within participants: group (con, pat, as S12 has several)");
+}
+
 TEST(DesignTests, BetweenParticipantsTakesWelchAndComparesDifferentPeople) {
   Made made("between");
   std::vector<std::vector<double>> groups(3);
