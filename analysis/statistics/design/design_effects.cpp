@@ -97,12 +97,8 @@ Effects one_between(const DesignTable& table) {
   if (!found) {
     return {Undefined{found.because()}};
   }
-  EffectTest effect = described(table.factors[0].name, "Welch's analysis of variance", found->f,
-                                found->df_between, found->df_within, found->p);
-  if (const auto classic = one_way_anova(groups_of(table))) {
-    effect.size = eta_squared(*classic);  // of the means themselves, not weighed by variances
-  }
-  return {effect};
+  return {described(table.factors[0].name, "Welch's analysis of variance", found->f,
+                    found->df_between, found->df_within, found->p)};
 }
 
 Effects two_within(const DesignTable& table) {

@@ -123,6 +123,9 @@ TEST(DesignTests, BetweenParticipantsTakesWelchAndComparesDifferentPeople) {
   const auto welch = welch_anova(groups);
   ASSERT_EQ(tests.effects.size(), 1u);
   expect_effect(tests.effects[0], "condition", welch->f, welch->p);
+  const double explained = welch->f * welch->df_between;
+  EXPECT_NEAR(tests.effects[0]->size->value, explained / (explained + welch->df_within), 1e-12)
+      << "of the F that is printed beside it";
   const SideTest& planned = tests.planned.tests[0];
   EXPECT_FALSE(planned.paired);
   EXPECT_EQ(planned.count_a, 5u);
