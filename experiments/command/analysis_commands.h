@@ -31,6 +31,7 @@ struct StatisticsOptions {
   std::vector<std::string> subject;  // columns; default: subject
   std::vector<std::string> factors;  // default: condition
   std::vector<std::string> between;  // factors of which a participant has one level
+  bool leave_out_missing{false};
   std::string value{"score"};
   std::vector<std::string> planned;
   std::string reference;

@@ -111,6 +111,26 @@ TEST_F(StatisticsCommandTest, ANumberIsNotTakenForGroups) {
   EXPECT_THAT(run.errors, HasSubstr("age has 16 levels for 20 participants, too few in each"));
 }
 
+TEST_F(StatisticsCommandTest, RowsWithMissingFieldsAreLeftOutAndCountedIfAsked) {
+  const std::string rows = "subject,condition,score\nA,x,1\nA,y,2\nB,x,2\nB,y,4\nC,x,1\nC,y,2.5\n";
+  const std::string missing =
+      "haptrial statistics " + file("missing.csv", rows + "D,x,NA\nD,y,3\nE,x,\n,,\n,,\n");
+  const CommandResult refused = run_command(missing);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("missing.csv:8: score is 'NA'; allowed: a name or a "
+                                        "number, or --leave-out-missing"));
+  const CommandResult run = run_command(missing + " --leave-out-missing");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Left out: 4 of 11 rows, which have a missing field\n"));
+  EXPECT_THAT(run.output, HasSubstr("Left out for lack of a value in some condition: D\n"));
+  EXPECT_THAT(run.output, HasSubstr("paired t(2) = -5.00"));
+  EXPECT_THAT(
+      run_command("haptrial statistics " + file("nothing.csv", "subject,condition,score\nA,x,\n") +
+                  " --leave-out-missing")
+          .errors,
+      HasSubstr("every row has a missing field"));
+}
+
 TEST_F(StatisticsCommandTest, WarnsOfLevelsThatDifferOnlyInCapitals) {
   const std::string table = file("t.csv",
                                  "subject,condition,score\nA,visual,1\nA,haptic,2\nB,Visual,3\n"

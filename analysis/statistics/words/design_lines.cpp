@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
 #include "analysis/files/csv.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/words/wording.h"
@@ -65,6 +70,39 @@ std::vector<std::string> lines_of(const TestFamily& family) {
   return lines;
 }
 
+bool is_missing(std::string_view text) {
+  constexpr std::array kMissing{"", ".", "na", "nan", "n/a"};
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(kMissing, lower) != kMissing.end();
+}
+
+/// Rows without a missing field. @param columns  that are read
+std::vector<std::size_t> rows_with(const CsvTable& table,
+                                   const std::vector<std::vector<std::size_t>>& columns,
+                                   bool leave_out_missing) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    bool whole = true;
+    for (const auto& kind : columns) {
+      for (const std::size_t column : kind) {
+        if (!is_missing(table.text(row, column))) {
+          continue;
+        }
+        whole = false;
+        if (!leave_out_missing) {
+          table.refuse(row, column, "a name or a number, or --leave-out-missing");
+        }
+      }
+    }
+    if (whole) {
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::vector<std::string> effect_lines(const DesignTests& tests) {
@@ -113,10 +151,9 @@ std::vector<std::string> design_lines(const DesignTable& table, const DesignTest
   return lines;
 }
 
-std::vector<Observation> read_observations(const std::string& file,
-                                           const std::vector<std::string>& subject,
-                                           const std::vector<std::string>& factors,
-                                           const std::string& value) {
+ObservedTable read_observations(const std::string& file, const std::vector<std::string>& subject,
+                                const std::vector<std::string>& factors, const std::string& value,
+                                bool leave_out_missing) {
   const CsvTable table = CsvTable::load(file);
   const auto columns_of = [&](const std::vector<std::string>& names) {
     std::vector<std::size_t> columns;
@@ -126,25 +163,20 @@ std::vector<Observation> read_observations(const std::string& file,
     return columns;
   };
   const auto who = columns_of(subject);
-  const auto columns = columns_of(factors);
-  const std::vector<double> values = table.numbers(table.column(value));
-  const auto name = [&](std::size_t row, std::size_t column) {
-    const auto text = table.text(row, column);
-    if (text.empty()) {
-      table.refuse(row, column, "a name");
-    }
-    return std::string(text);
-  };
-  std::vector<Observation> result;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    Observation o{name(row, who.front()), {}, values[row]};
+  const auto levels = columns_of(factors);
+  const std::size_t measured = table.column(value);
+  const auto rows = rows_with(table, {who, levels, {measured}}, leave_out_missing);
+  const std::vector<double> values = table.numbers(measured, rows);
+  ObservedTable result{{}, table.rows(), table.rows() - rows.size()};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Observation o{std::string(table.text(rows[i], who.front())), {}, values[i]};
     for (std::size_t k = 1; k < who.size(); ++k) {
-      o.subject += " " + name(row, who[k]);
+      o.subject += " " + std::string(table.text(rows[i], who[k]));
     }
-    for (const std::size_t column : columns) {
-      o.levels.push_back(name(row, column));
+    for (const std::size_t column : levels) {
+      o.levels.emplace_back(table.text(rows[i], column));
     }
-    result.push_back(std::move(o));
+    result.observations.push_back(std::move(o));
   }
   return result;
 }

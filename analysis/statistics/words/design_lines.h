@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,19 @@ std::vector<std::string> planned_lines(const DesignTests& tests);
 /// Everything that a design's tests found, as lines of plain text.
 std::vector<std::string> design_lines(const DesignTable& table, const DesignTests& tests);
 
-/// Observations of a table with a row for each value.
+/// The observations of a table with a row for each value.
+struct ObservedTable {
+  std::vector<Observation> observations;
+  std::size_t rows{0};
+  std::size_t left_out{0};  // rows with a field that is missing
+};
+
 /// @param subject  columns that together name a participant.
-/// @throws InputError with file and line where a name is empty or a value is not a number.
-std::vector<Observation> read_observations(const std::string& file,
-                                           const std::vector<std::string>& subject,
-                                           const std::vector<std::string>& factors,
-                                           const std::string& value);
+/// @param leave_out_missing  rows with a field that is empty, NA, NaN, N/A or "."; else they are
+///   refused.
+/// @throws InputError with file and line where a field is missing or a value is not a number.
+ObservedTable read_observations(const std::string& file, const std::vector<std::string>& subject,
+                                const std::vector<std::string>& factors, const std::string& value,
+                                bool leave_out_missing);
 
 }  // namespace haptrial::analysis

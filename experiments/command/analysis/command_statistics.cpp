@@ -107,14 +107,23 @@ int statistics(const StatisticsOptions& options) {
   if (!options.json.empty() && std::filesystem::exists(options.json)) {
     throw InputError(fmt::format("{}: exists already; choose another --json", options.json));
   }
+  const analysis::ObservedTable observed = analysis::read_observations(
+      options.table, subject, factors, options.value, options.leave_out_missing);
+  if (observed.observations.empty()) {
+    throw InputError(fmt::format("{}: every row has a missing field", options.table));
+  }
   const analysis::DesignTable table = analysis::design_table(
-      analysis::read_observations(options.table, subject, factors, options.value), factors,
+      observed.observations, factors,
       plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});
   check_between(table, options.between);
   check_groups(table);
   analysis::check_plan(table, plan);
   warn_of_alike_levels(table);
   const analysis::DesignTests tests = analysis::design_tests(table, plan, resampling);
+  if (observed.left_out > 0) {
+    fmt::print("Left out: {} of {} rows, which have a missing field\n", observed.left_out,
+               observed.rows);
+  }
   for (const std::string& line : analysis::design_lines(table, tests)) {
     fmt::print("{}\n", line);
   }

@@ -123,6 +123,8 @@ void add_statistics(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   sub->add_option("--factor", o.factors, "Column of a factor; may be repeated (default: condition)")
       ->allow_extra_args(false);
+  sub->add_flag("--leave-out-missing", o.leave_out_missing,
+                "Leave out and count rows with a field that is empty, NA, NaN, N/A or '.'");
   sub->add_option("--between", o.between,
                   "Factor of which each participant has one level; may be repeated")
       ->allow_extra_args(false);
