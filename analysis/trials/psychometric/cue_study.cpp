@@ -12,6 +12,7 @@
 #include "analysis/statistics/base/distributions.h"
 #include "analysis/statistics/base/p_adjust.h"
 #include "analysis/trials/psychometric/cue_bias.h"
+#include "analysis/trials/psychometric/quantity.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -384,8 +385,10 @@ Estimated mean_of(const CueLevel& level, Estimated CuePerson::*number, bool geom
     values.push_back(geometric ? std::log(value) : value);
   }
   const auto back = [&](double value) { return geometric ? std::exp(value) : value; };
-  if (const auto mean = mean_interval(values)) {
-    return {back(mean->mean), back(mean->low), back(mean->high)};
+  if (const auto found = mean_interval(values)) {
+    const bool share = number == &CuePerson::predicted_weight;  // the observed one may exceed 1
+    const MeanInterval mean = within_range(*found, share ? ValueRange::kShare : ValueRange::kAny);
+    return {back(mean.mean), back(mean.low), back(mean.high)};
   }
   return values.empty() ? Estimated{} : Estimated{back(values.front())};
 }

@@ -1,13 +1,29 @@
 #include "analysis/trials/psychometric/quantity.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace haptrial::analysis::trials {
 
+MeanInterval within_range(MeanInterval mean, ValueRange range) {
+  const double half = mean.high - mean.mean;
+  if (range == ValueRange::kPositive && mean.mean > 0.0) {
+    const double factor = std::exp(half / mean.mean);
+    mean.low = mean.mean / factor;
+    mean.high = mean.mean * factor;
+  }
+  if (range == ValueRange::kShare && mean.mean > 0.0 && mean.mean < 1.0) {
+    const double odds = mean.mean / (1.0 - mean.mean);
+    const double factor = std::exp(half / (mean.mean * (1.0 - mean.mean)));
+    mean.low = odds / (odds + factor);
+    mean.high = odds / (odds + 1.0 / factor);
+  }
+  return mean;
+}
+
 Quantity quantity(std::string name, std::string title, std::string unit,
-                  const std::vector<QuantityValue>& values, const TrialsPlan& plan) {
+                  const std::vector<QuantityValue>& values, const TrialsPlan& plan,
+                  ValueRange range) {
   Quantity result;
   result.name = std::move(name);
   result.title = std::move(title);
@@ -31,7 +47,8 @@ Quantity quantity(std::string name, std::string title, std::string unit,
         means.push_back(*row[cell]);
       }
     }
-    result.means.push_back(mean_interval(means));
+    const auto mean = mean_interval(means);
+    result.means.push_back(mean ? within_range(*mean, range) : mean);
   }
   result.compared = result.table.cells.size() > 1;
   if (result.compared) {
@@ -42,17 +59,6 @@ Quantity quantity(std::string name, std::string title, std::string unit,
     result.tests = design_tests(result.table, plan.plan, resampling);
   }
   return result;
-}
-
-void keep_within(Quantity& quantity, double low, double high) {
-  for (Defined<MeanInterval>& mean : quantity.means) {
-    if (mean) {
-      MeanInterval cut = *mean;
-      cut.low = std::max(cut.low, low);
-      cut.high = std::min(cut.high, high);
-      mean = cut;
-    }
-  }
 }
 
 }  // namespace haptrial::analysis::trials

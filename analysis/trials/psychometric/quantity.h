@@ -28,14 +28,18 @@ struct Quantity {
   bool compared{false};  // there are at least two conditions
 };
 
+/// Where the values of a quantity can lie.
+enum class ValueRange { kAny, kPositive, kShare };
+
+/// A mean whose interval stays where values can lie: the delta method on logarithms of positive
+/// values, on log odds of shares. A mean that is not inside its range stays as it is.
+MeanInterval within_range(MeanInterval mean, ValueRange range);
+
 /// @param plan  its tests are of the conditions; those of names without values are not defined
 /// @throws InputError for a planned test that compares trials with themselves, or a name that
 /// stands for several conditions.
 Quantity quantity(std::string name, std::string title, std::string unit,
-                  const std::vector<QuantityValue>& values, const TrialsPlan& plan);
-
-/// Ends intervals of means where values do: an area under a curve is nowhere above 1. No true value
-/// is lost by it.
-void keep_within(Quantity& quantity, double low, double high);
+                  const std::vector<QuantityValue>& values, const TrialsPlan& plan,
+                  ValueRange range = ValueRange::kAny);
 
 }  // namespace haptrial::analysis::trials

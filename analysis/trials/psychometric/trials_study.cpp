@@ -98,9 +98,10 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
       values_of(result.fits, [](const FunctionReadings& r) { return std::log(r.width.value); }),
       plan));
   if (plan.reference) {
-    result.quantities.push_back(quantity(
-        "weber_fraction", "Weber fraction", "",
-        values_of(result.fits, [](const FunctionReadings& r) { return r.weber.value; }), plan));
+    result.quantities.push_back(
+        quantity("weber_fraction", "Weber fraction", "",
+                 values_of(result.fits, [](const FunctionReadings& r) { return r.weber.value; }),
+                 plan, ValueRange::kPositive));
     result.quantities.back().compared = false;  // it says again what the threshold says
   }
   if (plan.serial) {
@@ -132,10 +133,8 @@ void add_detection(TrialsResult& result) {
   result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
   result.quantities.push_back(quantity("criterion", "criterion c", "", criterion, result.plan));
   if (!area.empty()) {
-    Quantity areas =
-        quantity("roc_area", "area under the ROC curve of ratings", "", area, result.plan);
-    keep_within(areas, 0.0, 1.0);
-    result.quantities.push_back(std::move(areas));
+    result.quantities.push_back(quantity("roc_area", "area under the ROC curve of ratings", "",
+                                         area, result.plan, ValueRange::kShare));
   }
 }
 
@@ -151,15 +150,13 @@ void add_identification(TrialsResult& result) {
       area.push_back({one.participant, one.levels, one.sureness->area});
     }
   }
-  result.quantities.push_back(
-      quantity("share_right", "share of right answers", "", share, result.plan));
-  keep_within(result.quantities.back(), 0.0, 1.0);
+  result.quantities.push_back(quantity("share_right", "share of right answers", "", share,
+                                       result.plan, ValueRange::kShare));
   result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
   if (!area.empty()) {
     result.quantities.push_back(quantity("rating_area",
                                          "area under the ROC curve of ratings, right against wrong",
-                                         "", area, result.plan));
-    keep_within(result.quantities.back(), 0.0, 1.0);
+                                         "", area, result.plan, ValueRange::kShare));
   }
 }
 

@@ -17,6 +17,7 @@ struct Measure {
   const char* unit;
   ReachKind kind;
   std::optional<double> (*of)(const ReachingResult& result, const StudyReach& reach);
+  ValueRange range{ValueRange::kAny};
 };
 
 Measure measure_of(ReachQuantity quantity) {
@@ -24,11 +25,19 @@ Measure measure_of(ReachQuantity quantity) {
   using Reach = const StudyReach&;
   switch (quantity) {
     case ReachQuantity::kMovementTime:
-      return {"movement_time", "movement time", "s", ReachKind::kPlain,
-              [](Result, Reach r) { return r.metrics.movement_time; }};
+      return {"movement_time",
+              "movement time",
+              "s",
+              ReachKind::kPlain,
+              [](Result, Reach r) { return r.metrics.movement_time; },
+              ValueRange::kPositive};
     case ReachQuantity::kPeakSpeed:
-      return {"peak_speed", "peak speed", "m/s", ReachKind::kPlain,
-              [](Result, Reach r) { return r.metrics.peak_speed; }};
+      return {"peak_speed",
+              "peak speed",
+              "m/s",
+              ReachKind::kPlain,
+              [](Result, Reach r) { return r.metrics.peak_speed; },
+              ValueRange::kPositive};
     case ReachQuantity::kDirection:
       return {"direction", "direction error at 150 ms", "rad", ReachKind::kPlain,
               [](Result, Reach r) { return r.turned(r.metrics.direction_error); }};
@@ -92,7 +101,7 @@ std::vector<Quantity> reach_quantities(const TrialsData& data, const ReachingRes
     for (const auto& [of, sum] : sums) {
       values.push_back({of.first, of.second, sum.first / sum.second});
     }
-    all.push_back(quantity(measure.name, measure.title, measure.unit, values, plan));
+    all.push_back(quantity(measure.name, measure.title, measure.unit, values, plan, measure.range));
   }
   return all;
 }

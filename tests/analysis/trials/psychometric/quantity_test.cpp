@@ -2,22 +2,47 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <vector>
+
 namespace haptrial::analysis::trials {
 namespace {
 
+/// The interval of values of participants under one condition.
+MeanInterval interval_of(std::vector<double> each, ValueRange range) {
+  std::vector<QuantityValue> values;
+  for (const double value : each) {
+    values.push_back({"P" + std::to_string(values.size()), {}, value});
+  }
+  return *quantity("q", "quantity", "", values, TrialsPlan{}, range).means.at(0);
+}
+
 /// Areas of three participants near 1: Student's interval of their mean would go beyond it.
-TEST(QuantityTest, IntervalsEndWhereValuesDo) {
-  const std::vector<QuantityValue> values{{"A", {}, 0.9}, {"B", {}, 1.0}, {"C", {}, 0.99}};
-  Quantity areas = quantity("roc_area", "area", "", values, TrialsPlan{});
-  ASSERT_EQ(areas.means.size(), 1u);
-  const MeanInterval before = *areas.means[0];
-  EXPECT_GT(before.high, 1.0);
-  keep_within(areas, 0.0, 1.0);
-  EXPECT_EQ(areas.means[0]->high, 1.0);
-  EXPECT_EQ(areas.means[0]->low, before.low);
-  EXPECT_EQ(areas.means[0]->mean, before.mean);
-  keep_within(areas, 0.9, 1.0);
-  EXPECT_EQ(areas.means[0]->low, 0.9);
+TEST(QuantityTest, IntervalsOfSharesStayBetween0And1) {
+  const MeanInterval plain = interval_of({0.9, 1.0, 0.99}, ValueRange::kAny);
+  EXPECT_GT(plain.high, 1.0);
+  const MeanInterval share = interval_of({0.9, 1.0, 0.99}, ValueRange::kShare);
+  EXPECT_EQ(share.mean, plain.mean);
+  EXPECT_GT(share.low, 0.0);
+  EXPECT_LT(share.high, 1.0);
+  const auto log_odds = [](double p) { return std::log(p / (1.0 - p)); };
+  EXPECT_NEAR(log_odds(share.high) + log_odds(share.low), 2.0 * log_odds(share.mean), 1e-9);
+  const MeanInterval others = interval_of({0.1, 0.0, 0.01}, ValueRange::kShare);
+  EXPECT_NEAR(others.low, 1.0 - share.high, 1e-12);
+  EXPECT_EQ(interval_of({1.0, 1.0}, ValueRange::kShare).high, 1.0);
+}
+
+/// Two Weber fractions: Student's interval of their mean goes far below 0.
+TEST(QuantityTest, IntervalsOfPositiveValuesStayAbove0) {
+  EXPECT_LT(interval_of({0.15, 0.25}, ValueRange::kAny).low, -0.4);
+  const MeanInterval positive = interval_of({0.15, 0.25}, ValueRange::kPositive);
+  EXPECT_GT(positive.low, 0.0);
+  EXPECT_NEAR(positive.low * positive.high, positive.mean * positive.mean, 1e-12);
+  // A small error changes nothing but the third digit.
+  const MeanInterval narrow = interval_of({0.199, 0.2, 0.201}, ValueRange::kPositive);
+  const MeanInterval plain = interval_of({0.199, 0.2, 0.201}, ValueRange::kAny);
+  EXPECT_NEAR(narrow.low, plain.low, 1e-4);
 }
 
 }  // namespace
