@@ -193,7 +193,8 @@ std::vector<Component> components_of(const Mesh& mesh, const EdgeTable& edges,
   return parts;
 }
 
-/// Whether a component lies in an odd number of other closed ones: a ray from it leaves them.
+/// Whether a component lies in an odd number of other closed ones: a ray from it leaves them. One
+/// that only reaches into another is no cavity; it sticks out of the other's box.
 bool is_cavity(const Mesh& mesh, const Bvh& hierarchy, const Orientation& turned,
                const std::vector<Component>& parts, std::size_t which) {
   const std::int32_t start = mesh.triangles[parts[which].triangles[0]][0];
@@ -201,7 +202,8 @@ bool is_cavity(const Mesh& mesh, const Bvh& hierarchy, const Orientation& turned
   hierarchy.all_hits({mesh.vertices[start], Eigen::Vector3d::UnitX()}, hits);
   const auto leaves_another = [&](const RayHit& hit) {
     const std::uint32_t component = turned.component[hit.triangle];
-    return component != which && parts[component].closed;
+    return component != which && parts[component].closed &&
+           parts[component].box.contains(parts[which].box);
   };
   return std::count_if(hits.begin(), hits.end(), leaves_another) % 2 == 1;
 }

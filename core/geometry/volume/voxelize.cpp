@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -22,14 +23,29 @@ constexpr auto kOutside = VoxelLabel::kOutside;
 constexpr auto kInside = VoxelLabel::kInside;
 constexpr auto kBorder = VoxelLabel::kBorder;
 
-bool is_closed(const Mesh& mesh) {
+/// Whether `holds(sides)` of every edge; a mesh without an edge fails.
+template <class Holds>
+bool every_edge(const Mesh& mesh, const Holds& holds) {
   const EdgeTable edges(mesh);
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (edges.sides(e).size() % 2 != 0) {
+    if (!holds(edges.sides(e))) {
       return false;
     }
   }
   return edges.size() > 0;
+}
+
+bool is_closed(const Mesh& mesh) {
+  return every_edge(mesh, [](std::span<const Side> sides) { return sides.size() % 2 == 0; });
+}
+
+/// Whether every edge is run along as often one way as the other, so that windings are whole.
+bool winds_whole(const Mesh& mesh) {
+  return every_edge(mesh, [&](std::span<const Side> sides) {
+    const auto forwards = std::ranges::count_if(
+        sides, [&](Side side) { return start_of(mesh, side) == start_of(mesh, sides[0]); });
+    return 2 * static_cast<std::size_t>(forwards) == sides.size();
+  });
 }
 
 /// Fills the runs between crossings for which `inside(number)` holds, where the number counts the
@@ -232,6 +248,11 @@ void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
                          : fill_by_hierarchy(Bvh(mesh), solid, report);
     return;
   }
+  if (cone.fans.empty()) {
+    const GridCrossings crossings(mesh, solid.grid, 0, report);
+    fill_rows(crossings, solid, [](int, int windings) { return windings != 0; });
+    return;
+  }
   Mesh closed = mesh;
   const auto moved = static_cast<std::int32_t>(mesh.vertices.size());
   closed.vertices.insert(closed.vertices.end(), cone.mesh.vertices.begin(),
@@ -280,7 +301,7 @@ void mark_border(VoxelSolid& solid) {
 }  // namespace
 
 InsideRule fitting_rule(const Mesh& mesh) {
-  return is_closed(mesh) ? InsideRule::kParity : InsideRule::kWinding;
+  return is_closed(mesh) && !winds_whole(mesh) ? InsideRule::kParity : InsideRule::kWinding;
 }
 
 VoxelSolid voxelize(const Mesh& mesh, const VoxelGrid& grid, InsideRule rule,

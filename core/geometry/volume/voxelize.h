@@ -10,11 +10,13 @@ namespace haptrial::geometry {
 /// What makes the centre of a voxel an inside one.
 enum class InsideRule {
   kParity,   // a ray from it leaves the mesh an odd number of times; for closed meshes
-  kWinding,  // the generalized winding number is above one half; for any mesh
+  kWinding,  // the generalized winding number is above one half; for any mesh. Where it is a
+             // whole number everywhere: is not 0, so that faces may look inwards
   kFlood,    // reached from a seed without crossing the surface; for closed meshes
 };
 
-/// Parity where every edge belongs to an even number of triangles, else winding.
+/// Winding, which holds where closed parts overlap; parity where every edge belongs to an even
+/// number of triangles that do not agree which side is out.
 InsideRule fitting_rule(const Mesh& mesh);
 
 /// Labels every voxel of a grid by its centre, and with kBorder the outside voxels that share a

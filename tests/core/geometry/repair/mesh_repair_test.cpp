@@ -161,6 +161,17 @@ TEST(OrientTest, CavitiesLookInwardsAndWhatFloatsInThemOutwards) {
   EXPECT_NEAR(signed_volume(mesh), (27.0 - 8.0 + 1.0) * unit, 1e-9);
 }
 
+TEST(OrientTest, PartsThatOverlapAllLookOutwards) {
+  const Mesh sphere = make_sphere(1.0, 8);
+  Mesh moved = sphere;
+  for (Eigen::Vector3d& vertex : moved.vertices) {
+    vertex += Eigen::Vector3d(0.3, 0.4, -0.5);
+  }
+  for (Mesh both : {joined(sphere, moved), joined(moved, sphere)}) {
+    EXPECT_EQ(orient(both), 0u);
+  }
+}
+
 TEST(OrientTest, OpenPiecesLookOutwardsFromTheirMiddle) {
   Mesh mesh = inverted(make_sphere(1.0, 8));
   mesh.triangles.resize(mesh.triangles.size() - 30);

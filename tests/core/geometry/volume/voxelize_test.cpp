@@ -146,6 +146,19 @@ TEST(VoxelizeTest, ParityIsThatOfRays) {
   }
 }
 
+/// A mesh and its copy, moved.
+Mesh with_moved(const Mesh& mesh, const Eigen::Vector3d& by) {
+  Mesh both = mesh;
+  const auto count = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    both.vertices.push_back(vertex + by);
+  }
+  for (const Triangle& t : mesh.triangles) {
+    both.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+  }
+  return both;
+}
+
 /// The source's method to the letter: from a seed, a ray to each neighbour (§5.2.2).
 std::vector<bool> flood_with_rays(const Mesh& mesh, const VoxelGrid& grid, std::size_t seed) {
   const Bvh hierarchy(mesh);
@@ -193,16 +206,7 @@ TEST(VoxelizeTest, AFloodIsThatOfTheSource) {
 }
 
 TEST(VoxelizeTest, AFloodFillsOneOfSeveralBodiesAndParityAll) {
-  Mesh mesh = make_sphere(1.0, 6);
-  const std::size_t half = mesh.triangles.size();
-  const auto count = static_cast<std::int32_t>(mesh.vertices.size());
-  for (std::int32_t v = 0; v < count; ++v) {
-    mesh.vertices.push_back(mesh.vertices[v] + Eigen::Vector3d(4, 0, 0));
-  }
-  for (std::size_t t = 0; t < half; ++t) {
-    const Triangle one = mesh.triangles[t];
-    mesh.triangles.push_back({one[0] + count, one[1] + count, one[2] + count});
-  }
+  const Mesh mesh = with_moved(make_sphere(1.0, 6), {4, 0, 0});
   const VoxelGrid grid = grid_for(mesh, 60);
   const std::size_t both = count_inside(voxelize(mesh, grid, InsideRule::kParity));
   EXPECT_EQ(count_inside(voxelize(mesh, grid, InsideRule::kFlood)), both / 2);
@@ -281,11 +285,44 @@ TEST(VoxelizeTest, ASoupOfManyTrianglesIsClosedByItsPlaces) {
             inside(voxelize(whole, grid, InsideRule::kParity)));
 }
 
+double volume_within(const Mesh& mesh, int resolution) {
+  const VoxelSolid solid = voxelize(mesh, grid_for(mesh, resolution), fitting_rule(mesh));
+  return static_cast<double>(count_inside(solid)) * std::pow(solid.grid.spacing, 3);
+}
+
+TEST(VoxelizeTest, OverlappingClosedPartsAreTheirUnion) {
+  Mesh cubes = with_moved(cube(), {1.0, 0.6, 0.4});
+  const double both = 16.0 - 1.0 * 1.4 * 1.6;  // twice a cube of side 2, once what they share
+  EXPECT_NEAR(volume_within(cubes, 150), both, 1e-9);
+  for (Triangle& triangle : cubes.triangles) {
+    std::swap(triangle[0], triangle[1]);
+  }
+  EXPECT_NEAR(volume_within(cubes, 150), both, 1e-9) << "all faces look inwards";
+}
+
+TEST(VoxelizeTest, ACavityIsAShellThatLooksInwards) {
+  Mesh hollow = cube();
+  for (const Mesh inner = cube(); const Eigen::Vector3d& vertex : inner.vertices) {
+    hollow.vertices.push_back(0.5 * vertex);
+  }
+  for (const Triangle& t : cube().triangles) {
+    hollow.triangles.push_back({t[1] + 8, t[0] + 8, t[2] + 8});
+  }
+  EXPECT_NEAR(volume_within(hollow, 40), 7.0, 1e-9);
+}
+
+TEST(VoxelizeTest, AClosedMeshWhoseFacesDisagreeIsFilledByParity) {
+  Mesh mesh = cube();
+  std::swap(mesh.triangles[4][0], mesh.triangles[4][1]);
+  EXPECT_EQ(fitting_rule(mesh), InsideRule::kParity);
+  EXPECT_NEAR(volume_within(mesh, 20), 8.0, 1e-9);
+}
+
 TEST(VoxelizeTest, TwiceTheSurfaceIsOutsideByParityAndInsideByWinding) {
   Mesh mesh = make_sphere(1.0, 5);
   const auto once = mesh.triangles;
   mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
-  EXPECT_EQ(fitting_rule(mesh), InsideRule::kParity);
+  EXPECT_EQ(fitting_rule(mesh), InsideRule::kWinding);
   EXPECT_EQ(count_inside(voxelize(mesh, grid_for(mesh, 9), InsideRule::kParity)), 0u);
   EXPECT_GT(count_inside(voxelize(mesh, grid_for(mesh, 9), InsideRule::kWinding)), 100u);
 }

@@ -36,7 +36,7 @@ TEST_F(MeshCommandTest, InfoSaysWhatAMeshIs) {
   EXPECT_EQ(result.status, 0) << result.errors;
   EXPECT_THAT(result.output, AllOf(HasSubstr("496 vertices, 992 triangles, 1488 edges"),
                                    HasSubstr("closed, manifold, faces look outwards"),
-                                   HasSubstr("1 component, genus 1"), HasSubstr("by parity")));
+                                   HasSubstr("1 component, genus 1"), HasSubstr("by winding")));
 }
 
 TEST_F(MeshCommandTest, RepairJoinsAndOrients) {
