@@ -10,7 +10,7 @@
 namespace haptrial::geometry::reading {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 
 std::string_view without_plus(std::string_view word) {
   return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
@@ -48,10 +48,11 @@ Text::Text(std::string_view text, std::string_view name, const WorkReport& repor
 
 std::string_view Text::raw_line() {
   constexpr std::size_t kLinesBetweenReports = 1 << 16;
-  std::size_t end = text_.find('\n', position_);
-  end = end == std::string_view::npos ? text_.size() : end;
-  std::string_view line = text_.substr(position_, end - position_);
-  position_ = std::min(end + 1, text_.size());
+  const std::string_view below = text_.substr(position_);
+  const auto end = std::ranges::find_if(below, [](char c) { return c == '\n' || c == '\r'; });
+  std::string_view line(below.begin(), end);
+  const std::size_t mark = below.substr(line.size()).starts_with("\r\n") ? 2 : 1;
+  position_ = std::min(position_ + line.size() + mark, text_.size());
   if (++line_ % kLinesBetweenReports == 0) {
     report_share(report_, static_cast<double>(position_) / static_cast<double>(text_.size()));
   }

@@ -17,7 +17,8 @@ namespace haptrial::geometry::reading {
 /// Text that came from a file, short and printable, in quotes.
 std::string in_quotes(std::string_view text);
 
-/// A text file word by word or line by line; every failure names the file and the line.
+/// A text file word by word or line by line; every failure names the file and the line. A line ends
+/// in a line feed, a carriage return, or both.
 class Text {
  public:
   Text(std::string_view text, std::string_view name, const WorkReport& report);
@@ -67,7 +68,7 @@ class Gathering {
   void reserve(std::uint64_t vertices, std::uint64_t triangles);
   void add_vertex(const Eigen::Vector3d& point) { mesh_.vertices.push_back(point); }
   std::int64_t vertex_count() const { return static_cast<std::int64_t>(mesh_.vertices.size()); }
-  /// Corners are indices from 0, checked by the caller.
+  /// Corners are indices from 0, checked by the caller. One or two corners bound no surface.
   void add_face(std::span<const std::int32_t> corners);
   bool full() const;  // no further vertex has an index
   /// Cuts the faces with more than three corners (FaceCutter).

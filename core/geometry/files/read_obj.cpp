@@ -60,8 +60,8 @@ class Obj {
     for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
       corners_.push_back(corner(word));
     }
-    if (corners_.size() < 3) {
-      text_.fail(fmt::format("a face has {} corners; allowed: 3 or more", corners_.size()));
+    if (corners_.empty()) {
+      text_.fail("a face has no corner; allowed: 3 or more");
     }
     mesh_.add_face(corners_);
   }

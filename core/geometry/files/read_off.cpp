@@ -69,13 +69,12 @@ class Off {
   void read_face() {
     next_line("faces", faces_);
     const std::int64_t corners = text_.whole(text_.word(), "the number of a face's corners");
-    if (corners < 3 || corners > static_cast<std::int64_t>(text_.bytes_left())) {
-      text_.fail(
-          fmt::format("a face has {} corners; allowed: 3 or more, all in its line", corners));
+    if (corners < 1 || corners > static_cast<std::int64_t>(text_.bytes_left())) {
+      text_.fail(fmt::format("a face has {} corners; allowed: 3 or more", corners));
     }
     corners_.clear();
     for (std::int64_t i = 0; i < corners; ++i) {
-      const std::int64_t index = text_.whole(text_.word(), "a corner of a face");
+      const std::int64_t index = text_.whole(text_.word_below("a corner of a face"), "a corner of a face");
       if (index < 0 || index >= vertices_) {
         text_.fail(fmt::format("a face has the corner {}; allowed: 0 to {}", index, vertices_ - 1));
       }

@@ -295,7 +295,10 @@ class Ply {
       }
     }
     if (!corners) {
-      text_.fail("the file has no faces with a list vertex_indices");
+      const bool strips =
+          std::ranges::find(head_.elements, "tristrips", &Element::name) != head_.elements.end();
+      text_.fail(strips ? "the surface is given as strips of triangles; convert it to faces"
+                        : "the file has no faces with a list vertex_indices");
     }
   }
 
@@ -353,7 +356,7 @@ class Ply {
 
   void read_corners(const Property& property) {
     const std::int64_t count = length(property);
-    if (count < 3) {
+    if (count < 1) {
       numbers_.fail(fmt::format("a face has {} corners; allowed: 3 or more", count));
     }
     corners_.clear();

@@ -54,12 +54,12 @@ class StlText {
   }
 
   Mesh read() && {
-    // Each line has a single statement; solids and their names are passed over.
-    while (text_.next_line()) {
-      const std::string_view word = text_.word();
+    for (std::string_view word = next_word(); !word.empty(); word = next_word()) {
       if (same_word(word, "facet")) {
         read_facet();
-      } else if (!same_word(word, "solid") && !same_word(word, "endsolid")) {
+      } else if (same_word(word, "solid") || same_word(word, "endsolid")) {
+        pass_name();
+      } else {
         text_.fail(fmt::format("found {}; allowed: solid, facet, endsolid", in_quotes(word)));
       }
     }
@@ -68,9 +68,28 @@ class StlText {
   }
 
  private:
+  /// @returns the next word of this line or of the next one; empty at the file's end.
+  std::string_view next_word() {
+    const std::string_view word = text_.word();
+    return word.empty() && text_.next_line() ? text_.word() : word;
+  }
+
+  /// The name of a solid is the rest of its line, or ends where a facet begins in it.
+  void pass_name() {
+    for (std::string_view word = text_.word(); !word.empty(); word = text_.word()) {
+      if (same_word(word, "facet") && same_word(text_.word(), "normal")) {
+        read_facet();
+        return;
+      }
+    }
+  }
+
   void read_facet() {
-    text_.next_line();  // what follows in the line is the normal
-    expect("outer", text_.word());
+    std::string_view word = text_.word();
+    while (!word.empty() && !same_word(word, "outer")) {  // the normal
+      word = text_.word();
+    }
+    expect("outer", word.empty() ? next_word() : word);
     expect("loop", text_.word());
     Triangle triangle{};
     for (std::int32_t& corner : triangle) {
@@ -104,12 +123,14 @@ Mesh read_stl(std::string_view bytes, std::string_view name, const WorkReport& r
   std::uint32_t count = 0;
   if (bytes.size() >= kHead) {
     std::memcpy(&count, bytes.data() + kHead - sizeof count, sizeof count);
-    if (bytes.size() == kHead + kTriangle * count) {
+    // Four characters of text would count more triangles than any file of text has bytes.
+    if (bytes.size() >= kHead + kTriangle * count) {
       return read_binary(bytes, name, count);
     }
   }
   const std::size_t start = bytes.find_first_not_of(" \t\r\n");
-  if (start != std::string_view::npos && same_word(bytes.substr(start, 5), "solid")) {
+  const bool text = bytes.substr(0, kHead).find('\0') == std::string_view::npos;
+  if (text && start != std::string_view::npos && same_word(bytes.substr(start, 5), "solid")) {
     return StlText(bytes, name, report).read();
   }
   if (bytes.size() < kHead) {

@@ -95,15 +95,15 @@ std::size_t count_loops(const EdgeTable& edges, UnionFind& corners) {
 
 void check_edges(const Mesh& mesh, const EdgeTable& edges, MeshReport& report) {
   report.edges = edges.size();
-  report.closed = edges.size() > 0;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const auto sides = edges.sides(e);
-    report.closed = report.closed && sides.size() % 2 == 0;
+    report.odd_edges += sides.size() % 2;
     report.boundary_edges += sides.size() == 1;
     report.nonmanifold_edges += sides.size() > 2;
     report.disagreeing_edges +=
         sides.size() == 2 && start_of(mesh, sides[0]) == start_of(mesh, sides[1]);
   }
+  report.closed = edges.size() > 0 && report.odd_edges == 0;
 }
 
 /// Handles from the Euler characteristic V - E + F = 2 components - 2 genus - loops, with each fan
@@ -159,6 +159,11 @@ std::string surface_sentence(const MeshReport& r) {
     return fmt::format(
         "closed{}{}", r.manifold() ? ", manifold" : "",
         r.oriented() ? (r.volume >= 0.0 ? ", faces look outwards" : ", faces look inwards") : "");
+  }
+  if (r.boundary_edges == 0) {
+    return fmt::format("without a boundary, but not closed: {} of three triangles or another odd "
+                       "number, as where a face is there twice or a wall stands inside",
+                       counted(r.odd_edges, "edge", "edges"));
   }
   return fmt::format("open: {} in {}", counted(r.boundary_edges, "boundary edge", "boundary edges"),
                      counted(r.boundary_loops, "loop", "loops"));

@@ -22,6 +22,7 @@ struct MeshReport {
 
   std::size_t edges{0};
   std::size_t boundary_edges{0};        // of one triangle
+  std::size_t odd_edges{0};             // of one, three or another odd number
   std::size_t nonmanifold_edges{0};     // of three or more
   std::size_t nonmanifold_vertices{0};  // where several fans of triangles touch
   std::size_t disagreeing_edges{0};     // of two that run along it in the same direction

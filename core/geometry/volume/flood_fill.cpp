@@ -75,7 +75,9 @@ void flood_fill(const Mesh& mesh, VoxelSolid& solid, const WorkReport& report) {
   const GridCrossings along_x(mesh, grid, 0, report);
   const std::optional<std::size_t> start = seed(mesh, grid, along_x);
   if (!start) {
-    throw InputError("the centre of no voxel lies inside the mesh; choose a finer resolution");
+    throw InputError(
+        "the centre of no voxel lies inside the mesh; choose a finer resolution, or repair the "
+        "mesh if faces are there twice");
   }
   Walls walls(grid.count(), 0);
   build_walls(along_x, grid, 0, walls);

@@ -261,7 +261,9 @@ void write_tetrahedra(const VoxelGrid& grid, const CornerNumbers& corners, TetMe
 void tetrahedralize(const VoxelSolid& solid, TetMesh& mesh) {
   const CornerNumbers corners(solid);
   if (corners.inside() == 0) {
-    throw InputError("the solid has no voxel inside; choose a finer resolution");
+    throw InputError(
+        "the solid has no voxel inside; choose a finer resolution, or repair the mesh if faces are "
+        "there twice");
   }
   constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   if (corners.vertices() > kMost) {

@@ -205,7 +205,7 @@ TEST(MeshIoTest, BadObjGetsASentence) {
   EXPECT_EQ(obj("v 0 0 1e13\n"), "m:1: a coordinate is 1e+13; allowed: -1e+12 to 1e+12");
   EXPECT_EQ(obj("v 0 0\n"), "m:1: the line ends where a coordinate of a vertex should stand");
   EXPECT_EQ(obj("v 0 0 1O\n"), "m:1: a coordinate of a vertex is '1O'; allowed: a number");
-  EXPECT_EQ(obj("v 0 0 0\nf 1 1\n"), "m:2: a face has 2 corners; allowed: 3 or more");
+  EXPECT_EQ(obj("v 0 0 0\nf\n"), "m:2: a face has no corner; allowed: 3 or more");
   EXPECT_EQ(obj("v 0 0 0\nf 1 1 0\n"),
             "m:2: a face has the corner 0; allowed: 1 to 1, or -1 to -1");
   EXPECT_EQ(obj("v 0 0 0\nf 1 1 -2\n"),
@@ -233,7 +233,7 @@ TEST(MeshIoTest, BadOffGetsASentence) {
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n"), "m:3: the file ends before the last of its 1 faces");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0 1\n"), "m:4: a face has the corner 1; allowed: 0 to 0");
   EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0\n"),
-            "m:4: the line ends where a corner of a face should stand");
+            "m:4: the file ends where a corner of a face should stand");
   EXPECT_THAT(off("OFF\n1 1 0\n0 0 0\n999999 0 0\n"), HasSubstr("a face has 999999 corners"));
 }
 

@@ -88,6 +88,15 @@ TEST(MeshCheckTest, HolesAreCountedEdgeByEdgeAndLoopByLoop) {
   EXPECT_THAT(describe(r), Contains(HasSubstr("open: 6 boundary edges in 2 loops")));
 }
 
+TEST(MeshCheckTest, ASurfaceWithoutBoundaryMayBeNotClosed) {
+  Mesh mesh = tetrahedron();
+  mesh.triangles.push_back(mesh.triangles[0]);
+  const MeshReport r = check_mesh(mesh);
+  EXPECT_FALSE(r.closed);
+  EXPECT_EQ(r.odd_edges, 3u);
+  EXPECT_THAT(describe(r), Contains(HasSubstr("not closed: 3 edges of three triangles")));
+}
+
 TEST(MeshCheckTest, HolesThatMeetAtAVertexAreOneLoopEachSide) {
   Mesh mesh = make_sphere(1.0, 4);
   const std::int32_t shared = mesh.triangles[0][0];
