@@ -11,16 +11,19 @@
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace haptrial::test {
 
-/// A CT along the axes of the patient (LPS).
+/// A CT, by the axes of the patient (LPS).
 struct DicomSeries {
-  std::array<int, 3> size{1, 1, 1};                 // columns, rows, slices
-  Eigen::Vector3d step{1.0, 1.0, 1.0};              // > 0 [mm]
-  Eigen::Vector3d origin{Eigen::Vector3d::Zero()};  // middle of the first voxel [mm]
-  std::function<int(int, int, int)> value;          // of a voxel [HU]
+  std::array<int, 3> size{1, 1, 1};                   // columns, rows, slices
+  Eigen::Vector3d step{1.0, 1.0, 1.0};                // > 0 [mm]
+  Eigen::Vector3d origin{Eigen::Vector3d::Zero()};    // middle of the first voxel [mm]
+  Eigen::Matrix3d axes{Eigen::Matrix3d::Identity()};  // columns: of columns, rows, slices
+  std::string uid{"1.2.3"};                           // of the series
+  std::function<int(int, int, int)> value;            // of a voxel [HU]
 };
 
 /// A slice as a scanner writes it: stored numbers are Hounsfield units and 1024.
@@ -39,11 +42,12 @@ inline void write_dicom_slice(const std::filesystem::path& file, const DicomSeri
   image.SetIntercept(-1024.0);
   image.SetSpacing(0, series.step.x());
   image.SetSpacing(1, series.step.y());
-  image.SetOrigin(0, series.origin.x());
-  image.SetOrigin(1, series.origin.y());
-  image.SetOrigin(2, series.origin.z() + k * series.step.z());
-  const double cosines[6] = {1, 0, 0, 0, 1, 0};
-  image.SetDirectionCosines(cosines);
+  const Eigen::Vector3d place = series.origin + k * series.step.z() * series.axes.col(2);
+  for (unsigned i = 0; i < 3; ++i) {
+    image.SetOrigin(i, place[i]);
+  }
+  const Eigen::Matrix<double, 3, 2> cosines = series.axes.leftCols<2>();
+  image.SetDirectionCosines(cosines.data());
   std::vector<std::uint16_t> pixels;
   for (int j = 0; j < series.size[1]; ++j) {
     for (int i = 0; i < series.size[0]; ++i) {
@@ -62,7 +66,7 @@ inline void write_dicom_slice(const std::filesystem::path& file, const DicomSeri
   kind.SetValue("1.2.840.10008.5.1.4.1.1.2");  // CT image
   set.Insert(kind.GetAsDataElement());
   gdcm::Attribute<0x0020, 0x000e> uid;
-  uid.SetValue("1.2.3");
+  uid.SetValue(series.uid.c_str());
   set.Insert(uid.GetAsDataElement());
   writer.SetFileName(file.c_str());
   if (!writer.Write()) {

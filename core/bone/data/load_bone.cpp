@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSmallTurn = 1.0 * kDegree;  // taken as it is
-constexpr double kSmallShift = 0.25;          // of a corner from where cubes would put it [voxels]
+constexpr double kSmallShift = 0.25;          // of a corner from its place [voxels]
 constexpr double kGreySpacing = 0.5e-3;       // Morris 2006, §3.2.1 [m]
 constexpr double kThreshold = 300.0;          // [HU]
 constexpr double kDense = 1500.0;             // [HU]
@@ -86,6 +86,21 @@ void check_room(const Import& job, const geometry::VoxelGrid& grid, double bytes
       bytes_per_voxel * count);
 }
 
+/// Whether the volume's own axes become those of the bone.
+bool keeps_axes(const Pose& pose) { return pose.turn < kSmallTurn && pose.skew <= kSmallShift; }
+
+/// How the volume lies, if it does not lie along the patient's axes.
+std::string lie_of(const Pose& pose) {
+  constexpr double kNone = 0.01 * kDegree;
+  const char* now = keeps_axes(pose) ? "whose axes are kept" : "now along the axes of the patient";
+  if (!keeps_axes(pose) && pose.slant > kNone) {
+    return fmt::format("; its axes {:.2f} degrees off a right angle, {}", pose.slant / kDegree,
+                       now);
+  }
+  return pose.turn > kNone ? fmt::format("; turned by {:.2f} degrees, {}", pose.turn / kDegree, now)
+                           : "";
+}
+
 /// How a volume becomes cubes.
 struct Plan {
   geometry::VoxelGrid grid;
@@ -122,7 +137,7 @@ Plan plan_for(const Import& job, const UprightVolume& volume, std::optional<doub
   const double smallest = volume.steps.colwise().norm().minCoeff();
   const bool cubes = pose.shape <= kSmallShift;
   Plan plan;
-  plan.own_axes = pose.turn < kSmallTurn;
+  plan.own_axes = keeps_axes(pose);
   const double wanted = spacing.value_or(cubes ? edge : smallest);
   plan.as_it_is = plan.own_axes && cubes && std::abs(wanted - edge) < 1e-3 * edge;
   if (plan.as_it_is) {
@@ -134,12 +149,7 @@ Plan plan_for(const Import& job, const UprightVolume& volume, std::optional<doub
     plan.sentence = fmt::format("resampled from {:.4g} x {:.4g} x {:.4g} to {:.4g} mm", edges[0],
                                 edges[1], edges[2], 1e3 * wanted);
   }
-  constexpr double kNoTurn = 0.01 * kDegree;
-  if (pose.turn > kNoTurn) {
-    plan.sentence +=
-        fmt::format("; turned by {:.2f} degrees, {}", pose.turn / kDegree,
-                    plan.own_axes ? "whose axes are kept" : "now along the axes of the patient");
-  }
+  plan.sentence += lie_of(pose);
   crop_plan(job, plan);
   return plan;
 }
@@ -363,7 +373,7 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
 
 /// From B to the patient's axes, LPS.
 Eigen::Affine3d patient_frame(const UprightVolume& volume) {
-  const VoxelMap map = map_to(volume, pose_of(volume).turn < kSmallTurn);
+  const VoxelMap map = map_to(volume, keeps_axes(pose_of(volume)));
   Eigen::Affine3d X_PB;
   X_PB.linear() = volume.steps * map.turn;
   X_PB.translation() = volume.origin + volume.steps * map.offset;

@@ -45,11 +45,13 @@ void take_nifti_places(const nifti_dmat44& matrix, double unit, VolumeHead& head
 
 VolumeHead nifti_head(const std::string& name, const nifti_image& image) {
   VolumeHead head;
-  head.format = "NIfTI";
+  head.format = fmt::format("NIfTI{}", image.xyz_units == NIFTI_UNITS_UNKNOWN ? kNoUnit : "");
   const std::int64_t more[] = {image.nt, image.nu, image.nv, image.nw};
   if (image.ndim < 3 || std::ranges::any_of(more, [](auto size) { return size > 1; })) {
     throw InputError(
-        fmt::format("{}: has {} axes; allowed: 3, with one value per voxel", name, image.ndim));
+        fmt::format("{}: has {} axes; allowed: 3, with one value per voxel, so one volume of a "
+                    "series",
+                    name, image.ndim));
   }
   const std::int64_t sizes[] = {image.nx, image.ny, image.nz};
   for (std::size_t axis = 0; axis < 3; ++axis) {

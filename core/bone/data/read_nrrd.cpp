@@ -32,7 +32,7 @@ void check_magic(const std::string& name) {
 }
 
 /// @throws InputError for a unit that is not known. Files without one are in millimetres by the
-/// custom of all programs.
+/// custom of all programs; the format says so.
 double metres(const std::string& name, const char* unit) {
   static const std::map<std::string_view, double> kUnits{{"", 1e-3},
                                                          {"m", 1.0},
@@ -87,8 +87,13 @@ std::optional<Eigen::Vector3d> to_lps(int space) {
   }
 }
 
+bool is_given(const char* unit) { return unit != nullptr && *unit != '\0'; }
+
 void take_places(const std::string& name, const Nrrd& nrrd, unsigned first, VolumeHead& head) {
   const bool placed = nrrd.spaceDim == 3;
+  head.format = is_given(placed ? nrrd.spaceUnits[0] : nrrd.axis[first].units)
+                    ? "NRRD"
+                    : fmt::format("NRRD{}", kNoUnit);
   const auto signs = to_lps(nrrd.space);
   if (nrrd.spaceDim != 0 && (!placed || !signs)) {
     throw InputError(
@@ -138,13 +143,15 @@ void take_keys(const Nrrd& nrrd, VolumeHead& head) {
 
 VolumeHead head_of(const std::string& name, const Nrrd& nrrd) {
   VolumeHead head;
-  head.format = "NRRD";
   const unsigned first = nrrd.dim == 4 ? 1 : 0;
   take_keys(nrrd, head);
   const std::size_t most = names_segments(head.keys) ? kMostLayers : 2;
-  if (nrrd.dim < 3 || nrrd.dim > 4 || (first == 1 && nrrd.axis[0].size > most)) {
+  const bool first_in_space = std::isfinite(nrrd.axis[0].spaceDirection[0]);
+  if (nrrd.dim < 3 || nrrd.dim > 4 ||
+      (first == 1 && (nrrd.axis[0].size > most || first_in_space))) {
     throw InputError(fmt::format(
-        "{}: has {} axes{}; allowed: 3, with one value per voxel", name, nrrd.dim,
+        "{}: has {} axes{}; allowed: 3, with one value per voxel, so one volume of a series", name,
+        nrrd.dim,
         first == 1 ? fmt::format(" of {} x {} x {} x {}", nrrd.axis[0].size, nrrd.axis[1].size,
                                  nrrd.axis[2].size, nrrd.axis[3].size)
                    : ""));

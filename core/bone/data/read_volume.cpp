@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -177,11 +179,13 @@ void check_head(const std::string& name, const VolumeHead& head, const Room& roo
 }
 
 SourceVolume read_here(const fs::path& path, const Room& room) {
-  const std::string name = path.filename().string();
   if (fs::is_directory(path)) {
     return read_dicom(path, room);
   }
   refuse_special_file(path);
+  std::string name = path.filename().string();
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto ends = [&](const char* ending) { return name.ends_with(ending); };
   if (ends(".nrrd") || ends(".nhdr")) {
     return read_nrrd(path, room);

@@ -7,6 +7,9 @@
 /// The readers, one for each library. They run in a process of their own: see read_volume().
 namespace haptrial::bone {
 
+/// What the format of a file that names no unit of length ends in.
+inline constexpr const char* kNoUnit = ", without a unit of length, so in mm";
+
 SourceVolume read_nrrd(const std::filesystem::path& file, const Room& room);
 SourceVolume read_nifti(const std::filesystem::path& file, const Room& room);
 /// A folder with one series, or one file with many frames.

@@ -125,51 +125,114 @@ BigArray<float> smoothed(const UprightVolume& volume, double spacing) {
   return values;
 }
 
-/// Any axes: 6 x 6 x 6 values for each voxel.
+/// The weights of six values around a place between two voxels, from a table of its fraction.
+class SixWeights {
+ public:
+  static constexpr std::int32_t kCount = 6;
+  static constexpr std::int32_t kBefore = 2;  // values below the place's voxel
+  using Weights = std::array<float, kCount>;
+
+  SixWeights() {
+    for (std::size_t step = 0; step < table_.size(); ++step) {
+      const Taps taps = taps_at(kBefore + static_cast<double>(step) / kSteps, 1.0, kCount);
+      std::ranges::copy(taps.weights, table_[step].begin());
+    }
+  }
+
+  Weights at(double fraction) const {
+    const double place = fraction * kSteps;
+    const auto step = static_cast<std::size_t>(place);
+    const auto share = static_cast<float>(place - static_cast<double>(step));
+    Weights weights;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      weights[i] = table_[step][i] + share * (table_[step + 1][i] - table_[step][i]);
+    }
+    return weights;
+  }
+
+ private:
+  static constexpr double kSteps = 1024.0;  // linear between them: right to 1e-6
+  std::array<Weights, 1026> table_{};       // for a fraction that is rounded to 1 as well
+};
+
+/// Values with more voxels on every side, which repeat the outermost.
+struct Padded {
+  static constexpr std::int32_t kMargin = 3;
+  std::array<std::size_t, 3> size;
+  BigArray<float> values;
+
+  Padded(const BigArray<float>& inner, const std::array<std::int32_t, 3>& inner_size) {
+    std::ranges::transform(inner_size, size.begin(), [](std::int32_t n) {
+      return static_cast<std::size_t>(n + 2 * kMargin);
+    });
+    values.resize(size[0] * size[1] * size[2]);
+    const auto within = [&](std::size_t at, std::size_t axis) {
+      const auto last = inner_size[axis] - 1;
+      return static_cast<std::size_t>(std::clamp(static_cast<std::int32_t>(at) - kMargin, 0, last));
+    };
+    const std::array<std::size_t, 2> stride{static_cast<std::size_t>(inner_size[0]),
+                                            static_cast<std::size_t>(inner_size[1])};
+    std::size_t to = 0;
+    for (std::size_t k = 0; k < size[2]; ++k) {
+      for (std::size_t j = 0; j < size[1]; ++j) {
+        const std::size_t row = stride[0] * (within(j, 1) + stride[1] * within(k, 2));
+        for (std::size_t i = 0; i < size[0]; ++i) {
+          values[to++] = inner[row + within(i, 0)];
+        }
+      }
+    }
+  }
+};
+
+/// The value at a place in voxels: 6 x 6 x 6 values around it.
+float value_at(const Eigen::Vector3d& at, const Padded& source, const SixWeights& table) {
+  std::array<std::size_t, 3> first{};
+  std::array<SixWeights::Weights, 3> weights;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double low = std::floor(at[axis]);
+    first[a] = static_cast<std::size_t>(low + Padded::kMargin - SixWeights::kBefore);
+    weights[a] = table.at(at[axis] - low);
+  }
+  SixWeights::Weights columns{};
+  for (std::size_t k = 0; k < weights[2].size(); ++k) {
+    for (std::size_t j = 0; j < weights[1].size(); ++j) {
+      const float weight = weights[2][k] * weights[1][j];
+      const float* row = source.values.data() + first[0] +
+                         source.size[0] * (first[1] + j + source.size[1] * (first[2] + k));
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        columns[i] += weight * row[i];
+      }
+    }
+  }
+  float sum = 0.0F;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    sum += weights[0][i] * columns[i];
+  }
+  return sum;
+}
+
+/// Any axes.
 BigArray<float> resample_turned(const UprightVolume& volume, const geometry::VoxelGrid& grid,
                                 const VoxelMap& map, float beyond,
                                 const geometry::WorkReport& report) {
-  const BigArray<float> source = smoothed(volume, grid.spacing);
-  const auto nx = static_cast<std::size_t>(volume.size[0]);
-  const auto ny = static_cast<std::size_t>(volume.size[1]);
-  const auto value_at = [&](const Eigen::Vector3d& at) {
-    std::array<Taps, 3> taps;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      if (!within(at[axis], volume.size[a])) {
-        return beyond;
-      }
-      taps[a] = taps_at(at[axis], 1.0, volume.size[a]);
-    }
-    float sum = 0.0F;
-    for (std::size_t k = 0; k < taps[2].weights.size(); ++k) {
-      for (std::size_t j = 0; j < taps[1].weights.size(); ++j) {
-        const std::size_t row = nx * (static_cast<std::size_t>(taps[1].first) + j +
-                                      ny * (static_cast<std::size_t>(taps[2].first) + k));
-        float along = 0.0F;
-        for (std::size_t i = 0; i < taps[0].weights.size(); ++i) {
-          along += taps[0].weights[i] * source[row + static_cast<std::size_t>(taps[0].first) + i];
-        }
-        sum += taps[2].weights[k] * taps[1].weights[j] * along;
-      }
-    }
-    return sum;
-  };
+  const Padded source(smoothed(volume, grid.spacing), volume.size);
+  const SixWeights table;
   BigArray<float> values(grid.count());
   for (std::int32_t k = 0; k < grid.size[2]; ++k) {
     parallel_for(static_cast<std::size_t>(grid.size[1]), threads_or_all(0), [&](std::size_t row) {
       const auto j = static_cast<std::int32_t>(row);
       for (std::int32_t i = 0; i < grid.size[0]; ++i) {
-        values[grid.index(i, j, k)] = value_at(map.turn * grid.centre(i, j, k) + map.offset);
+        const Eigen::Vector3d at = map.turn * grid.centre(i, j, k) + map.offset;
+        const bool inside = within(at.x(), volume.size[0]) && within(at.y(), volume.size[1]) &&
+                            within(at.z(), volume.size[2]);
+        values[grid.index(i, j, k)] = inside ? value_at(at, source, table) : beyond;
       }
     });
     geometry::report_share(report, (k + 1.0) / grid.size[2]);
   }
   return values;
 }
-
-/// Twice the angle's sine: from the identity to a rotation.
-double angle_of(const Eigen::Matrix3d& rotation) { return Eigen::AngleAxisd(rotation).angle(); }
 
 /// The rotation (mirrored if they are) nearest to the directions of a volume's axes: the orthogonal
 /// factor of their polar decomposition by Newton's iteration (Higham 1986), whose error is squared
@@ -245,20 +308,36 @@ UprightVolume upright(SourceVolume&& source) {
   return result;
 }
 
-Pose pose_of(const UprightVolume& volume) {
-  const Eigen::Matrix3d axes = square_axes(volume);
-  const double spacing = std::cbrt(std::abs(volume.steps.determinant()));
-  Pose pose;
-  pose.turn = axes.determinant() > 0.0 ? angle_of(axes) : std::numbers::pi;
-  const Eigen::Matrix3d off = volume.steps - spacing * axes;
+namespace {
+
+/// How far a corner lies from where other steps would put it [m].
+double corner_shift(const UprightVolume& volume, const Eigen::Matrix3d& steps) {
+  double farthest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     Eigen::Vector3d half;  // from the middle
     for (int axis = 0; axis < 3; ++axis) {
       half[axis] = (volume.size[static_cast<std::size_t>(axis)] - 1) *
                    ((corner >> axis) % 2 == 0 ? 0.5 : -0.5);
     }
-    pose.shape = std::max(pose.shape, (off * half).norm() / spacing);
+    farthest = std::max(farthest, ((volume.steps - steps) * half).norm());
   }
+  return farthest;
+}
+
+}  // namespace
+
+Pose pose_of(const UprightVolume& volume) {
+  const Eigen::Matrix3d axes = square_axes(volume);
+  const Eigen::Vector3d edges = volume.steps.colwise().norm();
+  const double spacing = std::cbrt(std::abs(volume.steps.determinant()));
+  const Eigen::Matrix3d directions = volume.steps.colwise().normalized();
+  const Eigen::Matrix3d cosines = directions.transpose() * directions;
+  Pose pose;
+  pose.turn = axes.determinant() > 0.0 ? Eigen::AngleAxisd(axes).angle() : std::numbers::pi;
+  pose.slant = std::asin(std::min(
+      1.0, std::max({std::abs(cosines(0, 1)), std::abs(cosines(0, 2)), std::abs(cosines(1, 2))})));
+  pose.shape = corner_shift(volume, spacing * axes) / spacing;
+  pose.skew = corner_shift(volume, axes * edges.asDiagonal()) / edges.minCoeff();
   return pose;
 }
 

@@ -23,7 +23,9 @@ UprightVolume upright(SourceVolume&& source);
 /// How a volume lies to the axes of the patient.
 struct Pose {
   double turn{0.0};   // the angle from them to its own, as far as these are square [rad]
+  double slant{0.0};  // how far two of its own are from a right angle at most [rad]
   double shape{0.0};  // how far a corner of it lies from where cubes would put it, in voxels
+  double skew{0.0};   // how far from where axes at right angles would put it, in voxels
 };
 Pose pose_of(const UprightVolume& volume);
 

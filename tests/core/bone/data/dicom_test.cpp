@@ -1,9 +1,7 @@
 // Series that gdcm writes, in any order and orientation, and what is wrong with some.
 
 #include <gdcm-3.0/gdcmAttribute.h>
-#include <gdcm-3.0/gdcmImageWriter.h>
 #include <gdcm-3.0/gdcmSequenceOfItems.h>
-#include <gdcm-3.0/gdcmUIDGenerator.h>
 #include <gdcm-3.0/gdcmWriter.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <optional>
 
 #include "core/base/error.h"
@@ -19,6 +18,7 @@
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/load_bone.h"
 #include "tests/core/bone/data/volume_bytes.h"
+#include "tests/support/dicom_series.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::bone {
@@ -30,51 +30,14 @@ class DicomTest : public ::testing::Test {
  protected:
   static constexpr int kSize = 24;  // pixels and slices
 
-  /// One slice of a bar of bone in air: stored numbers are Hounsfield units and 1024.
+  /// One slice of a bar of bone in air.
   void write(const std::string& name, int slice, const Eigen::Matrix3d& axes,
-             const std::string& series, double shift = 0.0) {
-    gdcm::ImageWriter writer;
-    gdcm::Image& image = writer.GetImage();
-    image.SetNumberOfDimensions(2);
-    const unsigned dimensions[2] = {kSize, kSize};
-    image.SetDimensions(dimensions);
-    image.SetPixelFormat(gdcm::PixelFormat(gdcm::PixelFormat::UINT16));
-    image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
-    image.SetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
-    image.SetSlope(1.0);
-    image.SetIntercept(-1024.0);
-    image.SetSpacing(0, 0.5);  // between columns
-    image.SetSpacing(1, 1.0);  // between rows
-    const Eigen::Vector3d place = axes * Eigen::Vector3d(0, 0, 2.0 * slice + shift);
-    for (unsigned i = 0; i < 3; ++i) {
-      image.SetOrigin(i, place[i]);
-    }
-    const Eigen::Matrix<double, 3, 2> cosines = axes.leftCols<2>();
-    image.SetDirectionCosines(cosines.data());
-    std::vector<std::uint16_t> pixels(kSize * kSize, 24);
-    for (int j = 6; j < 18; ++j) {
-      for (int i = 4; i < 20; ++i) {
-        if (slice >= 5 && slice < 15) {
-          pixels[static_cast<std::size_t>(i + kSize * j)] = 2224;
-        }
-      }
-    }
-    gdcm::DataElement data(gdcm::Tag(0x7fe0, 0x0010));
-    data.SetByteValue(reinterpret_cast<const char*>(pixels.data()),
-                      static_cast<unsigned>(pixels.size() * sizeof(std::uint16_t)));
-    image.SetDataElement(data);
-    gdcm::DataSet& set = writer.GetFile().GetDataSet();
-    gdcm::Attribute<0x0008, 0x0060> modality;
-    modality.SetValue("CT");
-    set.Insert(modality.GetAsDataElement());
-    gdcm::Attribute<0x0008, 0x0016> kind;
-    kind.SetValue("1.2.840.10008.5.1.4.1.1.2");  // CT image
-    set.Insert(kind.GetAsDataElement());
-    gdcm::Attribute<0x0020, 0x000e> uid;
-    uid.SetValue(series.c_str());
-    set.Insert(uid.GetAsDataElement());
-    writer.SetFileName((folder_ / name).c_str());
-    ASSERT_TRUE(writer.Write());
+             const std::string& series, const Eigen::Vector3d& beside = Eigen::Vector3d::Zero()) {
+    const auto bar = [](int i, int j, int k) {
+      return i >= 4 && i < 20 && j >= 6 && j < 18 && k >= 5 && k < 15 ? 1200 : -1000;
+    };
+    test::write_dicom_slice(
+        folder_ / name, {{kSize, kSize, kSize}, {0.5, 1.0, 2.0}, beside, axes, series, bar}, slice);
   }
   /// All slices, in files whose names go the other way round.
   void write_series(const Eigen::Matrix3d& axes, const std::string& uid = "1.2.3") {
@@ -342,6 +305,42 @@ TEST_F(DicomTest, MissingRepeatedAndMixedSlicesAreNamed) {
   EXPECT_THAT(refusal(), HasSubstr("lie 0 mm apart"));
   write("extra.dcm", 30, Eigen::Matrix3d::Identity(), "9.9.9");
   EXPECT_THAT(refusal(), HasSubstr("holds 2 series (1.2.3 and 9.9.9)"));
+}
+
+TEST_F(DicomTest, ASliceBesideTheLineIsNamed) {
+  write_series(Eigen::Matrix3d::Identity());
+  write("80.dcm", 10, Eigen::Matrix3d::Identity(), "1.2.3", {0.4, 0.0, 0.0});
+  EXPECT_EQ(refusal(), "none") << "a fifth of the distance of slices";
+  write("80.dcm", 10, Eigen::Matrix3d::Identity(), "1.2.3", {0.6, 0.0, 0.0});
+  EXPECT_THAT(refusal(), HasSubstr("80.dcm lies 0.6 mm beside the line"));
+}
+
+/// Axes of slices that are tilted by an angle and still follow each other upwards [degrees].
+Eigen::Matrix3d tilted(double angle) {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  const double tilt = angle * std::numbers::pi / 180.0;
+  axes.col(1) = Eigen::Vector3d(0.0, std::cos(tilt), -std::sin(tilt));
+  return axes;
+}
+
+TEST_F(DicomTest, ATiltedGantryIsToldByItsAngle) {
+  const Eigen::Matrix3d axes = tilted(18.5);
+  write_series(axes);
+  const BoneModel model = load_bone(folder_.path());
+  EXPECT_THAT(model.source, HasSubstr("its axes 18.50 degrees off a right angle"));
+  const double exact = 1920.0 * std::abs(axes.determinant());
+  EXPECT_NEAR(1e9 * summary_of(model).volume, exact, 0.08 * exact);
+  const Eigen::Vector3d middle = axes * Eigen::Vector3d(0.5 * 11.5, 11.5, 2.0 * 9.5);
+  EXPECT_LT((1e3 * summary_of(model).box.center() - middle).norm(), 0.7);
+}
+
+TEST_F(DicomTest, ASmallTiltIsNotKeptIfItMovesVoxels) {
+  const Eigen::Matrix3d axes = tilted(1.5);  // 1.2 mm over the series
+  write_series(axes);
+  const BoneModel model = load_bone(folder_.path());
+  EXPECT_THAT(model.source, HasSubstr("1.50 degrees off a right angle, now along the axes"));
+  const Eigen::Vector3d middle = axes * Eigen::Vector3d(0.5 * 11.5, 11.5, 2.0 * 9.5);
+  EXPECT_LT((1e3 * summary_of(model).box.center() - middle).norm(), 0.3);
 }
 
 TEST_F(DicomTest, SpoiledFilesAreNamed) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "core/base/error.h"
@@ -21,6 +22,7 @@ namespace {
 using test::PlainVolume;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class ImportTest : public ::testing::Test {
  protected:
@@ -274,6 +276,29 @@ TEST_F(ImportTest, WhatCannotBeABoneIsRefusedInASentence) {
   air.fill([](const Eigen::Vector3d& p) { return -1000.0 + p.x(); });
   EXPECT_THAT(refusal("v.nrrd", nrrd_of(air)), HasSubstr("all below the threshold of 300"));
   EXPECT_THROW(load_bone(folder_ / "absent.nrrd"), InputError);
+}
+
+TEST_F(ImportTest, AVolumeWithoutAFiniteValueIsRefused) {
+  std::string bytes = nrrd_of(PlainVolume({2, 2, 2}));
+  bytes.replace(bytes.find("int16"), 5, "float");
+  bytes.resize(bytes.size() - 8 * sizeof(std::int16_t));
+  for (const float none : {NAN, INFINITY, -INFINITY, NAN, NAN, NAN, NAN, NAN}) {
+    bytes.append(reinterpret_cast<const char*>(&none), sizeof none);
+  }
+  EXPECT_THAT(refusal("v.nrrd", bytes), HasSubstr("none of its values is a finite number"));
+}
+
+TEST_F(ImportTest, AVolumeWithoutAUnitIsInMillimetresAndSaysSo) {
+  PlainVolume volume({4, 4, 4});
+  volume.at(1, 2, 3) = 1;
+  const std::string sentence = "without a unit of length, so in mm";
+  EXPECT_THAT(load("v.nrrd", nrrd_of(volume)).source, HasSubstr(sentence));
+  EXPECT_THAT(load("v.nii", nifti_of(volume)).source, Not(HasSubstr(sentence)));
+  std::string nifti = nifti_of(volume);
+  nifti[123] = 0;
+  EXPECT_THAT(load("v.nii", nifti).source, HasSubstr(sentence));
+  volume.more = "space units: \"mm\" \"mm\" \"mm\"\n";
+  EXPECT_THAT(load("v.nrrd", nrrd_of(volume)).source, Not(HasSubstr(sentence)));
 }
 
 TEST_F(ImportTest, AHeadThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
