@@ -12,6 +12,7 @@
 #include "core/deformable/body/mesh_parts.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/volume/hanging_voxels.h"
 #include "core/geometry/volume/voxelize.h"
 
 namespace haptrial::deformable {
@@ -128,7 +129,8 @@ TetMesh filled(const BodySource& source, const std::filesystem::path& file,
     check(fmt::format("a grid of {} x {} x {} voxels", grid.size[0], grid.size[1], grid.size[2]),
           geometry::voxelizing_memory(mesh, grid, rule));
   }
-  const geometry::VoxelSolid solid = geometry::voxelize(mesh, grid, rule);
+  geometry::VoxelSolid solid = geometry::voxelize(mesh, grid, rule);
+  geometry::drop_hanging_voxels(solid);
   const std::size_t inside = geometry::count_inside(solid);
   if (check) {
     check(fmt::format("{} tetrahedra", 5 * inside),

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/deformable/body/load_case.h"
 #include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/volume/hanging_voxels.h"
 #include "core/geometry/volume/voxelize.h"
 
 namespace haptrial::deformable {
@@ -160,8 +161,8 @@ FeltMesh felt_solid(const geometry::Mesh& surface, int cells, const FeltSides& s
   try {
     const geometry::VoxelGrid grid = geometry::make_grid(geometry::bounds(surface), cells);
     mesh.spacing = grid.spacing;
-    const geometry::VoxelSolid solid =
-        geometry::voxelize(surface, grid, geometry::fitting_rule(surface));
+    geometry::VoxelSolid solid = geometry::voxelize(surface, grid, geometry::fitting_rule(surface));
+    geometry::drop_hanging_voxels(solid);
     // Each has a corner of its own, but for those at the rims.
     check_cells(
         static_cast<double>(std::ranges::count(solid.labels, geometry::VoxelLabel::kInside)), cells,
