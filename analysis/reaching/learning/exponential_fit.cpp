@@ -199,6 +199,23 @@ Defined<BoundedFit> mean_fit(const CycleTable& table, std::span<const std::size_
   return bounded_fit(means, counts);
 }
 
+/// An interval that ends where the search did is open on that side.
+Defined<BootstrapInterval> opened(const Defined<BootstrapInterval>& interval, std::size_t cycles) {
+  if (!interval) {
+    return interval;
+  }
+  constexpr double kRounding = 1e-9;
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  BootstrapInterval stated = *interval;
+  if (stated.low <= kShortest * (1.0 + kRounding)) {
+    stated.low = -kOpen;
+  }
+  if (stated.high >= kLongest * static_cast<double>(cycles) * (1.0 - kRounding)) {
+    stated.high = kOpen;
+  }
+  return stated;
+}
+
 constexpr const char* kAtBound =
     "the values do not level off, or only those of the first cycle differ from the others";
 
@@ -247,7 +264,8 @@ Defined<LearningFit> fit_learning(const CycleTable& table, const ParticipantResa
   const ExponentialFit& fit = whole->fit;
   const auto intervals = participant_intervals(
       everybody.size(), {fit.asymptote, fit.amplitude, fit.time_constant}, estimate, how);
-  return LearningFit{fit, intervals[0], intervals[1], intervals[2], at_bound.load()};
+  return LearningFit{fit, intervals[0], intervals[1], opened(intervals[2], table.cycles()),
+                     at_bound.load()};
 }
 
 }  // namespace haptrial::analysis

@@ -33,7 +33,7 @@ Defined<ExponentialFit> fit_exponential(std::span<const double> values,
                                         std::span<const double> weights = {});
 
 /// The fit to the means of the cycles, with intervals by resampling participants. A draw whose time
-/// constant ends at a bound counts with that bound.
+/// constant ends at a bound counts with that bound; an interval that ends there is open, infinite.
 struct LearningFit {
   ExponentialFit fit;
   Defined<BootstrapInterval> asymptote, amplitude, time_constant;

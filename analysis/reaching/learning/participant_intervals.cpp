@@ -1,10 +1,13 @@
 #include "analysis/reaching/learning/participant_intervals.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/statistics/base/distributions.h"
 
@@ -51,6 +54,32 @@ Replicates without_each(std::size_t participants, std::size_t numbers,
   return all;
 }
 
+constexpr double kMostFailed = 0.1;  // share of draws without numbers that may be left out
+
+bool is_missing(double value) { return std::isnan(value); }
+
+/// The interval of one number; draws without it are left out.
+Defined<BootstrapInterval> interval_of(double estimate, std::vector<double> replicates,
+                                       const std::vector<double>& jackknife,
+                                       std::size_t participants, double level) {
+  if (std::ranges::any_of(jackknife, is_missing)) {
+    return Undefined{"it does not exist without one of the participants"};
+  }
+  const std::size_t drawn = replicates.size();
+  const std::size_t failed = std::erase_if(replicates, is_missing);
+  if (static_cast<double>(failed) > kMostFailed * static_cast<double>(drawn)) {
+    return Undefined{fmt::format("it does not exist for {} of {} resamples", failed, drawn)};
+  }
+  auto interval =
+      bca_interval(estimate, std::move(replicates), {jackknife}, expanded(level, participants));
+  if (!interval) {
+    return Undefined{fmt::format("with {} participants {}", participants, interval.because())};
+  }
+  BootstrapInterval stated = *interval;
+  stated.level = level;
+  return stated;
+}
+
 }  // namespace
 
 std::vector<Defined<BootstrapInterval>> participant_intervals(std::size_t participants,
@@ -67,15 +96,8 @@ std::vector<Defined<BootstrapInterval>> participant_intervals(std::size_t partic
   const Replicates jackknife = without_each(participants, estimates.size(), estimator);
   std::vector<Defined<BootstrapInterval>> intervals;
   for (std::size_t k = 0; k < estimates.size(); ++k) {
-    const auto interval = bca_interval(estimates[k], std::move(replicates[k]), {jackknife[k]},
-                                       expanded(how.level, participants));
-    if (interval) {
-      BootstrapInterval stated = *interval;
-      stated.level = how.level;
-      intervals.emplace_back(stated);
-    } else {
-      intervals.emplace_back(Undefined{interval.because()});
-    }
+    intervals.push_back(
+        interval_of(estimates[k], std::move(replicates[k]), jackknife[k], participants, how.level));
   }
   return intervals;
 }

@@ -27,8 +27,10 @@ struct ParticipantResampling {
 /// level 1 - 2 Φ(-t sqrt(n / (n - 1))), with Student's t of n - 1 degrees of freedom.
 /// Source: Hesterberg 2015, The American Statistician 69, 371 (expanded percentile intervals).
 /// @param estimates  of all participants; one result for each.
-/// A skewed number from few participants needs 2,000 draws or more.
-/// Undefined, each on its own, as bca_interval and with fewer than three participants.
+/// A skewed number from few participants needs 2,000 draws or more. Draws without numbers are left
+/// out, and BootstrapInterval::resamples counts the others.
+/// Undefined, each on its own, as bca_interval, with fewer than three participants, if more than a
+/// tenth of the draws have no numbers, or if there are none without one of the participants.
 /// @throws std::invalid_argument when the level breaks its bound.
 std::vector<Defined<BootstrapInterval>> participant_intervals(std::size_t participants,
                                                               const std::vector<double>& estimates,

@@ -1,5 +1,6 @@
 #include "analysis/statistics/tests/bootstrap.h"
 
+#include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
@@ -50,13 +51,23 @@ double acceleration(const std::vector<std::vector<double>>& jackknife) {
   return squares > 0.0 ? cubes / (6.0 * squares * std::sqrt(squares)) : 0.0;
 }
 
+/// Why resamples do not reach so far out.
+std::string beyond(std::size_t resamples, double fraction) {
+  constexpr double kWorthMaking = 1e7;
+  const double needed = 1.0 / std::min(fraction, 1.0 - fraction);
+  return fmt::format("its ends lie beyond the {} resamples{}", resamples,
+                     needed < kWorthMaking
+                         ? fmt::format("; about {:.1g} would reach them", 2.0 * needed)
+                         : ", as far as so few values take them");
+}
+
 // Between order statistics, linear on the normal scale.
 Defined<double> normal_interpolated(const std::vector<double>& sorted, double fraction) {
   const auto places = static_cast<double>(sorted.size()) + 1.0;
   const double place = places * fraction;
   const double below = std::floor(place);
   if (!(below >= 1.0 && below < places - 1.0)) {
-    return Undefined{"there are too few resamples for an interval of this level"};
+    return Undefined{beyond(sorted.size(), fraction)};
   }
   const double low = gsl_cdf_ugaussian_Pinv(below / places);
   const double high = gsl_cdf_ugaussian_Pinv((below + 1.0) / places);

@@ -1,9 +1,13 @@
 #include "analysis/reaching/learning/exponential_fit.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/random.h"
@@ -138,6 +142,60 @@ TEST(ExponentialFitTest, ThreadsDoNotChangeTheIntervals) {
   EXPECT_EQ(one->time_constant->low, three->time_constant->low);
   EXPECT_EQ(one->amplitude->high, three->amplitude->high);
   EXPECT_EQ(one->time_constant->level, 0.95);
+}
+
+// Six people learn in one cycle and two in three: draws of the six alone end at the shortest time
+// constant that is searched, which is no limit of the time constant.
+TEST(ExponentialFitTest, AnIntervalThatEndsWithTheSearchIsOpen) {
+  CycleTable table;
+  RandomStream random(5, "open");
+  for (std::size_t p = 0; p < 8; ++p) {
+    auto& row = table.values.emplace_back();
+    table.participants.push_back(p);
+    for (const double value : exponential(0.0, 1.0, p < 6 ? 0.05 : 3.0, 12)) {
+      row.emplace_back(value + 0.001 * random.normal());
+    }
+  }
+  const auto fit = fit_learning(table);
+  ASSERT_TRUE(fit) << fit.because();
+  ASSERT_TRUE(fit->time_constant) << fit->time_constant.because();
+  EXPECT_GT(fit->at_bound, 0u);
+  EXPECT_EQ(fit->time_constant->low, -std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isfinite(fit->time_constant->high));
+}
+
+/// The mean of rows; nothing if all are the first.
+std::optional<std::vector<double>> mean_unless_first(std::span<const std::size_t> rows) {
+  double sum = 0.0;
+  for (const std::size_t row : rows) {
+    sum += static_cast<double>(row);
+  }
+  return sum > 0.0 ? std::optional(std::vector{sum / static_cast<double>(rows.size())})
+                   : std::nullopt;
+}
+
+TEST(ParticipantIntervalsTest, LeaveOutDrawsWithoutANumberAndCountTheOthers) {
+  ParticipantResampling how;
+  how.resampling = {1, "few", 99'999, 2};
+  const auto intervals = participant_intervals(5, {2.0}, mean_unless_first, how);
+  ASSERT_TRUE(intervals[0]) << intervals[0].because();
+  // All five are the first in 1 of 3,125 draws.
+  EXPECT_LT(intervals[0]->resamples, 99'999u);
+  EXPECT_GT(intervals[0]->resamples, 99'900u);
+}
+
+TEST(ParticipantIntervalsTest, SayThatTheParticipantsAreTooFew) {
+  ParticipantResampling how;
+  how.resampling = {1, "few", 1'999, 2};
+  const auto of_three = participant_intervals(3, {1.0}, mean_unless_first, how);
+  EXPECT_THAT(of_three[0].because(),
+              testing::MatchesRegex("with 3 participants its ends lie beyond the [0-9]+ resamples, "
+                                    "as far as so few values take them"));
+  const auto fails = [](std::span<const std::size_t> rows) {
+    return rows.size() < 4 ? std::nullopt : mean_unless_first(rows);
+  };
+  EXPECT_EQ(participant_intervals(4, {1.5}, fails, how)[0].because(),
+            "it does not exist without one of the participants");
 }
 
 }  // namespace
