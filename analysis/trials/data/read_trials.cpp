@@ -81,15 +81,19 @@ class SessionTrials {
     trial.completed = pass.status == record::PassStatus::kCompleted;
     trial.start = static_cast<double>(pass.first_sample) / reader_.info().rate;
     trial.first_sample = pass.first_sample;
-    const std::uint64_t rows = reader_.sample_count();
-    const std::uint64_t end = std::min<std::uint64_t>(pass.last_sample + 1, rows);
-    if (pass.first_sample < end) {
-      const std::uint64_t count = end - pass.first_sample;
-      const auto saturated =
-          reader_.integers(record::samples_table(), "saturated", pass.first_sample, count);
-      trial.saturated = static_cast<double>(std::count(saturated.begin(), saturated.end(), 1)) /
-                        static_cast<double>(count);
+    trial.saturated = at_limit(pass.first_sample, pass.last_sample);
+  }
+
+  /// The share of the ticks at the force limit.
+  double at_limit(std::uint64_t first, std::uint64_t last) {
+    const std::uint64_t end = std::min<std::uint64_t>(last + 1, reader_.sample_count());
+    if (first >= end) {
+      return 0.0;
     }
+    const auto saturated =
+        reader_.integers(record::samples_table(), "saturated", first, end - first);
+    return static_cast<double>(std::count(saturated.begin(), saturated.end(), 1)) /
+           static_cast<double>(end - first);
   }
 
   void add(const record::VariableRow& row) {
@@ -110,10 +114,12 @@ class SessionTrials {
 
   void add(const record::StageRow& row) {
     if (StudyTrial* trial = of(row.pass)) {
-      trial->stages.push_back({row.stage, static_cast<std::int16_t>(row.interval),
-                               row.ending == record::StageEnding::kReached,
-                               static_cast<std::uint32_t>(row.last_sample - row.first_sample + 1),
-                               static_cast<std::uint32_t>(row.first_sample - trial->first_sample)});
+      trial->stages.push_back(
+          {row.stage, static_cast<std::int16_t>(row.interval),
+           row.ending == record::StageEnding::kReached,
+           trial->saturated > 0.0 && at_limit(row.first_sample, row.last_sample) > 0.0,
+           static_cast<std::uint32_t>(row.last_sample - row.first_sample + 1),
+           static_cast<std::uint32_t>(row.first_sample - trial->first_sample)});
     }
   }
 

@@ -58,6 +58,7 @@ struct StageTime {
   Word stage;
   std::int16_t interval{1};
   bool reached{true};      // else it ended by its time or was broken off
+  bool at_limit{false};    // the force limit was reached
   std::uint32_t ticks{0};  // its duration
   std::uint32_t first{0};  // its first tick, from that of the pass
 };

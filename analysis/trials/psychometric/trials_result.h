@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ struct ParticipantTrials {
   std::size_t practice{0};
   std::size_t aborted{0};                                           // passes
   Defined<double> reaction_time{Undefined{"it was not measured"}};  // median [s]
-  double saturated{0.0};  // share of the counted trials that reached the force limit
+  /// By stage, the share of the counted trials that reached the force limit in it.
+  std::map<std::string, double> at_limit;
 };
 
 /// What the sessions of a study gave.

@@ -32,7 +32,15 @@ std::vector<ParticipantTrials> participants_of(const TrialsData& data, const Tri
       ++own.practice;
     } else {
       ++own.counted;
-      own.saturated += trial.saturated > 0.0 ? 1.0 : 0.0;
+      std::set<std::string> limited;
+      for (const StageTime& stage : trial.stages) {
+        if (stage.at_limit) {
+          limited.insert(stage.stage);
+        }
+      }
+      for (const std::string& stage : limited) {
+        own.at_limit[stage] += 1.0;
+      }
       const GivenAnswer* answer = answer_to(trial, plan.question);
       if (answer != nullptr && answer->reaction_time == answer->reaction_time) {
         times[own.participant].push_back(answer->reaction_time);
@@ -41,7 +49,9 @@ std::vector<ParticipantTrials> participants_of(const TrialsData& data, const Tri
   }
   std::vector<ParticipantTrials> all;
   for (auto& [name, own] : people) {
-    own.saturated /= std::max<double>(1.0, static_cast<double>(own.counted));
+    for (auto& [stage, trials] : own.at_limit) {
+      trials /= static_cast<double>(own.counted);
+    }
     if (!times[name].empty()) {
       own.reaction_time = quantile(times[name], 0.5);
     }

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "analysis/document/design/design_blocks.h"
@@ -101,6 +102,32 @@ void add_serial(Document& document, const TrialsResult& result) {
       t_result(result.drift), t_result(result.repetition), words_of_chance(result)));
 }
 
+/// In which stages the force limit was reached: one before the stimulus harms no answer.
+std::string limit_words(const std::vector<ParticipantTrials>& people) {
+  struct Limited {
+    std::size_t participants{0};
+    double most{0.0};
+  };
+  std::map<std::string, Limited> stages;
+  for (const ParticipantTrials& p : people) {
+    for (const auto& [stage, share] : p.at_limit) {
+      ++stages[stage].participants;
+      stages[stage].most = std::max(stages[stage].most, share);
+    }
+  }
+  std::vector<std::string> words;
+  for (const auto& [stage, limited] : stages) {
+    words.push_back(fmt::format("{} (of {} of {}, in up to {} of the trials)", stage,
+                                limited.participants, counted(people.size(), "participant"),
+                                percent(limited.most)));
+  }
+  return words.empty() ? "The device never came to its force limit."
+                       : fmt::format(
+                             "The force limit was reached in the stages {}, and in no "
+                             "other.",
+                             fmt::join(words, ", "));
+}
+
 }  // namespace
 
 void add_comparisons(Document& document, const TrialsResult& result) {
@@ -134,15 +161,7 @@ void add_trial_quality(Document& document, const TrialsResult& result,
   add_section(document, result, "Quality");
   add_serial(document, result);
   add_reach_quality(document, result);
-  std::vector<std::string> limited;
-  for (const ParticipantTrials& p : result.participants) {
-    if (p.saturated > 0.0) {
-      limited.push_back(fmt::format("{} in {} of the trials", p.participant, percent(p.saturated)));
-    }
-  }
-  document.paragraph(limited.empty() ? std::string("The device never came to its force limit.")
-                                     : fmt::format("The force limit was reached by {}.",
-                                                   fmt::join(limited, ", ")));
+  document.paragraph(limit_words(result.participants));
   add_markers(document, result);
   add_pictures(document, drawings, "reaction-times", 1);
 }

@@ -208,7 +208,7 @@ Json to_json(const ParticipantTrials& p) {
           {"practice", p.practice},
           {"aborted", p.aborted},
           {"median_reaction_time_s", to_json(p.reaction_time)},
-          {"share_of_trials_at_force_limit", p.saturated}};
+          {"share_of_trials_at_force_limit_by_stage", p.at_limit}};
 }
 
 Json to_json(const markers::MarkerTimes& times) {

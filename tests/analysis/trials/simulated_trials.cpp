@@ -220,7 +220,10 @@ class SessionRows {
       sample.time_ns = static_cast<std::int64_t>(sample.sequence) * 1'000'000;
       sample.pass = row_;
       sample.stage = record::Stage::kRun;
-      sample.saturated = k < trial.saturated * ticks_;
+      sample.saturated = std::ranges::any_of(trial.stages, [k](const StageTime& stage) {
+        const auto first = static_cast<int>(stage.first);
+        return stage.at_limit && k >= first && k < first + static_cast<int>(stage.ticks);
+      });
       samples.push_back(sample);
     }
     pass.last_sample = next_ - 1;

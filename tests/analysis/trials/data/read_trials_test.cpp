@@ -35,12 +35,11 @@ TrialsData hand_made() {
   again.completed = true;
   again.attempt = 2;
   again.levels.front().outcome = 1.0;
-  again.saturated = 0.25;
   again.answers = {{"stiffer", 2.0, "second", 1, 0.5}, {"sure", 4.0, "", -1, 1.25}};
   again.variables = {{"stiffness", 1, 300.0, ""},
                      {"stiffness", 2, 330.0, ""},
                      {"field", 0, kNotKnown, "curl, \"soft\""}};
-  again.stages = {{"press", 1, true, 12}, {"press", 2, true, 20}};
+  again.stages = {{"press", 1, true, false, 12}, {"press", 2, true, true, 20, 12}};
   StudyTrial probe = aborted;
   probe.trial = 2;
   probe.completed = true;
@@ -100,7 +99,9 @@ TEST_F(ReadTrials, AnswersVariablesLevelsAndStagesBelongToTheirPass) {
   ASSERT_EQ(trial.stages.size(), 2u);
   EXPECT_EQ(trial.stages[0].ticks, 12u);
   EXPECT_EQ(trial.stages[1].ticks, 20u);
-  EXPECT_NEAR(trial.saturated, 0.25, 1e-12);
+  EXPECT_GT(trial.saturated, 0.0);
+  EXPECT_FALSE(trial.stages[0].at_limit);
+  EXPECT_TRUE(trial.stages[1].at_limit);
   EXPECT_THAT(data_.trials[3].levels, IsEmpty());
 }
 

@@ -57,6 +57,24 @@ TEST(TrialsStudyTest, ThresholdsOfTwoIntervalsAreThoseOfThePeople) {
   EXPECT_FALSE(q.compared);
 }
 
+/// A guide that is as strong as the device allows brings the hand to the start; what is felt then
+/// stays below.
+TEST(TrialsStudyTest, TheForceLimitIsCountedByStage) {
+  SimulatedTrials study;
+  study.participants = 2;
+  study.trials = 40;
+  TrialsData data = test::simulated_trials(study);
+  for (std::size_t i = 0; i < data.trials.size(); ++i) {
+    data.trials[i].stages = {{"approach", 1, true, true, 10}, {"press", 1, true, i == 0, 10, 10}};
+  }
+  const TrialsResult result = analyze(std::move(data), test::plan_of(study), {}, 1);
+  const auto& limited = result.participants.at(0).at_limit;
+  EXPECT_EQ(limited.at("approach"), 1.0);
+  EXPECT_NEAR(limited.at("press"), 1.0 / static_cast<double>(result.participants[0].counted),
+              1e-12);
+  EXPECT_FALSE(result.participants.at(1).at_limit.contains("press"));
+}
+
 TEST(TrialsStudyTest, IntervalsHoldTheTruthAndBothFitsAgree) {
   SimulatedTrials study;
   study.task = SimulatedTask::kConstant;
