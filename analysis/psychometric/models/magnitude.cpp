@@ -1,6 +1,7 @@
 #include "analysis/psychometric/models/magnitude.h"
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -50,6 +51,7 @@ Defined<Logs> logs_of(std::span<const MagnitudeTrial> trials) {
 
 struct Line {
   double slope, intercept, r_squared;
+  double deviation, error;  // of the residuals, of the slope; infinite for two points
 };
 
 Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
@@ -58,7 +60,18 @@ Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
   const VectorXd u = a.array() - a.mean(), v = b.array() - b.mean();
   const double slope = u.dot(v) / u.squaredNorm();
   const double all = v.squaredNorm(), left = (v - slope * u).squaredNorm();
-  return {slope, b.mean() - slope * a.mean(), all > 0.0 ? 1.0 - left / all : 1.0};
+  const auto df = static_cast<double>(x.size()) - 2.0;
+  const double deviation =
+      df > 0.0 ? std::sqrt(left / df) : std::numeric_limits<double>::infinity();
+  return {slope, b.mean() - slope * a.mean(), all > 0.0 ? 1.0 - left / all : 1.0, deviation,
+          deviation / u.norm()};
+}
+
+PersonalLine personal(const Line& line, std::size_t levels, double level) {
+  const double half =
+      levels > 2 ? t_quantile(0.5 + 0.5 * level, static_cast<double>(levels) - 2.0) * line.error
+                 : line.error;
+  return {line.slope - half, line.slope + half, line.r_squared, line.deviation};
 }
 
 /// Logarithms of the moduli, with sum 0; nothing unless all participants are joined by levels.
@@ -149,7 +162,9 @@ Defined<PowerLaw> power_law(std::span<const MagnitudeTrial> trials, double level
       y.push_back(mean.value());
     }
     law.participants.push_back(participant);
-    law.exponents.push_back(line_through(x, y).slope);
+    const Line line = line_through(x, y);
+    law.exponents.push_back(line.slope);
+    law.lines.push_back(personal(line, x.size(), level));
     law.moduli.push_back(std::exp((*moduli)[i++]));
   }
   law.levels = level_means(*logs, *moduli, level);

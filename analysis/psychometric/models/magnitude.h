@@ -22,6 +22,13 @@ struct MagnitudeLevel {
   std::size_t participants{0};
 };
 
+/// A participant's line through the logarithms of the levels' means.
+struct PersonalLine {
+  double low{0.0}, high{0.0};  // Student's interval of the exponent; infinite for two levels
+  double r_squared{0.0};
+  double deviation{0.0};  // standard deviation of the residuals, natural logarithm
+};
+
 /// Stevens' power law, estimate = constant level^exponent.
 struct PowerLaw {
   double exponent{0.0};                   // mean of the participants' exponents
@@ -33,6 +40,7 @@ struct PowerLaw {
   std::vector<std::size_t> participants;  // (n) rising
   std::vector<double> exponents;       // (n) each participant's least-squares slope of log on log
   std::vector<double> moduli;          // (n) what the participant's estimates are divided by
+  std::vector<PersonalLine> lines;     // (n) how well each exponent is known
   std::vector<MagnitudeLevel> levels;  // rising
 };
 

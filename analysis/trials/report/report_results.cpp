@@ -238,7 +238,9 @@ void add_laws(Document& document, const TrialsResult& result,
                     number(law.constant), fmt::format("{:.3f}", law.r_squared)});
     for (std::size_t i = 0; i < law.participants.size(); ++i) {
       people.push_back({series_name(one.participants[law.participants[i]], one.condition),
-                        number(law.exponents[i]), number(law.moduli[i])});
+                        estimate_word({law.exponents[i], law.lines[i].low, law.lines[i].high}),
+                        number(law.moduli[i]), fmt::format("{:.3f}", law.lines[i].r_squared),
+                        number(law.lines[i].deviation)});
     }
     if (one.not_positive > 0) {
       document.paragraph(fmt::format("{}: {} of 0 or below left out.", condition,
@@ -246,7 +248,8 @@ void add_laws(Document& document, const TrialsResult& result,
     }
   }
   document.table({"condition", "exponent [95 %]", "constant", "R² of the levels' means"}, rows);
-  document.table({"participant", "exponent", "modulus"}, people, "Every participant's exponent");
+  document.table({"participant", "exponent [95 %]", "modulus", "R²", "SD of the residuals (ln)"},
+                 people, "Every participant's exponent");
 }
 
 void add_settings(Document& document, const TrialsResult& result,

@@ -282,5 +282,18 @@ TEST(PowerLaw, EqualisesModuliWithLevelsMissing) {
   EXPECT_FALSE(power_law(std::vector<MagnitudeTrial>{{1, 1.0, 2.0}, {1, 2.0, 0.0}}));
 }
 
+// Logarithms 0, 1, 1 at three levels an octave apart: residuals -1/6, 1/3, -1/6.
+TEST(PowerLaw, SaysHowWellEachExponentIsKnown) {
+  const double e = std::exp(1.0), octave = std::log(2.0);
+  const auto law = power_law(std::vector<MagnitudeTrial>{{1, 1.0, 1.0}, {1, 2.0, e}, {1, 4.0, e}});
+  ASSERT_TRUE(law) << law.because();
+  const PersonalLine& line = law->lines.at(0);
+  EXPECT_NEAR(law->exponents[0], 0.5 / octave, 1e-12);
+  EXPECT_NEAR(line.r_squared, 0.75, 1e-12);
+  EXPECT_NEAR(line.deviation, std::sqrt(1.0 / 6.0), 1e-12);
+  EXPECT_NEAR(line.high - law->exponents[0],
+              gsl_cdf_tdist_Pinv(0.975, 1.0) * std::sqrt(1.0 / 12.0) / octave, 1e-9);
+}
+
 }  // namespace
 }  // namespace haptrial::analysis
