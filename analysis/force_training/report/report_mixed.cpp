@@ -27,6 +27,18 @@ std::vector<std::string> model_row(const std::string& effect, const Coefficient&
           tested(c)};
 }
 
+std::string sphericity_verdict(const RepeatedAnova& anova) {
+  constexpr double kAlpha = 0.05;
+  const auto& mauchly = anova.sphericity.mauchly;
+  if (!mauchly) {
+    return "Whether they do could not be tested; trust the tests above.";
+  }
+  return mauchly->p < kAlpha
+             ? "Mauchly's test above says that they do not, so the p values of this model are not "
+               "to be trusted; take those of the tests above."
+             : "Mauchly's test above does not speak against it.";
+}
+
 void add_terms(Document& document, const StudyMixed& study) {
   Rows rows;
   for (std::size_t k = 0; k < study.terms.size(); ++k) {
@@ -78,8 +90,9 @@ void add_mixed(Document& document, const StudyStatistics& statistics) {
   if (statistics.repeated && statistics.table.factors.size() == 1 &&
       statistics.conditions.size() > 2) {
     document.paragraph(
-        "The model takes the differences between any two conditions to vary alike (sphericity). If "
-        "Mauchly's test above speaks against that, trust the tests above.");
+        "The model takes the differences between any two conditions to vary alike "
+        "(sphericity). " +
+        sphericity_verdict(*statistics.repeated));
   }
   add_model_effects(document, study);
   add_terms(document, study);
