@@ -19,7 +19,7 @@ std::string share_words(const TestCount& count) {
 std::string level_words(Level level) {
   switch (level) {
     case Level::kKept:
-      return "keeps its level";
+      return "compatible with its level";
     case Level::kAbove:
       return "rejects too often";
     case Level::kBelow:
@@ -30,11 +30,29 @@ std::string level_words(Level level) {
   return "not known";
 }
 
+namespace {
+
+/// "95 of 2000 and 105 of 2000 studies".
+std::string null_counts(const PowerResult& result) {
+  std::string words;
+  for (std::size_t i = 0; i < result.nulls.size(); ++i) {
+    const TestCount count = result.nulls[i].counts.of(result.watch);
+    words += fmt::format("{}{} of {}",
+                         i == 0                        ? ""
+                         : i + 1 < result.nulls.size() ? ", "
+                                                       : " and ",
+                         count.rejected, count.made);
+  }
+  return words + " studies";
+}
+
+}  // namespace
+
 std::string verdict(const PowerResult& result) {
   const Level level = level_of(result, result.watch);
   if (level == Level::kKept) {
-    return fmt::format("Without an effect the test \"{}\" keeps its level of {}.", result.watch,
-                       result.alpha);
+    return fmt::format("Without an effect the test \"{}\" rejects in {}, compatible with {}.",
+                       result.watch, null_counts(result), result.alpha);
   }
   if (level == Level::kUnknown) {
     return fmt::format(
@@ -110,10 +128,15 @@ std::vector<std::string> size_lines(const PowerResult& result) {
              : *n <= points.front().n ? fmt::format("{:g} or fewer", points.front().n)
                                       : fmt::format("{:.0f}", std::ceil(*n - 1e-9));
     };
-    lines.push_back(
-        fmt::format("{}{}a power of {:g} takes {} participants (95 % interval {} to {})", line.name,
-                    line.name.empty() ? "" : ": ", result.target, word(size.n), word(size.low),
-                    word(size.high)));
+    lines.push_back(fmt::format(
+        "{}{}a power of {:g} takes {} participants (95 % Monte Carlo interval {} to {})", line.name,
+        line.name.empty() ? "" : ": ", result.target, word(size.n), word(size.low),
+        word(size.high)));
+  }
+  if (!lines.empty()) {
+    lines.emplace_back(
+        "the intervals are those of the simulation alone; they say nothing of the effect and the "
+        "variances that were assumed");
   }
   return lines;
 }

@@ -10,7 +10,7 @@ namespace haptrial::analysis {
 
 /// "0.812 (0.786 to 0.836)", "not made".
 std::string share_words(const TestCount& count);
-/// "keeps its level", "rejects too often", "rejects too seldom", "not known".
+/// "compatible with its level", "rejects too often", "rejects too seldom", "not known".
 std::string level_words(Level level);
 /// What rejections of the watched test are: "power", or that they are none, with the true rate.
 std::string verdict(const PowerResult& result);

@@ -80,6 +80,8 @@ TEST(PowerResult, RejectionsArePowerOnlyIfTheTestDoesNotExceedItsLevel) {
   EXPECT_THAT(verdict(result_with(50)), HasSubstr("rejects in 2.5 % of studies where 5 % are "
                                                   "allowed: it is cautious"));
   EXPECT_EQ(level_of(result_with(100), "another"), Level::kUnknown);
+  EXPECT_THAT(verdict(result_with(100)),
+              HasSubstr("rejects in 100 of 2000 and 100 of 2000 studies, compatible with 0.05"));
   PowerResult none = result_with(100);
   none.nulls.clear();
   EXPECT_FALSE(is_power(none));
