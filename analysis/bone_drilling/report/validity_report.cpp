@@ -22,11 +22,16 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-std::string form_word(const Defined<IntraclassForm>& form) {
-  return form ? fmt::format("{:.2f}, 95 % CI {:.2f} to {:.2f}, F({:.0f}, {:.0f}) = {}, {}",
-                            form->value, form->low, form->high, form->df_targets, form->df_error,
-                            number(form->f), p_value(form->p))
-              : undefined(form.because());
+/// @param apart  procedures are of different participants: else there is no interval and no p.
+std::string form_word(const Defined<IntraclassForm>& form, bool apart) {
+  if (!form) {
+    return undefined(form.because());
+  }
+  const std::string value = fmt::format("{:.2f}", form->value);
+  return apart ? fmt::format("{}, 95 % CI {:.2f} to {:.2f}, F({:.0f}, {:.0f}) = {}, {}", value,
+                             form->low, form->high, form->df_targets, form->df_error,
+                             number(form->f), p_value(form->p))
+               : value;
 }
 
 /// Every group once: a side that is one group is not listed again.
@@ -177,16 +182,20 @@ void Report::add_ratings() {
     return;
   }
   const Intraclass& a = *v_.agreement;
-  document_.table({"intraclass correlation", "result"},
-                  {{"one rater, agreement, ICC(2,1)", form_word(a.random_raters)},
-                   {"mean of the raters, agreement, ICC(2,k)", form_word(a.random_raters_mean)},
-                   {"one rater, consistency, ICC(3,1)", form_word(a.fixed_raters)},
-                   {"mean of the raters, consistency, ICC(3,k)", form_word(a.fixed_raters_mean)},
-                   {"one rater, raters not identified, ICC(1,1)", form_word(a.one_way)},
-                   {"mean, raters not identified, ICC(1,k)", form_word(a.one_way_mean)}});
-  document_.paragraph(
-      "Intervals and p values count every procedure as independent, so with several procedures of "
-      "each participant the intervals are too narrow.");
+  const bool apart = count_of(&ProcedureSummary::participant) == result_.procedures.size();
+  document_.table(
+      {"intraclass correlation", "result"},
+      {{"one rater, agreement, ICC(2,1)", form_word(a.random_raters, apart)},
+       {"mean of the raters, agreement, ICC(2,k)", form_word(a.random_raters_mean, apart)},
+       {"one rater, consistency, ICC(3,1)", form_word(a.fixed_raters, apart)},
+       {"mean of the raters, consistency, ICC(3,k)", form_word(a.fixed_raters_mean, apart)},
+       {"one rater, raters not identified, ICC(1,1)", form_word(a.one_way, apart)},
+       {"mean, raters not identified, ICC(1,k)", form_word(a.one_way_mean, apart)}});
+  if (!apart) {
+    document_.paragraph(
+        "Intervals and p values would count every procedure as independent, so there are none: "
+        "participants have several.");
+  }
 }
 
 void Report::add_metrics() {
