@@ -167,8 +167,16 @@ void add_cues(Document& document, const TrialsResult& result,
   add_deviations(document, result, at);
   document.paragraph(
       "Means over participants (geometric of σ) with 95 % intervals; p values of each of the three "
-      "tests are adjusted together over the rows. Of two estimated cues the better one looks better "
+      "tests are adjusted together over the rows. Of two estimated cues the better one looks "
+      "better "
       "than it is, so that the last test finds too little rather than too much.");
+  if (std::ranges::any_of(result.cues->levels,
+                          [](const CueLevel& level) { return !level.left_out.empty(); })) {
+    document.paragraph(
+        "Those left out below for lack of a function are mostly people whose function is too steep "
+        "to be told from their answers, so that the means over the others show standard deviations "
+        "that are too large.");
+  }
   for (const CueLevel& level : result.cues->levels) {
     for (const std::string& who : level.left_out) {
       document.paragraph(fmt::format(
