@@ -31,10 +31,10 @@ void add_family(Document& document, const TestFamily& family) {
          p_result(test.holm), effect(test.size), ranks_p(test), p_result(test.permutation_holm)});
   }
   if (!rows.empty()) {
-    document.table(
-        {capitalized(family.name), "participants", "difference [95 %]", "t-test, not adjusted",
-         "p after Holm", "d_z or d", "ranks, p after Holm", "permutation, p after Holm"},
-        rows);
+    document.table({capitalized(family.name), "participants", "difference [95 %, not adjusted]",
+                    "t-test, not adjusted", "p after Holm", "d_z or d", "ranks, p after Holm",
+                    "permutation, p after Holm"},
+                   rows);
   }
 }
 

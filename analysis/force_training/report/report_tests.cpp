@@ -32,10 +32,10 @@ std::string sentence(const StudyStatistics& s, const SideTest& test, const std::
   const char* direction = tail == Tail::kLess      ? "lower"
                           : tail == Tail::kGreater ? "higher"
                                                    : "different";
-  return fmt::format("{} was {}significantly {} after {}{} {} after {}{}: {}, {} = {}.", what,
-                     *test.holm < kAlpha ? "" : "not ", direction, a, mean_of(s, a),
-                     tail == Tail::kTwoSided ? "and" : "than", b, mean_of(s, b), side_result(test),
-                     test.paired ? "d_z" : "d", effect(test.size));
+  return fmt::format("{} was {} {} after {}{} {} after {}{}: {}, {} = {}.", what,
+                     *test.holm < kAlpha ? "significantly" : "not shown to be", direction, a,
+                     mean_of(s, a), tail == Tail::kTwoSided ? "and" : "than", b, mean_of(s, b),
+                     side_result(test), test.paired ? "d_z" : "d", effect(test.size));
 }
 
 /// A test on ranks and its adjusted p.
@@ -88,9 +88,14 @@ void add_family(Document& document, const TestFamily& family, const std::string&
   if (family.tests.empty()) {
     return;
   }
-  std::vector<std::string> names{
-      heading,        "Participants", "Difference (95 % CI)", "t-test, not adjusted",
-      "p after Holm", "d_z or d",     "Ranks, p after Holm",  "Permutation, p after Holm"};
+  std::vector<std::string> names{heading,
+                                 "Participants",
+                                 "Difference (95 % CI, not adjusted)",
+                                 "t-test, not adjusted",
+                                 "p after Holm",
+                                 "d_z or d",
+                                 "Ranks, p after Holm",
+                                 "Permutation, p after Holm"};
   Rows rows;
   for (const SideTest& test : family.tests) {
     rows.push_back(row_of(test));

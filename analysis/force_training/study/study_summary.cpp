@@ -25,7 +25,8 @@ std::vector<std::string> summary_lines(const StudyResult& study) {
   for (const auto& s : statistics.summaries) {
     lines.push_back(line_of(s, participants));
   }
-  for (const auto& more : {effect_lines(statistics.tests), planned_lines(statistics.tests)}) {
+  for (const auto& more : {effect_lines(statistics.tests), planned_lines(statistics.tests),
+                           unplanned_lines(statistics.tests)}) {
     lines.insert(lines.end(), more.begin(), more.end());
   }
   if (study.path) {

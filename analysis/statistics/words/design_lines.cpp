@@ -21,18 +21,27 @@ std::string line_of(const Defined<EffectTest>& effect) {
   if (!effect) {
     return "Whether conditions differ is not defined, because " + effect.because() + ".";
   }
-  return fmt::format("{}: {}; {}", capitalized(effect->factor),
-                     effect->p < kAlpha ? "significant" : "not significant",
-                     effect_result(*effect));
+  return fmt::format("Effect of {}: {}; {}", effect->factor,
+                     effect->p < kAlpha ? "significant" : "not shown", effect_result(*effect));
 }
 
+/// A test that finds nothing says what it cannot exclude.
 std::string line_of(const SideTest& test) {
   const std::string name = "Planned, " + text_of(test.sides);
   if (!test.t || !test.holm) {
     return fmt::format("{}: not defined, because {}", name, test.t.because());
   }
-  return fmt::format("{}: {}; {}", name, *test.holm < kAlpha ? "significant" : "not significant",
-                     side_result(test));
+  if (*test.holm < kAlpha) {
+    return fmt::format("{}: significant; {}", name, side_result(test));
+  }
+  return fmt::format("{}: not shown, and differences up to {} are compatible with the data; {}",
+                     name, number(std::max(-test.t->low, test.t->high)), side_result(test));
+}
+
+bool is_planned(const DesignTests& tests, const PlannedTest& sides) {
+  return std::ranges::any_of(tests.planned.tests, [&](const SideTest& planned) {
+    return std::minmax(planned.sides.a, planned.sides.b) == std::minmax(sides.a, sides.b);
+  });
 }
 
 std::string line_of_cell(const DesignTable& table, std::size_t cell) {
@@ -117,6 +126,22 @@ std::vector<std::string> planned_lines(const DesignTests& tests) {
   std::vector<std::string> lines;
   for (const SideTest& test : tests.planned.tests) {
     lines.push_back(line_of(test));
+  }
+  return lines;
+}
+
+std::vector<std::string> unplanned_lines(const DesignTests& tests) {
+  std::vector<std::string> lines;
+  for (const TestFamily& family : tests.families) {
+    if (family.tests.size() < 2) {
+      continue;  // the effect says the same
+    }
+    for (const SideTest& test : family.tests) {
+      if (test.holm && *test.holm < kAlpha && !is_planned(tests, test.sides)) {
+        lines.push_back(
+            fmt::format("Not planned, {}: significant; {}", sides_of(test), side_result(test)));
+      }
+    }
   }
   return lines;
 }

@@ -11,6 +11,8 @@ namespace haptrial::analysis {
 /// A line for each effect and planned test, for the console and the top of a report.
 std::vector<std::string> effect_lines(const DesignTests& tests);
 std::vector<std::string> planned_lines(const DesignTests& tests);
+/// A line for each significant test of two sides that was not planned.
+std::vector<std::string> unplanned_lines(const DesignTests& tests);
 
 /// Everything that a design's tests found, as lines of plain text.
 std::vector<std::string> design_lines(const DesignTable& table, const DesignTests& tests);

@@ -90,7 +90,8 @@ std::string side_result(const SideTest& test) {
     return not_defined(test.t.because());
   }
   return fmt::format(
-      "difference {}, 95 % CI {} to {}, {}({}) = {:.2f}, {} after Holm's adjustment, {}",
+      "difference {}, 95 % CI {} to {} (two-sided, not adjusted), {}({}) = {:.2f}, {} after Holm's "
+      "adjustment, {}",
       number(test.t->difference), number(test.t->low), number(test.t->high), name_of_test(test),
       degrees(test.t->df), test.t->t, p_result(test.holm),
       test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed");

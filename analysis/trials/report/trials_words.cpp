@@ -43,6 +43,7 @@ void add_tests(const Quantity& q, bool effects, std::vector<std::string>& lines)
     add(effect_lines(q.tests));
   }
   add(planned_lines(q.tests));
+  add(unplanned_lines(q.tests));
 }
 
 void add_reaching(const ReachingResult& reaching, std::vector<std::string>& lines) {

@@ -10,6 +10,8 @@
 #include "analysis/statistics/variance/mixed_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "analysis/statistics/variance/welch_anova.h"
+#include "analysis/statistics/words/design_lines.h"
+#include "analysis/statistics/words/wording.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/message_of.h"
@@ -328,6 +330,30 @@ TEST(DesignTests, OfNothingOrOfOneConditionAreNotDefined) {
 
 PlannedTest test_of(const std::string& text) {
   return parse_analysis_plan({text}, "", "--planned").tests.at(0);
+}
+
+/// Three conditions, of which the last lies apart; the plan compares the first two.
+TEST(DesignLines, SayWhatATestCannotExcludeAndWhatWasNotPlanned) {
+  Made made("lines");
+  for (int i = 0; i < 12; ++i) {
+    for (const char* level : {"a", "b", "c"}) {
+      made.add(person("P", i), {level}, level[0] == 'c' ? 5.0 : 0.0);
+    }
+  }
+  AnalysisPlan plan;
+  plan.tests = {test_of("a < b"), test_of("b < c")};
+  const DesignTests tests = design_tests(design_table(made.observations, {"k"}), plan, kNone);
+  EXPECT_THAT(effect_lines(tests).at(0), testing::StartsWith("Effect of k: significant; F("));
+  const auto planned = planned_lines(tests);
+  const TTest& t = *tests.planned.tests[0].t;
+  EXPECT_THAT(planned.at(0),
+              testing::StartsWith("Planned, a < b: not shown, and differences up to " +
+                                  number(std::max(-t.low, t.high)) +
+                                  " are compatible with the data; difference "));
+  EXPECT_THAT(planned.at(1), HasSubstr(" (two-sided, not adjusted), paired t(11) = "));
+  ASSERT_EQ(unplanned_lines(tests).size(), 1u);
+  EXPECT_THAT(unplanned_lines(tests)[0],
+              testing::StartsWith("Not planned, a and c: significant; difference "));
 }
 
 // Holm's rule over two tests: the smaller p doubled, the larger at least as large.
