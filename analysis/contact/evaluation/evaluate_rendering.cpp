@@ -36,6 +36,7 @@ void identify(const EvaluationOptions& o, Evaluation& result) {
   IdentificationOptions options;
   options.stick.least_force = o.prepare.least_force;
   options.velocity_noise = result.contact.velocity_noise;
+  options.friction_by_lag = result.contact.friction_by_lag;
   options.texture = o.texture;
   try {
     result.identified = identify_contact(result.contact.samples, options);

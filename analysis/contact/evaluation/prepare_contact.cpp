@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "analysis/contact/evaluation/check_body.h"
@@ -44,6 +45,11 @@ void check_options(const PrepareOptions& o) {
 
 double mean_period(const PoseStream& pose) {
   return (pose.time.back() - pose.time.front()) / static_cast<double>(pose.size() - 1);
+}
+
+/// Of the poses that a velocity is taken over [s].
+double velocity_width(const PoseStream& path) {
+  return std::max(kPeriodsOfVelocity * mean_period(path) * (1.0 + 1e-9), kLeastVelocityWidth);
 }
 
 /// The path of the probe's point in W.
@@ -201,14 +207,42 @@ ContactSamples samples_at_poses(const PoseStream& path, const Touch& touch,
   samples.normal = touch.normal;
   samples.force = touch.force;
   samples.depth = touch.depth;
-  PathVelocity found = path_velocity(
-      path.time, path.position,
-      std::max(kPeriodsOfVelocity * mean_period(path) * (1.0 + 1e-9), kLeastVelocityWidth));
+  PathVelocity found = path_velocity(path.time, path.position, velocity_width(path));
   noise = found.noise;
   for (const Vector3d& v : found.velocity) {
     samples.velocity.emplace_back(T_BW.linear() * v);
   }
   return samples;
+}
+
+/// Which poses lie on the body, with all those that their velocity is taken from: a probe that
+/// comes or goes has no direction along the surface.
+std::vector<bool> on_body(const PoseStream& path, const Touch& touch) {
+  constexpr double kFar = 5.0;  // times the median of the contacts
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < touch.depth.size(); ++i) {
+    if (touch.touching[i]) {
+      distance.push_back(std::abs(touch.depth[i]));
+    }
+  }
+  std::vector<bool> on(path.size(), true);
+  if (distance.empty()) {
+    return on;
+  }
+  const double far = kFar * *analysis::quantile(distance, 0.5);
+  const double reach = 0.5 * velocity_width(path);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (std::abs(touch.depth[i]) <= far) {
+      continue;
+    }
+    for (std::size_t j = i; j < path.size() && path.time[j] <= path.time[i] + reach; ++j) {
+      on[j] = false;
+    }
+    for (std::size_t j = i; j > 0 && path.time[j - 1] >= path.time[i] - reach; --j) {
+      on[j - 1] = false;
+    }
+  }
+  return on;
 }
 
 /// Forces at the lag that the body's normals tell, where they tell it better than the poses alone.
@@ -222,12 +256,13 @@ ForceStream refined_forces(const ContactRecording& recording, const PoseStream& 
   }
   const ForceStream at_poses = resampled(forces, path.time, mean_period(path));
   const Touch touch = touch_body(path, at_poses, T_BW, body, shading, o);
-  SurfaceWay way{path.time, {}, {}};
+  SurfaceWay way{path.time, {}, {}, on_body(path, touch)};
   for (const Vector3d& n : touch.normal) {
     way.normal.emplace_back(T_BW.linear().transpose() * n);
   }
   double noise = 0.0;
   way.velocity = samples_at_poses(path, touch, Eigen::Isometry3d::Identity(), noise).velocity;
+  double as_friction = 0.0;
   for (int round = 0; round < kLagRounds; ++round) {
     LagFit fit = estimate_surface_lag(way, forces, o.least_force);
     const double change = fit.lag;
@@ -236,6 +271,7 @@ ForceStream refined_forces(const ContactRecording& recording, const PoseStream& 
     fit.high += result.lag_used;
     const bool better =
         !result.lag->doubt.empty() || fit.high - fit.low < result.lag->high - result.lag->low;
+    as_friction = std::abs(fit.as_friction);
     if (!fit.doubt.empty() || (round == 0 && !better)) {
       break;
     }
@@ -244,6 +280,11 @@ ForceStream refined_forces(const ContactRecording& recording, const PoseStream& 
     if (std::abs(change) < kSameLag) {
       break;
     }
+  }
+  if (as_friction > 0.0) {
+    const double width = result.lag->high - result.lag->low;
+    result.friction_by_lag = result.lag->doubt.empty() ? 0.5 * as_friction * width
+                                                       : std::numeric_limits<double>::infinity();
   }
   return forces;
 }

@@ -19,6 +19,8 @@ constexpr std::size_t kLagBlocks = 10;
 constexpr std::size_t kFewestForces = 100;
 constexpr double kStillDoubted = 0.9;  // of what the median lag leaves
 constexpr double kRest = 0.1;          // of the mean speed: no direction below it
+constexpr std::size_t kReach = 10;     // steps to either side over which lags are compared
+constexpr double kAlike = 0.95;        // correlation of lag and friction that is told
 
 /// Sums of one block at one lag over the samples with a force.
 struct DirectionSums {
@@ -31,15 +33,21 @@ struct DirectionSums {
     nf += o.nf;
     vf += o.vf;
   }
-  /// The mean square that a n - b v leaves of unit vectors.
-  double left() const {
+  /// The shares (a, b) of normal and direction that explain unit vectors best.
+  Eigen::Vector2d shares() const {
     const double determinant = count * vv - nv * nv;
     if (!(determinant > 1e-12 * count * count)) {
-      return count > 0.0 ? 1.0 - nf * nf / (count * count) : 1.0;
+      return {count > 0.0 ? nf / count : 0.0, 0.0};
     }
-    const double a = (vv * nf - nv * vf) / determinant, b = (count * vf - nv * nf) / determinant;
-    return 1.0 - (a * nf + b * vf) / count;
+    return {(vv * nf - nv * vf) / determinant, (count * vf - nv * nf) / determinant};
   }
+  /// The mean square that a n + b v leaves of them.
+  double left_by(const Eigen::Vector2d& s) const {
+    const double explained =
+        s[0] * (2.0 * nf - s[0] * count - 2.0 * s[1] * nv) + s[1] * (2.0 * vf - s[1] * vv);
+    return count > 0.0 ? 1.0 - explained / count : 1.0;
+  }
+  double left() const { return left_by(shares()); }
 };
 using LagBlocks = std::array<DirectionSums, kLagBlocks>;
 
@@ -66,7 +74,7 @@ LagBlocks sums_at(const SurfaceWay& way, const std::vector<Vector3d>& direction,
   LagBlocks blocks{};
   for (std::size_t i = 0; i < times.size(); ++i) {
     const double size = at.force[i].norm();
-    if (size > least_force) {
+    if (way.touching[i] && size > least_force) {
       const Vector3d f = at.force[i] / size;
       blocks[i * kLagBlocks / times.size()].add({1.0, way.normal[i].dot(direction[i]),
                                                  direction[i].squaredNorm(), way.normal[i].dot(f),
@@ -74,6 +82,35 @@ LagBlocks sums_at(const SurfaceWay& way, const std::vector<Vector3d>& direction,
     }
   }
   return blocks;
+}
+
+DirectionSums sum_of(const LagBlocks& blocks, std::size_t without) {
+  DirectionSums all;
+  for (std::size_t b = 0; b < kLagBlocks; ++b) {
+    all.add(b == without ? DirectionSums{} : blocks[b]);
+  }
+  return all;
+}
+
+/// The friction that does what a second of lag does, if another friction mends most of what another
+/// lag spoils; else 0 [1/s].
+double lag_as_friction(const std::vector<LagBlocks>& lags, double at, double step) {
+  const auto i = static_cast<std::size_t>(
+      std::clamp(std::round(at), 1.0, static_cast<double>(lags.size()) - 2.0));
+  const std::size_t reach = std::min({kReach, i, lags.size() - 1 - i});
+  const DirectionSums here = sum_of(lags[i], kLagBlocks);
+  const DirectionSums before = sum_of(lags[i - reach], kLagBlocks);
+  const DirectionSums after = sum_of(lags[i + reach], kLagBlocks);
+  const double anew = before.left() + after.left() - 2.0 * here.left();
+  const double kept =
+      before.left_by(here.shares()) + after.left_by(here.shares()) - 2.0 * here.left();
+  if (!(kept > 0.0) || anew > (1.0 - kAlike * kAlike) * kept) {
+    return 0.0;
+  }
+  const auto friction = [](const DirectionSums& sums) {
+    return -sums.shares()[1] / sums.shares()[0];
+  };
+  return (friction(after) - friction(before)) / (2.0 * static_cast<double>(reach) * step);
 }
 
 /// The lag that leaves least without a block, between the tried ones by a parabola.
@@ -85,11 +122,7 @@ struct Valley {
 Valley lowest(const std::vector<LagBlocks>& lags, std::size_t without, double first, double step) {
   std::vector<double> left;
   for (const LagBlocks& blocks : lags) {
-    DirectionSums all;
-    for (std::size_t b = 0; b < kLagBlocks; ++b) {
-      all.add(b == without ? DirectionSums{} : blocks[b]);
-    }
-    left.push_back(all.left());
+    left.push_back(sum_of(blocks, without).left());
   }
   const auto i =
       static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
@@ -107,7 +140,7 @@ void check_way(const SurfaceWay& way, const ForceStream& force, double least_for
   check(force);
   const std::size_t n = way.time.size();
   if (n < kFewestForces || way.normal.size() != n || way.velocity.size() != n ||
-      !(least_force > 0.0)) {
+      way.touching.size() != n || !(least_force > 0.0)) {
     throw std::invalid_argument(
         "a lag on a surface needs 100 poses or more, equally many normals and velocities, and a "
         "least force above 0");
@@ -159,10 +192,13 @@ LagFit estimate_surface_lag(const SurfaceWay& way, const ForceStream& force, dou
   // Jackknife: the deviation of the pseudo-values, blocks of neighbours being nearly independent.
   const analysis::Moments m = *analysis::moments(left_out);
   const double blocks = kLagBlocks;
-  const double half =
+  const double noise =
       analysis::t_quantile(0.975, blocks - 1.0) * std::sqrt((blocks - 1.0) / blocks * m.squares);
-  return {best.lag, best.lag - half, best.lag + half, 1.0 - best.left,
-          doubt_of(best, half, options)};
+  const double half = std::hypot(noise, 0.5 * options.step);  // no finer than the lags tried
+  const double as_friction = lag_as_friction(sums, (best.lag - first) / options.step, options.step);
+  return {
+      best.lag,   best.lag - half, best.lag + half, 1.0 - best.left, doubt_of(best, half, options),
+      as_friction};
 }
 
 }  // namespace haptrial::evaluation

@@ -12,16 +12,19 @@ struct SurfaceWay {
   std::vector<double> time;               // (n) increasing [s]
   std::vector<Eigen::Vector3d> normal;    // (n) unit length, frame W
   std::vector<Eigen::Vector3d> velocity;  // (n) of the probe in W [m/s]
+  std::vector<bool> touching;  // (n) the probe is and stays on the body; others are left out
 };
 
 /// The lag between poses and forces once the body is known: at each lag the direction of the force
 /// is explained, by least squares, as a n - b v/|v| (normal and friction), whatever its size. The
 /// lag is the one that leaves least; its interval comes from leaving out one of ten blocks at a
-/// time. A hand that presses as it likes does not disturb it, and it needs no change of position
-/// along the force, which estimate_lag() does.
+/// time, and is never narrower than a step. A hand that presses as it likes does not disturb it,
+/// and it needs no change of position along the force, which estimate_lag() does.
 ///
 /// Doubted where it leaves more than 0.9 of what the median lag leaves, where the best lag is the
-/// largest that was tried, or where the interval is wider than `largest`.
+/// largest that was tried, or where the interval is wider than `largest`. Lag and friction look
+/// alike, `as_friction`, where their effects correlate beyond 0.95: as when a probe goes round an
+/// axis with an even speed, which turns the normal into its direction of movement.
 /// @param force  in W; samples are used whose size is above `least_force` > 0 [N]
 /// @param options  `slowest` is not used
 /// @throws std::invalid_argument for a bad stream or option, lengths that differ or fewer than 100

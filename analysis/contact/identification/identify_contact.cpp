@@ -131,6 +131,12 @@ void find_stiffness(const ContactSamples& s, const std::vector<std::size_t>& tou
   }
 }
 
+/// Adds another source of error, which is independent of the noise, to an interval.
+void widen(double half, Interval& interval) {
+  interval.low = interval.value - std::hypot(interval.value - interval.low, half);
+  interval.high = interval.value + std::hypot(interval.high - interval.value, half);
+}
+
 void find_dynamic_friction(const ContactSamples& s, const std::vector<std::size_t>& slipping,
                            const IdentificationOptions& o, IdentifiedContact& found) {
   found.slip_samples = slipping.size();
@@ -153,6 +159,14 @@ void find_dynamic_friction(const ContactSamples& s, const std::vector<std::size_
   const BlockFit fit = fit_blocks(x, y, {kFrictionName, "force x", "force y", "force z"},
                                   {blocks_for(slipping.size(), o), o.level});
   found.dynamic_friction = fit.intervals[0];
+  if (o.friction_by_lag > 0.0) {
+    widen(o.friction_by_lag, *found.dynamic_friction);
+    found.confounded.push_back(fmt::format(
+        "Dynamic friction looks like a lag on this path: {}.",
+        std::isfinite(o.friction_by_lag)
+            ? fmt::format("what is open of the lag adds {:.3f} to its interval", o.friction_by_lag)
+            : "without a known lag it has no interval"));
+  }
   keep_sentences(fit, {kFrictionName}, found.confounded);
 }
 

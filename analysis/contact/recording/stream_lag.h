@@ -16,8 +16,9 @@ struct LagFit {
   double lag{0.0};  // the force stream's clock is ahead: force(t + lag) belongs to pose(t) [s]
   double low{0.0};  // 95 % interval by leaving out one of ten blocks at a time [s]
   double high{0.0};
-  double explained{0.0};  // share of the force's quick changes that the pose explains at the lag
-  std::string doubt;      // a sentence; empty: none
+  double explained{0.0};    // share of the force's quick changes that the pose explains at the lag
+  std::string doubt;        // a sentence; empty: none
+  double as_friction{0.0};  // friction that a second of lag looks like [1/s]; 0: unlike
 };
 
 /// The lag between two streams of one contact, from what both know. Quick changes of the force (in

@@ -8,6 +8,7 @@
 
 #include "analysis/contact/simulation/simulated_probe.h"
 #include "analysis/contact/truth/true_contact.h"
+#include "core/base/random.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/support/message_of.h"
 
@@ -62,6 +63,86 @@ const EvaluatedRendering& rendering(const Evaluation& e, RendererKind kind, bool
     }
   }
   throw std::invalid_argument("no such rendering");
+}
+
+geometry::Mesh flat_ellipsoid() {
+  geometry::Mesh mesh = geometry::make_sphere(0.03, 40);
+  for (Vector3d& vertex : mesh.vertices) {
+    vertex.z() *= 2.0 / 3.0;
+  }
+  return mesh;
+}
+
+/// A probe that goes round the axis of an ellipsoid at an even speed, with a friction of 0.2 and
+/// without a lag, after half a second in the air.
+ContactRecording round_an_axis(std::uint64_t seed) {
+  RandomStream random(seed, "places");
+  const auto place = [](double t) {
+    const double up = 0.6 + 0.8 * std::pow(std::sin(0.9 * t), 2);
+    return Vector3d(0.03 * std::sin(up) * std::cos(2.0 * t),
+                    0.03 * std::sin(up) * std::sin(2.0 * t), 0.02 * std::cos(up));
+  };
+  ContactRecording recording;
+  for (int i = 0; i < 3000; ++i) {
+    const double t = i / 500.0;
+    const bool air = t < 0.5;
+    const Vector3d p = place(t);
+    const Vector3d normal = Vector3d(p.x() / 9.0, p.y() / 9.0, p.z() / 4.0).normalized();
+    const Vector3d way = (place(t + 1e-5) - place(t - 1e-5)).normalized();
+    const Vector3d noise(random.normal(), random.normal(), random.normal());
+    recording.pose.time.push_back(t);
+    recording.pose.position.push_back(p + (air ? 0.015 : 0.0) * normal + 2e-5 * noise);
+    recording.pose.orientation.push_back(Eigen::Quaterniond::Identity());
+    recording.force.force.push_back((air ? 0.0 : 2.0 + std::sin(3.0 * t)) * (normal - 0.2 * way));
+  }
+  recording.force.time = recording.pose.time;
+  return recording;
+}
+
+TEST(EvaluateRenderingTest, ALagThatLooksLikeFrictionWidensItsInterval) {
+  const contact::FeltBody body(flat_ellipsoid());
+  EvaluationOptions options = known_frame();
+  options.renderers = {RendererKind::kPenalty};
+  options.prepare.lag.reset();
+  constexpr int kSeeds = 5;
+  int lags_held = 0, frictions_held = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Evaluation e = evaluate_rendering(round_an_axis(seed), body, options);
+    const LagFit& lag = *e.contact.lag;
+    const Interval& friction = *e.identified->dynamic_friction;
+    EXPECT_EQ(lag.doubt, "");
+    EXPECT_NEAR(lag.lag, 0.0, 0.003);
+    EXPECT_NEAR(friction.value, 0.2, 0.005);
+    lags_held += lag.low <= 0.0 && lag.high >= 0.0 ? 1 : 0;
+    frictions_held += friction.holds(0.2) ? 1 : 0;
+    EXPECT_THAT(e.identified->confounded,
+                testing::Contains(HasSubstr("Dynamic friction looks like a lag on this path")));
+  }
+  EXPECT_EQ(lags_held, kSeeds);
+  EXPECT_EQ(frictions_held, kSeeds);
+}
+
+TEST(EvaluateRenderingTest, OnACircleLagAndFrictionAreNotToldApart) {
+  EvaluationOptions options = known_frame();
+  options.renderers = {RendererKind::kProxy};
+  options.prepare.lag.reset();
+  ContactRecording circle = round_an_axis(1);
+  RandomStream random(4, "circle");
+  for (std::size_t i = 0; i < circle.pose.time.size(); ++i) {
+    const double turn = 2.0 * circle.pose.time[i];
+    const Vector3d normal(0.8 * std::cos(turn), 0.8 * std::sin(turn), 0.6);
+    const Vector3d way(-std::sin(turn), std::cos(turn), 0.0);
+    const Vector3d noise(random.normal(), random.normal(), random.normal());
+    circle.pose.position[i] = kRadius * normal + 2e-5 * noise;
+    circle.force.force[i] = (2.0 + std::sin(3.0 * circle.pose.time[i])) * (normal - 0.2 * way);
+  }
+  const Evaluation e = evaluate_rendering(circle, sphere(), options);
+  EXPECT_TRUE(!e.contact.lag->doubt.empty() ||
+              (e.contact.lag->low <= 0.0 && e.contact.lag->high >= 0.0))
+      << e.contact.lag->lag;
+  EXPECT_TRUE(e.identified->dynamic_friction->holds(0.2)) << e.identified->dynamic_friction->value;
+  EXPECT_THAT(e.identified->confounded,
+              testing::Contains(HasSubstr("Dynamic friction looks like a lag on this path")));
 }
 
 /// All that a frictionless renderer misses is friction: mu F_n on every sample of slip.

@@ -32,7 +32,8 @@ Rubbed rubbed(double lag, double friction, std::uint64_t seed) {
   for (double& t : recording.force.time) {
     t -= lag;  // the sensor is turned into W as it was when it felt
   }
-  Rubbed result{{recording.pose.time, {}, {}}, contact_forces(recording, {}, {})};
+  Rubbed result{{recording.pose.time, {}, {}, std::vector<bool>(recording.pose.time.size(), true)},
+                contact_forces(recording, {}, {})};
   result.force.time = clock;
   for (const Vector3d& p : recording.pose.position) {
     result.way.normal.push_back(radial_normal(duck_radius, p.normalized()));
