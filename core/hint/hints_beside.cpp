@@ -39,7 +39,7 @@ std::vector<record::HintRow> SteppedHints::take() {
   return watch_ ? std::exchange(watch_->rows(), {}) : std::vector<record::HintRow>{};
 }
 
-ThreadedHints::ThreadedHints(std::shared_ptr<HintChime> chime) : HintsBeside(std::move(chime)) {
+ThreadedHints::ThreadedHints(std::shared_ptr<Chime> chime) : HintsBeside(std::move(chime)) {
   thread_ = std::thread([this] { run(); });
 }
 

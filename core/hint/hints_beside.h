@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/hint/hint_chime.h"
+#include "core/hint/chime.h"
 #include "core/hint/hint_watch.h"
 #include "core/realtime/block_log.h"
 
@@ -23,7 +23,7 @@ struct HintsNow {
 class HintsBeside {
  public:
   /// @param chime  rings when a hint that is shown begins; null: none
-  explicit HintsBeside(std::shared_ptr<HintChime> chime) : chime_(std::move(chime)) {}
+  explicit HintsBeside(std::shared_ptr<Chime> chime) : chime_(std::move(chime)) {}
   virtual ~HintsBeside() = default;
   HintsBeside(const HintsBeside&) = delete;
   HintsBeside& operator=(const HintsBeside&) = delete;
@@ -56,7 +56,7 @@ class HintsBeside {
   void publish(const HintWatch& watch) noexcept;
 
  private:
-  std::shared_ptr<HintChime> chime_;
+  std::shared_ptr<Chime> chime_;
   std::atomic<bool> let_show_{true};
   std::atomic<HintsNow> now_{HintsNow{}};
 };
@@ -82,7 +82,7 @@ class SteppedHints final : public HintsBeside {
 /// SteppedHints for the same ticks; it is seen some milliseconds later.
 class ThreadedHints final : public HintsBeside {
  public:
-  explicit ThreadedHints(std::shared_ptr<HintChime> chime);
+  explicit ThreadedHints(std::shared_ptr<Chime> chime);
   ~ThreadedHints() override;
   void begin(std::unique_ptr<HintWatch> watch) override;
   void end_pass() override;

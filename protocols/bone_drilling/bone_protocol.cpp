@@ -69,6 +69,7 @@ class DrillingOutputs {
       nerves_->tick(sequence);
     }
     if (sound_) {
+      injury_.hear(seen);
       thickness_ = tick % kProbeEvery == 0 ? probe_->under(seen) : thickness_;
       sound_->add(sound_of(seen, stage->simulator->tools(), thickness_));
     }
@@ -99,6 +100,7 @@ class DrillingOutputs {
     if (chimes_) {
       hints_.mix(part);
     }
+    injury_.mix(part);
   }
 
   const ReplayRequest& request_;
@@ -109,6 +111,7 @@ class DrillingOutputs {
   double every_;                    // ticks from picture to picture
   double next_{0.0};
   int count_{0};
+  InjuryChime injury_;
   std::unique_ptr<ReplayedNerves> nerves_;  // heard with the drill; null: nobody watched any
   std::optional<sound::SoundTrack> sound_;
   std::shared_ptr<const BoneStage> stage_;

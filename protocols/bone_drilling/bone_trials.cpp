@@ -98,7 +98,7 @@ void BoneTrials::open_sound() {
     voice_ = std::make_shared<nerve::NerveVoice>(d_.nerves->monitor.rate);
   }
   if (d_.hints && d_.hints->sound) {
-    chime_ = std::make_shared<hint::HintChime>();
+    chime_ = std::make_shared<hint::Chime>();
   }
   const sound::SoundOutput::Mix mix = [voice = voice_, chime = chime_](std::span<float> part) {
     if (voice) {
@@ -208,7 +208,10 @@ std::unique_ptr<Rig> BoneTrials::virtual_rig() const {
 void BoneTrials::empty_logs(SessionFile& file) {
   const auto empty = [&file](auto& log) { log.flush([&file](auto rows) { file.add(rows); }); };
   empty(logs_.tool);
-  empty(logs_.removals);
+  if (!d_.simulator.soft_tissue.empty()) {
+    logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
+  }
+  logs_.removals.flush([&](std::span<const record::RemovalRow> rows) { add_removals(file, rows); });
   empty(logs_.camera);
   empty(logs_.splits);
   if (is_led()) {
@@ -230,9 +233,6 @@ void BoneTrials::empty_logs(SessionFile& file) {
     });
   }
   tell_shared(file);
-  if (!d_.simulator.soft_tissue.empty()) {
-    logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
-  }
   if (hints_) {
     hints_->beside().settle();  // likewise
     tell_hints(file);
@@ -276,6 +276,25 @@ void BoneTrials::tell_shared(SessionFile& file) {
   }
 }
 
+void BoneTrials::note_injury(SessionFile& file, const std::string& injury) {
+  file.event("injury", injury);
+  if (place_.real) {
+    warnings_.push_back("injury: " + injury);
+  }
+}
+
+/// The first voxel of each vital structure is an event, too: the console says it at once.
+void BoneTrials::add_removals(SessionFile& file, std::span<const record::RemovalRow> rows) {
+  file.add(rows);
+  const bone::BoneModel& model = *d_.bones[bone_];
+  for (const record::RemovalRow& row : rows) {
+    if (model.structures[row.label].vital && opened_.insert({bones_used_, row.label}).second) {
+      note_injury(file, fmt::format("{} opened at {:.2f} N, on tick {}",
+                                    model.structures[row.label].name, row.force, row.sequence));
+    }
+  }
+}
+
 /// An event each, too: somebody at the console is to know at once.
 void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> rows) {
   file.add(rows);
@@ -283,15 +302,16 @@ void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> 
     constexpr double kMillimetres = 1000.0;
     const bone::BoneModel& model = *d_.bones[bone_];
     const Eigen::Vector3d p = kMillimetres * (pose_of(d_.placement, model.grid) * row.place).eval();
-    file.event("injury",
-               fmt::format("{} torn by {}{} at {:.2f} N, {:.1f} mm deep, at ({:.1f}, {:.1f}, "
-                           "{:.1f}) mm in the world, on tick {}",
-                           model.structures[row.label].name,
-                           row.tool == record::kSecondHand
-                               ? "the tube in the other hand"
-                               : d_.simulator.tools[static_cast<std::size_t>(row.tool)].name,
-                           row.by_suction ? ", which sucks," : "", row.force,
-                           kMillimetres * row.depth, p.x(), p.y(), p.z(), row.sequence));
+    note_injury(file,
+                fmt::format("{} torn by {}{} at {:.2f} N, {:.1f} mm deep, at ({:.1f}, {:.1f}, "
+                            "{:.1f}) mm in the world, on tick {}",
+                            model.structures[row.label].name,
+                            row.tool == record::kSecondHand
+                                ? "the tube in the other hand"
+                                : d_.simulator.tools[static_cast<std::size_t>(row.tool)].name,
+                            row.by_suction ? ", which sucks," : "", row.force,
+                            kMillimetres * row.depth, p.x(), p.y(), p.z(), row.sequence));
+    opened_.insert({bones_used_, row.label});
     ++tears_;
   }
 }

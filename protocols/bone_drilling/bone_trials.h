@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
@@ -35,6 +37,7 @@ class BoneTrials final : public Trials {
     return logs_.dropped() + (nerves_ ? nerves_->beside().dropped() : 0) +
            (hints_ ? hints_->beside().dropped() : 0);
   }
+  std::vector<std::string> take_warnings() override { return std::exchange(warnings_, {}); }
   record::TableList tables() const override;
   std::vector<record::Rows> first_rows() const override;
   void check_resumed(const record::SessionReader& file) const override;
@@ -52,6 +55,8 @@ class BoneTrials final : public Trials {
 
  private:
   void tell_preparing(double share);
+  void add_removals(SessionFile& file, std::span<const record::RemovalRow> rows);
+  void note_injury(SessionFile& file, const std::string& injury);
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void open_sound();
   void tell_hints(SessionFile& file);
@@ -72,7 +77,7 @@ class BoneTrials final : public Trials {
   std::vector<record::BurrRow> burrs_;
   std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
   std::unique_ptr<TrialNerves> nerves_;       // null: nobody watches any
-  std::shared_ptr<hint::HintChime> chime_;    // on the sound card; null: none
+  std::shared_ptr<hint::Chime> chime_;        // on the sound card; null: none
   std::unique_ptr<TrialHints> hints_;         // null: none are given
   std::unique_ptr<BonePictures> pictures_;
   std::shared_ptr<BoneStage> stage_;
@@ -85,8 +90,10 @@ class BoneTrials final : public Trials {
   std::optional<sound::DrillVibration> vibration_;
   std::unique_ptr<BoneSound> sound_;
   std::string notice_;
-  std::uint64_t tears_{0};              // of soft tissue, in this run
-  std::uint64_t openings_{0};           // of vessels, likewise
+  std::set<std::pair<std::int32_t, std::uint8_t>> opened_;  // bones and labels of structures
+  std::vector<std::string> warnings_;                       // of injuries, where people drill
+  std::uint64_t tears_{0};                                  // of soft tissue, in this run
+  std::uint64_t openings_{0};                               // of vessels, likewise
   std::unique_ptr<SharedBone> shared_;  // with a linked session; null: it is nobody else's
   std::unique_ptr<DrillingPass> pass_;
   std::unique_ptr<LedPass> led_;  // in its stead, on a bone that belongs to the other side

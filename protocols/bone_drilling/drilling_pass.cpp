@@ -86,6 +86,7 @@ bone::DrillingView view_of(const bone::Simulator& simulator,
     const bone::TubeInput& tube = input.tube;
     view.tube = {true, tube.tool.tip.position, tube.tool.orientation, tube.sucks, tube.rinses};
   }
+  view.injury = simulator.last_injury();
   view.dents = {simulator.soft_tissue().dent(), simulator.soft_tissue().dent_of_second()};
   view.reversed = simulator.handpiece().reversed();
   view.sharpness = simulator.handpiece().sharpness(out.tool);

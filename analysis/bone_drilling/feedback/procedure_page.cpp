@@ -74,7 +74,8 @@ std::string experts_sentence(const Experts& experts) {
 std::string procedure_page(const ProcedurePage& page) {
   const Findings& f = *page.findings;
   const Experts& experts = *page.experts;
-  std::string body = lead(page) + simulated_banner(f.summary.simulated, experts.simulated);
+  std::string body =
+      injury_banners(f) + lead(page) + simulated_banner(f.summary.simulated, experts.simulated);
   if (f.structures.empty()) {
     body += banner(
         "Vital structures are unknown: this bone has none by a known name. Nothing here is an "

@@ -9,6 +9,7 @@
 #include "analysis/bone_drilling/feedback/page_frame.h"
 #include "analysis/bone_drilling/feedback/range_plot.h"
 #include "analysis/document/html.h"
+#include "core/base/text/counted.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -99,6 +100,19 @@ bool beyond_experts(const MetricKind& kind, double value, const SafeRange& exper
 
 std::string number_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.4g}", *value) : "-";
+}
+
+std::string injury_banners(const Findings& f) {
+  std::string html;
+  for (const Injury& injury : f.summary.injuries) {
+    if (const std::optional<double> time = opened_at(injury)) {
+      const auto seconds = static_cast<int>(*time);
+      html += banner(fmt::format(
+          "You opened the {} after {}:{:02} ({}).", injury.structure, seconds / 60, seconds % 60,
+          injury.voxels > 0 ? counted(injury.voxels, "voxel removed", "voxels removed") : "torn"));
+    }
+  }
+  return html;
 }
 
 std::string summary_points(const Findings& f, const Experts& experts) {

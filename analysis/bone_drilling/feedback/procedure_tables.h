@@ -22,6 +22,8 @@ bool beyond_experts(const MetricKind& kind, double value, const SafeRange& exper
 
 std::string number_text(const std::optional<double>& value);
 
+/// Which vital structures were opened, and when; empty: none was.
+std::string injury_banners(const Findings& findings);
 /// What matters, in a few lines.
 std::string summary_points(const Findings& findings, const Experts& experts);
 std::string metrics_table(const Findings& findings, const Experts& experts);

@@ -122,6 +122,13 @@ std::uint64_t InjuryMeter::voxels() const noexcept {
   return sum;
 }
 
+std::optional<double> opened_at(const Injury& injury) {
+  if (injury.first_tear && !(injury.first_removal < injury.first_tear->time)) {
+    return injury.first_tear->time;
+  }
+  return injury.first_removal;
+}
+
 void add_tears(const Procedure& procedure, std::vector<Injury>& injuries) {
   for (const Torn& tear : procedure.tears) {
     auto injury = std::find_if(injuries.begin(), injuries.end(),

@@ -38,6 +38,9 @@ struct Injury {
   bool operator==(const Injury&) const = default;
 };
 
+/// When it was opened first, by a burr, the cut plane or a tear [s of the procedure].
+std::optional<double> opened_at(const Injury& injury);
+
 /// Adds what tore. @param procedure  with its ticks
 void add_tears(const Procedure& procedure, std::vector<Injury>& injuries);
 

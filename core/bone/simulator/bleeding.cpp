@@ -17,16 +17,34 @@ BleedingParameters read_bleeding(Table& table) {
   return p;
 }
 
-void check_bleeding(const BoneModel& model, const BleedingParameters& parameters) {
+namespace {
+
+/// A definition may be for several bones: a known structure that one of them lacks does not bleed.
+std::vector<std::uint8_t> bleeding_labels(const BoneModel& model,
+                                          const BleedingParameters& parameters) {
+  std::vector<std::uint8_t> labels;
   for (const std::string& name : parameters.structures) {
-    label_named(model, name, "bleeding");
+    const std::string known = structure_named(name, 0).name;
+    const bool lacks = std::ranges::none_of(model.structures, [&](const Structure& structure) {
+      return structure.name == name || structure.name == known;
+    });
+    if (!lacks || !is_known_structure(name)) {
+      labels.push_back(label_named(model, name, "bleeding"));
+    }
   }
+  return labels;
+}
+
+}  // namespace
+
+void check_bleeding(const BoneModel& model, const BleedingParameters& parameters) {
+  bleeding_labels(model, parameters);
 }
 
 Bleeding::Bleeding(const BoneModel& model, const BleedingParameters& parameters)
     : spacing_(model.grid.spacing), any_(!parameters.structures.empty()) {
-  for (const std::string& name : parameters.structures) {
-    bleeds_[label_named(model, name, "bleeding")] = true;
+  for (const std::uint8_t label : bleeding_labels(model, parameters)) {
+    bleeds_[label] = true;
   }
   rate_ = parameters.rate / (spacing_ * spacing_ * spacing_);
   openings_.reserve(kMost);

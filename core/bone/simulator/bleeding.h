@@ -24,7 +24,7 @@ struct BleedingParameters {
 /// Reads a [bleeding] table: `structures` and `rate`.
 BleedingParameters read_bleeding(Table& table);
 
-/// @throws InputError for a structure that the bone does not have
+/// @throws InputError for a structure that is neither the bone's nor known by its name
 void check_bleeding(const BoneModel& model, const BleedingParameters& parameters);
 
 /// A place that began to bleed.

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/bone/model/dent.h"
+#include "core/bone/simulator/injury_watch.h"
 
 namespace haptrial::bone {
 
@@ -39,6 +40,7 @@ struct DrillingView {
   bool tone{false};                // the participant hears one of a nerve monitor
   std::uint8_t hints{0};           // that are shown, hint::bit() of each kind
   std::int8_t hint_structure{-1};  // of vital_structures(), that they are about; -1: none
+  LastInjury injury;
   TubeView tube;
   std::array<Dent, 2> dents{};  // of soft tissue in the bone itself, by tool and tube
   double temperature{0.0};      // at the burr; 0: nothing warms up [degree C]

@@ -72,6 +72,7 @@ Simulator::Simulator(const BoneModel& model, const SimulatorParameters& paramete
       shafts_(tools_, structures_, model.grid.spacing, soft_.soft()),
       handpiece_(tools_),
       bleeding_(model, parameters.bleeding),
+      injuries_(structures_),
       camera_(parameters.camera.start),
       start_(world_.volume(0).amount()) {
   std::size_t most = 1;
@@ -148,6 +149,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   work_second(input);
   warm_up(input);
   bleed(input.dt);
+  injuries_.tick(emptied_, soft_.tears(), input.dt);
   place_for_dust(input);
   hand_ = input.tool.tip.position;
   hand_known_ = true;

@@ -16,6 +16,7 @@
 #include "core/bone/pieces/world.h"
 #include "core/bone/simulator/bleeding.h"
 #include "core/bone/simulator/handpiece.h"
+#include "core/bone/simulator/injury_watch.h"
 #include "core/bone/simulator/second_hand.h"
 #include "core/bone/tools/cut_plane.h"
 #include "core/bone/tools/microscope.h"
@@ -127,6 +128,7 @@ class Simulator {
   std::span<const Tear> tears() const noexcept { return soft_.tears(); }
   const SoftTissue& soft_tissue() const noexcept { return soft_; }
   const Bleeding& bleeding() const noexcept { return bleeding_; }
+  const LastInjury& last_injury() const noexcept { return injuries_.last(); }
   const Handpiece& handpiece() const noexcept { return handpiece_; }
   /// Shape of the burr in hand; null for another tool.
   const BurrShape* burr_shape() const noexcept;
@@ -206,6 +208,7 @@ class Simulator {
   std::optional<SecondHand> second_;
   std::optional<DrillHeat> heat_;
   Bleeding bleeding_;
+  InjuryWatch injuries_;
   CutPlaneTool cutter_;
   double cut_of_present_{0.0};
   Camera camera_;

@@ -251,6 +251,20 @@ void BoneDisplay::label(const bone::DrillingView& seen) {
     labels_.tool(words_of(tool, seen), {left, width()});
     labels_.hints(hints, {left, width()});
   }
+  show_injury(seen);
+}
+
+/// A vital structure was just opened: a red frame that fades, and words that stay longer.
+void BoneDisplay::show_injury(const bone::DrillingView& seen) {
+  constexpr double kFrame = 1.0;  // [s]
+  constexpr double kWords = 5.0;  // [s]
+  if (seen.injury.label == 0 || seen.injury.since > kWords) {
+    return;
+  }
+  const std::string words = stage_->model->structures[seen.injury.label].name + " opened";
+  for (int left = 0; left < width_; left += width()) {
+    labels_.injury(words, 1.0 - seen.injury.since / kFrame, {left, width()});
+  }
 }
 
 std::vector<std::string> BoneDisplay::hints_in(const bone::DrillingView& seen) const {

@@ -45,6 +45,7 @@ class BoneDisplay {
   std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
   std::vector<render::Capsule> shadow_of(int tool) const;
   void label(const bone::DrillingView& seen);
+  void show_injury(const bone::DrillingView& seen);
   std::vector<std::string> hints_in(const bone::DrillingView& seen) const;
   void draw_still(std::int32_t asked);
 

@@ -48,9 +48,21 @@ sound::DrillState sound_of(const bone::DrillingView& seen, std::span<const bone:
   return state;
 }
 
+void InjuryChime::hear(const bone::DrillingView& seen) noexcept {
+  if (bone::begins(std::exchange(before_, seen.injury), seen.injury)) {
+    chime_.ring();
+  }
+}
+
 BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed,
                      sound::SoundOutput::Mix mix)
-    : output_(definition.sound_table, definition.thin_bone, seed, "default", std::move(mix)),
+    : output_(definition.sound_table, definition.thin_bone, seed, "default",
+              [this, others = std::move(mix)](std::span<float> part) {
+                injury_.mix(part);
+                if (others) {
+                  others(part);
+                }
+              }),
       tools_(definition.simulator.tools),
       thread_([this] { run(); }) {}
 
@@ -68,6 +80,7 @@ void BoneSound::observe(const stimulus::Shown& shown, const stimulus::Forces&, d
   const auto* view = shown.as<bone::DrillingView>();
   const bone::DrillingView seen = view != nullptr ? *view : bone::DrillingView{};
   seen_.write(seen);
+  injury_.hear(seen);
   output_.set(sound_of(seen, tools_, thickness_.load(std::memory_order_relaxed)));
 }
 

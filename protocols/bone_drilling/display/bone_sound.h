@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/bone/model/thickness.h"
+#include "core/hint/chime.h"
 #include "core/realtime/latest_value.h"
 #include "core/sound/sound_output.h"
 #include "core/stimulus/observer.h"
@@ -33,6 +34,18 @@ class ThicknessProbe {
 sound::DrillState sound_of(const bone::DrillingView& seen, std::span<const bone::ToolSpec> tools,
                            double thickness) noexcept;
 
+/// Rings when a vital structure is opened. Servo thread.
+class InjuryChime {
+ public:
+  void hear(const bone::DrillingView& seen) noexcept;
+  /// Adds the next samples to what is there; any one thread.
+  void mix(std::span<float> part) noexcept { chime_.mix(part); }
+
+ private:
+  hint::Chime chime_{hint::kInjuryNotes};
+  bone::LastInjury before_;
+};
+
 /// The sound of a drilling on the sound card. The servo thread calls observe(), the session's
 /// thread the rest; a thread of its own finds the thickness.
 class BoneSound final : public stimulus::Observer {
@@ -50,6 +63,7 @@ class BoneSound final : public stimulus::Observer {
  private:
   void run();
 
+  InjuryChime injury_;
   sound::SoundOutput output_;
   std::vector<bone::ToolSpec> tools_;
   realtime::LatestValue<bone::DrillingView> seen_;

@@ -10,6 +10,7 @@ namespace {
 const render::Colour kPale{0.96, 0.96, 0.96};
 const render::Colour kDark{0.05, 0.06, 0.08, 0.55};
 const render::Colour kBlack{0.08, 0.06, 0.02};
+const render::Colour kRed{0.80, 0.05, 0.08};
 const render::Colour kAmber{1.0, 0.76, 0.15,
                             0.92};  // whoever drills looks elsewhere: to be noticed
 
@@ -69,6 +70,23 @@ void PictureLabels::hints(std::span<const std::string> lines, const EyePicture& 
     line(words, low, {style, kAmber});
     low.y() += 2.1 * em;
   }
+}
+
+void PictureLabels::injury(const std::string& words, double frame, const EyePicture& eye) {
+  constexpr double kLines = 18.0;
+  constexpr double kFrames = 12.0;  // in a picture's height
+  if (frame > 0.0) {
+    const double wide = height_ / kFrames;
+    const Eigen::Vector2d low(eye.left, 0.0);
+    painter_.begin_over();
+    painter_.outline({low, low + Eigen::Vector2d(eye.width, height_)}, 0.0, wide,
+                     {kRed.red, kRed.green, kRed.blue, std::min(1.0, frame)});
+    painter_.end();
+  }
+  const render::TextStyle style{std::max(14, static_cast<int>(height_ / kLines)), true, kPale};
+  const double em = style.size;
+  const double left = eye.left + 0.5 * (eye.width - text_.width_of(words, style) - em);
+  line(words, {left, height_ - 4.5 * em}, {style, kRed});
 }
 
 }  // namespace haptrial::protocols

@@ -23,8 +23,9 @@ struct EyePicture {
   int width{0};  // [px]
 };
 
-/// Says over what is in the bound framebuffer which tool is in hand, in the lower left corner, and
-/// what the participant is hinted at, at the top. One thread, with its OpenGL context current.
+/// Says over what is in the bound framebuffer which tool is in hand, in the lower left corner,
+/// what the participant is hinted at, at the top, and what was injured. One thread, with its OpenGL
+/// context current.
 class PictureLabels {
  public:
   /// @param width, height  of the framebuffer [px]
@@ -34,6 +35,9 @@ class PictureLabels {
   void tool(const std::string& words, const EyePicture& eye);
   /// One line below the other.
   void hints(std::span<const std::string> lines, const EyePicture& eye);
+  /// @param words  of an injury, over the middle of the lower edge
+  /// @param frame  strength of a red frame around the picture; 0 and below: no frame
+  void injury(const std::string& words, double frame, const EyePicture& eye);
 
  private:
   struct Look {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/bone/simulator/drilling_view.h"
-#include "core/hint/hint_chime.h"
+#include "core/hint/chime.h"
 #include "core/hint/hint_rows.h"
 
 namespace haptrial::record {
@@ -30,7 +30,7 @@ class ReplayedHints {
  private:
   std::vector<record::HintRow> shown_;  // by their beginnings
   std::uint8_t before_{0};              // kinds on the tick before
-  hint::HintChime chime_;
+  hint::Chime chime_;
 };
 
 }  // namespace haptrial::protocols

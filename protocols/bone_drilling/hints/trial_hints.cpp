@@ -25,7 +25,7 @@ void tell_gone(const bone::BoneWorld& world, const geometry::VoxelGrid& grid,
 }  // namespace
 
 TrialHints::TrialHints(const BoneDefinition& definition, bool real,
-                       std::shared_ptr<hint::HintChime> chime)
+                       std::shared_ptr<hint::Chime> chime)
     : d_(definition), limits_(record::limit_rows(definition.hints->limits)) {
   if (real) {
     beside_ = std::make_unique<hint::ThreadedHints>(std::move(chime));

@@ -20,7 +20,7 @@ class TrialHints {
   /// @param definition  with hints; outlives this
   /// @param real        on a real clock: beside the servo thread
   /// @param chime       as hint::HintsBeside has it
-  TrialHints(const BoneDefinition& definition, bool real, std::shared_ptr<hint::HintChime> chime);
+  TrialHints(const BoneDefinition& definition, bool real, std::shared_ptr<hint::Chime> chime);
 
   /// @throws InputError if an earlier run of the session went by other safe values
   void check_resumed(const record::SessionReader& file) const;

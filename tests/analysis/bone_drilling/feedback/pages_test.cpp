@@ -70,6 +70,27 @@ TEST(FeedbackPageTest, NamesStayTextWhereverTheyStand) {
   EXPECT_THAT(all, HasSubstr("href=\"a&quot;b.html\""));
 }
 
+TEST(FeedbackPageTest, AnOpenedStructureIsTheFirstThingThatIsSaid) {
+  bone::BoneModel model = test::block(12, 12, 8);
+  model.structures.push_back({"sigmoid sinus", {0.3, 0.4, 0.8}, 0.25, true});
+  test::mark(model, {4, 6, 5}, 2);
+  Procedure p = test::procedure_on(std::move(model));
+  for (int i = 3; i < 9; ++i) {
+    test::remove_in_turn(p, {{i, 6, 5}});
+  }
+  StudyBones bones;
+  const Experts nobody;
+  const Findings f = findings_of(p, nobody, bones);
+  ProcedurePage page;
+  page.findings = &f;
+  page.experts = &nobody;
+  page.scene = scene_json(f, {});
+  const std::string html = procedure_page(page);
+  const std::size_t said = html.find("You opened the sigmoid sinus after 0:00 (1 voxel removed).");
+  ASSERT_NE(said, std::string::npos);
+  EXPECT_LT(said, html.find("class=\"lead\""));
+}
+
 TEST(FeedbackPageTest, AFaultlessLookingPageOfAnUnlabelledBoneIsNoAllClear) {
   Procedure p = test::procedure_on(test::block(6, 6, 6));
   p.simulated = false;

@@ -66,5 +66,36 @@ TEST(BoneDrawingTest, VStepsThroughTheQualitiesAndAFixedOneStays) {
   EXPECT_EQ(other.picture(), shaded);
 }
 
+bool is_red(const std::uint8_t* pixel) { return pixel[0] > 150 && pixel[1] < 60 && pixel[2] < 60; }
+
+TEST(BoneDrawingTest, AnInjuryHasARedFrameAtOnceAndWordsForAWhile) {
+  const BoneDefinition definition;
+  View view(definition);
+  const auto reds = [&view](double since) {
+    bone::DrillingView seen;
+    seen.shown = true;
+    seen.eye = {0.01, 0.06, 0.03};
+    seen.injury = {1, since};
+    view.drawing->draw(seen);
+    const std::vector<std::uint8_t> picture = view.context.read().rgb;
+    int edge = 0;
+    int inside = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const bool rim = x < 5 || x >= kWidth - 5 || y < 5 || y >= kHeight - 5;
+        (rim ? edge : inside) += is_red(&picture[3 * static_cast<std::size_t>(y * kWidth + x)]);
+      }
+    }
+    return std::pair(edge, inside);
+  };
+  const auto [edge, words] = reds(0.0);
+  EXPECT_GT(edge, 2 * 5 * (kWidth + kHeight) * 9 / 10);
+  EXPECT_GT(words, 500);
+  const auto [faded, still] = reds(3.0);
+  EXPECT_EQ(faded, 0);
+  EXPECT_GT(still, 500);
+  EXPECT_EQ(reds(6.0).second, 0);
+}
+
 }  // namespace
 }  // namespace haptrial::protocols

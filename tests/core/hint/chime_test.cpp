@@ -1,6 +1,6 @@
 // The chime of a hint: two notes that end, and nothing before it is rung.
 
-#include "core/hint/hint_chime.h"
+#include "core/hint/chime.h"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ int crossings(const std::vector<float>& samples, double from, double to) {
   return count;
 }
 
-TEST(HintChimeTest, IsAHighNoteAndALowerOneAndThenSilence) {
-  HintChime chime(kCard);
+TEST(ChimeTest, IsAHighNoteAndALowerOneAndThenSilence) {
+  Chime chime({}, kCard);
   std::vector<float> silence(1000, 0.0F);
   chime.mix(silence);
   EXPECT_TRUE(std::ranges::all_of(silence, [](float s) { return s == 0.0F; }));

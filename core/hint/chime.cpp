@@ -1,4 +1,4 @@
-#include "core/hint/hint_chime.h"
+#include "core/hint/chime.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,12 @@
 namespace haptrial::hint {
 namespace {
 
-constexpr double kHigh = 880.0;    // [Hz]
-constexpr double kLow = 659.26;    // a fourth below [Hz]
-constexpr double kLoudness = 0.2;  // of full scale
 constexpr double kAttack = 0.005;  // [s]
 constexpr double kDecay = 0.05;    // to 1/e [s]
 
 }  // namespace
 
-void HintChime::mix(std::span<float> part) noexcept {
+void Chime::mix(std::span<float> part) noexcept {
   if (const std::uint32_t rung = rung_.load(std::memory_order_relaxed); rung != heard_) {
     heard_ = rung;
     at_ = 0.0;
@@ -27,8 +24,9 @@ void HintChime::mix(std::span<float> part) noexcept {
     const bool second = at_ >= kNote;
     const double time = second ? at_ - kNote : at_;
     const double shape = std::min(1.0, time / kAttack) * std::exp(-time / kDecay);
-    sample += static_cast<float>(kLoudness * shape *
-                                 std::sin(2.0 * std::numbers::pi * (second ? kLow : kHigh) * time));
+    const double pitch = second ? notes_.second : notes_.first;
+    sample += static_cast<float>(notes_.loudness * shape *
+                                 std::sin(2.0 * std::numbers::pi * pitch * time));
     at_ += 1.0 / card_;
   }
 }
