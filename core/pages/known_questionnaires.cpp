@@ -85,14 +85,14 @@ std::vector<Item> edinburgh_items() {
     item.name = activity.name;
     item.kind = ItemKind::kChoice;
     item.title = activity.question;
-    item.text = "Which hand do you prefer for it?";
+    item.text = "Which hand do you prefer to use?";
     item.choices = {
-        {"always left", "Left, never the other", -2.0},
-        {"left", "Left hand", -1.0},
-        {"either", "Either", 0.0},
-        {"right", "Right hand", 1.0},
-        {"always right", "Right, never the other", 2.0},
-        {"never done", "I have never done it", std::numeric_limits<double>::quiet_NaN()}};
+        {"always left", "Left; the other only if I am forced to", -2.0},
+        {"left", "Left", -1.0},
+        {"either", "Either hand", 0.0},
+        {"right", "Right", 1.0},
+        {"always right", "Right; the other only if I am forced to", 2.0},
+        {"never done", "I have no experience of it", std::numeric_limits<double>::quiet_NaN()}};
     items.push_back(std::move(item));
   }
   return items;

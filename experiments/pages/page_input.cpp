@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/base/text/utf8.h"
 
@@ -15,6 +16,7 @@ namespace {
 using pages::ItemKind;
 using render::KeyPress;
 
+constexpr int kNumberedSteps = 10;  // of a scale, at most; more numbers would run into each other
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 std::optional<double> number_in(std::string text) {
@@ -45,6 +47,7 @@ const char* kind_of(const pages::Item& item) {
     case ItemKind::kRead:
       return "read";
     case ItemKind::kConsent:
+      return "consent";
     case ItemKind::kChoice:
       return "choice";
     case ItemKind::kScale:
@@ -70,10 +73,28 @@ int PageInput::steps() const {
   return static_cast<int>(std::lround((item_.high - item_.low) / item_.step));
 }
 
+/// A window tells a digit twice: as a key and as a character.
+bool PageInput::hears(const KeyPress& key) const {
+  const bool types = item_.kind == ItemKind::kNumber || item_.kind == ItemKind::kText;
+  const bool edits = key.key == KeyPress::kEnter || key.key == KeyPress::kBackspace;
+  return types ? key.character != 0 || edits : key.character == 0;
+}
+
 bool PageInput::press(const KeyPress& key) {
+  if (!hears(key)) {
+    return false;
+  }
+  const bool urgent = std::exchange(urgent_, false);
+  const bool changed = press_item(key);
+  urgent_ = !changed && !answer_ && item_.kind != ItemKind::kRead;
+  return changed || urgent_ != urgent || answer_;
+}
+
+/// @returns whether the key chose, moved or typed something.
+bool PageInput::press_item(const KeyPress& key) {
   if (key.key == KeyPress::kEnter) {
     enter();
-    return true;
+    return false;
   }
   if (chooses()) {
     return press_choice(key.key);
@@ -105,6 +126,10 @@ bool PageInput::press_choice(int key) {
 
 /// The mark appears in the middle: where it begins is no answer.
 bool PageInput::press_scale(int key) {
+  if (key >= '0' && key <= '9') {
+    return type_mark(static_cast<char>(key));
+  }
+  typed_.clear();
   const int before = chosen_;
   const int move = key == KeyPress::kRight || key == KeyPress::kUp    ? 1
                    : key == KeyPress::kLeft || key == KeyPress::kDown ? -1
@@ -113,6 +138,23 @@ bool PageInput::press_scale(int key) {
     chosen_ = std::clamp((chosen_ < 0 ? steps() / 2 : chosen_) + move, 0, steps());
   }
   return chosen_ != before;
+}
+
+/// The mark goes to the number that the digits so far make, if the scale has it.
+bool PageInput::type_mark(char digit) {
+  const auto step_of = [this](const std::string& digits) {
+    return static_cast<int>(std::lround((*number_in(digits) - item_.low) / item_.step));
+  };
+  typed_ += digit;
+  if (step_of(typed_) > steps()) {
+    typed_ = digit;
+  }
+  const int step = step_of(typed_);
+  if (step < 0 || step > steps()) {
+    return false;
+  }
+  chosen_ = step;
+  return true;
 }
 
 bool PageInput::press_typed(const KeyPress& key) {
@@ -138,7 +180,7 @@ bool PageInput::press_typed(const KeyPress& key) {
 void PageInput::enter() {
   if (chooses()) {
     if (chosen_ >= 0) {
-      give(fmt::format("{}", chosen_ + 1));
+      give_choice(fmt::format("{}", chosen_ + 1));
     }
   } else if (item_.kind == ItemKind::kScale) {
     if (chosen_ >= 0) {
@@ -155,6 +197,7 @@ std::string PageInput::give(const std::string& answer) {
       answer_ = PageAnswer{kNoNumber, ""};
       return "";
     case ItemKind::kConsent:
+      return give_consent(answer);
     case ItemKind::kChoice:
       return give_choice(answer);
     case ItemKind::kScale:
@@ -183,6 +226,22 @@ std::string PageInput::give_choice(const std::string& answer) {
   return "";
 }
 
+std::string PageInput::give_consent(const std::string& answer) {
+  const std::size_t colon = std::min(answer.find(':'), answer.size());
+  const std::size_t reason = answer.find_first_not_of(": ", colon);
+  const std::string problem = give_choice(answer.substr(0, colon));
+  const bool agreed = answer_ && answer_->value != 0.0;
+  if (agreed && reason == std::string::npos) {
+    answer_.reset();
+    return "the participant consents in the window; if a paper form is signed, answer with the "
+           "number and the reason, as in \"1: paper form signed\"";
+  }
+  if (agreed) {
+    answer_->reason = answer.substr(reason);
+  }
+  return problem;
+}
+
 std::string PageInput::give_number(const std::string& answer) {
   const auto number = number_in(answer);
   if (!number || *number < item_.low || *number > item_.high) {
@@ -198,7 +257,8 @@ std::string PageInput::give_number(const std::string& answer) {
   return "";
 }
 
-const std::string& PageInput::hint() const {
+/// The small line below the page; a number's names its bounds.
+std::string PageInput::hint() const {
   switch (item_.kind) {
     case ItemKind::kRead:
       return words_.go_on;
@@ -208,7 +268,7 @@ const std::string& PageInput::hint() const {
     case ItemKind::kScale:
       return words_.move_mark;
     case ItemKind::kNumber:
-      return words_.type_number;
+      return fmt::format("{} ({:g} – {:g})", words_.type_number, item_.low, item_.high);
     case ItemKind::kText:
       break;
   }
@@ -220,6 +280,7 @@ render::TextPage PageInput::page(std::shared_ptr<const render::Image> picture) c
   page.title = item_.title;
   page.body = item_.text;
   page.hint = hint();
+  page.hint_is_urgent = urgent_;
   page.picture = std::move(picture);
   page.chosen = chosen_;
   if (chooses()) {
@@ -231,6 +292,10 @@ render::TextPage PageInput::page(std::shared_ptr<const render::Image> picture) c
     if (item_.low_end.empty()) {
       page.scale->low_end = fmt::format("{:g}", item_.low);
       page.scale->high_end = fmt::format("{:g}", item_.high);
+    } else if (steps() <= kNumberedSteps) {
+      for (int step = 0; step <= steps(); ++step) {
+        page.scale->numbers.push_back(fmt::format("{:g}", item_.low + item_.step * step));
+      }
     }
   } else if (item_.kind == ItemKind::kNumber || item_.kind == ItemKind::kText) {
     page.typed = typed_;

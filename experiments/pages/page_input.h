@@ -15,13 +15,14 @@ namespace haptrial::experiments {
 struct PageAnswer {
   double value{0.0};  // NaN: it is no number
   std::string text;
+  std::string reason{};  // of an experimenter who consents in the participant's place
 };
 
 /// How one item is answered, wherever: by single keys of the participant's window, or in one go
 /// from the console or the terminal. Any one thread.
 ///
-/// Keys: digits and arrows choose, arrows move the mark of a scale, characters are typed, Enter
-/// gives the answer.
+/// Keys: digits and arrows choose and move the mark of a scale, characters are typed, Enter gives
+/// the answer. A key that does nothing makes the hint urgent.
 class PageInput {
  public:
   /// Both outlive the input.
@@ -30,7 +31,8 @@ class PageInput {
   /// A key of the participant's window. @returns whether what is shown has changed
   bool press(const render::KeyPress& key);
   /// A whole answer: of choices the number of one, from 1; of scales and numbers a number; any
-  /// text; of what is read anything. @returns a sentence if it is not allowed; else empty
+  /// text; of what is read anything. Consent is the participant's: an experimenter agrees only with
+  /// a reason, "1: paper form signed". @returns a sentence if it is not allowed; else empty
   std::string give(const std::string& answer);
 
   /// Once it was given.
@@ -42,19 +44,24 @@ class PageInput {
 
  private:
   bool chooses() const;
+  bool hears(const render::KeyPress& key) const;
+  bool press_item(const render::KeyPress& key);
   bool press_choice(int key);
+  bool type_mark(char digit);
   bool press_scale(int key);
   bool press_typed(const render::KeyPress& key);
   void enter();
   int steps() const;
   std::string give_choice(const std::string& answer);
   std::string give_number(const std::string& answer);
-  const std::string& hint() const;
+  std::string give_consent(const std::string& answer);
+  std::string hint() const;
 
   const pages::Item& item_;
   const protocols::SessionTexts& words_;
   int chosen_{-1};  // choice, or step of a scale
   std::string typed_;
+  bool urgent_{false};  // the last key did nothing
   std::optional<PageAnswer> answer_;
 };
 

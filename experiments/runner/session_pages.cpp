@@ -30,6 +30,13 @@ std::string occasion_of(PageTime when, int block) {
                                     : fmt::format("after block {}", block);
 }
 
+/// "3 / 10" on a page with several items; the item is one of the page's.
+std::string progress_of(const pages::Page& page, const pages::Item& item) {
+  return page.items.size() > 1
+             ? fmt::format("{} / {}", &item - page.items.data() + 1, page.items.size())
+             : "";
+}
+
 }  // namespace
 
 SessionPages::SessionPages(const Parts& parts) : p_(parts), d_(*parts.request.definition) {}
@@ -73,7 +80,7 @@ bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, P
   PageAnswer answer;
   const auto begun = std::chrono::steady_clock::now();
   if (person_answers()) {
-    if (!ask(item, answer, row.source)) {
+    if (!ask(page, item, answer, row.source)) {
       return false;
     }
     row.duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -86,6 +93,9 @@ bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, P
     row.text = answer.text;
     p_.record.keep_answer(row);
   }
+  if (!answer.reason.empty()) {
+    p_.record.event("consent_by_experimenter", answer.reason);
+  }
   if (item.kind == ItemKind::kConsent && answer.value == 0.0) {
     declined_ = true;
     p_.record.event("consent_declined", "the participant did not agree to take part");
@@ -96,7 +106,8 @@ bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, P
 bool SessionPages::person_answers() const { return p_.desk.attended() || p_.screen != nullptr; }
 
 /// Shows the item until it is answered. @returns false if the session is ended meanwhile
-bool SessionPages::ask(const pages::Item& item, PageAnswer& answer, AnsweredAt& source) {
+bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAnswer& answer,
+                       AnsweredAt& source) {
   PageInput input(item, d_.texts);
   AskedItem asked = input.asked(++asked_);
   std::shared_ptr<const render::Image> picture;
@@ -107,7 +118,9 @@ bool SessionPages::ask(const pages::Item& item, PageAnswer& answer, AnsweredAt& 
         p_.screen == nullptr ? nullptr : std::make_shared<render::Image>(render::read_png(file));
   }
   const auto draw = [&] {
-    p_.pace.show_page(input.page(picture),
+    render::TextPage shown = input.page(picture);
+    shown.progress = progress_of(page, item);
+    p_.pace.show_page(std::move(shown),
                       item.title.empty() ? item.text : item.title + "\n" + item.text);
   };
   p_.keys.set_open(true);

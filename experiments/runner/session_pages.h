@@ -45,7 +45,8 @@ class SessionPages {
             bool missed = false);
   bool show_item(const pages::Page& page, const pages::Item& item, record::PageTime when,
                  int block);
-  bool ask(const pages::Item& item, PageAnswer& answer, record::AnsweredAt& source);
+  bool ask(const pages::Page& page, const pages::Item& item, PageAnswer& answer,
+           record::AnsweredAt& source);
   void take_answers(PageInput& input, record::AnsweredAt& source);
   bool person_answers() const;
 

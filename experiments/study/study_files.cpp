@@ -1,12 +1,17 @@
 #include "experiments/study/study_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "core/base/error.h"
+#include "core/base/text/counted.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
+#include "experiments/runner/version.h"
 #include "experiments/study/study_definitions.h"
 #include "experiments/study/study_run.h"
 
@@ -55,6 +60,63 @@ std::string names_of(const std::vector<fs::path>& files) {
     names += (names.empty() ? "" : ", ") + file.filename().string();
   }
   return names;
+}
+
+/// The programs that recorded the sessions, and the one that analyses them now.
+std::string remark_on_programs(const std::vector<fs::path>& files) {
+  std::set<std::string> programs;
+  for (const fs::path& file : files) {
+    const record::SessionInfo info = record::SessionReader(file).info();
+    programs.insert(fmt::format("haptrial {} ({})", info.program_version, info.program_commit));
+  }
+  return fmt::format("Recorded by {}; analysed by haptrial {} ({}).", fmt::join(programs, " and "),
+                     program_version(), program_commit());
+}
+
+/// Adds notes and marks of the experimenters.
+void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::string>& remarks) {
+  std::vector<std::string> bad;
+  std::vector<std::string> notes;
+  for (const fs::path& file : files) {
+    const record::SessionReader reader(file);
+    for (const record::EventRow& event : reader.events()) {
+      const std::string line = fmt::format("{}, {}", reader.info().subject, event.text);
+      if (event.kind == "bad_trial") {
+        bad.push_back(line);
+      } else if (event.kind == "note" && !event.text.starts_with("console: ")) {
+        notes.push_back(line);
+      }
+    }
+  }
+  if (!bad.empty()) {
+    remarks.push_back(
+        fmt::format("Marked as bad by the experimenter, and analysed all the same: "
+                    "{}: {}.",
+                    counted(bad.size(), "trial", "trials"), fmt::join(bad, "; ")));
+  }
+  if (!notes.empty()) {
+    remarks.push_back(fmt::format("Notes of the experimenter: {}.", fmt::join(notes, "; ")));
+  }
+}
+
+bool experimenter_consented(const fs::path& file) {
+  const std::vector<record::EventRow> events = record::SessionReader(file).events();
+  return std::any_of(events.begin(), events.end(), [](const record::EventRow& event) {
+    return event.kind == "consent_by_experimenter";
+  });
+}
+
+std::string remark_on_consent(const std::vector<fs::path>& files) {
+  std::vector<fs::path> by_experimenter;
+  std::copy_if(files.begin(), files.end(), std::back_inserter(by_experimenter),
+               experimenter_consented);
+  return by_experimenter.empty()
+             ? ""
+             : fmt::format(
+                   "Consent was entered by the experimenter, with a reason in the file, "
+                   "in {}: {}.",
+                   counted(by_experimenter.size(), "session", "sessions"),
+                   names_of(by_experimenter));
 }
 
 std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
@@ -111,6 +173,11 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
     study.remarks.push_back(fmt::format(
         "Not analysed, because the participant did not consent: {}.", names_of(sorted.declined)));
   }
+  if (const std::string remark = remark_on_consent(study.files); !remark.empty()) {
+    study.remarks.push_back(remark);
+  }
+  remark_on_trials(study.files, study.remarks);
+  study.remarks.push_back(remark_on_programs(study.files));
   const std::vector<std::string> changed =
       definition_remarks(protocol_of(study.first), study.files);
   study.remarks.insert(study.remarks.end(), changed.begin(), changed.end());

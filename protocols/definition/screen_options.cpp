@@ -76,6 +76,8 @@ SessionTexts read_session_texts(Table& table) {
   read_if_there("go_on", texts.go_on);
   read_if_there("choose", texts.choose);
   read_if_there("move_mark", texts.move_mark);
+  read_if_there("counts", texts.counts);
+  read_if_there("take_again", texts.take_again);
   read_if_there("type_number", texts.type_number);
   read_if_there("type_words", texts.type_words);
   read_if_there("declined", texts.declined);

@@ -35,7 +35,9 @@ struct SessionTexts {
   std::string instructions;  // before the first trial
   std::string practice;      // before the practice trials
   std::string rest;          // during a break, above the countdown
-  std::string thanks;        // at the end
+  std::string take_again{"Take the handle again\nThe break ends now."};
+  std::string thanks;                                                     // at the end
+  std::string counts{"Now it counts\nFrom here on every trial counts."};  // after practice
   std::string stopped{"Stopped\nThe forces are off. Please wait for the experimenter."};
   std::string paused{"A short pause\nThe session continues in a moment."};
   std::string preparing{"One moment\nWhat you are going to work on is being prepared."};
@@ -50,11 +52,10 @@ struct SessionTexts {
   // The small line below a page, by what is done there.
   std::string go_on{"Press Enter to go on"};
   std::string choose{"Choose with a number key or the arrows, then press Enter"};
-  std::string move_mark{"Move the mark with the arrow keys, then press Enter"};
+  std::string move_mark{"Move the mark with the arrow keys or type a number, then press Enter"};
   std::string type_number{"Type a number, then press Enter"};
   std::string type_words{"Type your answer, then press Enter"};
-  std::string declined{// who does not consent
-                       "Thank you\nYou did not agree to take part, so the session ends here."};
+  std::string declined{"Thank you\nThe session ends here."};  // who does not consent
 };
 
 /// Reads a [screen] table; every key is optional.

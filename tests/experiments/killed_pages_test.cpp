@@ -83,9 +83,10 @@ class Respondent {
     }
   }
   std::string answer_to(const AskedItem& asked) const {
-    return asked.kind == "choice"  ? (run_ == 2 ? "2" : "1")
-           : asked.kind == "words" ? "nothing"
-                                   : std::to_string(20 + 5 * run_);
+    return asked.kind == "consent"  ? "1: paper form signed"
+           : asked.kind == "choice" ? (run_ == 2 ? "2" : "1")
+           : asked.kind == "words"  ? "nothing"
+                                    : std::to_string(20 + 5 * run_);
   }
 
   SessionControl& control_;

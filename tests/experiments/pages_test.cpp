@@ -19,6 +19,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "experiments/study/study_files.h"
 #include "protocols/definition/languages.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"
@@ -107,6 +108,70 @@ TEST(PageInputTest, KeysAndTheConsoleGiveTheSameAnswers) {
   EXPECT_EQ(keys.answer()->text, "b");
   EXPECT_EQ(console.answer()->text, "b");
   EXPECT_EQ(console.answer()->value, 2.0);
+}
+
+TEST(PageInputTest, DigitsMoveTheMarkAndAKeyThatDoesNothingIsSaid) {
+  const protocols::SessionTexts words;
+  Item scale = item_of(ItemKind::kScale);
+  scale.low = 1.0;
+  scale.high = 7.0;
+  scale.step = 1.0;
+  scale.low_end = "not at all";
+  scale.high_end = "very";
+  PageInput tired(scale, words);
+  EXPECT_TRUE(tired.press({KeyPress::kEnter})) << "the hint becomes urgent";
+  EXPECT_TRUE(tired.page(nullptr).hint_is_urgent);
+  EXPECT_TRUE(tired.press({'4'}));
+  EXPECT_FALSE(tired.page(nullptr).hint_is_urgent);
+  EXPECT_EQ(tired.page(nullptr).chosen, 3);
+  EXPECT_EQ(tired.page(nullptr).scale->numbers,
+            (std::vector<std::string>{"1", "2", "3", "4", "5", "6", "7"}));
+  tired.press({KeyPress::kEnter});
+  ASSERT_TRUE(tired.answer());
+  EXPECT_EQ(tired.answer()->value, 4.0);
+
+  scale.low = 0.0;
+  scale.high = 100.0;
+  scale.step = 5.0;
+  PageInput load(scale, words);
+  for (const char digit : {'8', '5'}) {
+    load.press({digit});
+  }
+  EXPECT_EQ(load.page(nullptr).chosen, 17);
+  EXPECT_TRUE(load.page(nullptr).scale->numbers.empty());
+
+  Item age = item_of(ItemKind::kNumber);
+  age.low = 18.0;
+  age.high = 99.0;
+  PageInput years(age, words);
+  for (const char digit : {'1', '5', '0'}) {
+    years.press({0, static_cast<char32_t>(digit)});
+  }
+  years.press({KeyPress::kEnter});
+  EXPECT_FALSE(years.answer());
+  EXPECT_TRUE(years.page(nullptr).hint_is_urgent);
+  EXPECT_EQ(years.page(nullptr).hint, "Type a number, then press Enter (18 – 99)");
+}
+
+TEST(PageInputTest, AnExperimenterConsentsOnlyWithAReason) {
+  const protocols::SessionTexts words;
+  Item consent = item_of(ItemKind::kConsent);
+  consent.choices = {{"accepted", "I agree", 1.0}, {"declined", "I do not", 0.0}};
+  PageInput console(consent, words);
+  EXPECT_THAT(console.give("1"), HasSubstr("paper form"));
+  EXPECT_THAT(console.give("1: "), HasSubstr("paper form"));
+  EXPECT_FALSE(console.answer());
+  EXPECT_EQ(console.give("1: paper form signed"), "");
+  EXPECT_EQ(console.answer()->text, "accepted");
+  EXPECT_EQ(console.answer()->reason, "paper form signed");
+  PageInput refusal(consent, words);
+  EXPECT_EQ(refusal.give("2"), "") << "to decline needs no reason";
+  EXPECT_EQ(refusal.answer()->text, "declined");
+  PageInput window(consent, words);
+  window.press({'1'});
+  window.press({KeyPress::kEnter});
+  ASSERT_TRUE(window.answer()) << "it is the participant's";
+  EXPECT_EQ(window.answer()->reason, "");
 }
 
 TEST(PageInputTest, AMarkMovesInStepsAndStopsAtTheEnds) {
@@ -199,7 +264,10 @@ class AtTheConsole {
     }
   }
   static std::string answer_to(const AskedItem& asked) {
-    return asked.kind == "choice" ? "1" : asked.kind == "words" ? "no" : "50";
+    return asked.kind == "consent"  ? "1: paper form signed"
+           : asked.kind == "choice" ? "1"
+           : asked.kind == "words"  ? "no"
+                                    : "50";
   }
 
   SessionControl& control_;
@@ -244,6 +312,15 @@ TEST(SessionPagesTest, WhatWasAnsweredIsNotAskedAgainAfterAResume) {
     EXPECT_EQ(rows[i].time_ns, first[i].time_ns) << "as it was answered the first time";
   }
   EXPECT_EQ(rows[1].source, record::AnsweredAt::kConsole);
+  const auto events = record::SessionReader(file).events();
+  EXPECT_TRUE(std::ranges::any_of(events, [](const record::EventRow& event) {
+    return event.kind == "consent_by_experimenter" && event.text == "paper form signed";
+  }));
+  const ProtocolOf protocol = [&](const record::SessionInfo&) -> const protocols::Protocol& {
+    return experiment.study->protocol();
+  };
+  const auto remarks = study_files(folder.path(), Pilots::kLeftOut, protocol).remarks;
+  EXPECT_THAT(remarks, testing::Contains(HasSubstr("Consent was entered by the experimenter")));
 }
 
 TEST(SessionPagesTest, ThePictureOfAPageReachesTheConsole) {
@@ -287,7 +364,7 @@ TEST(SessionPagesTest, WhoDeclinesIsPresentedNothing) {
       const SessionStatus status = control.status();
       if (status.asked.number > answered) {
         answered = status.asked.number;
-        control.answer(answered, status.asked.kind == "choice" ? "2" : "");
+        control.answer(answered, status.asked.kind == "consent" ? "2" : "");
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

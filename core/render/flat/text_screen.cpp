@@ -13,7 +13,7 @@ constexpr double kMargin = 0.08;
 constexpr double kTitle = 0.060;
 constexpr double kBody = 0.036;
 constexpr double kCountdown = 0.14;
-constexpr double kHint = 0.028;
+constexpr double kHint = 0.032;
 constexpr double kGap = 0.05;
 constexpr double kColumn = 1.45;  // longest line: longer ones are tiring to read
 constexpr double kShrink = 0.9;   // from one try to the next
@@ -21,6 +21,7 @@ constexpr double kSmallest = 0.3;
 constexpr double kPicture = 0.4;  // most of the screen's height that a picture takes
 constexpr double kTick = 0.03;    // of a scale
 constexpr double kLine = 1.35;    // from choice to choice, of their height
+const Colour kUrgent{0.80, 0.08, 0.08};
 
 }  // namespace
 
@@ -50,7 +51,8 @@ TextScreen::Sizes TextScreen::sizes(double scale) const {
   return {{pixels(kTitle), true, ink_},
           {pixels(kBody), false, ink_},
           {pixels(kCountdown), false, accent_},
-          {pixels(kHint), false, with_alpha(ink_, 0.62)}};
+          {pixels(kHint), false, with_alpha(ink_, 0.8)},
+          {pixels(kHint), true, kUrgent}};
 }
 
 double TextScreen::gap() const { return kGap * std::min(width_, height_); }
@@ -69,7 +71,8 @@ double TextScreen::answer_height(const TextPage& page, const Sizes& sizes) {
     height += kLine * text_.height_of(choice, column(), sizes.body);
   }
   if (page.scale) {
-    height += 2.0 * text_.line_height(sizes.body) + 2.0 * kTick * std::min(width_, height_);
+    const double lines = page.scale->numbers.empty() ? 2.0 : 3.0;
+    height += lines * text_.line_height(sizes.body) + 2.0 * kTick * std::min(width_, height_);
   }
   if (page.typed) {
     height += text_.height_of(*page.typed + "_", column(), sizes.body);
@@ -119,9 +122,17 @@ void TextScreen::draw(const TextPage& page) {
   }
   draw_answer(page, s, y);
   if (!page.hint.empty()) {
-    text_.paragraphs(page.hint, {centre, height_ - margin() - foot + gap()}, column(), s.hint);
+    text_.paragraphs(page.hint, {centre, height_ - margin() - foot + gap()}, column(),
+                     page.hint_is_urgent ? s.urgent : s.hint);
   }
+  draw_corner(page.progress, s.hint);
   text_.end();
+}
+
+void TextScreen::draw_corner(const std::string& words, const TextStyle& style) {
+  if (!words.empty()) {
+    text_.paragraphs(words, {width_ - margin(), margin()}, column(), style, Align::kRight);
+  }
 }
 
 /// @returns the height that it takes
@@ -148,21 +159,26 @@ void TextScreen::draw_answer(const TextPage& page, const Sizes& sizes, double y)
   }
 }
 
+/// A block of lines in the middle that begin below each other.
 void TextScreen::draw_choices(const TextPage& page, const Sizes& sizes, double y) {
+  double widest = 0.0;
+  for (const std::string& choice : page.choices) {
+    widest = std::max<double>(widest, text_.width_of(choice, sizes.body));
+  }
+  const double width = std::min(widest + 1.0, column());
+  const double left = 0.5 * (width_ - width);
   for (std::size_t i = 0; i < page.choices.size(); ++i) {
     TextStyle style = sizes.body;
-    const bool chosen = static_cast<int>(i) == page.chosen;
     const double height = text_.height_of(page.choices[i], column(), style);
-    if (chosen) {
+    if (static_cast<int>(i) == page.chosen) {
       style.colour = accent_;
-      const double half = 0.5 * text_.width_of(page.choices[i], style) + 0.5 * gap();
+      const double room = 0.5 * gap();
       painter_.begin_over();
-      painter_.outline(
-          {{0.5 * width_ - half, y - 0.1 * height}, {0.5 * width_ + half, y + 1.1 * height}},
-          0.3 * height, 2.0, accent_);
+      painter_.outline({{left - room, y - 0.1 * height}, {left + width + room, y + 1.1 * height}},
+                       0.3 * height, 2.0, accent_);
       painter_.end();
     }
-    text_.paragraphs(page.choices[i], {0.5 * width_, y}, column(), style);
+    text_.paragraphs(page.choices[i], {left, y}, width, style, Align::kLeft);
     y += kLine * height;
   }
 }
@@ -184,7 +200,12 @@ void TextScreen::draw_scale(const TextPage& page, const Sizes& sizes, double y) 
                   accent_);
   }
   painter_.end();
-  const double below = middle + 1.2 * tick;
+  double below = middle + 1.2 * tick;
+  for (std::size_t i = 0; i < page.scale->numbers.size(); ++i) {
+    const double x = left + 2.0 * half * static_cast<double>(i) / page.scale->steps;
+    text_.paragraphs(page.scale->numbers[i], {x, below}, column(), sizes.body);
+  }
+  below += page.scale->numbers.empty() ? 0.0 : text_.line_height(sizes.body);
   text_.paragraphs(page.scale->low_end, {left, below}, half, sizes.body, Align::kCentre);
   text_.paragraphs(page.scale->high_end, {left + 2.0 * half, below}, half, sizes.body,
                    Align::kCentre);

@@ -16,6 +16,7 @@ namespace haptrial::render {
 struct PageScale {
   int steps{20};  // from end to end, >= 1
   std::string low_end, high_end;
+  std::vector<std::string> numbers{};  // at the ticks, one for each; empty: none
 };
 
 /// What a participant reads between passes, and how it is answered.
@@ -29,6 +30,8 @@ struct TextPage {
   std::optional<PageScale> scale{};        // likewise
   std::optional<std::string> typed{};      // likewise; a cursor follows
   int chosen{-1};                          // choice, or step of the scale; -1: none yet
+  bool hint_is_urgent{false};              // a key did nothing: red and bold
+  std::string progress{};                  // in the upper right corner: "3 / 10"
 };
 
 /// "10:00" for 600 s; a part of a second counts as a whole one, so that 0:00 is the end.
@@ -47,7 +50,7 @@ class TextScreen {
 
  private:
   struct Sizes {
-    TextStyle title, body, countdown, hint;
+    TextStyle title, body, countdown, hint, urgent;
   };
   Sizes sizes(double scale) const;
   double gap() const;
@@ -57,6 +60,7 @@ class TextScreen {
   double answer_height(const TextPage& page, const Sizes& sizes);
   double draw_picture(const TextPage& page, double y);
   void draw_answer(const TextPage& page, const Sizes& sizes, double y);
+  void draw_corner(const std::string& words, const TextStyle& style);
   void draw_choices(const TextPage& page, const Sizes& sizes, double y);
   void draw_scale(const TextPage& page, const Sizes& sizes, double y);
 

@@ -146,6 +146,8 @@ screen.photodiode_time | 0.05 | how long the square stays white after an onset
 texts.instructions | | before the first trial; the first line of every text is its title
 texts.practice | | before practice
 texts.rest | | during a break
+texts.take_again | | at the end of a break
+texts.counts | | between practice and the first trial that counts
 texts.thanks | | after the last trial
 texts.stopped | | after a fault or an emergency stop
 texts.paused | | while the experimenter pauses the session

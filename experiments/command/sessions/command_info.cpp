@@ -92,11 +92,23 @@ void print_progress(const record::SessionReader& reader, const record::Integrity
 
 /// What a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
-  constexpr std::array<std::string_view, 15> kTold{
-      "repaired",      "session_stopped", "ended_for_good", "aborted",
-      "interrupted",   "notice",          "note",           "recovered",
-      "overruns",      "skipped",         "emergency_stop", "definition_changed",
-      "bone_restored", "bone_lost",       "bone_anew"};
+  constexpr std::array<std::string_view, 17> kTold{"consent_declined",
+                                                   "consent_by_experimenter",
+                                                   "repaired",
+                                                   "session_stopped",
+                                                   "ended_for_good",
+                                                   "aborted",
+                                                   "interrupted",
+                                                   "notice",
+                                                   "note",
+                                                   "recovered",
+                                                   "overruns",
+                                                   "skipped",
+                                                   "emergency_stop",
+                                                   "definition_changed",
+                                                   "bone_restored",
+                                                   "bone_lost",
+                                                   "bone_anew"};
   return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
 }
 

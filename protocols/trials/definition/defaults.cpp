@@ -40,8 +40,8 @@ activation_time = 0.040
 seen_from = "front"
 extent = 0.16
 hand_radius = 0.003
-feedback_right = "Right"
-feedback_wrong = "Wrong"
+feedback_right = "✓ Correct"
+feedback_wrong = "✗ Wrong"
 feedback_time = 0.6
 
 [texts]
