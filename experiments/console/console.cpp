@@ -357,7 +357,8 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
       auto [number, text] = parse_answer(request.body);
       control_.answer(number, std::move(text));
     } else {
-      control_.note(parse_note(request.body));
+      const ConsoleNote note = parse_note(request.body);
+      control_.note(note.text, note.bad_trial);
     }
   });
 }

@@ -65,10 +65,13 @@ json figures_json(const std::optional<record::LiveState>& state) {
   for (const record::LiveState::Figure& figure : state->figures) {
     figures.push_back({{"name", figure.name}, {"value", figure.value}, {"alarm", figure.alarm}});
   }
-  return {{"trial", state->trial},
-          {"practice", state->practice},
-          {"title", state->title},
-          {"figures", figures}};
+  json track = json::array();
+  for (const record::LiveState::TrackPoint& point : state->track) {
+    track.push_back({{"level", point.level}, {"correct", point.correct}});
+  }
+  return {{"track", track},        {"track_name", state->track_name},
+          {"trial", state->trial}, {"practice", state->practice},
+          {"title", state->title}, {"figures", figures}};
 }
 
 /// Null in a session without a partner.
@@ -116,9 +119,13 @@ Request parse_request(const std::string& text) {
       fmt::format("the request '{}' is not known; allowed: {}", wanted.substr(0, 40), allowed));
 }
 
-std::string parse_note(const std::string& text) {
+ConsoleNote parse_note(const std::string& text) {
   constexpr std::size_t kLongest = 2000;
-  std::string note = only_string(text, "text");
+  const json body = json::parse(text, nullptr, false);
+  const bool marks = body.is_object() && body.size() == 2 && body.contains("text") &&
+                     body["text"].is_string() && body.contains("bad_trial") &&
+                     body["bad_trial"].is_boolean();
+  const std::string note = marks ? body["text"].get<std::string>() : only_string(text, "text");
   if (note.find_first_not_of(" \t\r\n") == std::string::npos || note.size() > kLongest) {
     throw InputError(fmt::format("the note has {} bytes; allowed: 1 to {}, not all of them blank",
                                  note.size(), kLongest));
@@ -126,7 +133,7 @@ std::string parse_note(const std::string& text) {
   if (note.find('\0') != std::string::npos) {
     throw InputError("the note holds a zero byte");
   }
-  return note;
+  return {note, marks && body["bad_trial"].get<bool>()};
 }
 
 std::pair<int, std::string> parse_answer(const std::string& text) {
@@ -158,6 +165,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"state", s.state},
       {"screen", s.screen},
       {"trial", s.trial},
+      {"practice", s.practice},
       {"trials", s.trials},
       {"trials_defined", s.trials_defined},
       {"block", s.block},
@@ -174,6 +182,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"device", s.device},
       {"fault", s.fault},
       {"simulated", s.simulated},
+      {"pilot", s.pilot},
       {"rate", s.rate},
       {"rate_measured", s.rate_measured},
       {"ticks", s.ticks},
@@ -183,6 +192,9 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"lateness_99_us", s.lateness_99_us},
       {"lateness_worst_us", s.lateness_worst_us},
       {"aborted_passes", s.aborted_passes},
+      {"aborts", s.aborts},
+      {"elapsed", s.elapsed},
+      {"left", s.left < 0.0 ? json(nullptr) : json(s.left)},
       {"refused", refused},
       {"notices", s.notices},
       {"figures", figures_json(s.figures)},

@@ -17,9 +17,14 @@ std::string status_json(const SessionStatus& status, std::uint64_t refused);
 /// @throws InputError
 Request parse_request(const std::string& json);
 
-/// {"text": "..."}, 1 to 2000 bytes.
+struct ConsoleNote {
+  std::string text;
+  bool bad_trial{false};  // the text says why a trial is bad
+};
+
+/// {"text": "..."}, 1 to 2000 bytes, or {"text": "...", "bad_trial": true}.
 /// @throws InputError
-std::string parse_note(const std::string& json);
+ConsoleNote parse_note(const std::string& json);
 
 /// {"number": 3, "text": "..."}: an answer to what a page asks.
 /// @throws InputError

@@ -132,7 +132,7 @@ class Keyboard::Implementation {
   bool active() const { return thread_.joinable(); }
 
  private:
-  enum class Mode { kKeys, kConfirmAbort, kNote, kAnswer };
+  enum class Mode { kKeys, kConfirmAbort, kNote, kBadTrial, kAnswer };
 
   /// @returns whether a key came within `milliseconds` (-1: any time).
   bool wait(int milliseconds) {
@@ -238,6 +238,7 @@ class Keyboard::Implementation {
         }
         break;
       case Mode::kNote:
+      case Mode::kBadTrial:
       case Mode::kAnswer:
         type(key);
         break;
@@ -257,7 +258,10 @@ class Keyboard::Implementation {
     if (!asked.low_end.empty()) {
       lines += "  " + asked.low_end + " ... " + asked.high_end + "\n";
     }
-    show(lines + "Enter: answer\n");
+    show(lines + (asked.kind == "consent"
+                      ? "The participant answers in the window. If a paper form is signed: Enter, "
+                        "then 1: and the reason\n"
+                      : "Enter: answer\n"));
   }
 
   void begin_answer() {
@@ -305,6 +309,11 @@ class Keyboard::Implementation {
         note_.clear();
         show("note: ");
         break;
+      case 'b':
+        mode_ = Mode::kBadTrial;
+        note_.clear();
+        show("why the trial is bad: ");
+        break;
       default:
         break;
     }
@@ -325,7 +334,7 @@ class Keyboard::Implementation {
       if (mode_ == Mode::kAnswer) {
         control_.answer(answered_, note_, Asker::kTerminal);
       } else if (!note_.empty()) {
-        control_.note(note_);
+        control_.note(note_, mode_ == Mode::kBadTrial);
       }
       leave_mode();
     } else if (key == '\x7f' || key == '\b') {
@@ -398,7 +407,8 @@ Keyboard::~Keyboard() = default;
 bool Keyboard::active() const { return implementation_->active(); }
 
 const char* Keyboard::help() {
-  return "space start/pause   p pause   r repeat this trial   s skip   n note   a abort\n"
+  return "space start/pause   p pause   r repeat this trial   s skip   n note   b bad trial   a "
+         "abort\n"
          "Escape EMERGENCY STOP   c clear   Enter answer a page";
 }
 

@@ -38,7 +38,7 @@ void Progress::update(double done, const std::string& detail, double real_time_r
     line += detail + ", ";
   }
   if (real_time_rate > 0.0) {
-    line += fmt::format("{:.0f} times real time, ", done / real_time_rate / elapsed);
+    line += fmt::format("{:.2g} times real time, ", done / real_time_rate / elapsed);
   }
   line += fmt::format("{:.0f} s left", elapsed * (1.0 - share) / share);
   fmt::print(stderr, "\r{:{}}", line, width_);

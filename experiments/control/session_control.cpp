@@ -32,13 +32,13 @@ void SessionControl::ask(Request request, Asker by) {
   messages_.push_back({false, request, "", by});
 }
 
-void SessionControl::note(std::string text) {
+void SessionControl::note(std::string text, bool bad_trial) {
   constexpr std::size_t kLongest = 2000;
   if (text.size() > kLongest) {
     text.resize(kLongest);
   }
   const std::lock_guard lock(mutex_);
-  messages_.push_back({true, Request::kStart, std::move(text), Asker::kConsole});
+  messages_.push_back({true, Request::kStart, std::move(text), Asker::kConsole, 0, bad_trial});
 }
 
 void SessionControl::answer(int number, std::string text, Asker by) {

@@ -39,6 +39,7 @@ struct SessionStatus {
       state;  // "instructions", "practice", "running", "paused", "break", "stopped", "ended"
   std::string screen;     // text that the participant reads; empty during a pass
   int trial{0};           // from 1
+  bool practice{false};   // the trial does not count
   int trials{0};          // planned in this session
   int trials_defined{0};  // of the definition
   int block{0};           // from 1
@@ -55,6 +56,7 @@ struct SessionStatus {
   std::string device;
   std::string fault;  // one sentence; empty where there is none
   bool simulated{false};
+  bool pilot{false};          // no part of the study
   double rate{0.0};           // nominal [Hz]
   double rate_measured{0.0};  // over the last second; 0: not known yet [Hz]
   std::uint64_t ticks{0};
@@ -64,6 +66,9 @@ struct SessionStatus {
   double lateness_99_us{0.0};
   double lateness_worst_us{0.0};
   int aborted_passes{0};
+  std::vector<std::string> aborts;              // why, the last ones
+  double elapsed{0.0};                          // of the session [s]
+  double left{-1.0};                            // about, until its end; below 0: not known [s]
   std::vector<std::string> notices;             // sentences that an experimenter has to know
   AskedItem asked;                              // by a page
   bool has_target{true};                        // there is a force to follow
@@ -79,8 +84,9 @@ class SessionControl {
   void on_emergency(std::function<void()> stop);
 
   void ask(Request request, Asker by = Asker::kConsole);
-  /// @param text  kept as an event of kind "note", at most 2000 bytes; longer ones are cut.
-  void note(std::string text);
+  /// @param text  kept as an event with the present trial, at most 2000 bytes; longer ones are cut
+  /// @param bad_trial  the text says why the present trial, or the last one, is bad
+  void note(std::string text, bool bad_trial = false);
 
   /// An answer to what a page asks. @param number  of AskedItem  @param text  PageInput::give()
   void answer(int number, std::string text, Asker by = Asker::kConsole);
@@ -91,7 +97,8 @@ class SessionControl {
     Request request{Request::kStart};
     std::string text;
     Asker by{Asker::kConsole};
-    int answers{0};  // number of the question; 0: it is no answer
+    int answers{0};         // number of the question; 0: it is no answer
+    bool bad_trial{false};  // a note that marks the trial
   };
   std::vector<Message> take();
 

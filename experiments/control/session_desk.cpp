@@ -1,5 +1,7 @@
 #include "experiments/control/session_desk.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace haptrial::experiments {
@@ -21,11 +23,19 @@ void SessionDesk::take_messages() {
     if (message.answers > 0) {
       answers_.push_back(message);
     } else if (message.is_note) {
-      actions_.event("note", message.text);
+      actions_.event(message.bad_trial ? "bad_trial" : "note", trial_of(message) + message.text);
     } else {
       heed(message.request, message.by);
     }
   }
+}
+
+/// "trial 5: ", before what an experimenter writes about it; a refusal of the console is of none.
+std::string SessionDesk::trial_of(const SessionControl::Message& message) const {
+  if (status_.trial < 1 || message.text.starts_with("console: ")) {
+    return "";
+  }
+  return fmt::format("{} {}: ", status_.practice ? "practice trial" : "trial", status_.trial);
 }
 
 std::vector<SessionControl::Message> SessionDesk::take_answers() {

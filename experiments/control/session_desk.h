@@ -51,6 +51,7 @@ class SessionDesk {
   void publish(const std::string& state);
 
  private:
+  std::string trial_of(const SessionControl::Message& message) const;
   void heed(Request request, Asker by);
 
   SessionControl* control_;

@@ -11,6 +11,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   const std::string all = trouble.empty() ? why : why + "; " + trouble;
   const bool overloaded = !p_.pace.overload().empty();  // and no better the next time
   p_.record.event("aborted", fmt::format("trial {}: {}", p_.record.pass().trial, all));
+  note_abort(all);
   if (result.fault == device::Fault::kStopButton) {
     p_.record.event("emergency_stop", "by the handle");
   }
@@ -25,6 +26,16 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
     p_.pace.end_early(all);
   } else {
     p_.pace.recover();
+  }
+}
+
+/// For the console, which shows the last ones.
+void AbortedPass::note_abort(const std::string& why) {
+  constexpr std::size_t kShown = 4;
+  std::vector<std::string>& aborts = p_.desk.status().aborts;
+  aborts.push_back(fmt::format("trial {}: {}", p_.record.pass().trial, why));
+  if (aborts.size() > kShown) {
+    aborts.erase(aborts.begin());
   }
 }
 

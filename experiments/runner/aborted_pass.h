@@ -31,6 +31,7 @@ class AbortedPass {
  private:
   std::string cause(const protocols::PassResult& result) const;
   std::string why_broken_off() const;
+  void note_abort(const std::string& why);
   bool partner_stops() const;
 
   Parts p_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -51,6 +52,8 @@ class Session {
 
   void watch_flashes();
   void hear_inputs();
+  void note_warnings();
+  void note_time_left(double trial_seconds);
   void show_trial();
   void run_trials();
   void note_setting();
@@ -71,6 +74,8 @@ class Session {
   std::unique_ptr<Progress> progress_;  // of what takes seconds
   SessionSummary summary_;
   std::vector<record::ResponseRow> responses_;  // of the present attempt
+  double trial_seconds_{0.0};                   // all trials that were timed
+  int trials_timed_{0};
   bool left_{false};  // trials that an abort kept from being presented to their end
   realtime::ServoLoop loop_;
   markers::OnsetLog onsets_;  // before the screen and the record, whose threads look at it
@@ -165,7 +170,11 @@ Session::Session(const SessionRequest& request)
              live_.get(),
              [this] {
                hear_inputs();
+               note_warnings();
                desk_.status().partner = trials_->partner();
+               if (live_ == nullptr) {
+                 desk_.status().figures = trials_->live();
+               }
              },
              rig_.get()}),
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
@@ -177,6 +186,7 @@ Session::Session(const SessionRequest& request)
   SessionStatus& status = desk_.status();
   status.subject = request.subject;
   status.device = request.device.name;
+  status.pilot = request.pilot;
   status.simulated = rig_->device().info().simulated;
   status.rate = d_.rate;
   status.force_limit = std::min(d_.envelope.max_force, rig_->device().info().max_force);
@@ -213,6 +223,12 @@ void Session::hear_inputs() {
   for (const InputNews& news : all) {
     record_.event(news.event, news.text);
     notices_.note(news.notice);
+  }
+}
+
+void Session::note_warnings() {
+  for (const std::string& warning : trials_->take_warnings()) {
+    notices_.note(warning);
   }
 }
 
@@ -253,6 +269,9 @@ SessionSummary Session::run() {
       servo_.start();
     }
     notices_.note(record_.notice());
+    if (screen_) {
+      notices_.note(screen_->summary().notice);
+    }
     notices_.note(record_.markers().notice());
     notices_.note(pedal_.notice());
     for (const std::string& notice : trials_->notices()) {
@@ -291,8 +310,9 @@ void Session::run_trials() {
       left_ = true;
       break;
     }
-    if (trial->practice && !std::exchange(practised, true)) {
-      pace_.wait_to_begin(d_.texts.practice);
+    if (trial->practice != practised) {  // practice begins or is over
+      pace_.wait_to_begin(trial->practice ? d_.texts.practice : d_.texts.counts);
+      practised = trial->practice;
     }
     const Outcome outcome = present(*trial);
     left_ = left_ || (outcome.end == TrialEnd::kAborted && desk_.wishes().abort);
@@ -345,10 +365,9 @@ void Session::show_trial() {
 /// One trial until it is done: again when the experimenter repeats it, or when
 /// it was aborted while an experimenter is there to see to the cause.
 Outcome Session::present(const PlannedTrial& trial) {
+  const auto begun = std::chrono::steady_clock::now();
   trials_->prepare(trial, record_);
-  for (const std::string& warning : trials_->take_warnings()) {
-    notices_.note(warning);
-  }
+  note_warnings();
   progress_.reset();
   Wishes& wishes = desk_.wishes();
   Outcome outcome{trial, TrialEnd::kAborted, {}};
@@ -376,7 +395,20 @@ Outcome Session::present(const PlannedTrial& trial) {
       break;
     }
   }
+  if (outcome.end == TrialEnd::kCompleted && !trial.practice) {
+    note_time_left(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+  }
   return outcome;
+}
+
+/// About: trials to come take as long as those of this run did, and breaks their time.
+void Session::note_time_left(double trial_seconds) {
+  trial_seconds_ += trial_seconds;
+  ++trials_timed_;
+  SessionStatus& status = desk_.status();
+  const int trials = std::max(0, status.trials - status.trial);
+  const int breaks = d_.design.break_after > 0 ? trials / d_.design.break_after : 0;
+  status.left = trials * trial_seconds_ / trials_timed_ + breaks * d_.design.break_duration;
 }
 
 /// After every `break_after` trials.

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <thread>
 
+#include "core/base/text/short_numbers.h"
+
 namespace haptrial::experiments {
 
 using protocols::PlannedTrial;
@@ -108,7 +110,8 @@ void SessionNotices::say_trial(const PlannedTrial& trial, const char* how) const
   const std::string which =
       trial.practice ? fmt::format("practice {}", trial.trial)
                      : fmt::format("trial {} of {}", trial.trial, p_.desk.status().trials);
-  tell(fmt::format("{}, {}: {}, {:.1f} min after the start", which, trial.condition, how, minutes));
+  tell(fmt::format("{}, {}: {}, {:.1f} min after the start", which, short_numbers(trial.condition),
+                   how, minutes));
 }
 
 }  // namespace haptrial::experiments

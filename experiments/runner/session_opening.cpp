@@ -191,6 +191,13 @@ static bool begins(const render::KeyPress& press) {
   return press.key == render::KeyPress::kEnter || press.key == render::KeyPress::kSpace;
 }
 
+/// The mark of a session that does not count, or that a program answers.
+static SessionMark mark_of(const SessionRequest& request, protocols::Rig& rig) {
+  const std::string pilot = request.pilot ? "PILOT " + request.subject : "";
+  const std::string program = rig.subject() != nullptr ? "a program answers" : "";
+  return {pilot + (pilot.empty() || program.empty() ? "" : ", ") + program, request.pilot};
+}
+
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
                                     PageKeys* pages) {
@@ -248,7 +255,8 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
     held->store(request.definition->bits_of(keys), std::memory_order_relaxed);
   };
   const protocols::Definition& setup = *request.definition;
-  return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks));
+  return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks),
+                                  mark_of(request, rig));
 }
 
 std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,

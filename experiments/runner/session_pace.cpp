@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text/short_numbers.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/screen/screen.h"
 
@@ -84,7 +85,7 @@ void SessionPace::meanwhile() {
   }
 }
 
-void SessionPace::wait(double seconds, const char* state, bool until_asked) {
+bool SessionPace::wait(double seconds, const char* state, bool until_asked) {
   Wishes& wishes = p_.desk.wishes();
   wishes.start = false;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
@@ -96,6 +97,7 @@ void SessionPace::wait(double seconds, const char* state, bool until_asked) {
     publish(state);
   }
   p_.desk.status().break_left = 0.0;
+  return Clock::now() >= end;
 }
 
 void SessionPace::wait_to_begin(const std::string& text) {
@@ -170,12 +172,23 @@ void SessionPace::take_break() {
   p_.record.event("break", fmt::format("{} s{}", d_.design.break_duration,
                                        until_ready ? ", then until ready" : ""));
   if (real_) {
-    show_text(d_.texts.rest, "", d_.design.break_duration);
-    wait(d_.design.break_duration, "break", !until_ready);
+    rest(!until_ready);
     if (until_ready) {
       wait_until_ready();
     }
     pause_where_asked();
+  }
+}
+
+/// The handle is taken again in the last seconds.
+void SessionPace::rest(bool until_asked) {
+  constexpr double kTakeAgain = 10.0;  // [s]
+  const double all = d_.design.break_duration;
+  const double last = std::min(kTakeAgain, 0.5 * all);
+  show_text(d_.texts.rest, "", all);
+  if (wait(all - last, "break", until_asked)) {
+    show_text(d_.texts.take_again, "", last);
+    wait(last, "break", until_asked);
   }
 }
 
@@ -186,7 +199,7 @@ void SessionPace::wait_until_ready() {
   }
   const Wishes& wishes = p_.desk.wishes();
   p_.begin_pressed->store(false);
-  show_text(d_.texts.rest, p_.screen != nullptr ? d_.texts.begin_alone : d_.texts.begin);
+  show_text(d_.texts.take_again, p_.screen != nullptr ? d_.texts.begin_alone : d_.texts.begin);
   while (!wishes.abort && !wishes.stopped && !wishes.pause && !asked_to_stop()) {
     wait(0.02, "break", true);
     if (p_.begin_pressed->load()) {
@@ -270,8 +283,10 @@ void SessionPace::publish(const char* state) {
   SessionStatus& status = p_.desk.status();
   const record::PassRow& pass = p_.record.pass();
   status.trial = pass.trial;
+  status.practice = pass.practice;
+  status.elapsed = 1e-9 * static_cast<double>(p_.loop.elapsed_ns());
   status.block = pass.block;
-  status.condition = pass.condition;
+  status.condition = short_numbers(pass.condition);
   status.phase = record::name_of(pass.phase);
   status.ticks = p_.loop.ticks();
   status.overruns = p_.loop.overruns();

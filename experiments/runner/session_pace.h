@@ -44,7 +44,8 @@ class SessionPace {
   void drive_until_idle();
   /// On the real clock, without force. @param until_asked  or until the experimenter starts or
   /// stops
-  void wait(double seconds, const char* state, bool until_asked = false);
+  /// @returns whether all of the time has passed
+  bool wait(double seconds, const char* state, bool until_asked = false);
   /// A text until the experimenter starts; without one, until a key in the participant's window.
   void wait_to_begin(const std::string& text);
   void pause_where_asked();
@@ -85,6 +86,7 @@ class SessionPace {
   void wait_for_experimenter(const char* state, const std::string& text, const std::string& hint);
   void wait_for_participant();
   void wait_until_ready();
+  void rest(bool until_asked);
   bool asked_to_stop() const;
   void watch_loop();
 

@@ -12,6 +12,7 @@
 namespace haptrial::experiments {
 namespace {
 
+const render::Colour kOrange{0.90, 0.45, 0.0};
 constexpr double kPatchSide = 0.06;  // of the photodiode's square, of the screen's shorter side
 constexpr std::size_t kProbes = 12;  // pictures by which the display's pace is known
 
@@ -22,15 +23,17 @@ double seconds_since(ScreenClock::time_point start) {
 }  // namespace
 
 Easel::Easel(render::Window& window, const render::TrialDisplayStyle& style,
-             const protocols::ScreenOptions& options)
+             const protocols::ScreenOptions& options, const SessionMark& mark)
     : window_(window),
       style_(style),
+      mark_(mark),
       photodiode_(options.photodiode),
       flash_time_(options.photodiode_time),
       trial_(window.gl(), style, style.width, style.height),
       text_(window.gl(), style.width, style.height, style.background, style.marker_colour,
             style.target_colour),
-      patch_(window.gl(), style.width, style.height) {}
+      patch_(window.gl(), style.width, style.height),
+      words_(window.gl(), style.width, style.height) {}
 
 Easel::~Easel() = default;
 
@@ -57,7 +60,27 @@ void Easel::draw(const stimulus::Shown& shown) {
     text_.draw(page);
   }
   ++frames_;
+  draw_mark();
   draw_patch(shown);
+}
+
+void Easel::draw_mark() {
+  constexpr double kFrame = 0.02;  // of the screen's shorter side, half of it outside
+  constexpr double kWords = 0.025;
+  const double side = std::min(style_.width, style_.height);
+  if (mark_.framed) {
+    patch_.begin_over();
+    patch_.outline({{0.0, 0.0}, {double(style_.width), double(style_.height)}}, 0.0, kFrame * side,
+                   kOrange);
+    patch_.end();
+  }
+  if (!mark_.words.empty()) {
+    const render::TextStyle style{std::max(10, static_cast<int>(kWords * side)), true, kOrange};
+    words_.begin();
+    words_.paragraphs(mark_.words, {kFrame * side, kFrame * side}, style_.width, style,
+                      render::Align::kLeft);
+    words_.end();
+  }
 }
 
 std::uint64_t Easel::flash(std::uint64_t onsets) {

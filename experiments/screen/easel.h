@@ -9,6 +9,7 @@
 #include "core/render/flat/text_screen.h"
 #include "core/render/trial/trial_display.h"
 #include "experiments/screen/pace.h"
+#include "experiments/screen/screen.h"
 #include "experiments/screen/screen_pointer.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
@@ -32,7 +33,7 @@ class Easel {
  public:
   /// @param style  whose size is the window's
   Easel(render::Window& window, const render::TrialDisplayStyle& style,
-        const protocols::ScreenOptions& options);
+        const protocols::ScreenOptions& options, const SessionMark& mark);
   ~Easel();
 
   /// @returns whether it is another one than before.
@@ -52,9 +53,11 @@ class Easel {
  private:
   bool is_white(const stimulus::Shown& shown) const;
   void draw_patch(const stimulus::Shown& shown);
+  void draw_mark();
 
   render::Window& window_;
   render::TrialDisplayStyle style_;
+  SessionMark mark_;
   protocols::Photodiode photodiode_;
   std::chrono::duration<double> flash_time_;
   ScreenClock::time_point white_until_{};
@@ -62,6 +65,7 @@ class Easel {
   render::TrialDisplay trial_;  // where a pointer is while no drawing says it
   render::TextScreen text_;
   render::Painter patch_;
+  render::TextPainter words_;
   Scene scene_;
   std::unique_ptr<protocols::Drawing> drawing_;
   std::unique_ptr<protocols::Drawing> before_;  // a page: what is behind it

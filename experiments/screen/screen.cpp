@@ -66,6 +66,7 @@ struct Screen::Impl {
   protocols::ScreenOptions options;
   render::TrialDisplayStyle style;
   ScreenCallbacks callbacks;
+  SessionMark mark;
   std::promise<void> opened;  // outlives set_value(), which a local one might not
   std::thread thread;
   std::atomic<bool> stop{false};
@@ -162,7 +163,7 @@ void Screen::Impl::run() {
   bool open = false;
   try {
     render::Window window(window_options(options, style));
-    Easel easel(window, fitted(style, window), options);
+    Easel easel(window, fitted(style, window), options, mark);
     const AgreedPace agreed =
         agreed_pace(options.refresh_lock, window.refresh_rate(), easel.probe(), kTimerRate);
     {
@@ -239,11 +240,12 @@ void Screen::Impl::count(const record::FrameRow& frame, std::uint64_t flashed) {
 }
 
 Screen::Screen(const protocols::ScreenOptions& options, const render::TrialDisplayStyle& style,
-               ScreenCallbacks callbacks)
+               ScreenCallbacks callbacks, const SessionMark& mark)
     : impl_(std::make_unique<Impl>()) {
   impl_->options = options;
   impl_->style = style;
   impl_->callbacks = std::move(callbacks);
+  impl_->mark = mark;
   std::future<void> result = impl_->opened.get_future();
   impl_->thread = std::thread([this] { impl_->run(); });
   try {

@@ -39,6 +39,12 @@ struct Flash {
   std::int64_t time_ns{0};  // when it was shown, as a frame's
 };
 
+/// A mark over every picture of a session.
+struct SessionMark {
+  std::string words;   // in the upper left corner; empty: none
+  bool framed{false};  // in orange: the session does not count
+};
+
 /// What happens at the screen; called on its thread. They must not call back into the screen.
 struct ScreenCallbacks {
   std::function<void(const render::KeyPress&)> key;
@@ -69,7 +75,7 @@ class Screen final : public stimulus::Observer {
   /// @throws RunError, InputError as render::Window does; InputError where the screen is too small
   /// for the style.
   Screen(const protocols::ScreenOptions& options, const render::TrialDisplayStyle& style,
-         ScreenCallbacks callbacks = {});
+         ScreenCallbacks callbacks = {}, const SessionMark& mark = {});
   ~Screen() override;
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/record/link/partner_state.h"
+#include "core/record/rows/live_figures.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/rows.h"
 #include "core/record/rows/session_types.h"
@@ -164,8 +165,10 @@ class Trials {
     static_cast<void>(leads);
     return nullptr;
   }
+  /// How the session stands, in the words of the study; nothing: only what every session has.
+  virtual std::optional<record::LiveState> live() const { return std::nullopt; }
   /// Sentences for an experimenter who can still do something about it, since the last call; asked
-  /// before each trial.
+  /// often.
   virtual std::vector<std::string> take_warnings() { return {}; }
   /// Sentences for the end of the session.
   virtual std::vector<std::string> notices() const { return {}; }

@@ -218,6 +218,7 @@ std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
     if (done && comes_again(last->responses)) {
       sequence_.postpone();
     } else {
+      live_.conclude(*last);
       sequence_.conclude(done, done ? outcome_of(last->responses) : kNone, right);
       if (done && decisions_ != nullptr) {
         decisions_->told(last->trial.trial, last->trial.practice, last->responses);
@@ -229,6 +230,7 @@ std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
     return std::nullopt;
   }
   current_ = *next;
+  live_.begin(current_, sequence_.running());
   return current_.plan;
 }
 

@@ -11,6 +11,7 @@
 #include "protocols/interface/trials.h"
 #include "protocols/trials/body_report.h"
 #include "protocols/trials/definition/presented.h"
+#include "protocols/trials/live_trials.h"
 #include "protocols/trials/presentation/trial_pass.h"
 #include "protocols/trials/script/scripted_decisions.h"
 #include "protocols/trials/script/scripted_levels.h"
@@ -44,6 +45,7 @@ class DefinedTrials final : public Trials {
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override { return contacts_ ? contacts_->dropped() : 0; }
   const char* why_aborted() const override;
+  std::optional<record::LiveState> live() const override { return live_.state(); }
   std::vector<std::string> take_warnings() override;
   std::vector<std::string> notices() const override;
 
@@ -84,6 +86,7 @@ class DefinedTrials final : public Trials {
   bool decisions_kept_{false};                    // likewise
   TrialSequence sequence_;
   NextTrial current_;
+  LiveTrials live_;
   mutable std::unique_ptr<SaidAnswer> said_;                            // of a virtual participant
   mutable TrialsRig* rig_{nullptr};                                     // likewise; the runner's
   std::unique_ptr<ContactLog> contacts_;                                // null: none are recorded

@@ -81,6 +81,7 @@ class LinkedTrials final : public Trials {
   AfterAbort after_abort() const override;
   std::optional<record::PartnerState> partner() override { return hand_.state(); }
   void take_lead(bool take) override { hand_.take_lead(take); }
+  std::optional<record::LiveState> live() const override { return inner_->live(); }
   std::vector<std::string> take_warnings() override { return inner_->take_warnings(); }
   std::vector<std::string> notices() const override;
 

@@ -72,6 +72,7 @@ class TutoredTrials final : public Trials {
     inner_->draw_pictures(trial, phase);
   }
   const char* why_aborted() const override { return inner_->why_aborted(); }
+  std::optional<record::LiveState> live() const override { return inner_->live(); }
   std::vector<std::string> take_warnings() override { return inner_->take_warnings(); }
   std::vector<std::string> notices() const override {
     std::vector<std::string> all = inner_->notices();

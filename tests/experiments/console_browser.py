@@ -40,7 +40,7 @@ def click_through(page, url, folder):
 
     page.click("start")
     state(page, "Running")
-    assert page.text("what") == "visuohaptic \u00b7 training \u00b7 run", page.text("what")
+    assert page.text("what") == "visuohaptic \u00b7 training \u00b7 trial runs", page.text("what")
     forces = set()
     wait("a force that moves", lambda: forces.add(page.text("applied")) or len(forces) > 5)
     drawn = "const c = document.getElementById('canvas'); const d = c.getContext('2d')" \
@@ -108,6 +108,7 @@ def click_through(page, url, folder):
           x.status === "fulfilled" && x.value.ok ? "let in" : "refused")));"""})
     assert result == ["refused"] * 3, result
     page.call("POST", "/window", {"handle": first})
+    page.run("document.getElementById('loop').open = true")
     wait("refusals on the page", lambda: int(page.text("refused").split()[-1]) >= 3)
 
     print("CLOSE", flush=True)

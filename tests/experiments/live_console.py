@@ -47,6 +47,7 @@ def condition(page):
 def instructions(page, url):
     page.call("POST", "/url", {"url": url})
     state(page, "Instructions")
+    page.run("document.getElementById('loop').open = true")  # its figures are read below
     assert page.text("subject") == "S01", page.text("subject")
     assert page.text("simulated") == "SIMULATED"
     assert page.text("screen").startswith("Learning a pattern of forces"), page.text("screen")
@@ -58,20 +59,20 @@ def instructions(page, url):
 def pause_and_go_on(page):
     """A pause lets the present pass come to its end, and no other begins."""
     page.click("start")
-    wait("a pass", lambda: page.text("what").endswith("training \u00b7 run"))
+    wait("a pass", lambda: page.text("what").endswith("training \u00b7 trial runs"))
     assert page.text("state") == "Running"
     assert page.hidden("screen"), "the instructions are gone: " + page.text("screen")
     moves(page, "target", "position")
     page.click("pause")
     assert page.text("state") == "Running", "not in the middle of a pass"
     state(page, "Paused")
-    assert page.text("what").endswith("training \u00b7 idle"), page.text("what")
+    assert page.text("what") == "", page.text("what")
     time.sleep(0.7)
     assert page.text("state") == "Paused"
     assert page.text("applied") == NO_FORCE, page.text("applied")
     assert page.text("trial") == "1 of 72", page.text("trial")
     page.click("start")
-    running(page, condition(page) + " \u00b7 test \u00b7 run")
+    running(page, condition(page) + " \u00b7 test \u00b7 trial runs")
     moves(page, "target", "applied", "position")
 
 
@@ -83,11 +84,11 @@ def note_repeat_skip(page, folder):
     assert page.text("aborted") == "0"
     page.click("repeat")
     wait("an aborted pass", lambda: page.text("aborted") == "1")
-    running(page, condition(page) + " \u00b7 training \u00b7 run")
+    running(page, condition(page) + " \u00b7 training \u00b7 trial runs")
     assert page.text("trial") == "1 of 72", page.text("trial")
     page.click("skip")
     wait("the next trial", lambda: page.text("trial") == "2 of 72")
-    running(page, condition(page) + " \u00b7 training \u00b7 run")
+    running(page, condition(page) + " \u00b7 training \u00b7 trial runs")
 
 
 def stop_and_clear(page, folder):
@@ -108,7 +109,7 @@ def stop_and_clear(page, folder):
     state(page, "Paused")
     assert page.hidden("fault"), page.text("fault")
     page.click("start")
-    running(page, condition(page) + " \u00b7 training \u00b7 run")
+    running(page, condition(page) + " \u00b7 training \u00b7 trial runs")
     assert page.text("trial") == "2 of 72", page.text("trial")
 
 

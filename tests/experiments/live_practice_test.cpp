@@ -123,6 +123,11 @@ TEST_F(LivePracticeTest, AnExperimenterStartsRepeatsAndSkipsIt) {
   test::wait_until([&] { return person.status()["aborted_passes"] == 1; });
   ASSERT_TRUE(person.sees("practice"));
   ASSERT_TRUE(person.ask("skip"));
+  test::wait_until([&] {
+    const auto now = person.status();
+    return !now.is_null() && now["screen"].get<std::string>().starts_with("Now it counts");
+  });
+  ASSERT_TRUE(person.ask("start"));
   const test::CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   const std::vector<PassRow> all = passes();

@@ -16,11 +16,19 @@ struct LiveState {
     bool alarm{false};  // somebody should look
     bool operator==(const Figure&) const = default;
   };
+  /// A trial of the procedure that is asked now.
+  struct TrackPoint {
+    double level{0.0};
+    int correct{-1};  // 1 right, 0 wrong, -1 not known
+    bool operator==(const TrackPoint&) const = default;
+  };
   int trial{0};  // from 1; 0 of practice
   bool practice{false};
   std::string title;  // "Procedure 3"
   std::vector<Figure> figures;
-  std::string line;  // all of it in one line, for a terminal
+  std::string track_name;         // empty: no procedure is asked
+  std::vector<TrackPoint> track;  // its trials so far
+  std::string line;               // all of it in one line, for a terminal
   bool operator==(const LiveState&) const = default;
 };
 

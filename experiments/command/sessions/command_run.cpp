@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -149,6 +151,8 @@ int run(const RunOptions& asked) {
     options.out = options.teach ? "out/teaching" : "out/sessions";
   }
   check_run_options(options);
+  fmt::print("preparing {}\n", options.definition);  // bones take seconds
+  std::fflush(stdout);
   const Experiment experiment = load_experiment(options.definition, options.language);
   const protocols::Definition& setup = *experiment.definition;
   if (const std::string chosen = choose_session(options, experiment); !chosen.empty()) {
@@ -159,8 +163,11 @@ int run(const RunOptions& asked) {
   check_pages(options, setup);
   const protocols::SidePages side_pages =
       chosen_pages(options, experiment.study->protocol(), setup);
-  for (const std::string& sentence : experiment.untranslated) {
-    fmt::print("{}\n", sentence);
+  if (!experiment.untranslated.empty()) {
+    fmt::print(
+        "language {}: {} shown as the definition has them; haptrial validate lists them\n",
+        options.language,
+        counted(experiment.untranslated.size(), "text is missing and", "texts are missing and"));
   }
   if (options.window) {
     for (const std::string& sentence : undrawable_texts(experiment)) {
@@ -210,8 +217,9 @@ int run(const RunOptions& asked) {
   request.window = options.window;
   request.stream = options.stream || options.stream_optional;
   request.stream_optional = options.stream_optional;
-  request.tell = [](const std::string& line) {
-    fmt::print("{}\n", line);
+  const bool over_status = ::isatty(STDOUT_FILENO) != 0;  // which has no end of line
+  request.tell = [over_status](const std::string& line) {
+    fmt::print("{}{}\n", over_status ? "\r\x1b[K" : "", line);
     std::fflush(stdout);  // it may be a file that somebody follows
   };
   request.resume = options.resume;

@@ -3,11 +3,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
 #include "experiments/command/arguments.h"
+#include "experiments/study/session_name.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -53,6 +59,32 @@ std::string choose_subject(RunOptions& options, const Experiment& experiment) {
   return "next: " + words_of(*next, roster.sessions);
 }
 
+/// A pilot is left out of the analysis: not to be given to a participant by mistake.
+void confirm_pilot(const RunOptions& options, const Experiment& experiment) {
+  const int number = number_of_subject(options.subject);
+  const bool of_study = options.subject.starts_with('P') && number > 0 &&
+                        number <= experiment.definition->design.participants;
+  if (!options.pilot || !of_study) {
+    return;
+  }
+  fmt::print(
+      "{} looks like a participant of the study, and --pilot leaves the session out of the "
+      "analysis.\n",
+      options.subject);
+  if (::isatty(STDIN_FILENO) == 0) {
+    return;  // nobody can be asked
+  }
+  fmt::print("Is it a pilot? y: yes, any other key: no ");
+  std::fflush(stdout);
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer != "y" && answer != "Y") {
+    throw InputError(
+        "nothing was recorded: leave out --pilot for a session of the study, or take "
+        "another --subject for a pilot, such as T01");
+  }
+}
+
 /// The first session that the subject has left.
 std::string choose_number(RunOptions& options, const Experiment& experiment) {
   const Roster roster = roster_of(options, experiment);
@@ -92,6 +124,7 @@ std::string choose_session(RunOptions& options, const Experiment& experiment) {
   if (options.subject.empty()) {
     return choose_subject(options, experiment);
   }
+  confirm_pilot(options, experiment);
   if (!options.session && experiment.definition->sessions() > 1) {
     return choose_number(options, experiment);
   }

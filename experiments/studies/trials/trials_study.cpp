@@ -16,7 +16,6 @@
 #include "analysis/trials/report/write_trials.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "experiments/studies/trials/live_trials.h"
 #include "experiments/studies/trials/reaching/reach_ways.h"
 #include "experiments/studies/trials/trials_analysis.h"
 #include "experiments/studies/trials/trials_rehearsal.h"
@@ -127,12 +126,6 @@ class TrialsStudy final : public Study {
   const protocols::Protocol& protocol() const override { return protocols::trials_protocol(); }
   void read_analysis(Table& root, bool) const override { read_trials_analysis(root); }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override;
-  std::unique_ptr<record::LiveFigures> live_figures(const protocols::Definition& definition,
-                                                    const fs::path& resumed) const override {
-    const TrialsDefinition& d = trials_of(definition);
-    return std::make_unique<LiveTrials>(d.tracks.empty() ? std::string() : d.tracks.front().unit,
-                                        resumed);
-  }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override;
   std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
                                        const std::string& watched) const override {

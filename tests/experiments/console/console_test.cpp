@@ -237,6 +237,33 @@ TEST_F(ConsoleTest, StatusWithOddValuesIsStillJson) {
   EXPECT_TRUE(read["applied_force"].is_null());
   EXPECT_TRUE(read["position"][0].is_null());
   EXPECT_EQ(read["refused"], 7);
+  EXPECT_TRUE(read["left"].is_null()) << "not known yet";
+}
+
+TEST_F(ConsoleTest, TheStatusHasWhatAnExperimenterLooksFor) {
+  SessionStatus status;
+  status.pilot = true;
+  status.elapsed = 754.0;
+  status.left = 480.0;
+  status.aborts = {"trial 3: the hand was too fast"};
+  status.figures.emplace();
+  status.figures->track = {{500.0, 1}, {460.0, 0}};
+  const json read = json::parse(status_json(status, 0));
+  EXPECT_EQ(read["pilot"], true);
+  EXPECT_EQ(read["elapsed"], 754.0);
+  EXPECT_EQ(read["left"], 480.0);
+  EXPECT_EQ(read["aborts"][0], "trial 3: the hand was too fast");
+  EXPECT_EQ(read["figures"]["track"][1]["level"], 460.0);
+  EXPECT_EQ(read["figures"]["track"][1]["correct"], 0);
+}
+
+TEST_F(ConsoleTest, ANoteMayMarkATrialAsBad) {
+  EXPECT_FALSE(parse_note(R"({"text": "moved the chair"})").bad_trial);
+  const ConsoleNote bad = parse_note(R"({"text": "sneezed", "bad_trial": true})");
+  EXPECT_EQ(bad.text, "sneezed");
+  EXPECT_TRUE(bad.bad_trial);
+  EXPECT_THROW(parse_note(R"({"text": "sneezed", "bad_trial": 1})"), InputError);
+  EXPECT_THROW(parse_note(R"({"text": "sneezed", "other": true})"), InputError);
 }
 
 TEST_F(ConsoleTest, RefusesWhoLacksTheToken) {

@@ -129,6 +129,26 @@ TEST_F(ScreenTest, ShowsTextsAndCountsDownByItself) {
   test::wait_until([&] { return shown() > 1000; });  // back to the trial
 }
 
+TEST_F(ScreenTest, APilotHasAnOrangeFrameAndSaysSo) {
+  const Screen screen(options_, style(), {}, {"PILOT T01", true});
+  const auto is_orange = [](const Image& picture, int x, int y) {
+    const std::uint8_t* p = &picture.rgb[3 * static_cast<std::size_t>(y * kWidth + x)];
+    return p[0] > 200 && p[1] > 80 && p[1] < 150 && p[2] < 40;
+  };
+  test::wait_until([&] { return is_orange(on_monitor(), kWidth / 2, 1); });
+  const Image picture = on_monitor();
+  EXPECT_TRUE(is_orange(picture, 1, kHeight / 2));
+  EXPECT_TRUE(is_orange(picture, kWidth - 2, kHeight / 2));
+  EXPECT_TRUE(is_orange(picture, kWidth / 2, kHeight - 2));
+  int letters = 0;
+  for (int y = 10; y < 40; ++y) {
+    for (int x = 10; x < 200; ++x) {
+      letters += is_orange(picture, x, y) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(letters, 100);
+}
+
 TEST_F(ScreenTest, CountsItsFramesFromTheFirstTickOn) {
   Screen screen(options_, style());
   const ScreenSummary pace = screen.summary();
