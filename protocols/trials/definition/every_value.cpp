@@ -9,6 +9,7 @@
 #include "core/base/text/exception_words.h"
 #include "core/scene/scene.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/picture_words.h"
 #include "protocols/trials/definition/presented.h"
 #include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/definition/trial_values.h"
@@ -73,7 +74,8 @@ void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& f
 
 /// @returns what is said of bodies that give way, if asked for
 std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValues& values,
-                                      bool with_bodies, HandleReport& handle) {
+                                      bool with_bodies, HandleReport& handle,
+                                      PictureReport& picture) {
   std::vector<std::string> bodies;
   Table root = Table::parse(d.text, d.file_name);
   root.fill_in(trials_defaults());
@@ -88,6 +90,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       check_forces(d, presented.fields);
       check_objects(d, presented.fields);
       handle.add(presented);
+      picture.add(presented);
       prepare_moving_bodies(presented.fields, d.rate);
       if (with_bodies && place == 0) {
         prepare_bodies(presented.fields, d.rate);
@@ -116,6 +119,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
 HandleWords check_every_value(const TrialsDefinition& d) {
   std::vector<std::string> bodies;
   HandleReport handle(d);
+  PictureReport picture(d);
   for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
     const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
     std::size_t combinations = 1;
@@ -139,12 +143,14 @@ HandleWords check_every_value(const TrialsDefinition& d) {
         const Block& given = d.order.blocks[block];
         values.values.insert(values.values.end(), given.values.begin(), given.values.end());
         const bool first = block == 0 && c == 0 && !high;
-        const std::vector<std::string> said = present_once(d, values, first, handle);
+        const std::vector<std::string> said = present_once(d, values, first, handle, picture);
         bodies.insert(bodies.end(), said.begin(), said.end());
       }
     }
   }
   HandleWords words = handle.words();
+  const std::vector<std::string> unseen = picture.warnings();
+  words.warnings.insert(words.warnings.end(), unseen.begin(), unseen.end());
   words.lines.insert(words.lines.begin(), bodies.begin(), bodies.end());
   return words;
 }

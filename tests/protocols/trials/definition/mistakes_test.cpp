@@ -263,6 +263,21 @@ TEST(TrialMistakesTest, AFieldThatTheHandDoesNotCarryGetsAWarningAndOneThatNoHan
                              HasSubstr("allowed: less of it"))));
 }
 
+TEST(TrialMistakesTest, ARegionOutsideOfThePictureGetsAWarning) {
+  const auto warnings = [](const std::string& more) {
+    TrialsDefinition definition;
+    read_small(with(kSmall, "fields = [\"floor\"]", "fields = [\"floor\"]\nshow = [\"start\"]") +
+                   "[regions.start]\ntype = \"sphere\"\ncentre = [0.0, 0.045, 0.0]\nradius = "
+                   "0.008\n" +
+                   more,
+               definition);
+    return check_every_value(definition).warnings;
+  };
+  EXPECT_THAT(warnings(""), ElementsAre(AllOf(HasSubstr("region start lies partly outside"),
+                                              HasSubstr("display.extent = 0.19"))));
+  EXPECT_THAT(warnings("[display]\nextent = 0.19\n"), IsEmpty());
+}
+
 TEST(TrialMistakesTest, NothingToLearnFrom) {
   EXPECT_THAT(problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"\n", "")),
               Contains(HasSubstr("no response says which is right")));
