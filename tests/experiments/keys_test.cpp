@@ -46,9 +46,18 @@ TEST(KeysTest, TheCommandPrintsOneProtocolOrAll) {
   EXPECT_THAT(trials.output, HasSubstr("| `max_jump` | number | m | "));
   EXPECT_THAT(trials.output, HasSubstr("protocol = \"trials\""));
   EXPECT_THAT(trials.output, Not(HasSubstr("protocol = \"bone_drilling\"")));
-  const auto none = test::run_command("haptrial keys nothing");
+  const auto none = test::run_command("haptrial keys xyzzy");
   EXPECT_EQ(none.status, 2);
-  EXPECT_THAT(none.errors, HasSubstr("PROTOCOL is 'nothing'; allowed: force_training"));
+  EXPECT_THAT(none.errors, HasSubstr("no key has 'xyzzy' in its name or its words"));
+}
+
+TEST(KeysTest, AWordFindsKeysByNameAndByWhatTheyAre) {
+  const auto found = test::run_command("haptrial keys Stiffness");
+  ASSERT_EQ(found.status, 0) << found.errors;
+  EXPECT_THAT(found.output, HasSubstr("fields.NAME.stiffness [N/m]"));
+  EXPECT_THAT(found.output, HasSubstr("hand.stiffness"));
+  EXPECT_THAT(found.output, Not(HasSubstr("max_jump")));
+  EXPECT_LT(std::count(found.output.begin(), found.output.end(), '\n'), 100);
 }
 
 std::vector<std::string> parts_of(const std::string& path) {

@@ -5,8 +5,9 @@
 
 namespace haptrial::experiments {
 
-int keys(const std::string& protocol) {
-  fmt::print("{}", key_page(key_sections(protocol)));
+int keys(const std::string& word) {
+  const bool all = word.empty() || is_protocol(word);
+  fmt::print("{}", all ? key_page(key_sections(word)) : found_keys(sections_with(word)));
   return 0;
 }
 

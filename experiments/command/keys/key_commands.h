@@ -8,7 +8,7 @@ namespace haptrial::experiments {
 // as InputError and RunError.
 
 /// The keys of definitions.
-/// @param protocol  empty: all
-int keys(const std::string& protocol);
+/// @param word  a protocol, or a word to search for; empty: all keys
+int keys(const std::string& word);
 
 }  // namespace haptrial::experiments

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <exception>
 #include <functional>
 #include <map>
@@ -254,16 +255,40 @@ std::vector<KnownKey> keys_of(const Study& study) {
 }
 
 std::vector<KeySection> key_sections(const std::string& protocol) {
-  const std::vector<std::string> names = protocol_names();
-  if (!protocol.empty() && std::find(names.begin(), names.end(), protocol) == names.end()) {
-    throw InputError(
-        fmt::format("PROTOCOL is '{}'; allowed: {}", protocol, fmt::join(names, ", ")));
-  }
   std::map<std::string, Words> words = read_words();
   std::vector<KeySection> sections = sections_of_all(words);
   std::erase_if(sections, [&](const KeySection& section) {
     return !protocol.empty() && !section.protocol.empty() && section.protocol != protocol;
   });
+  return sections;
+}
+
+bool is_protocol(const std::string& word) {
+  const std::vector<std::string> names = protocol_names();
+  return std::find(names.begin(), names.end(), word) != names.end();
+}
+
+static std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::vector<KeySection> sections_with(const std::string& word) {
+  const std::string wanted = lower_case(word);
+  std::vector<KeySection> sections = key_sections("");
+  for (KeySection& section : sections) {
+    std::erase_if(section.keys, [&](const ListedKey& listed) {
+      const std::string all = listed.key.path() + " " + listed.words;
+      return lower_case(all).find(wanted) == std::string::npos;
+    });
+  }
+  std::erase_if(sections, [](const KeySection& section) { return section.keys.empty(); });
+  if (sections.empty()) {
+    throw InputError(
+        fmt::format("no key has '{}' in its name or its words; haptrial keys lists all keys, and "
+                    "haptrial keys PROTOCOL those of {}",
+                    word, fmt::join(protocol_names(), ", ")));
+  }
   return sections;
 }
 

@@ -28,9 +28,14 @@ struct KeySection {
 
 /// All keys of the program; those that every protocol has, with the same bounds and defaults, once.
 /// @param protocol  its keys alone, with those of every protocol; empty: all
-/// @throws InputError for a protocol that is not known
 std::vector<KeySection> key_sections(const std::string& protocol);
+bool is_protocol(const std::string& word);
+/// The keys with a word in their path or in what they are, whatever its case.
+/// @throws InputError if no key has it
+std::vector<KeySection> sections_with(const std::string& word);
 
+/// A line for each key, for a terminal: whose it is, its path, unit, bounds and what it is.
+std::string found_keys(const std::vector<KeySection>& sections);
 /// The page docs/keys.md.
 std::string key_page(const std::vector<KeySection>& sections);
 

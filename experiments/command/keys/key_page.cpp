@@ -84,6 +84,19 @@ std::string section_of(const KeySection& section) {
 
 }  // namespace
 
+std::string found_keys(const std::vector<KeySection>& sections) {
+  std::string text;
+  for (const KeySection& section : sections) {
+    for (const ListedKey& listed : section.keys) {
+      const KnownKey& key = listed.key;
+      text += fmt::format(
+          "{}{}{}: {}; {}\n", section.protocol.empty() ? "" : section.protocol + ": ", key.path(),
+          key.unit.empty() ? "" : fmt::format(" [{}]", key.unit), listed.words, bounds_of(key));
+    }
+  }
+  return text;
+}
+
 std::string key_page(const std::vector<KeySection>& sections) {
   std::string text =
       "# Every key of a definition\n\n"

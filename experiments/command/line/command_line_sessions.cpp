@@ -9,7 +9,7 @@ namespace haptrial::experiments {
 void add_dry_run(CLI::App& app, int& status) {
   CLI::App* sub =
       subcommand(app, "dry-run", "Run a whole study with virtual subjects, faster than real time",
-                 "haptrial dry-run experiments/force_training.toml --jobs 2",
+                 "haptrial dry-run force_training --jobs 2",
                  {"a session file for each subject, for analyze", "guide-experimenter.md"});
   auto& o = options_of<DryRunOptions>(*sub, status, dry_run);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
@@ -43,7 +43,7 @@ void add_dry_run(CLI::App& app, int& status) {
 
 void add_run(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "run", "Run one participant's session in real time",
-                             "haptrial run experiments/force_training.toml --subject P01",
+                             "haptrial run force_training --subject P01",
                              {"the session file ID.h5, for analyze", "guide-experimenter.md"});
   auto& o = options_of<RunOptions>(*sub, status, run);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
@@ -116,7 +116,7 @@ void add_secret(CLI::App& app, int& status) {
 void add_roster(CLI::App& app, int& status) {
   CLI::App* sub =
       subcommand(app, "roster", "Show who has done what in a study, and who is next",
-                 "haptrial roster experiments/curl_field.toml out/curl_field",
+                 "haptrial roster curl_field out/curl_field",
                  {"the same as JSON or as a table if asked for", "guide-experimenter.md"});
   auto& o = options_of<RosterOptions>(*sub, status, roster);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
@@ -178,8 +178,7 @@ void add_replay(CLI::App& app, int& status) {
 
 void add_validate(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "validate", "Check a definition and show the study that it plans",
-                             "haptrial validate experiments/force_training.toml",
-                             {"", "guide-experimenter.md"});
+                             "haptrial validate force_training", {"", "guide-experimenter.md"});
   auto& definition = options_of<std::string>(*sub, status, validate);
   sub->add_option("DEFINITION", definition, "Experiment definition (.toml)")->required();
 }

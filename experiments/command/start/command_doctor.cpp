@@ -16,6 +16,8 @@ const char* word_of(MachineCheck::State state) {
       return "ready";
     case MachineCheck::State::kLimited:
       return "limited";
+    case MachineCheck::State::kAbsent:
+      return "absent";
     case MachineCheck::State::kBroken:
       break;
   }
@@ -36,6 +38,7 @@ int doctor(const std::string& folder) {
   for (MachineCheck& device : check_devices()) {
     checks.push_back(std::move(device));
   }
+  std::ranges::stable_sort(checks, {}, &MachineCheck::state);  // what asks for something first
   for (const MachineCheck& check : checks) {
     fmt::print("{:<15}  {:<7}  {}\n", check.what, word_of(check.state), check.found);
   }

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/files/whole_file.h"
 #include "core/base/text/nearest.h"
 
 namespace haptrial::experiments {
@@ -36,7 +39,41 @@ const Example& example_named(std::string_view name) {
   for (const Example& example : all) {
     names.emplace_back(example.name);
   }
-  throw InputError(not_allowed("--from", fmt::format("'{}'", name), names));
+  const auto first_word_is_near = [&](const std::string& each) {
+    return nearest(name, {each.substr(0, each.find('_'))}).has_value();
+  };
+  const auto near = std::ranges::find_if(names, first_word_is_near);
+  const std::string hint =
+      near != names.end() && !nearest(name, names) ? fmt::format("; did you mean {}?", *near) : "";
+  throw InputError(not_allowed("--from", fmt::format("'{}'", name), names) + hint);
+}
+
+std::string definition_or_example(const std::string& given) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const std::string name = fs::path(given).stem().string();
+  const std::string copy = name + ".toml";
+  if (fs::exists(given, ignored)) {
+    return given;
+  }
+  if (given == name && fs::exists(copy, ignored)) {
+    return copy;
+  }
+  const auto all = examples();
+  const auto found = std::ranges::find(all, name, &Example::name);
+  if (found == all.end()) {
+    return given;  // who reads it says that there is no such file
+  }
+  if (given != name) {
+    throw InputError(
+        fmt::format("{}: there is no such file; {} is a shipped definition: write its name alone",
+                    given, name));
+  }
+  WholeFile out((fs::path(copy)));
+  out.write(std::string(found->text));
+  out.finish();
+  fmt::print("{}: a copy of the shipped definition {}\n", copy, name);
+  return copy;
 }
 
 std::string what_of(const Example& example) {

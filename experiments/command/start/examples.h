@@ -18,6 +18,10 @@ std::span<const Example> examples();
 /// @throws InputError for another name; tells the nearest one, and all of them.
 const Example& example_named(std::string_view name);
 
+/// A definition as the command line names it: a file, or a shipped definition, of which a copy is
+/// written beside. @returns the file  @throws InputError for neither
+std::string definition_or_example(const std::string& given);
+
 /// The first sentence of its first comment: what it is.
 std::string what_of(const Example& example);
 

@@ -111,7 +111,7 @@ std::vector<MachineCheck> check_devices() {
   std::vector<MachineCheck> checks;
   for (const device::DeviceListing& listing : device::list_devices()) {
     checks.push_back(
-        {listing.name, listing.available ? State::kReady : State::kLimited, listing.what});
+        {listing.name, listing.available ? State::kReady : State::kAbsent, listing.what});
   }
   return checks;
 }

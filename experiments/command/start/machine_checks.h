@@ -9,9 +9,10 @@ namespace haptrial::experiments {
 /// Something that a session needs, or that it can do without.
 struct MachineCheck {
   enum class State {
-    kReady,
+    kBroken,   // sessions do not run
     kLimited,  // sessions run, with less: the sentence says what to do
-    kBroken    // they do not
+    kReady,
+    kAbsent  // a device that is not connected: nothing is wrong
   };
   std::string what;  // "real time"
   State state{State::kReady};

@@ -5,9 +5,31 @@
 #include <vector>
 
 #include "experiments/command/line/command_lines.h"
+#include "experiments/command/start/examples.h"
 #include "experiments/command/whole/command_line_internal.h"
 
 namespace haptrial::experiments {
+
+namespace {
+
+/// Wherever a definition is asked for, a shipped one may be named.
+void accept_examples(CLI::App& app) {
+  for (CLI::App* sub : app.get_subcommands({})) {
+    accept_examples(*sub);
+  }
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_name() == "DEFINITION") {
+      option->transform(CLI::Validator(
+          [](std::string& given) {
+            given = definition_or_example(given);
+            return std::string();
+          },
+          ""));
+    }
+  }
+}
+
+}  // namespace
 
 void declare_subcommands(CLI::App& app, int& status) {
   app.add_option_function<std::vector<std::string>>(
@@ -41,6 +63,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_deform(app, status);
   add_spectrum(app, status);
   add_rate(app, status);
+  accept_examples(app);
 }
 
 }  // namespace haptrial::experiments

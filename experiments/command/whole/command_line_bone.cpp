@@ -140,7 +140,7 @@ void add_picture(CLI::App& bone, int& status) {
 void add_stages(CLI::App& bone, int& status) {
   CLI::App* sub =
       subcommand(bone, "stages", "Draw stills of a cavity, stage by stage, for participants",
-                 "haptrial bone stages experiments/construct_validity.toml --out stills");
+                 "haptrial bone stages construct_validity --out stills");
   auto& o = options_of<BoneStagesOptions>(*sub, status, bone_stages);
   sub->add_option("DEFINITION", o.definition, "Definition with a table [cavity] (.toml)")
       ->required();
@@ -150,10 +150,9 @@ void add_stages(CLI::App& bone, int& status) {
 }
 
 void add_place(CLI::App& bone, int& status) {
-  CLI::App* sub =
-      subcommand(bone, "place", "Draw a bone as it lies before its first cut, with names",
-                 "haptrial bone place experiments/construct_validity.toml placed.png",
-                 {"the picture OUT", "guide-scan.md"});
+  CLI::App* sub = subcommand(
+      bone, "place", "Draw a bone as it lies before its first cut, with names",
+      "haptrial bone place construct_validity placed.png", {"the picture OUT", "guide-scan.md"});
   auto& o = options_of<BonePlaceOptions>(*sub, status, bone_place);
   sub->add_option("DEFINITION", o.definition, "Definition of bone drilling (.toml)")->required();
   sub->add_option("OUT", o.out, "New picture (.png)")->required();

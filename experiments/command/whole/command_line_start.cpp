@@ -29,10 +29,12 @@ void add_doctor(CLI::App& app, int& status) {
 }
 
 void add_keys(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "keys", "List every key that a definition may have",
-                             "haptrial keys trials", {"", "keys.md"});
-  auto& protocol = options_of<std::string>(*sub, status, keys);
-  sub->add_option("PROTOCOL", protocol, "Protocol whose keys are listed (default: every protocol)");
+  CLI::App* sub = subcommand(app, "keys", "List the keys that a definition may have",
+                             "haptrial keys stiffness", {"", "keys.md"});
+  auto& word = options_of<std::string>(*sub, status, keys);
+  sub->add_option("WORD", word,
+                  "Protocol whose keys are listed, or a word to search keys for (default: all "
+                  "keys)");
 }
 
 }  // namespace haptrial::experiments

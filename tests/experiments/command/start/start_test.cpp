@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::run_command;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(ExamplesTest, AreTheShippedDefinitions) {
   std::size_t files = 0;
@@ -60,9 +61,26 @@ TEST(StartTest, ANewDefinitionIsReadyToRehearse) {
   };
   refused("haptrial new mine.toml", "mine.toml: exists already");
   refused("haptrial new other --from wall_detecton", "did you mean wall_detection?");
+  refused("haptrial new other --from stifness", "did you mean stiffness_discrimination?");
   refused("haptrial new 'two words'", "allowed: letters, digits");
   refused("haptrial new mine.txt", "allowed: a name that ends in .toml");
   EXPECT_FALSE(fs::exists(folder / "other.toml"));
+}
+
+TEST(StartTest, AShippedDefinitionIsNamedWithoutAFile) {
+  const test::TemporaryFolder folder;
+  const std::string in_folder = "cd '" + folder.path().string() + "'; ";
+  const auto valid = run_command(in_folder + "haptrial validate wall_detection");
+  ASSERT_EQ(valid.status, 0) << valid.errors;
+  EXPECT_THAT(valid.output, HasSubstr("wall_detection.toml: a copy of the shipped definition"));
+  EXPECT_THAT(valid.output, HasSubstr("wall_detection.toml: valid"));
+  EXPECT_EQ(test::read_text(folder / "wall_detection.toml"), example_named("wall_detection").text);
+  test::write_text(folder / "wall_detection.toml", "[experiment]\nprotocol = \"none\"\n");
+  EXPECT_EQ(run_command(in_folder + "haptrial validate wall_detection").status, 2)
+      << "the copy is the user's";
+  const auto path = run_command(in_folder + "haptrial validate experiments/force_training.toml");
+  EXPECT_EQ(path.status, 2);
+  EXPECT_THAT(path.errors, HasSubstr("force_training is a shipped definition"));
 }
 
 TEST(StartTest, TheDoctorSaysWhatSessionsCanUse) {
@@ -72,6 +90,11 @@ TEST(StartTest, TheDoctorSaysWhatSessionsCanUse) {
   for (const char* what : {"clock", "real time", "pictures", "window", "sound", "disk", "mouse"}) {
     EXPECT_THAT("\n" + found.output, HasSubstr(std::string("\n") + what)) << what;
   }
+  EXPECT_THAT(found.output, Not(HasSubstr("limited  no ")));
+  const std::size_t absent = found.output.find("  absent ");
+  ASSERT_NE(absent, std::string::npos) << "no robot is connected here";
+  EXPECT_EQ(found.output.find("  limited", absent), std::string::npos) << "in order of weight";
+  EXPECT_EQ(found.output.find("  ready", absent), std::string::npos);
   const auto nowhere = run_command("haptrial doctor '" + (folder / "none").string() + "'");
   EXPECT_EQ(nowhere.status, 1);
   EXPECT_THAT(nowhere.output, HasSubstr("BROKEN"));
