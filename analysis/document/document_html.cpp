@@ -7,10 +7,13 @@
 namespace haptrial::analysis {
 namespace {
 
-/// Each kind of block as HTML.
+/// Each kind of block as HTML; headings are numbered for the table of contents.
 struct HtmlBlock {
-  std::string operator()(const Document::Heading& h) const {
-    return fmt::format("<h{0}>{1}</h{0}>\n", h.level, escape_html(h.text));
+  int headings{0};
+
+  std::string operator()(const Document::Heading& h) {
+    return fmt::format("<h{0} id=\"part-{1}\">{2}</h{0}>\n", h.level, ++headings,
+                       escape_html(h.text));
   }
   std::string operator()(const Document::Paragraph& p) const {
     return "<p>" + escape_html(p.text) + "</p>\n";
@@ -43,6 +46,27 @@ struct HtmlBlock {
   }
 };
 
+/// Links to the headings of a long document; empty for a short one.
+std::string contents_of(const Document& document) {
+  constexpr int kFew = 3;
+  std::string links;
+  int number = 0;
+  int parts = 0;
+  for (const Document::Block& block : document.blocks) {
+    const auto* heading = std::get_if<Document::Heading>(&block);
+    if (heading == nullptr) {
+      continue;
+    }
+    ++number;
+    parts += heading->level == 2 ? 1 : 0;
+    links += fmt::format("<li class=\"level-{}\"><a href=\"#part-{}\">{}</a></li>\n",
+                         heading->level, number, escape_html(heading->text));
+  }
+  return parts <= kFew ? ""
+                       : "<details class=\"contents\" open><summary>Contents</summary>\n<ul>\n" +
+                             links + "</ul></details>\n";
+}
+
 }  // namespace
 
 std::string to_html(const Document& document) {
@@ -53,8 +77,10 @@ std::string to_html(const Document& document) {
       "<p class=\"lead\">{}</p>\n",
       document.simulated ? "SIMULATED: " : "", escape_html(document.title), kReportStyle,
       escape_html(document.title), escape_html(document.subtitle));
+  html += contents_of(document);
+  HtmlBlock writer;
   for (const Document::Block& block : document.blocks) {
-    html += std::visit(HtmlBlock{}, block);
+    html += std::visit(writer, block);
   }
   return html + "</body>\n</html>\n";
 }

@@ -8,7 +8,7 @@ inline constexpr const char* kReportStyle = R"css(
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 60rem; padding: 2rem 1.5rem 4rem; color: var(--ink);
   background: #fff; font: 16px/1.55 system-ui, "Helvetica Neue", Arial, sans-serif; }
-h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; }
+h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .4rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.3rem; margin: 2.8rem 0 .7rem; padding-top: .9rem;
   border-top: 1px solid var(--line); }
 h3 { font-size: 1.05rem; margin: 1.6rem 0 .4rem; }
@@ -33,7 +33,15 @@ details { margin: .8rem 0; }
 summary { cursor: pointer; color: var(--accent); }
 pre { padding: 1rem; background: #f6f7f8; border-radius: 6px; overflow-x: auto; font-size: .85rem;
   line-height: 1.4; }
+.contents ul { columns: 16rem; padding-left: 1.2rem; list-style: none; }
+.contents a { color: var(--accent); }
+.contents .level-3 { padding-left: 1.2rem; font-size: .93rem; }
+@media screen and (max-width: 700px) {
+  figure { overflow-x: auto; }
+  figure svg { min-width: 40rem; }
+}
 @media print {
+  .contents { display: none; }
   body { max-width: none; padding: 0; font-size: 10.5pt; }
   figure, table, .lines, .banner { break-inside: avoid; }
   h2, h3 { break-after: avoid; }

@@ -10,6 +10,7 @@
 #include "analysis/trials/fit/function_fit.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
+#include "core/psychometric/procedure/pest.h"
 #include "core/psychometric/procedure/staircase.h"
 
 namespace haptrial::analysis::trials {
@@ -28,6 +29,12 @@ void mark_reversals(std::vector<TrackStep>& steps) {
     steps[i].reversal = direction != 0 && now != direction;
     direction = now;
   }
+}
+
+/// Other procedures jump to and fro without turning.
+bool has_reversals(const psychometric::Procedure* procedure) {
+  return dynamic_cast<const psychometric::Staircase*>(procedure) != nullptr ||
+         dynamic_cast<const psychometric::Pest*>(procedure) != nullptr;
 }
 
 void replay(TrackEstimate& track, const std::vector<psychometric::Level>& levels,
@@ -159,8 +166,10 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
   }
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     tracks[i].steps.shrink_to_fit();
-    mark_reversals(tracks[i].steps);
     const auto procedure = procedure_of ? procedure_of(tracks[i].track) : nullptr;
+    if (has_reversals(procedure.get())) {
+      mark_reversals(tracks[i].steps);
+    }
     if (procedure) {
       tracks[i].adaptive = true;
       replay(tracks[i], levels[i], *procedure);

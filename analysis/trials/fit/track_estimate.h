@@ -38,7 +38,7 @@ struct TrackEstimate {
 using ProcedureOf = std::function<std::unique_ptr<psychometric::Procedure>(const std::string&)>;
 
 /// Replays each track through its procedure. Trials of practice do not take part. Without a
-/// procedure the track has steps and reversals, but no estimate.
+/// procedure the track has steps, but no estimate; only staircases and PEST have reversals.
 std::vector<TrackEstimate> track_estimates(const TrialsData& data, const ProcedureOf& procedure_of);
 
 /// 95 % intervals of the estimates: what the procedure states itself, Student's t if its error has

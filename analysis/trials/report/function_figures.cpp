@@ -72,7 +72,8 @@ void add_band(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, co
   look.dash = "(3,3)";
   const auto p = fit.function(plan).parameters();
   for (const bool high : {false, true}) {
-    Series edge{"", Mark::kLine, look};
+    const bool labelled = !high && figure.series.size() == 2;  // the first function's
+    Series edge{labelled ? "95 % of the level" : "", Mark::kLine, look};
     for (const BandPoint& point : fit.band) {
       const double level = high ? point.level.high : point.level.low;
       if (std::isfinite(level) && level >= range.first && level <= range.second) {
@@ -86,12 +87,38 @@ void add_band(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, co
   }
 }
 
+/// Lines at the guess rate and from the threshold down.
+void add_marks(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, const Range& range,
+               Look look) {
+  look.width = 1.0;
+  look.dash = "(8,5)";
+  const auto function = fit.function(plan);
+  const double threshold = fit.likelihood->threshold.value;
+  const double guess = function.parameters().guess;
+  Series marks{figure.series.size() < 5 ? "guess rate, threshold" : "", Mark::kSegments, look};
+  const auto add = [&](double x, double y, double x2, double y2) {
+    marks.x.push_back(x);
+    marks.y.push_back(y);
+    marks.x2.push_back(x2);
+    marks.y2.push_back(y2);
+  };
+  if (guess > 0.0) {
+    add(range.first, guess, range.second, guess);
+  }
+  if (std::isfinite(threshold) && threshold >= range.first && threshold <= range.second) {
+    add(threshold, 0.0, threshold, function(threshold));
+  }
+  if (!marks.x.empty()) {
+    figure.series.push_back(std::move(marks));
+  }
+}
+
 Figure function_figure(const TrialsResult& result, const std::vector<const FunctionFit*>& fits) {
   const std::string& participant = fits.front()->participant;
   Figure figure = new_figure(
       result, "function-" + file_word(participant), "Psychometric function of " + participant,
       level_label(result),
-      result.plan.yes.empty() ? "Share of answers 1" : "Share of \"" + result.plan.yes + "\"");
+      result.plan.yes.empty() ? "Proportion correct" : "Proportion \"" + result.plan.yes + "\"");
   const Range range = levels_of(fits);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const FunctionFit& fit = *fits[i];
@@ -100,6 +127,7 @@ Figure function_figure(const TrialsResult& result, const std::vector<const Funct
     if (fit.likelihood) {
       figure.series.push_back(curve_series(fit, result.plan, range, look));
       add_band(figure, fit, result.plan, range, look);
+      add_marks(figure, fit, result.plan, range, look);
     }
     figure.alt += fmt::format("{}{}: threshold {}", i == 0 ? "" : "; ",
                               series_name(participant, fit.condition),

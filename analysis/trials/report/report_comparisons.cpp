@@ -74,9 +74,9 @@ void add_tracks(Document& document, const TrialsResult& result,
 std::string words_of_chance(const TrialsResult& result) {
   const bool adaptive = std::any_of(result.series.begin(), result.series.end(),
                                     [](const AnsweredSeries& series) { return series.adaptive; });
-  return adaptive ? " Levels that follow from answers give these numbers to people without drift "
-                    "or repetition, too: what 25 simulated sessions of such a person have on "
-                    "average is taken off."
+  return adaptive ? " Where levels follow from answers, these numbers are not zero even for people "
+                    "without drift or repetition. Their average over 25 simulated sessions of such "
+                    "a person is subtracted."
                   : "";
 }
 

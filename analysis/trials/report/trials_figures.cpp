@@ -160,10 +160,11 @@ std::vector<Figure> track_figures(const TrialsResult& result) {
       figure.series.push_back(std::move(line));
       figure.series.push_back(std::move(points));
     }
+    figure.caption = "The level that was presented in each trial.";
     if (!reversals.x.empty()) {
+      figure.caption += " Circles: reversals.";
       figure.series.push_back(std::move(reversals));
     }
-    figure.caption = "The level that was presented in each trial. Circles: reversals.";
     figure.alt = fmt::format("{} of {}.", counted(tracks, "track"), person.participant);
     if (tracks > 0) {
       figures.push_back(std::move(figure));

@@ -23,9 +23,9 @@ std::optional<double> sought(const Track& track) {
 
 std::string sentence(const Track& track, double level, double low, double high, double trials) {
   return fmt::format(
-      "{}: if people are as expected it finds {:.4g} ({:.4g} to {:.4g}, one standard "
-      "deviation to either side) {} in {:.0f} trials",
-      track.name, level, low, high, track.unit, trials);
+      "{}: for a participant as expected, the estimate is {:.4g} {} on average (standard deviation "
+      "from {:.4g} to {:.4g}) after {:.0f} trials",
+      track.name, level, track.unit, low, high, trials);
 }
 
 std::optional<std::string> by_chain(const Track& track, const PsychometricFunction& function) {
@@ -38,8 +38,8 @@ std::optional<std::string> by_chain(const Track& track, const PsychometricFuncti
       sentence(track, p.axis.level(found.mean), p.axis.level(found.mean - found.deviation),
                p.axis.level(found.mean + found.deviation), found.trials);
   if (sought(track)) {
-    text += fmt::format("; {:.1f} % right is at {:.4g}, so its bias is {:+.2g}", 100.0 * share,
-                        target, p.axis.level(found.mean) - target);
+    text += fmt::format("; the level with {:.1f} % correct is {:.4g}, so that the bias is {:+.2g}",
+                        100.0 * share, target, p.axis.level(found.mean) - target);
   }
   return text;
 }

@@ -79,7 +79,7 @@ class ProcedureTest(unittest.TestCase):
 
     def test_says_what_it_will_find(self):
         track = haptrial.procedure({**STAIRCASE, "expect": {"threshold": 4.0, "width": 3.0}})
-        self.assertIn("if people are as expected it finds", track.prediction)
+        self.assertIn("for a participant as expected, the estimate is", track.prediction)
         self.assertIsNone(haptrial.procedure(STAIRCASE).prediction)
 
     def test_refuses_in_a_sentence(self):

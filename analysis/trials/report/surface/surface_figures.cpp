@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <map>
+#include <utility>
 
 #include "analysis/document/palette.h"
 #include "analysis/statistics/words/wording.h"
@@ -34,16 +38,30 @@ Series pieces(const char* label, const Look& look, const std::vector<Segment>& s
   return series;
 }
 
-Series presented(const char* label, const Look& look, const SurfaceCondition& one,
-                 std::size_t outcome) {
-  Series series{label, Mark::kPoints, look};
+/// At each place an open circle for all its trials and a disc for those with the answer 1, with
+/// areas as their numbers.
+void add_answers(Figure& figure, const SurfaceCondition& one) {
+  std::map<std::pair<double, double>, std::pair<int, int>> places;  // answers 1, all
+  int most = 1;
   for (const SurfaceTrial& trial : one.trials) {
-    if (trial.outcome == outcome) {
-      series.x.push_back(trial.stimulus[0]);
-      series.y.push_back(trial.stimulus[1]);
-    }
+    auto& [ones, all] = places[{trial.stimulus[0], trial.stimulus[1]}];
+    ones += trial.outcome == 1 ? 1 : 0;
+    most = std::max(most, ++all);
   }
-  return series;
+  const auto add = [&](const char* label, Look look, const std::pair<double, double>& place,
+                       int count) {
+    constexpr double kLargest = 3.0;  // of a place with the most trials
+    look.point_size = kLargest * std::sqrt(static_cast<double>(count) / most);
+    figure.series.push_back({label, Mark::kPoints, look, {place.first}, {place.second}});
+  };
+  bool first = true;
+  for (const auto& [place, counts] : places) {
+    add(first ? "all trials" : "", kZero, place, counts.second);
+    if (counts.first > 0) {
+      add(first ? "answer 1" : "", kOne, place, counts.first);
+    }
+    first = false;
+  }
 }
 
 Figure figure_of(const TrialsResult& result, const SurfaceCondition& one) {
@@ -52,13 +70,15 @@ Figure figure_of(const TrialsResult& result, const SurfaceCondition& one) {
                 (one.condition.empty() ? "" : "-" + plain(one.condition));
   figure.title = fmt::format("Threshold of {}{}{}", one.participant,
                              one.condition.empty() ? "" : ", ", one.condition);
-  figure.x_label = one.variables[0];
-  figure.y_label = one.variables[1];
+  const std::string& unit = result.plan.function.axis.unit;
+  const std::string in_unit = unit.empty() ? "" : " (" + unit + ")";
+  figure.x_label = one.variables[0] + in_unit;
+  figure.y_label = one.variables[1] + in_unit;
   figure.simulated = result.simulated();
-  figure.series = {presented("answer 1", kOne, one, 1), presented("answer 0", kZero, one, 0),
-                   pieces("threshold", kMiddle, one.contour->middle),
-                   pieces("95 %", kBand, one.contour->sure),
-                   pieces("", kBand, one.contour->hardly)};
+  add_answers(figure, one);
+  figure.series.push_back(pieces("threshold", kMiddle, one.contour->middle));
+  figure.series.push_back(pieces("95 %", kBand, one.contour->sure));
+  figure.series.push_back(pieces("", kBand, one.contour->hardly));
   std::erase_if(figure.series, [](const Series& s) { return s.x.empty(); });
   for (const ContourPoint& point : one.points) {
     if (point.second.size() == 1) {
@@ -69,7 +89,8 @@ Figure figure_of(const TrialsResult& result, const SurfaceCondition& one) {
   }
   figure.caption = fmt::format(
       "Line: where the probability of the answer 1 is {:g} %; dashed: its 95 % band, point by "
-      "point. Points: the answers, each at what was presented.",
+      "point. Circles: the trials at each place; discs: those with the answer 1; areas as their "
+      "numbers.",
       100.0 * one.share);
   return figure;
 }
