@@ -53,33 +53,69 @@ def roles(readme):
             yield cells[0], links
 
 
+HOW_TO = {"experimenters", "analysts", "developers", "two people at one task"}  # rows of README
+
+
 def navigation(pages):
-    """Guides by role as in README; each page once."""
+    """Four entries: Start, How to, Reference, Science. Guides by role as in README; each page
+    once."""
     readme = (pages / "README.md").read_text()
+    start = [("Overview", "README.md"), ("Gallery", "gallery/index.md"),
+             ("A first experiment", "docs/guide-first-experiment.md"),
+             ("The first participant", "docs/guide-first-participant.md")]
     reference = [("Commands", "reference/commands.md"), ("Keys of a definition", "docs/keys.md"),
                  ("Tables of a session file", "docs/session-file.md"),
+                 ("Notices and warnings", "docs/notices.md"), ("Devices", "docs/devices.md"),
                  ("Headers", "reference/headers.md"), ("Sections of the source", "docs/sections.md")]
-    shown = {path for _, path in reference} | {"README.md", "gallery/index.md"}
-    lines = ["  - Start: README.md", "  - Gallery: gallery/index.md"]
+    shown = {path for _, path in start + reference}
+    lines = []
 
-    def group(name, links):
+    def entry(text, path, depth):
+        lines.append(f"{'    ' * depth}  - {quoted(capital(text))}: {path}")
+
+    def group(name, links, depth):
         kept = [(text, path) for text, path in links
                 if path not in shown and (pages / path).exists()]
         shown.update(path for _, path in kept)
         if kept:
-            lines.append(f"  - {quoted(name)}:")
-            lines.extend(f"      - {quoted(capital(text))}: {path}" for text, path in kept)
+            lines.append(f"{'    ' * depth}  - {quoted(capital(name))}:")
+            for text, path in kept:
+                entry(text, path, depth + 1)
 
-    for role, links in roles(readme):
-        group(capital(role), links)
-    lines.append("  - Reference:")
-    lines.extend(f"      - {text}: {path}" for text, path in reference if (pages / path).exists())
+    def top(name, links):
+        lines.append(f"  - {name}:")
+        for text, path in links:
+            if (pages / path).exists():
+                entry(text, path, 1)
+
+    rows = list(roles(readme))
+    top("Start", start)
+    lines.append("  - How to:")
+    for role, links in rows:
+        if role in HOW_TO:
+            group(role, links, 1)
+    science = len(lines)
+    for role, links in rows:
+        if role not in HOW_TO and role != "everybody":
+            group(role, links, 1)
+    of_science = lines[science:]
+    del lines[science:]
+    top("Reference", reference)
+    for role, links in rows:
+        if role == "everybody":
+            for text, path in links:
+                if path not in shown:
+                    shown.add(path)
+                    entry(text, path, 1)
     everything = [(title(file.read_text()), file.relative_to(pages).as_posix())
                   for file in sorted(pages.rglob("*.md"))]
-    for name, folder in (("Decisions", "docs/decisions/"), ("Experiments", "gallery/"),
-                         ("More pages", "docs/"), ("Results", "results/"), ("Files", "code/"),
-                         ("Project", "")):
-        group(name, [each for each in everything if each[1].startswith(folder)])
+    for name, folder in (("Decisions", "docs/decisions/"), ("Shipped experiments", "gallery/"),
+                         ("More pages", "docs/"), ("Files", "code/")):
+        group(name, [each for each in everything if each[1].startswith(folder)], 1)
+    lines.append("  - Science:")
+    lines.extend(of_science)
+    for name, folder in (("Results", "results/"), ("Project", "")):
+        group(name, [each for each in everything if each[1].startswith(folder)], 1)
     return "\n".join(lines)
 
 
