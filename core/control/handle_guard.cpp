@@ -11,13 +11,14 @@ namespace {
 
 constexpr double kSwing = 1.5;            // peak to peak [N]
 constexpr double kLargeSwing = 2.0;       // [N]
-constexpr double kOfATremor = 4.0;        // at most, in resonance with a wall [N]
+constexpr double kNoTremor = 4.0;         // [N]
+constexpr double kOfATremor = 3.0;        // reached once, in resonance with a wall [N]
 constexpr double kLongestGap = 0.062;     // between turns; those of a slower hand are its own [s]
-constexpr double kOfAHand = 0.033;        // turns of a hand by itself are longer apart [s]
+constexpr double kOfAHand = 0.036;        // turns of a tremor, 8 to 12 Hz, are longer apart [s]
 constexpr int kTurns = 3;                 // that make an oscillation
 constexpr int kLargeTurns = 2;            // the same, if large
 constexpr double kStep = 1.2;             // of g, for each turn and each N of its swing
-constexpr int kTurnsInCalm = 1;           // slow ones that do not die away, before anything goes
+constexpr int kTurnsInCalm = 2;           // slow ones that do not die away, before anything goes
 constexpr int kTurnsWithoutDamping = 2;   // that do not die away, before stiffness gives way
 constexpr double kStiffnessStep = 2.5;    // of g above kStiffnessFrom, for each turn
 constexpr double kDying = 0.96;           // of the swing before
@@ -90,7 +91,7 @@ bool HandleGuard::oscillates(const SwingCounter::Train& train) noexcept {
   calm_ = 1.0;
   const bool dies = train.swing < kDying * train.swing_before;
   slow_turns_ = dies || train.swing < kOfATremor ? 0 : slow_turns_ + 1;
-  return slow_turns_ >= kTurnsInCalm;
+  return slow_turns_ >= kTurnsInCalm || (slow_turns_ > 0 && train.swing >= kNoTremor);
 }
 
 /// A swing that dies away by itself, as after a knock, is only damped.

@@ -13,8 +13,8 @@ namespace haptrial::control {
 /// A force that follows late or held readings feeds energy into a light hand instead of taking it
 /// out: the handle oscillates at 8 Hz and more. The guard counts the turns of the force that the
 /// program commands. From the third turn of 1.5 N or more on (the noise of an encoder of 10 um in
-/// the source's plane is 1.2 N), or from the second of 2 N or more that come faster than those of
-/// 15 Hz, it gives way by g, further with each turn:
+/// the source's plane is 1.2 N), or from the second of 2 N or more, it gives way by g, further with
+/// each turn:
 ///
 ///     share of damping    s_b = exp(-g)
 ///     share of stiffness  s_k = exp(-(g - 3)) above g = 3, else 1
@@ -23,9 +23,9 @@ namespace haptrial::control {
 /// so that damping and virtual mass go first, stiffness last, and in place of both comes the
 /// damping b_0 that the bare handle carries (damping_of_bare_handle()), on the part v_h of the
 /// velocity above 4 Hz, so that it does not hold back a hand that moves. What dies away by itself,
-/// as after a knock, is only damped. Turns that are slower than those of 15 Hz may be a hand's own,
-/// and a damper still takes energy from them: they bring in the calming damper (c = 1) and take
-/// nothing away, unless they reach 4 N, more than a tremor does, and do not die away. When it has
+/// as after a knock, is only damped. Turns that are slower than those of 14 Hz may be a tremor, and
+/// a damper still takes energy from them: they bring in the calming damper (c = 1) and take nothing
+/// away, unless they reach 4 N, or 3 N twice, and do not die away. When it has
 /// become quiet, the gains come back within a second. Where the oscillation then comes back, g
 /// stays a little above that value, which is tried anew only slowly. So a heavy hand has all the
 /// gains, a light one what it carries. docs/algorithms/every-hand.md has the figures.

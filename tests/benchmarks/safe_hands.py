@@ -29,7 +29,7 @@ from session_swings import LONGEST, measure
 HERE = os.path.dirname(os.path.abspath(__file__))
 SHIPPED = os.path.join(HERE, "..", "..", "experiments")
 
-FREE_STEP = 0.5  # of the force, that is accepted beside what contact explains [N]
+FREE_STEP = 500.0  # of the force, that is accepted beside what contact explains [N/s]
 PUSHING = {"vibration", "tap", "pulse", "grating", "texture"}  # whose force may swing and step
 STEERING = {"matrix_viscous", "minimum_jerk", "path"}          # whose force may swing
 
@@ -238,7 +238,8 @@ def breaks_rule(result):
         return False
     active = set(result["active"].split())
     swings = int(result["long_trains"]) > 0 and not active
-    return swings or float(result["unexplained"]) > FREE_STEP and active <= STEERING
+    steps = float(result["unexplained"]) > FREE_STEP / float(result["rate"])
+    return swings or steps and active <= STEERING
 
 
 def key_of(result):
@@ -282,7 +283,7 @@ def summary(results):
     broken = [r for r in passed if breaks_rule(r)]
     silent = sum(not r["warnings"] for r in broken)
     return (f"{len(results)} cells, {len(results) - len(passed)} refused; {len(broken)} break the rule: no "
-            f"train above {LONGEST} s, no step of {FREE_STEP} N more than contact explains; "
+            f"train above {LONGEST} s, no step of {FREE_STEP / 1000:g} N in a millisecond more than contact explains; "
             f"{silent} of them without a warning")
 
 

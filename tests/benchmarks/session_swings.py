@@ -16,6 +16,7 @@ import numpy
 SWING = 2.0    # of a turn that counts [N]
 GAP = 0.06     # longest time between two turns of a train [s]
 TURNS = 6      # fewest turns of a train
+TOUCH = 0.05   # of the force, below which nothing is touched [N]
 LONGEST = 0.2  # of a train that is accepted [s]
 FAULT = re.compile(r"(device \d+: )?(the (position|force|tool|device|protocol)|another device|emergency)")
 
@@ -87,8 +88,11 @@ def measure_device(device, faults, rate, delay, gains):
               for axis in range(3)]
     moved = numpy.diff(position, axis=0)
     steps = numpy.linalg.norm(numpy.diff(force, axis=0), axis=1)
+    size = numpy.linalg.norm(force, axis=1)
+    touches = (size[:-1] < TOUCH) != (size[1:] < TOUCH)  # a damper then acts with its whole force
     explained = (gains[0] * numpy.linalg.norm(moved, axis=1)
-                 + gains[1] * numpy.linalg.norm(numpy.diff(velocity, axis=0), axis=1))
+                 + gains[1] * numpy.linalg.norm(numpy.diff(velocity, axis=0), axis=1)
+                 + gains[1] * numpy.linalg.norm(velocity[1:], axis=1) * touches)
     meant = numpy.ones(len(steps), dtype=bool)
     meant[[part[-1] - 1 for part in parts if of_pass[part[0]] in faults]] = False  # cut to zero
     work = numpy.zeros(len(force))
