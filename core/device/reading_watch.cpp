@@ -12,7 +12,7 @@ constexpr double kHeaviestHand = 2.0;    // with the handle [kg]
 constexpr double kFrozenWay = 6e-5;      // [m]
 constexpr double kProof = 1.5;           // of force that a hand does not lose without moving [N]
 constexpr double kGone = 0.25;           // without a force, which is proof of itself [s]
-constexpr double kForceMemory = 0.020;   // of what the hand held against before [s]
+constexpr double kForceMemory = 0.020;   // of the mean force [s]
 constexpr double kRest = 1e-4;           // [m/s]
 constexpr double kStaleAfter = 0.020;    // [s]
 constexpr double kJitterWithin = 0.050;  // [s]
@@ -27,6 +27,7 @@ Fault ReadingWatch::look(const Eigen::Vector3d& position, const Eigen::Vector3d&
   const Eigen::Vector3d step = position - position_;
   position_ = position;
   Fault fault = Fault::kNone;
+  mean_ += (seen_ == 0 ? 1.0 : std::min(1.0, dt / kForceMemory)) * (force - mean_);
   if (seen_ == 0) {
     held_ = force;
   } else {
@@ -49,7 +50,7 @@ Fault ReadingWatch::look(const Eigen::Vector3d& position, const Eigen::Vector3d&
 
 bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) noexcept {
   if (!equal || equal_for_ == 0.0) {
-    held_ += std::min(1.0, (equal_for_ + dt) / kForceMemory) * (force - held_);
+    held_ = mean_;
     equal_for_ = equal ? dt : 0.0;
     free_speed_.setZero();
     free_way_.setZero();
@@ -62,8 +63,10 @@ bool ReadingWatch::frozen(bool equal, const Eigen::Vector3d& force, double dt) n
     return doubted_ - force.norm() >= kProof || gone_for_ >= kGone;
   }
   const Eigen::Vector3d change = force - held_;
-  // A force that friction alone could hold can take nothing from a hand, either.
-  if (!longer(change, holding_force_) || !longer(force, holding_force_)) {
+  // A force that friction alone could hold can take nothing from a hand, either. One that turns
+  // round brings it back: a vibration moves a hand by less than an encoder sees.
+  const bool turns = free_speed_.dot(change) < 0.0;
+  if (turns || !longer(change, holding_force_) || !longer(force, holding_force_)) {
     free_speed_.setZero();
     free_way_.setZero();
     return false;

@@ -31,11 +31,11 @@ class ReadingWatch {
              const Eigen::Vector3d& force, double dt) noexcept;
 
   /// The position stayed the same although the force changed by more than friction and a still hand
-  /// hold against, for so long that a free hand of 2 kg would have moved by 0.06 mm, or by twice
-  /// the smallest step that was seen. It may be frozen, or a hand tenses against just this force:
-  /// the force should now fall. A hand that tenses moves before it has lost 1.5 N, which ends the
-  /// doubt; if the position is still the same when the force has lost as much, or has been gone for
-  /// a quarter of a second, it is frozen.
+  /// hold against, without turning round as a vibration does, for so long that a free hand of 2 kg
+  /// would have moved by 0.06 mm, or by twice the smallest step that was seen. It may be frozen, or
+  /// a hand tenses against just this force: the force should now fall. A hand that tenses moves
+  /// before it has lost 1.5 N, which ends the doubt; if the position is still the same when the
+  /// force has lost as much, or has been gone for a quarter of a second, it is frozen.
   bool in_doubt() const noexcept { return doubted_ > 0.0; }
 
   /// Something is odd and may become a fault: the force should not grow until this is clear.
@@ -61,6 +61,7 @@ class ReadingWatch {
   double equal_for_{0.0};                          // [s]
   Eigen::Vector3d velocity_{Eigen::Vector3d::Zero()};
   double stale_for_{0.0};                                // [s]
+  Eigen::Vector3d mean_{Eigen::Vector3d::Zero()};        // of the force, over some 20 ms [N]
   Eigen::Vector3d held_{Eigen::Vector3d::Zero()};        // mean force while the hand moved last [N]
   Eigen::Vector3d free_speed_{Eigen::Vector3d::Zero()};  // of a free hand since then [m/s]
   Eigen::Vector3d free_way_{Eigen::Vector3d::Zero()};    // [m]

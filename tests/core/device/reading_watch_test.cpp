@@ -89,12 +89,16 @@ TEST(ReadingWatchTest, AHandThatStopsWhereTheForceIsGoneIsNoDoubt) {
 
 /// The change is 3 N and alternates: no handle moves by more than its encoder resolves.
 TEST(ReadingWatchTest, AVibrationThatMovesNothingIsNoDoubt) {
-  for (const double hertz : {100.0, 250.0}) {
-    ReadingWatch watch(0.5);
-    for (int i = 0; i < 3000; ++i) {
-      const Vector3d force(0.0, 3.0 * std::sin(2.0 * 3.14159 * hertz * 1e-3 * i), 0.0);
-      watch.look({0.01, 0.0, 0.0}, Vector3d::Zero(), force, 1e-3);
-      ASSERT_FALSE(watch.in_doubt()) << hertz << " Hz at " << i << " ms";
+  for (const double hertz : {100.0, 201.0, 250.0, 333.0}) {  // of 333 Hz no sample may be near 0
+    for (const double phase : {0.0, 0.5, 1.0, 1.5}) {
+      ReadingWatch watch(0.5);
+      for (int i = 0; i < 3000; ++i) {
+        const double angle = 2.0 * 3.14159 * hertz * 1e-3 * i + phase;
+        const double y = i % 700 != 699 ? 0.0 : 1e-5;  // a step of the encoder
+        watch.look({0.01, y, 0.0}, Vector3d::Zero(),
+                   {0.0, i < 100 ? 0.0 : 3.0 * std::sin(angle), 0.0}, 1e-3);
+        ASSERT_FALSE(watch.in_doubt()) << hertz << " Hz, " << phase << " at " << i << " ms";
+      }
     }
   }
 }
