@@ -406,8 +406,7 @@ std::vector<TouchedPlace> DefinedTrials::places_of(const Question& question) con
 /// Those that differ within the pass have a row for each interval, the others one.
 void DefinedTrials::note_variables(std::size_t interval,
                                    std::vector<record::VariableRow>& rows) const {
-  for (const std::string& name : names_->given()) {
-    const double value = names_->value("$" + name);
+  for (const auto& [name, value] : names_->known()) {
     const auto word = names_->word_of(value);
     record::VariableRow row{0, static_cast<std::int32_t>(interval), name, word ? kNone : value,
                             word.value_or("")};

@@ -139,6 +139,76 @@ TEST_F(ReachingStudyTest, PlannedTestsOfTheDefinitionStandInTheReport) {
   EXPECT_THAT(text, HasSubstr("over its reaches without a probe in the first cycle"));
 }
 
+constexpr const char* kPingPong = R"(
+[experiment]
+protocol = "trials"
+name = "ping_pong"
+[design]
+participants = 2
+[factors]
+distance = [0.03, 0.06]
+[variables]
+side = "rint($trial / 2) * 2 == $trial ? 1 : -1"
+light = "$side > 0 ? 'right' : 'left'"
+[places]
+start = ["-$side * $distance / 2", 0.0, 0.0]
+target = ["$side * $distance / 2", 0.0, 0.0]
+[fields.back]
+type = "minimum_jerk"
+to = "$start"
+duration = 0.6
+stiffness = 300.0
+damping = 20.0
+[regions.start]
+type = "sphere"
+centre = "$start"
+radius = 0.008
+[regions.target]
+type = "sphere"
+centre = "$target"
+radius = 0.008
+[[stages]]
+name = "back"
+fields = ["back"]
+until = { inside = "start", for = 0.3 }
+timeout = { after = 5.0, then = "abort" }
+[[stages]]
+name = "reach"
+onset = { speed_above = 0.03 }
+until = { inside = "target", speed_below = 0.05, for = 0.1 }
+timeout = { after = 3.0, then = "go on" }
+[[blocks]]
+name = "all"
+trials = 12
+[observer]
+senses = "extent"
+[observer.actions]
+back = { do = "rest" }
+reach = { do = "reach", duration = 0.5 }
+[analysis]
+kind = "reaching"
+by = ["light"]
+)";
+
+TEST_F(ReachingStudyTest, PlacesThatDependOnTheTrialAreThoseOfEachTrial) {
+  test::write_text(folder_ / "study.toml", kPingPong);
+  const std::string place = (folder_ / "sessions").string();
+  const auto done = test::run_command("haptrial dry-run " + (folder_ / "study.toml").string() +
+                                      " --out " + place + " && haptrial analyze " + place);
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const analysis::CsvTable rows = analysis::CsvTable::load(report("reaches.csv"));
+  ASSERT_EQ(rows.rows(), 24u);
+  const std::vector<double> trial = rows.numbers(rows.column("trial"));
+  const std::vector<double> start = rows.numbers(rows.column("start_x_m"));
+  const std::vector<double> error = rows.numbers(rows.column("endpoint_error_m"));
+  for (std::size_t i = 0; i < rows.rows(); ++i) {
+    EXPECT_EQ(start[i] < 0.0, static_cast<int>(trial[i]) % 2 == 0) << trial[i];
+    EXPECT_LT(error[i], 0.01) << trial[i];
+  }
+  const json results = json::parse(file_text(report("results.json")));
+  EXPECT_EQ(results.at("quantities").at(0).at("conditions").size(), 2u) << "left and right";
+}
+
 TEST_F(ReachingStudyTest, WithoutAFieldNothingIsFound) {
   ASSERT_NO_FATAL_FAILURE(run(false));
   for (const json& each : reaching_.at("contrasts")) {

@@ -11,7 +11,7 @@ namespace haptrial::record {
 /// The only phase of a trial that a definition states: everything of it is one pass.
 inline constexpr const char* kPresentedPhase = "presented";
 
-/// What a variable of the definition was worth, a row of /variables.
+/// The value of a name of the definition, given by the trial or stated, a row of /variables.
 struct VariableRow {
   std::int32_t pass{0};      // row of /trials
   std::int32_t interval{0};  // of the pass, from 1; 0: the same in all of them

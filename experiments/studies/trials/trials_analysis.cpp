@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 
 #include "core/base/definition/table.h"
@@ -42,6 +43,11 @@ void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
     for (const protocols::GivenValue& value : block.values) {
       defaults.names.push_back(value.name);
     }
+  }
+  Table root = Table::parse(d.text, d.file_name);
+  if (root.has("variables")) {
+    std::ranges::copy(root.table("variables").keys_as_written(),
+                      std::back_inserter(defaults.names));
   }
 }
 

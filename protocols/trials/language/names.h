@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/read/number_source.h"
 #include "core/base/formula/labels.h"
+#include "core/scene/read/number_source.h"
 #include "protocols/trials/language/variables.h"
 
 namespace haptrial {
@@ -40,8 +40,8 @@ class Names final : public scene::NumberSource {
     variables_.set(name, labels_.number_of(word));
   }
   void forget_given() { variables_.forget_given(); }
-  /// Names that a trial has given a value, in alphabetical order.
-  std::vector<std::string> given() const { return variables_.given(); }
+  /// All names that have a value now, with it: given by the trial, or stated by [variables].
+  std::map<std::string, double> known() const { return variables_.known(); }
   /// A number, or what a text says: the word itself in single quotes, or a formula's worth.
   /// @throws InputError saying what is wrong with it
   double value(const std::string& formula) const;

@@ -30,25 +30,19 @@ void Variables::define(const std::string& name, Expression meaning) {
     throw InputError(fmt::format("there is a variable {} already", name));
   }
   meanings_.emplace(name, std::move(meaning));
+  declare(name);
 }
 
 void Variables::declare(const std::string& name) {
   given_.emplace(name, std::numeric_limits<double>::quiet_NaN());
 }
 
-bool Variables::knows(const std::string& name) const {
-  return meanings_.contains(name) || given_.contains(name);
-}
+bool Variables::knows(const std::string& name) const { return given_.contains(name); }
 
 std::vector<std::string> Variables::names() const {
   std::vector<std::string> names;
-  for (const auto& [name, meaning] : meanings_) {
-    names.push_back(name);
-  }
   for (const auto& [name, value] : given_) {
-    if (!meanings_.contains(name)) {
-      names.push_back(name);
-    }
+    names.push_back(name);
   }
   std::ranges::sort(names);
   return names;
@@ -96,15 +90,15 @@ void Variables::forget_given() {
   }
 }
 
-std::vector<std::string> Variables::given() const {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : given_) {
-    if (!std::isnan(value)) {
-      names.push_back(name);
+std::map<std::string, double> Variables::known() const {
+  std::map<std::string, double> known;
+  for (const auto& [name, given] : given_) {
+    try {
+      known.emplace(name, value(name));
+    } catch (const InputError&) {  // waits for a value, such as an answer
     }
   }
-  std::ranges::sort(names);
-  return names;
+  return known;
 }
 
 double Variables::value(const std::string& name, std::vector<std::string>& way) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <map>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -16,7 +16,7 @@ class Variables {
  public:
   /// @throws InputError if the name is taken
   void define(const std::string& name, Expression meaning);
-  /// A name that may get its value from outside; again: nothing happens.
+  /// A name that may get its value from outside, as a defined one may; again: nothing happens.
   void declare(const std::string& name);
   bool knows(const std::string& name) const;
   /// All names, in alphabetical order.
@@ -29,8 +29,8 @@ class Variables {
   /// unless `name` is declared
   void set(const std::string& name, double value);
   void forget_given();
-  /// Declared names that have a value, in alphabetical order.
-  std::vector<std::string> given() const;
+  /// All names that have a value, with it: given, or by a formula of others that have one.
+  std::map<std::string, double> known() const;
   /// @throws InputError as check() does, if a declared name has no value yet, or if a value is not
   /// finite
   double value(const Expression& expression) const;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
 
 #include "core/base/definition/table.h"
@@ -24,7 +23,7 @@ using analysis::trials::TrialsData;
 
 constexpr double kNearTarget = 1e-9;  // a region whose centre is so near is the target's [m]
 
-/// The definition, read anew for every different trial.
+/// The definition, read anew for every trial: places may depend on all that a trial is.
 class Ways {
  public:
   Ways(const protocols::TrialsDefinition& definition, const ReachingPlan& plan)
@@ -40,25 +39,15 @@ class Ways {
         definition_.groups.empty()
             ? std::string()
             : protocols::group_of(definition_.groups, data.session_of(trial).participant);
-    const std::string key = key_of(trial, group);
-    const auto known = ways_.find(key);
-    return known != ways_.end() ? known->second
-                                : ways_.emplace(key, read(trial, group)).first->second;
+    give(trial, data.session_of(trial).session, group);
+    return read(trial);
   }
 
  private:
-  static std::string key_of(const StudyTrial& trial, const std::string& group) {
-    std::string key = group + "\n" + trial.probe.text();
-    for (const GivenVariable& variable : trial.variables) {
-      key += fmt::format("\n{} {} {:a} {}", variable.name.text(), variable.interval, variable.value,
-                         variable.word.text());
-    }
-    return key;
-  }
-
-  void give(const StudyTrial& trial, const std::string& group) {
+  void give(const StudyTrial& trial, int session, const std::string& group) {
     names_->forget_given();
     names_->set("trial", trial.trial);
+    names_->set("session", session);
     names_->set("group", group);
     names_->set("probe", trial.probe.empty() ? std::string("no") : trial.probe.text());
     const auto stage = std::find_if(trial.stages.rbegin(), trial.stages.rend(),
@@ -76,8 +65,7 @@ class Ways {
     }
   }
 
-  ReachWay read(const StudyTrial& trial, const std::string& group) {
-    give(trial, group);
+  ReachWay read(const StudyTrial& trial) {
     const protocols::Presented presented =
         protocols::read_presented(root_, *names_, definition_, nullptr);
     root_.check();
@@ -121,7 +109,6 @@ class Ways {
   const ReachingPlan& plan_;
   Table root_;
   std::unique_ptr<protocols::Names> names_;
-  std::map<std::string, ReachWay> ways_;
 };
 
 }  // namespace

@@ -66,9 +66,17 @@ TEST_F(VariablesTest, AMeaningIsStatedOnceAndAGivenValueStandsBeforeIt) {
   EXPECT_EQ(variables_.value("reference"), stated);
   variables_.set("reference", 5.0);
   EXPECT_EQ(variables_.value("reference"), 5.0);
-  EXPECT_THAT(variables_.given(), testing::Contains("reference"));
+  EXPECT_THAT(variables_.known(), testing::Contains(testing::Pair("reference", 5.0)));
   variables_.forget_given();
   EXPECT_EQ(variables_.value("reference"), stated);
+}
+
+TEST_F(VariablesTest, KnownAreThoseWhoseFormulasHaveAllTheirValues) {
+  variables_.declare("answer");
+  variables_.define("twice", formula("2 * answer"));
+  EXPECT_THAT(variables_.known(), testing::Not(testing::Contains(testing::Key("twice"))));
+  variables_.set("answer", 3.0);
+  EXPECT_THAT(variables_.known(), testing::Contains(testing::Pair("twice", 6.0)));
 }
 
 }  // namespace
