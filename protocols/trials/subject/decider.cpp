@@ -20,7 +20,7 @@ Decider::Said Decider::decide(const Question& question, bool first,
   Said said;
   if (question.types()) {
     said.value =
-        std::clamp(judge_.magnitude(std::max(0.0, percepts[0])), question.low, question.high);
+        std::clamp(judge_.magnitude(std::max(0.0, percepts.back())), question.low, question.high);
     return said;
   }
   const int most = static_cast<int>(question.choices.size());
@@ -45,10 +45,10 @@ Decider::Said Decider::decide(const Question& question, bool first,
 
 subject::Decision Decider::judged(std::span<const double> percepts) noexcept {
   if (plan_.decides == Decides::kYes) {
-    return judge_.yes_no(percepts[0]);
+    return judge_.yes_no(percepts.back());
   }
   if (plan_.decides == Decides::kNearest) {
-    return judge_.nearest(percepts[0], plan_.prototypes);
+    return judge_.nearest(percepts.back(), plan_.prototypes);
   }
   return judge_.between(percepts, plan_.decides == Decides::kSmallest ? subject::Extreme::kSmallest
                                                                       : subject::Extreme::kLargest);

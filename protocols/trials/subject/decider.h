@@ -31,7 +31,8 @@ class Decider {
   void begin_trial(int trial) noexcept { judge_.begin_trial(trial); }
   /// @param answer  to the first question in the trial before; -1: there is none
   void set_previous(int answer) noexcept { judge_.set_previous(answer); }
-  /// @param percepts  of the intervals, 1 to kMostIntervals
+  /// The last interval is judged; "largest" and "smallest" compare all, "adjust" the last with the
+  /// first. @param percepts  of the intervals, 1 to kMostIntervals
   Said decide(const Question& question, bool first, std::span<const double> percepts) noexcept;
 
  private:
