@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/text/nearest.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -88,7 +90,48 @@ void read_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan)
   }
 }
 
-void read_tests(Table& table, TrialsPlan& plan) {
+std::string short_number(const std::string& side) {
+  double number = 0.0;
+  const char* end = side.data() + side.size();
+  const auto [rest, problem] = std::from_chars(side.data(), end, number);
+  return problem == std::errc() && rest == end ? fmt::format("{}", number) : side;
+}
+
+/// What a planned test may compare: levels of one factor of `by`, or combinations of all; nothing
+/// if the definition does not state some level.
+std::vector<std::string> stated_sides(const std::vector<std::string>& by,
+                                      const StatedLevels& stated) {
+  std::vector<std::string> sides, combinations{""};
+  for (const std::string& name : by) {
+    const auto levels = stated.find(name);
+    if (levels == stated.end()) {
+      return {};
+    }
+    sides.insert(sides.end(), levels->second.begin(), levels->second.end());
+    std::vector<std::string> longer;
+    for (const std::string& before : combinations) {
+      for (const std::string& level : levels->second) {
+        longer.push_back(before.empty() ? level : before + ", " + level);
+      }
+    }
+    combinations = std::move(longer);
+  }
+  if (by.size() > 1) {
+    sides.insert(sides.end(), combinations.begin(), combinations.end());
+  }
+  return sides;
+}
+
+void check_side(Table& table, const std::string& side, const std::vector<std::string>& known) {
+  if (std::ranges::find(known, side) == known.end()) {
+    const std::string hint = did_you_mean(side, known);
+    table.reject("tests", fmt::format("names '{}', which is no level of the factors in `by`{} "
+                                      "allowed: '{}'",
+                                      side, hint.empty() ? ";" : hint, fmt::join(known, "', '")));
+  }
+}
+
+void read_tests(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   if (!table.has("tests")) {
     return;
   }
@@ -98,8 +141,21 @@ void read_tests(Table& table, TrialsPlan& plan) {
   } catch (const InputError& error) {
     table.reject("tests", std::string_view(error.what()).substr(kWhere.size()));
   }
-  if (plan.by.empty() && !plan.plan.tests.empty()) {
+  if (plan.plan.tests.empty()) {
+    return;
+  }
+  if (plan.kind == AnalysisKind::kNone) {
+    table.reject("tests", "compares conditions, but `kind` is \"none\"; state what is analysed");
+  } else if (plan.by.empty()) {
     table.reject("tests", "compares conditions, but there are none; state the factors in `by`");
+  }
+  const std::vector<std::string> known = stated_sides(plan.by, defaults.levels);
+  for (PlannedTest& test : plan.plan.tests) {
+    test = with_short_numbers(std::move(test));
+    if (!known.empty()) {
+      check_side(table, test.a, known);
+      check_side(table, test.b, known);
+    }
   }
 }
 
@@ -184,6 +240,12 @@ const char* name_of(AnalysisKind kind) {
       ->second;
 }
 
+PlannedTest with_short_numbers(PlannedTest test) {
+  test.a = short_number(test.a);
+  test.b = short_number(test.b);
+  return test;
+}
+
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   TrialsPlan plan;
   plan.kind = defaults.kind;
@@ -204,11 +266,11 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
     plan.functions = false;
     plan.reaching = read_reaching_plan(table, defaults.reaching);
     read_by(table, defaults, plan);
-    read_tests(table, plan);
+    read_tests(table, defaults, plan);
     return plan;
   }
   read_by(table, defaults, plan);
-  read_tests(table, plan);
+  read_tests(table, defaults, plan);
   plan.question = text_or(table, "question");
   plan.yes = text_or(table, "yes");
   plan.level = text_or(table, "level");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ enum class AnalysisKind {
   kReaching,        // movements, which have an analysis of their own
 };
 
+/// Levels by the name of their factor, as tables show them.
+using StatedLevels = std::map<std::string, std::vector<std::string>>;
+
 /// What the rest of a definition says where [analysis] says nothing.
 struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
@@ -39,6 +43,7 @@ struct PlanDefaults {
   std::optional<double> guess;       // 1 / choices where an answer is right; else free
   ReachingNames reaching;            // that the analysis of movements may name
   CueNames cues;                     // that the comparison of cues may name
+  StatedLevels levels;               // of names of `by`, where the definition states all of them
 };
 
 /// What [analysis] of a definition states.
@@ -84,7 +89,8 @@ struct TrialsPlan {
 ///     by            factors: each combination has a function, d' or exponent of its own; left out:
 ///                   all of them; of detection and identification none, as they may say where the
 ///                   signal is, and of reaching none, as they make cycles
-///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors
+///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors, or of
+///                   combinations joined by ", "; a level that is not stated is a problem
 ///     question, yes, level   as TrialsPlan
 ///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis
 ///     guess         0 to 0.9; "free" for "yes" or "no"; "lapse", which is as large as the lapse
@@ -103,6 +109,9 @@ struct TrialsPlan {
 /// Keys from function to cue_combination are those of functions; detection fits them if it states
 /// one. Those of "reaching" are its own (read_reaching_plan).
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults);
+
+/// A test as tables name its sides: "0.30" is the level 0.3.
+PlannedTest with_short_numbers(PlannedTest test);
 
 /// The words of `kind`.
 const char* name_of(AnalysisKind kind);

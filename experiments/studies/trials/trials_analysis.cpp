@@ -147,6 +147,15 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   add_names(d, defaults);
   defaults.reaching = reaching_names(d);
   defaults.cues = cue_names(d);
+  defaults.levels = defaults.cues.levels;
+  for (const auto& group : d.groups) {
+    defaults.levels["group"].push_back(group.name);
+  }
+  for (const protocols::Block& block : d.order.blocks) {
+    if (!block.practice) {
+      defaults.levels["block"].push_back(block.name);
+    }
+  }
   if (!d.questions.empty() && !d.questions.front().types()) {
     defaults.choices = d.questions.front().answers();
   }

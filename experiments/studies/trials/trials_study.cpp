@@ -58,6 +58,7 @@ void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
   }
   if (!request.planned.empty()) {
     plan.plan = analysis::parse_analysis_plan(request.planned, "", "--planned");
+    std::ranges::transform(plan.plan.tests, plan.plan.tests.begin(), trials::with_short_numbers);
     remarks.emplace_back("The planned tests were given to analyze, not stated in the definition.");
   }
 }

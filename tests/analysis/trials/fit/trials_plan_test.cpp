@@ -116,6 +116,23 @@ TEST(TrialsPlanTest, AMistakeGetsItsSentence) {
               HasSubstr("reference"));
 }
 
+TEST(TrialsPlanTest, PlannedTestsNameLevelsThatTheDefinitionStates) {
+  PlanDefaults d = defaults();
+  d.factors = {"grip", "mass"};
+  d.levels = {{"grip", {"loose", "firm"}}, {"mass", {"0.3", "0.6"}}};
+  EXPECT_EQ(read("[analysis]\ntests = [\"0.30 != 0.60\"]\n", d).plan.tests.at(0).a, "0.3");
+  EXPECT_NO_THROW(read("[analysis]\ntests = [\"loose, 0.3 < firm, 0.3\"]\n", d));
+  try {
+    read("[analysis]\ntests = [\"loose < frim\"]\n", d);
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("names 'frim', which is no level of the factors in `by`; "
+                                        "did you mean firm?"));
+    EXPECT_THAT(error.what(), HasSubstr("'loose', 'firm'"));
+  }
+  EXPECT_THROW(read("[analysis]\nkind = \"none\"\ntests = [\"loose < firm\"]\n", d), InputError);
+}
+
 const char* const kCues = R"([analysis]
 guess = 0.0
 by = ["modality", "noise", "conflict"]
