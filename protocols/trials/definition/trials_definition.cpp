@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/base/text/counted.h"
 #include "core/psychometric/definition/expectation.h"
+#include "core/psychometric/definition/procedure_warnings.h"
 #include "protocols/trials/language/stray_words.h"
 
 namespace haptrial::protocols {
@@ -159,6 +161,9 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
 std::vector<std::string> TrialsDefinition::warnings() const {
   std::vector<std::string> all = stray_words(text);
   all.insert(all.end(), restless.begin(), restless.end());
+  for (const Track& track : tracks) {
+    std::ranges::move(psychometric::procedure_warnings(track), std::back_inserter(all));
+  }
   if (script) {
     all.push_back(fmt::format(
         "{} chooses the levels (level_script); what is said of the procedures holds for levels of "

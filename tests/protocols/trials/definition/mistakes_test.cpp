@@ -197,6 +197,50 @@ TEST(TrialMistakesTest, RepeatedTrialsThatMayBreakTheOrderGetAWarning) {
   EXPECT_THAT(free.warnings(), IsEmpty());
 }
 
+std::vector<std::string> warnings_with(const std::string& procedure) {
+  TrialsDefinition definition;
+  read_small(small_trials(procedure), definition);
+  return definition.warnings();
+}
+
+TEST(TrialMistakesTest, AProcedureThatCanLearnNothingGetsAWarning) {
+  const std::string stairs = R"([procedure]
+kind = "staircase"
+variable = "level"
+range = [310.0, 600.0]
+start = 500.0
+steps = [80.0, 40.0, 20.0, 10.0, 5.0, 2.0, 1.0]
+stop = { reversals = 4, trials = 60 }
+estimate = { of = "mean of reversals", skip = 4 }
+)";
+  EXPECT_THAT(warnings_with(stairs),
+              ElementsAre(HasSubstr("skips 4 reversals, and the track stops at 4"),
+                          HasSubstr("3 of 7 sizes of steps are never used")));
+  const std::string psi = R"([procedure]
+kind = "psi"
+variable = "level"
+levels = { from = 305.0, to = 600.0, count = 30 }
+guess = 0.5
+stop = { trials = 40 }
+lapse = [0.02]
+)";
+  EXPECT_THAT(warnings_with(psi), IsEmpty());
+  EXPECT_THAT(warnings_with(psi + "threshold = [340.0]\nwidth = [60.0]\n"),
+              ElementsAre(HasSubstr("every parameter has one value")));
+  EXPECT_THAT(warnings_with(psi + "threshold = [100.0, 200.0]\nwidth = [20.0]\n"),
+              ElementsAre(HasSubstr("no threshold that is considered lies within the levels"),
+                          HasSubstr("answers to no level tell")));
+}
+
+TEST(TrialMistakesTest, ARegionOutOfReachIsRefused) {
+  const std::string far =
+      "[regions.start]\ntype = \"sphere\"\ncentre = [0.0, 0.3, 0.0]\nradius = 0.01\n";
+  EXPECT_THAT(problems_of_trials(with(small_trials(kSmallStaircase, far), "until = { time = 0.2 }",
+                                      "until = { inside = \"start\" }\n"
+                                      "timeout = { after = 5.0, then = \"abort\" }")),
+              Contains(HasSubstr("stage press waits until the tool is inside regions.start")));
+}
+
 TEST(TrialMistakesTest, FeedbackForNoTimeGetsAWarning) {
   const std::string no_time = "[display]\nfeedback_time = 0.0\n";
   TrialsDefinition silent, told, late;
