@@ -491,7 +491,12 @@ void Session::finish() {
     record_.stop("by the experimenter; --resume continues at the first unfinished trial");
   } else {
     if (left_ && wishes.for_good) {
-      record_.event("ended_for_good", "by the experimenter, with trials left");
+      record_.event(record::kEndedForGood, "by the experimenter, with trials left");
+    }
+    if (const std::string why = trials_->why_given_up(); !why.empty()) {
+      record_.event(record::kGivenUp, why);
+      notices_.note(why);
+      summary_.given_up = true;
     }
     record_.close(wishes.abort ? "ended by the experimenter" : "");
   }

@@ -65,6 +65,7 @@ struct SessionSummary {
   std::uint64_t dropped{0};
   bool simulated{false};  // the device
   bool stopped{false};    // trials are left, and --resume goes on with them
+  bool given_up{false};   // trials are left, since too many were never completed
   std::vector<record::LiveState>
       figures;                       // of the trials of this run; on the real clock, or attended
   std::vector<std::string> notices;  // sentences: real time, screen, streams

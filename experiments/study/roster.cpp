@@ -40,7 +40,7 @@ SessionState state_of(const fs::path& file, const record::SessionReader& reader)
   }
   const auto events = reader.events();
   const bool aborted = std::any_of(events.begin(), events.end(), [](const record::EventRow& event) {
-    return event.kind == "ended_for_good";
+    return event.kind == record::kEndedForGood;
   });
   return aborted ? SessionState::kAborted : SessionState::kDone;
 }

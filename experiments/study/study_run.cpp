@@ -123,6 +123,7 @@ class Crew {
     summary_.ticks += done.ticks;
     summary_.passes += done.passes;
     summary_.aborted_passes += done.aborted_passes;
+    summary_.given_up += done.given_up ? 1 : 0;
   }
 
   /// Sessions that other processes run: each is there in the end, or its process died.

@@ -31,6 +31,7 @@ struct DryRunSummary {
   std::uint64_t ticks{0};
   int passes{0};
   int aborted_passes{0};
+  int given_up{0};  // sessions that ended with trials left, since too many were never completed
   double recorded_seconds{0.0};  // simulated time
   double elapsed_seconds{0.0};   // on the wall
 };

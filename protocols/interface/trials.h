@@ -170,6 +170,8 @@ class Trials {
   /// Sentences for an experimenter who can still do something about it, since the last call; asked
   /// often.
   virtual std::vector<std::string> take_warnings() { return {}; }
+  /// Why trials were given up before all were done; empty: they were not.
+  virtual std::string why_given_up() const { return {}; }
   /// Sentences for the end of the session.
   virtual std::vector<std::string> notices() const { return {}; }
 };

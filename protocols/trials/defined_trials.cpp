@@ -1,6 +1,7 @@
 #include "protocols/trials/defined_trials.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -442,6 +443,10 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
 std::vector<std::string> DefinedTrials::take_warnings() {
   const std::string warning = std::exchange(script_warning_, "");
   return warning.empty() ? std::vector<std::string>{} : std::vector{warning};
+}
+
+std::string DefinedTrials::why_given_up() const {
+  return fmt::format("{}", fmt::join(sequence_.ended_early(), "; "));
 }
 
 std::vector<std::string> DefinedTrials::notices() const {

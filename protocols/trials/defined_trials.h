@@ -47,6 +47,7 @@ class DefinedTrials final : public Trials {
   const char* why_aborted() const override;
   std::optional<record::LiveState> live() const override { return live_.state(); }
   std::vector<std::string> take_warnings() override;
+  std::string why_given_up() const override;
   std::vector<std::string> notices() const override;
 
   /// For a replay: bodies of their own rate have no thread, and were late in the next pass as these

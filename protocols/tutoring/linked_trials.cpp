@@ -83,6 +83,7 @@ class LinkedTrials final : public Trials {
   void take_lead(bool take) override { hand_.take_lead(take); }
   std::optional<record::LiveState> live() const override { return inner_->live(); }
   std::vector<std::string> take_warnings() override { return inner_->take_warnings(); }
+  std::string why_given_up() const override { return inner_->why_given_up(); }
   std::vector<std::string> notices() const override;
 
  private:

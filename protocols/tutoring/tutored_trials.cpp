@@ -74,6 +74,7 @@ class TutoredTrials final : public Trials {
   const char* why_aborted() const override { return inner_->why_aborted(); }
   std::optional<record::LiveState> live() const override { return inner_->live(); }
   std::vector<std::string> take_warnings() override { return inner_->take_warnings(); }
+  std::string why_given_up() const override { return inner_->why_given_up(); }
   std::vector<std::string> notices() const override {
     std::vector<std::string> all = inner_->notices();
     all.push_back(fmt::format("led by trial {} of {} ({}), {:.1f} s", motion_.trial,

@@ -4,6 +4,7 @@
 
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/trial_progress.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/trials/moving_body_row.h"
 #include "core/record/trials/touched_body_row.h"
@@ -162,6 +163,9 @@ TrialsData read_trials(const std::vector<std::filesystem::path>& files, const Gr
                               static_cast<int>(info.session),
                               reader.rows<record::ObjectFileRow>(),
                               info.rate};
+      record::TrialProgress progress = record::trial_progress(reader);
+      data.sessions[first].planned = static_cast<std::size_t>(progress.planned.value_or(0));
+      data.sessions[first].ended_early = std::move(progress.ended_early);
       by_file[first] = SessionTrials(reader).take();
       const std::vector<record::MarkerRow> rows = reader.rows<record::MarkerRow>();
       markers[first].add(rows);

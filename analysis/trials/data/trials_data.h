@@ -24,6 +24,8 @@ struct StudySession {
   int session{1};                               // of the participant, from 1
   std::vector<record::ObjectFileRow> meshes{};  // files of the objects, as they were then
   double rate{1000.0};                          // ticks a second [Hz]
+  std::size_t planned{0};                       // trials, at most; 0: the file does not say it
+  std::string ended_early{};                    // why trials are left; empty: none are
 };
 
 /// An answer to one question of a trial.

@@ -24,6 +24,7 @@ struct ParticipantTrials {
   std::string participant;
   std::string group;
   std::size_t sessions{0};
+  std::size_t planned{0};  // trials, at most; 0: the files do not say it
   std::size_t counted{0};
   std::size_t practice{0};
   std::size_t aborted{0};                                           // passes

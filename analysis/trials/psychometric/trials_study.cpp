@@ -23,6 +23,7 @@ std::vector<ParticipantTrials> participants_of(const TrialsData& data, const Tri
     own.participant = session.participant;
     own.group = session.group;
     ++own.sessions;
+    own.planned += session.planned;
   }
   for (const StudyTrial& trial : data.trials) {
     ParticipantTrials& own = people[data.session_of(trial).participant];

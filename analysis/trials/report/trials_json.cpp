@@ -205,6 +205,7 @@ Json to_json(const ParticipantTrials& p) {
           {"group", p.group},
           {"sessions", p.sessions},
           {"trials", p.counted},
+          {"planned_trials_at_most", p.planned},
           {"practice", p.practice},
           {"aborted", p.aborted},
           {"median_reaction_time_s", to_json(p.reaction_time)},

@@ -18,12 +18,13 @@ void add_design(Document& document, const TrialsResult& result) {
   add_section(document, result, "Participants and trials");
   Rows rows;
   std::vector<std::string> heading{
-      "participant",         "group", "sessions", "trials", "practice", "aborted passes",
-      "median reaction time"};
+      "participant",     "group",    "sessions",       "trials",
+      "planned at most", "practice", "aborted passes", "median reaction time"};
   for (const ParticipantTrials& p : result.participants) {
     rows.push_back({p.participant, p.group.empty() ? "–" : p.group, std::to_string(p.sessions),
-                    std::to_string(p.counted), std::to_string(p.practice),
-                    std::to_string(p.aborted), quantity(p.reaction_time, 1.0, "s")});
+                    std::to_string(p.counted), p.planned > 0 ? std::to_string(p.planned) : "–",
+                    std::to_string(p.practice), std::to_string(p.aborted),
+                    quantity(p.reaction_time, 1.0, "s")});
   }
   if (result.reaching) {  // nothing is asked there
     heading.pop_back();

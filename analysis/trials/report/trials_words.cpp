@@ -183,14 +183,33 @@ std::string unit_word(const TrialsResult& result, const Quantity& q) {
   return unit.empty() ? std::string() : " " + unit;
 }
 
-std::vector<std::string> summary_lines(const TrialsResult& result) {
-  std::size_t counted_trials = 0;
+namespace {
+
+/// "2 of 40 planned trials of 1 participant" where a session ended early, else "40 trials of …".
+std::string trials_line(const TrialsResult& result) {
+  std::size_t done = 0, planned = 0;
   for (const ParticipantTrials& person : result.participants) {
-    counted_trials += person.counted;
+    done += person.counted;
+    planned += person.planned;
   }
-  std::vector<std::string> lines{fmt::format("{} of {}{}", counted(counted_trials, "trial"),
-                                             counted(result.participants.size(), "participant"),
-                                             result.simulated() ? " (simulated)" : "")};
+  const bool early = std::ranges::any_of(
+      result.data.sessions, [](const StudySession& s) { return !s.ended_early.empty(); });
+  return fmt::format("{} of {}{}",
+                     early && planned > 0 ? fmt::format("{} of {} planned trials", done, planned)
+                                          : counted(done, "trial"),
+                     counted(result.participants.size(), "participant"),
+                     result.simulated() ? " (simulated)" : "");
+}
+
+}  // namespace
+
+std::vector<std::string> summary_lines(const TrialsResult& result) {
+  std::vector<std::string> lines{trials_line(result)};
+  for (const StudySession& session : result.data.sessions) {
+    if (!session.ended_early.empty()) {
+      lines.push_back(fmt::format("trials are missing: {} {}", session.file, session.ended_early));
+    }
+  }
   if (result.cues) {
     add_cue_lines(*result.plan.cues, result.plan.function.axis.x_unit(), *result.cues, lines);
   }

@@ -15,6 +15,11 @@ TrialProgress trial_progress(const SessionReader& reader) {
       progress.planned = run.planned;
     }
   }
+  for (const EventRow& event : reader.events()) {
+    if (event.kind == kEndedForGood || event.kind == kGivenUp) {
+      progress.ended_early = event.text;
+    }
+  }
   std::set<int> begun, done;
   for (const PassRow& pass : reader.passes()) {
     if (pass.practice || pass.trial < 1) {

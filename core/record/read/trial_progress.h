@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/record/read/session_reader.h"
 
@@ -12,6 +13,7 @@ struct TrialProgress {
   int done{0};                 // the last pass of the trial was completed
   int skipped{0};              // by the experimenter
   int aborted{0};              // begun, and neither done nor skipped
+  std::string ended_early;     // why the session ended with trials left; empty: it did not
 };
 
 TrialProgress trial_progress(const SessionReader& reader);

@@ -122,6 +122,10 @@ struct Participant {
   std::string notes;
 };
 
+/// Kinds of the events of a session that ended with trials left; their text says why.
+inline constexpr const char* kEndedForGood = "ended_for_good";  // by the experimenter
+inline constexpr const char* kGivenUp = "given_up";  // too many trials were never completed
+
 /// Root attributes of a session file.
 struct SessionInfo {
   std::string program_version;

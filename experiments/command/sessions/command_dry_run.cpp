@@ -135,6 +135,10 @@ int dry_run(const DryRunOptions& options) {
     fmt::print("{}; haptrial info FILE says which and why\n",
                counted(done.aborted_passes, "pass was aborted", "passes were aborted"));
   }
+  if (done.given_up > 0) {
+    fmt::print(stderr, "warning: {} with trials left, since too many were not completed\n",
+               counted(done.given_up, "session ended", "sessions ended"));
+  }
   for (const fs::path& file : session_files(dry.folder)) {
     for (const std::string& line :
          experiment.study->after_session(setup, fs::path(options.definition).parent_path(), file)) {

@@ -156,12 +156,16 @@ void TrialSequence::make_fixed() {
   }
 }
 
+/// Trials that are never completed must not make an endless session.
+bool TrialSequence::fails_for_ever() const {
+  return failed_ > 20 + 2 * std::max(block().trials, d_.most_trials());
+}
+
 bool TrialSequence::block_is_over() const {
   if (block().practice && block().right_in_a_row > 0 && right_in_a_row_ >= block().right_in_a_row) {
     return true;
   }
-  // Trials that are never completed must not make an endless session.
-  if (failed_ > 20 + 2 * std::max(block().trials, d_.most_trials())) {
+  if (fails_for_ever()) {
     return true;
   }
   if (running_.empty()) {
@@ -176,6 +180,11 @@ std::optional<NextTrial> TrialSequence::next() {
     return next_;
   }
   while (at_ < blocks_.size() && block_is_over()) {
+    if (fails_for_ever()) {
+      ended_early_.push_back(fmt::format(
+          "block {} ended with trials left, after {} that were not completed or came too late",
+          block().name, failed_));
+    }
     if (++at_ < blocks_.size()) {
       begin_block();
     }

@@ -73,6 +73,8 @@ class TrialSequence {
   void choose_by(LevelChooser& chooser) { chooser_ = &chooser; }
 
   const std::vector<RunningTrack>& running() const { return running_; }
+  /// A sentence for each block that ended with trials left, since too many were never completed.
+  const std::vector<std::string>& ended_early() const { return ended_early_; }
   /// The block that a trial belongs to, in the order of this participant.
   const std::vector<std::size_t>& blocks() const { return blocks_; }
 
@@ -83,6 +85,7 @@ class TrialSequence {
   };
   const Block& block() const { return d_.order.blocks[blocks_[at_]]; }
   void begin_block();
+  bool fails_for_ever() const;
   bool block_is_over() const;
   NextTrial make_next();
   void add_factors(NextTrial& next, const std::vector<std::string>& settled, std::size_t stream,
@@ -108,6 +111,7 @@ class TrialSequence {
   int numbers_[2]{0, 0};  // trials so far: of the study, of practice
   int practice_blocks_{0}, study_blocks_{0};
   bool probe_before_{false};
+  std::vector<std::string> ended_early_;
   std::vector<std::string> combinations_;  // of the last trials, for most_in_a_row
 };
 

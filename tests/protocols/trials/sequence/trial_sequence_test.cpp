@@ -112,6 +112,8 @@ TEST(TrialSequenceTest, SessionsWithoutACompletedTrialEnd) {
     sequence.conclude(false, kNothing, false);
   }
   EXPECT_LT(trials, 200);
+  ASSERT_EQ(sequence.ended_early().size(), 1u);
+  EXPECT_NE(sequence.ended_early()[0].find("ended with trials left"), std::string::npos);
 }
 
 const char* const kConstant = R"([procedure]
