@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/columns.h"
+#include "analysis/exchange/pass_facts.h"
 #include "analysis/files/delimited.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/session_tables.h"
@@ -35,14 +37,6 @@ Json json_of(const ColumnDoc& doc) {
     json["Levels"][value] = meaning;
   }
   return json;
-}
-
-std::string sidecar_of(const std::vector<ColumnDoc>& docs) {
-  Json json;
-  for (const auto& doc : docs) {
-    json[doc.name] = json_of(doc);
-  }
-  return text_of(json);
 }
 
 bool any_simulated(std::span<const Session> sessions) {
@@ -117,7 +111,7 @@ std::vector<ColumnDoc> participant_docs(std::span<const Session> sessions) {
 
 // ---- events
 
-std::vector<ColumnDoc> event_docs(const Levels& phases) {
+std::vector<ColumnDoc> event_docs(const Levels& phases, const std::vector<ColumnDoc>& facts) {
   const auto pass = [](const char* name) { return doc_of(record::trials_table().schema(), name); };
   std::vector<ColumnDoc> docs{
       {"onset", "s",
@@ -142,6 +136,7 @@ std::vector<ColumnDoc> event_docs(const Levels& phases) {
       {"text", "", "details of the event"}};
   docs[10].levels = {{"0", "part of the study"}, {"1", "practice, never scored"}};
   docs[11].levels = {{"completed", "came to its end"}, {"aborted", "was broken off"}};
+  merge_columns(facts, docs);
   return docs;
 }
 
@@ -171,7 +166,7 @@ EventLine line_of(const Session& session, const record::PassRow& pass, std::size
   } else {
     row.add_missing().add_missing();
   }
-  row.add_missing().add_missing().end();
+  row.add_missing().add_missing();
   return line;
 }
 
@@ -183,11 +178,32 @@ EventLine line_of(const record::EventRow& event, std::int64_t time_ns) {
   for (std::size_t i = 0; i < 13; ++i) {
     row.add_missing();
   }
-  row.add(event.kind).add(event.text).end();
+  row.add(event.kind).add(event.text);
   return line;
 }
 
+/// Ends a line with what the pass presented and what was answered.
+void add_facts(const std::map<std::string, std::string>& cells,
+               const std::vector<ColumnDoc>& columns, EventLine& line) {
+  for (const ColumnDoc& column : columns) {
+    std::string cell;
+    RowText field(cell, Delimited::kTsv);
+    const auto at = cells.find(column.name);
+    field.add(at != cells.end() ? at->second : std::string());
+    line.text += "\t" + cell;
+  }
+  line.text += "\n";
+}
+
 }  // namespace
+
+std::string sidecar_of(const std::vector<ColumnDoc>& docs) {
+  Json json;
+  for (const auto& doc : docs) {
+    json[doc.name] = json_of(doc);
+  }
+  return text_of(json);
+}
 
 std::string Session::folder() const { return session.empty() ? subject : subject + "/" + session; }
 
@@ -232,6 +248,8 @@ std::string readme(std::span<const Session> sessions) {
       "{}: a force-feedback experiment, exported from session files of haptrial.\n\n"
       "beh/*_events.tsv   {}\n"
       "                   and what else happened\n"
+      "                   (what was presented and answered in further columns)\n"
+      "phenotype/         answers to questionnaires, where there are any\n"
       "beh/*_physio.*     the recording: a row for each tick of the servo loop, without heading;\n"
       "                   columns, units and rate stand in the .json beside it\n"
       "{}"
@@ -284,31 +302,34 @@ std::string scans_table(const Session& session) {
 }
 
 std::string events_table(const Session& session, const record::SessionReader& reader,
-                         const WrittenSamples& samples) {
+                         const WrittenSamples& samples, const std::vector<ColumnDoc>& columns) {
   std::set<std::int32_t> blocks;
   for (const auto& row : reader.stimuli()) {
     blocks.insert(row.block);
   }
   std::vector<EventLine> lines;
   const auto passes = reader.passes();
+  const PassFacts facts = pass_facts(reader);
   for (std::size_t i = 0; i < passes.size(); ++i) {
     lines.push_back(
         line_of(session, passes[i], i, samples.runs.at(i), blocks.contains(passes[i].block)));
+    add_facts(facts.cells[i], columns, lines.back());
   }
   for (const auto& event : reader.events()) {
     lines.push_back(line_of(event, samples.even_time(event.time_ns)));
+    add_facts({}, columns, lines.back());
   }
   std::stable_sort(lines.begin(), lines.end(),
                    [](const auto& a, const auto& b) { return a.onset < b.onset; });
-  std::string text = heading(event_docs({}), Delimited::kTsv);
+  std::string text = heading(event_docs({}, columns), Delimited::kTsv);
   for (const auto& line : lines) {
     text += line.text;
   }
   return text;
 }
 
-std::string events_sidecar(const BidsOptions& options) {
-  return sidecar_of(event_docs(options.phases));
+std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnDoc>& columns) {
+  return sidecar_of(event_docs(options.phases, columns));
 }
 
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {

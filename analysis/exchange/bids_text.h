@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/exchange/bids_options.h"
+#include "analysis/exchange/columns.h"
 #include "analysis/exchange/export_sessions.h"
 #include "analysis/exchange/sample_text.h"
 
@@ -32,10 +33,12 @@ std::string participants_sidecar(std::span<const Session> sessions);
 std::string sessions_table(std::span<const Session> of_subject);
 std::string scans_table(const Session& session);
 
-/// One row for each pass and each event, by time.
+/// One row for each pass and each event, by time. @param columns  of pass_facts(), of all sessions
 std::string events_table(const Session& session, const record::SessionReader& reader,
-                         const WrittenSamples& samples);
-std::string events_sidecar(const BidsOptions& options);
+                         const WrittenSamples& samples, const std::vector<ColumnDoc>& columns);
+std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnDoc>& columns);
+/// The description of a table's columns as JSON.
+std::string sidecar_of(const std::vector<ColumnDoc>& docs);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
 
 }  // namespace haptrial::exchange::bids

@@ -7,7 +7,9 @@
 #include <set>
 
 #include "analysis/exchange/bids_label.h"
+#include "analysis/exchange/bids_pages.h"
 #include "analysis/exchange/bids_text.h"
+#include "analysis/exchange/pass_facts.h"
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
@@ -88,7 +90,17 @@ void write_stimuli(const NewFolder& out, const Session& session,
   }
 }
 
-WrittenSamples write_session(const NewFolder& out, const Session& session, Counter& counter) {
+/// Columns of what passes presented and what was answered, over all sessions.
+std::vector<ColumnDoc> fact_columns(std::span<const Session> sessions) {
+  std::vector<ColumnDoc> columns;
+  for (const Session& session : sessions) {
+    merge_columns(pass_facts(record::SessionReader(session.source.file)).columns, columns);
+  }
+  return columns;
+}
+
+WrittenSamples write_session(const NewFolder& out, const Session& session,
+                             const std::vector<ColumnDoc>& columns, Counter& counter) {
   const record::SessionReader reader(session.source.file);
   const std::string stem = session.folder() + "/beh/" + session.stem();
   write_stimuli(out, session, reader);
@@ -96,7 +108,7 @@ WrittenSamples write_session(const NewFolder& out, const Session& session, Count
   WrittenSamples samples = write_samples(reader, Delimited::kTsv, file, counter);
   file.close();
   out.write(stem + "_physio.json", bids::recording_sidecar(session, samples));
-  out.write(stem + "_events.tsv", bids::events_table(session, reader, samples));
+  out.write(stem + "_events.tsv", bids::events_table(session, reader, samples, columns));
   const std::string prefix = session.session.empty() ? "" : "_" + session.session;
   out.write(fmt::format("{}/{}{}_scans.tsv", session.folder(), session.subject, prefix),
             bids::scans_table(session));
@@ -119,13 +131,17 @@ void write_definitions(const NewFolder& out, std::span<const Session> sessions) 
 }
 
 void write_whole(const NewFolder& out, std::span<const Session> sessions,
-                 const BidsOptions& options) {
+                 const std::vector<ColumnDoc>& columns, const BidsOptions& options) {
   const auto& first = sessions.front();
   out.write("dataset_description.json", bids::dataset_description(sessions, options));
   out.write("README", bids::readme(sessions));
   out.write("participants.tsv", bids::participants_table(sessions));
   out.write("participants.json", bids::participants_sidecar(sessions));
-  out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar(options));
+  out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar(options, columns));
+  for (const bids::Phenotype& page : bids::phenotypes(sessions)) {
+    out.write("phenotype/" + page.name + ".tsv", page.table);
+    out.write("phenotype/" + page.name + ".json", page.sidecar);
+  }
   write_definitions(out, sessions);
   if (first.session.empty()) {
     return;
@@ -145,12 +161,13 @@ BidsSummary export_bids(std::span<const fs::path> files, const fs::path& folder,
                         const BidsOptions& options, const Watch& watch) {
   const std::vector<Session> sessions = named_sessions(files, options.compare);
   NewFolder out(folder);
-  write_whole(out, sessions, options);
+  const std::vector<ColumnDoc> columns = fact_columns(sessions);
+  write_whole(out, sessions, columns, options);
   std::vector<WrittenSamples> written(sessions.size());
   share_out(
       sessions.size(), options.jobs,
       [&](std::size_t i, Counter& counter) {
-        written[i] = write_session(out, sessions[i], counter);
+        written[i] = write_session(out, sessions[i], columns, counter);
       },
       watch);
   out.publish();

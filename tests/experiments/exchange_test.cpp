@@ -77,6 +77,30 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
   EXPECT_THAT(report, Not(HasSubstr("Timing of the servo loop")));
 }
 
+TEST_F(ExchangeTest, EventsOfBidsSayWhatWasAskedAndAnswered) {
+  test::write_text(folder_ / "study.toml",
+                   test::read_text(HAPTRIAL_SOURCE_DIR "/experiments/first_experiment.toml") +
+                       "[pages]\nafter = [\"load\"]\n[pages.load]\nkind = \"nasa_tlx\"\n");
+  const CommandResult done =
+      run_command("haptrial dry-run " + path("study.toml") + " --subjects 2 --trials 8 --out " +
+                  path("study") + " && haptrial export " + path("study") + " --bids " +
+                  path("bids") + " && haptrial analyze " + path("study"));
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const CommandResult read = run_command(
+      "/usr/bin/python3 -c \"import pandas, sys\n"
+      "e = pandas.read_csv(sys.argv[1], sep='\\t', na_values='n/a').dropna(subset=['pass'])\n"
+      "t = pandas.read_csv(sys.argv[2])[:len(e)].reset_index()\n"
+      "e = e.reset_index()\n"
+      "print(len(e), (e.level == t.level).all(), (e.answer == t['answer.text']).all(),\n"
+      "      (e.response_time - t['answer.rt']).abs().max() < 1e-9, set(e.track) == set(t.track))\n"
+      "p = pandas.read_csv(sys.argv[3], sep='\\t')\n"
+      "print(list(p.participant_id), p.shape[1] > 8, p.notna().all(axis=None))\" " +
+      path("bids/sub-S01/beh/sub-S01_task-firstexperiment_events.tsv") + " " +
+      path("study/trials.csv") + " " + path("bids/phenotype/load.tsv"));
+  EXPECT_EQ(read.output, "8 True True True True\n['sub-S01', 'sub-S02'] True True\n")
+      << read.errors;
+}
+
 TEST_F(ExchangeTest, OneTableWithFactorsAndNamesOfItsOwn) {
   std::ofstream table(folder_ / "table.csv");
   table << "Participant,No,training,age,t,wanted,pressed\n";

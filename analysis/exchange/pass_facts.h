@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/exchange/columns.h"
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::exchange {
+
+/// What a session presented in each pass and what was answered: variables, levels of procedures,
+/// answers. The columns depend on the definition.
+struct PassFacts {
+  std::vector<ColumnDoc> columns;                         // in the order in which they first occur
+  std::vector<std::map<std::string, std::string>> cells;  // (passes) text by column
+};
+
+/// The first question's reaction time has the column "response_time", as BIDS names it. A name that
+/// the table of passes has already gets "_value" behind it.
+PassFacts pass_facts(const record::SessionReader& reader);
+
+/// Adds the columns that are not there, by name.
+void merge_columns(const std::vector<ColumnDoc>& more, std::vector<ColumnDoc>& columns);
+
+}  // namespace haptrial::exchange
