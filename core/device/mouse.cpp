@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/definition/table.h"
 
@@ -63,7 +64,7 @@ void MouseDevice::follow() noexcept {
 
 void MouseDevice::move(double x, double z) noexcept {
   if (!parameters_.in_space && std::isfinite(x) && std::isfinite(z)) {
-    asked_.hand.position = within({x, 0.0, z});
+    asked_.hand.position = within({x, height_, z});
     channel_.write(asked_);
   }
 }
@@ -90,8 +91,20 @@ void MouseDevice::press(double force) noexcept {
   }
 }
 
-double MouseDevice::press_at(double wheel) const noexcept {
-  return std::max(0.0, parameters_.first_press + parameters_.press_step * wheel);
+void MouseDevice::turn_wheel(double wheel, bool pressed) noexcept {
+  if (!std::isfinite(wheel)) {
+    return;
+  }
+  const double steps = wheel - std::exchange(wheel_, wheel);
+  if (pressed) {
+    pressed_steps_ += steps;
+    press(parameters_.first_press + parameters_.press_step * pressed_steps_);
+    return;
+  }
+  constexpr double kLift = 0.002;  // [m]
+  const double most = info_.workspace_radius;
+  height_ = std::clamp(height_ + kLift * steps, -most, most);
+  press(0.0);
 }
 
 void MouseDevice::set_buttons(std::uint32_t buttons) noexcept {

@@ -19,7 +19,7 @@ struct MouseParameters {
   double pointer_speed{0.5};  // at which the mass is drawn after the pointer, at most > 0 [m/s]
   double max_press{12.0};     // > 0 [N]
   double first_press{2.0};    // when the left button goes down >= 0 [N]
-  double press_step{0.5};     // more or less for each step of the wheel >= 0 [N]
+  double press_step{0.5};     // more or less for each step of the wheel meanwhile >= 0 [N]
   int stop_button{1};         // emergency stop, the right one; -1: none
   // No keys of the table: what a protocol asks for whose hand moves in space.
   bool in_space{false};                            // reach() moves the hand, move() does not
@@ -31,8 +31,8 @@ MouseParameters read_mouse_parameters(Table& table);
 
 /// A session on a laptop: the pointer stands for the hand. A simulated mass follows it through a
 /// spring, and the protocol's forces act on that mass, so that guidance is seen but not felt. The
-/// pointer gives x and z; a press gives the force downward (-y). If the hand moves in space, it is
-/// given whole, and whoever presses against something takes it further there.
+/// pointer gives x and z, the wheel y; a press gives the force downward (-y). If the hand moves in
+/// space, it is given whole, and whoever presses against something takes it further there.
 class MouseDevice final : public Device {
  public:
   /// @param rate  of the servo loop > 0 [Hz]
@@ -44,15 +44,16 @@ class MouseDevice final : public Device {
   bool read(DeviceReading& reading) noexcept override;
   bool write(const Eigen::Vector3d& force) noexcept override;
 
-  /// These four belong to one thread, the screen's; they never wait. What is not finite is left
+  /// These five belong to one thread, the screen's; they never wait. What is not finite is left
   /// out, and what is out of bounds is brought to them.
   void move(double x, double z) noexcept;            // pointer [m]
   void reach(const HandPose& pose) noexcept;         // a hand in space
   void press(double force) noexcept;                 // downward; 0 where no button is held [N]
   void set_buttons(std::uint32_t buttons) noexcept;  // bit i: button i is held
 
-  /// The press of a held left button. @param wheel  its steps since the session's start
-  double press_at(double wheel) const noexcept;
+  /// Steps of the wheel change the press while the left button is held, else they lift the hand by
+  /// 2 mm each. @param wheel  its steps since the session's start, up > 0
+  void turn_wheel(double wheel, bool pressed) noexcept;
 
  private:
   struct Pointer {
@@ -70,6 +71,8 @@ class MouseDevice final : public Device {
   VirtualDevice electronics_;
   realtime::LatestValue<Pointer> channel_;
   Pointer asked_;                                                   // screen's thread
+  double wheel_{0.0}, pressed_steps_{0.0};                          // likewise
+  double height_{0.0};                                              // likewise [m]
   Pointer pointer_;                                                 // servo thread
   Eigen::Quaterniond orientation_{Eigen::Quaterniond::Identity()};  // likewise
 };

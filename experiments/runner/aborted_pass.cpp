@@ -26,6 +26,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
     p_.pace.end_early(all);
   } else {
     p_.pace.recover();
+    pause_after_several(all);
   }
 }
 
@@ -37,6 +38,23 @@ void AbortedPass::note_abort(const std::string& why) {
   if (aborts.size() > kShown) {
     aborts.erase(aborts.begin());
   }
+}
+
+void AbortedPass::pause_after_several(const std::string& why) {
+  constexpr int kMost = 3;
+  if (asked_for()) {
+    return;
+  }
+  if (++in_row_ >= kMost && p_.real) {
+    in_row_ = 0;
+    p_.notices.note(fmt::format("paused after {} aborts in a row: {}", kMost, why));
+    p_.pace.wait_to_begin(p_.definition.texts.paused);
+  }
+}
+
+bool AbortedPass::asked_for() const {
+  const Wishes& wishes = p_.desk.wishes();
+  return wishes.repeat || wishes.skip || wishes.abort || wishes.pause;
 }
 
 bool AbortedPass::partner_stops() const {

@@ -180,7 +180,7 @@ Session::Session(const SessionRequest& request)
       pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, desk_, summary_}),
-      aborted_({d_, *trials_, record_, desk_, pace_, real_}),
+      aborted_({d_, *trials_, record_, desk_, pace_, notices_, real_}),
       servo_(loop_, task_, longest_fade(d_.envelope)),
       stop_(task_, servo_, rig_->device()) {
   SessionStatus& status = desk_.status();
@@ -458,6 +458,8 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   if (aborted) {
     desk_.status().aborted_passes = ++summary_.aborted_passes;
     aborted_.see_to(result);
+  } else {
+    aborted_.note_completed();
   }
   trials_->draw_pictures(trial, phase);
   return !aborted;

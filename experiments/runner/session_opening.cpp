@@ -247,8 +247,8 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
       if (pointer.hand) {
         return mouse->reach(*pointer.hand);
       }
+      mouse->turn_wheel(pointer.wheel, device::is_pressed(pointer.buttons, 0));
       mouse->move(pointer.x, pointer.z);
-      mouse->press(device::is_pressed(pointer.buttons, 0) ? mouse->press_at(pointer.wheel) : 0.0);
     };
   }
   callbacks.held = [held, &request](const std::vector<int>& keys) {

@@ -51,7 +51,7 @@ class BoneTrials final : public Trials {
   void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override;
   SharedWorld* share_world(bool leads) override;
   std::vector<std::string> notices() const override;
-  const char* why_aborted() const override { return "the procedure was broken off"; }
+  std::string why_aborted() const override { return "the procedure was broken off"; }
 
  private:
   void tell_preparing(double share);

@@ -33,7 +33,7 @@ class ForceTrials final : public Trials {
   void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override {
     pictures_.draw(trial, phase);
   }
-  const char* why_aborted() const override {
+  std::string why_aborted() const override {
     return "the tool did not come to the start, or to the end, in time";
   }
 

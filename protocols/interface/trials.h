@@ -152,7 +152,7 @@ class Trials {
     static_cast<void>(phase);
   }
   /// Why a pass ended as aborted by itself.
-  virtual const char* why_aborted() const = 0;
+  virtual std::string why_aborted() const = 0;
   /// The same pass: who decides about it may be somebody far away.
   virtual AfterAbort after_abort() const { return AfterAbort::kAsAsked; }
   /// A partner in another session, if there is one.

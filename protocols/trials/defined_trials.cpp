@@ -490,6 +490,22 @@ void DefinedTrials::empty_logs(SessionFile& file) {
   }
 }
 
-const char* DefinedTrials::why_aborted() const { return pass_->why_aborted(); }
+/// With the stage that was aborted, and the region that the hand did not come to.
+std::string DefinedTrials::why_aborted() const {
+  const std::string why = pass_->why_aborted();
+  const std::size_t begun = pass_->intervals_begun();
+  if (begun == 0 || pass_->machine(begun - 1).state() != StageMachine::State::kAborted) {
+    return why;
+  }
+  const StageMachine& machine = pass_->machine(begun - 1);
+  const std::string stage = stages_[begun - 1][machine.stage()].name;
+  const StageMachine::Outside outside = machine.outside();
+  const bool late = machine.times()[machine.stage()].how == StageEnd::kLate;
+  return !late || outside.region < 0
+             ? fmt::format("{}: {}", why, stage)
+             : fmt::format("{}: {}, {:.0f} mm from the region {}", why, stage,
+                           1e3 * outside.distance,
+                           regions_[static_cast<std::size_t>(outside.region)].name);
+}
 
 }  // namespace haptrial::protocols

@@ -44,7 +44,7 @@ class DefinedTrials final : public Trials {
   void close_pass(SessionFile& file, std::int32_t row) override;
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override { return contacts_ ? contacts_->dropped() : 0; }
-  const char* why_aborted() const override;
+  std::string why_aborted() const override;
   std::optional<record::LiveState> live() const override { return live_.state(); }
   std::vector<std::string> take_warnings() override;
   std::string why_given_up() const override;

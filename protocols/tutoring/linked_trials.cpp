@@ -77,7 +77,7 @@ class LinkedTrials final : public Trials {
   void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override {
     inner_->draw_pictures(trial, phase);
   }
-  const char* why_aborted() const override;
+  std::string why_aborted() const override;
   AfterAbort after_abort() const override;
   std::optional<record::PartnerState> partner() override { return hand_.state(); }
   void take_lead(bool take) override { hand_.take_lead(take); }
@@ -181,7 +181,7 @@ void LinkedTrials::close_pass(SessionFile& file, std::int32_t row) {
                          c.forged, c.repeated, c.dropped));
 }
 
-const char* LinkedTrials::why_aborted() const {
+std::string LinkedTrials::why_aborted() const {
   switch (pass_ ? pass_->why() : Turns::Step::kRun) {
     case Turns::Step::kBreak:
       return "the other side aborted it";

@@ -71,7 +71,7 @@ class TutoredTrials final : public Trials {
   void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override {
     inner_->draw_pictures(trial, phase);
   }
-  const char* why_aborted() const override { return inner_->why_aborted(); }
+  std::string why_aborted() const override { return inner_->why_aborted(); }
   std::optional<record::LiveState> live() const override { return inner_->live(); }
   std::vector<std::string> take_warnings() override { return inner_->take_warnings(); }
   std::string why_given_up() const override { return inner_->why_given_up(); }

@@ -139,7 +139,7 @@ class PairTrials final : public protocols::Trials {
     pass_ = std::make_unique<Push>();
     return *pass_;
   }
-  const char* why_aborted() const override { return "never"; }
+  std::string why_aborted() const override { return "never"; }
 
  private:
   std::unique_ptr<Pair>& rig_;

@@ -163,7 +163,7 @@ class SpringTrials final : public Trials {
     row_.pass = row;
     file.add(std::span<const SpringRow>(&row_, 1));
   }
-  const char* why_aborted() const override { return "no button was pressed"; }
+  std::string why_aborted() const override { return "no button was pressed"; }
 
  private:
   const SpringsDefinition& d_;

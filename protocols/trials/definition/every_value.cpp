@@ -58,6 +58,24 @@ void check_forces(const TrialsDefinition& d, const std::vector<scene::Field>& fi
   }
 }
 
+/// A stage that waits in a region out of reach is aborted for ever.
+void check_reach(const TrialsDefinition& d, const Presented& presented) {
+  for (const NamedStage& stage : presented.stages) {
+    for (std::size_t i = 0; i < presented.regions.size(); ++i) {
+      const scene::Region& region = presented.regions[i];
+      const bool waits = (stage.stage.until.inside >> i & 1U) != 0;
+      const double away =
+          scene::PlacedShape(region.shape).distance(Eigen::Vector3d::Zero()).distance;
+      if (waits && away > d.envelope.workspace_radius) {
+        throw InputError(fmt::format(
+            "{}: stage {} waits until the tool is inside regions.{}, which is {:.3g} m from the "
+            "origin; allowed: at most envelope.workspace_radius, {:g} [m]",
+            d.file_name, stage.name, region.name, away, d.envelope.workspace_radius));
+      }
+    }
+  }
+}
+
 /// A mesh in millimetres that is taken for one in metres is as large as a house.
 void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
   for (const scene::Field& field : fields) {
@@ -89,6 +107,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       scene::Scene(presented.fields, d.rate);
       check_forces(d, presented.fields);
       check_objects(d, presented.fields);
+      check_reach(d, presented);
       handle.add(presented);
       picture.add(presented);
       prepare_moving_bodies(presented.fields, d.rate);

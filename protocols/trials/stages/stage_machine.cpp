@@ -136,14 +136,18 @@ void StageMachine::press(Readings readings) noexcept {
   hands_known_ = true;
 }
 
-bool StageMachine::all_inside(std::uint64_t regions, Readings readings) const noexcept {
+/// The first region that its tool is not in, which "until inside" waits for.
+StageMachine::Outside StageMachine::first_outside(std::uint64_t regions,
+                                                  Readings readings) const noexcept {
   while (regions != 0) {
-    const StageRegion& region = regions_[take_lowest(regions)];
-    if (!region.shape.contains(readings[region.device].tool.position)) {
-      return false;
+    const std::size_t index = take_lowest(regions);
+    const StageRegion& region = regions_[index];
+    const Eigen::Vector3d& tip = readings[region.device].tool.position;
+    if (!region.shape.contains(tip)) {
+      return {static_cast<int>(index), region.shape.distance(tip).distance};
     }
   }
-  return true;
+  return {};
 }
 
 bool StageMachine::all_touch(std::uint64_t fields, Scenes scenes) const noexcept {
@@ -161,7 +165,7 @@ bool StageMachine::all_touch(std::uint64_t fields, Scenes scenes) const noexcept
 
 bool StageMachine::holds(const Until& until, Readings readings, Scenes scenes,
                          double speed) const noexcept {
-  return all_inside(until.inside, readings) && all_touch(until.contact, scenes) &&
+  return first_outside(until.inside, readings).region < 0 && all_touch(until.contact, scenes) &&
          speed < until.speed_below && speed > until.speed_above &&
          (until.buttons == 0 || (until.buttons & buttons_pressed_) != 0) &&
          (until.keys == 0 || (until.keys & keys_pressed_) != 0);
@@ -204,6 +208,7 @@ void StageMachine::tick(Readings readings, Scenes scenes, double dt) noexcept {
     leave(enough ? StageEnd::kReached : StageEnd::kTooLittle,
           enough ? Consequence::kGoOn : stage.require->otherwise, scenes);
   } else if (in_stage_ >= stage.timeout - kRounding) {
+    outside_ = first_outside(stage.until.inside, readings);
     leave(StageEnd::kLate, stage.late, scenes);
   } else {
     ++tick_;

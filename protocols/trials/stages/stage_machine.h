@@ -66,13 +66,20 @@ class StageMachine {
   std::size_t stage() const noexcept { return stage_; }
   double time_in_stage() const noexcept { return in_stage_; }  // [s]
   int repeats() const noexcept { return repeats_; }
+  /// Where the tool was missing when the last stage came to its time-out; -1: it was in all
+  /// regions.
+  struct Outside {
+    int region{-1};
+    double distance{0.0};  // of the tool to the region [m]
+  };
+  Outside outside() const noexcept { return outside_; }
   /// The stage that an interval was aborted in, and why, are the last that ended.
   std::span<const StageTimes> times() const noexcept { return times_; }
 
  private:
   void leave(StageEnd how, Consequence what, Scenes scenes) noexcept;
   bool holds(const Until& until, Readings readings, Scenes scenes, double speed) const noexcept;
-  bool all_inside(std::uint64_t regions, Readings readings) const noexcept;
+  Outside first_outside(std::uint64_t regions, Readings readings) const noexcept;
   bool all_touch(std::uint64_t fields, Scenes scenes) const noexcept;
   void measure(const Stage& stage, double speed, Scenes scenes) noexcept;
   void press(Readings readings) noexcept;
@@ -89,6 +96,7 @@ class StageMachine {
   std::uint32_t buttons_before_{0}, keys_before_{0};
   std::uint32_t buttons_pressed_{0}, keys_pressed_{0};  // in this stage
   bool hands_known_{false};
+  Outside outside_;
   int repeats_{0};
   int most_repeats_{0};
 };

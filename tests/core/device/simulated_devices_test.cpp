@@ -107,9 +107,15 @@ TEST(MouseTest, TheWheelSetsThePressOfTheLeftButton) {
   EXPECT_EQ(p.pointer_speed, 0.3);
   EXPECT_EQ(p.max_press, 8.0);
   MouseDevice mouse(p, kRate);
-  EXPECT_EQ(mouse.press_at(0.0), 1.5);
-  EXPECT_EQ(mouse.press_at(4.0), 2.5);
-  EXPECT_EQ(mouse.press_at(-40.0), 0.0) << "never upward";
+  const auto pressed_at = [&](double wheel) {  // [m]
+    mouse.turn_wheel(wheel, true);
+    return -after(mouse, 3000).tool.position.y();
+  };
+  const double first = pressed_at(0.0);
+  EXPECT_GT(first, 0.0);
+  EXPECT_NEAR(pressed_at(4.0) / first, 2.5 / 1.5, 1e-3);
+  EXPECT_NEAR(pressed_at(-40.0), 0.0, 1e-5) << "never upward";
+  mouse.turn_wheel(-40.0, false);
   DeviceReading reading;
   for (const std::uint32_t held : {0u, 1u, 2u, 4u, 7u}) {
     mouse.set_buttons(held);
@@ -117,6 +123,18 @@ TEST(MouseTest, TheWheelSetsThePressOfTheLeftButton) {
     EXPECT_EQ(reading.buttons, held);
     EXPECT_EQ(reading.stop_pressed, (held & 4u) != 0);
   }
+}
+
+TEST(MouseTest, TheWheelLiftsTheHandWhileNoButtonIsHeld) {
+  MouseDevice mouse({}, kRate);
+  mouse.turn_wheel(10.0, false);
+  mouse.move(0.01, 0.0);
+  EXPECT_LT((after(mouse, 3000).tool.position - Vector3d(0.01, 0.02, 0.0)).norm(), 1e-5);
+  mouse.turn_wheel(15.0, true);
+  mouse.turn_wheel(15.0, false);
+  mouse.move(0.01, 0.0);
+  EXPECT_LT((after(mouse, 3000).tool.position - Vector3d(0.01, 0.02, 0.0)).norm(), 1e-5)
+      << "steps while the button is held change the press";
 }
 
 TEST(MouseTest, NonsenseFromTheScreenIsLeftOut) {

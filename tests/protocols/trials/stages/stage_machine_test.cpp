@@ -136,6 +136,9 @@ TEST_F(StageMachineTest, LateStagesGoOnAbortOrRepeat) {
   StageMachine aborts = machine({stage});
   EXPECT_EQ(run(aborts, outside), 50);
   EXPECT_EQ(aborts.state(), State::kAborted);
+  EXPECT_EQ(aborts.outside().region, 0);
+  EXPECT_GT(aborts.outside().distance, 0.0);
+  EXPECT_EQ(goes_on.outside().region, 0);
   stage.late = Consequence::kRepeat;
   repeats_ = 3;
   StageMachine repeats = machine({stage});
@@ -251,13 +254,17 @@ TEST_F(TwoDevicesTest, EachRegionIsAskedOfItsOwnTool) {
   Stage stage;
   stage.until.inside = 0b11;
   StageMachine both = machine(stage);
-  EXPECT_EQ(run(both, [](double t) {
-              return std::array{t < 0.1 - 1e-9 ? 0.05 : 0.0, t < 0.3 - 1e-9 ? 0.05 : 0.0};
-            }),
+  EXPECT_EQ(run(both,
+                [](double t) {
+                  return std::array{t < 0.1 - 1e-9 ? 0.05 : 0.0, t < 0.3 - 1e-9 ? 0.05 : 0.0};
+                }),
             301);
   stage.until.inside = 0b10;
   StageMachine second = machine(stage);
-  EXPECT_EQ(run(second, [](double t) { return std::array{0.05, t < 0.2 - 1e-9 ? 0.05 : 0.0}; }),
+  EXPECT_EQ(run(second,
+                [](double t) {
+                  return std::array{0.05, t < 0.2 - 1e-9 ? 0.05 : 0.0};
+                }),
             201);
 }
 
@@ -272,9 +279,10 @@ TEST_F(TwoDevicesTest, ContactIsThatOfEveryDeviceThatFeelsTheField) {
   EXPECT_NEAR(run(both, tips), 301, 1);
   stage.until.contact = 0b10;  // felt by the second alone
   StageMachine second = machine(stage);
-  EXPECT_NEAR(run(second, [](double t) {
-                return std::array{0.05, t < 0.2 - 1e-9 ? 0.01 : -0.001};
-              }),
+  EXPECT_NEAR(run(second,
+                  [](double t) {
+                    return std::array{0.05, t < 0.2 - 1e-9 ? 0.01 : -0.001};
+                  }),
               201, 1);
 }
 
