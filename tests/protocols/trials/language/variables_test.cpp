@@ -39,7 +39,7 @@ TEST_F(VariablesTest, AFormulaFollowsTheVariablesThatItNames) {
 TEST_F(VariablesTest, ADeclaredNameHasToGetItsValue) {
   EXPECT_THAT([&] { variables_.value("weber"); },
               ThrowsMessage<InputError>(HasSubstr("level has no value yet")));
-  EXPECT_THROW(variables_.set("reference", 1.0), std::invalid_argument);
+  EXPECT_THROW(variables_.set("stifness", 1.0), std::invalid_argument);
 }
 
 TEST_F(VariablesTest, UnknownNamesAreSaidBeforeTheFirstTrial) {
