@@ -52,9 +52,11 @@ void AbortedPass::pause_after_several(const std::string& why) {
   }
 }
 
+/// By this experimenter, or by the partner's.
 bool AbortedPass::asked_for() const {
   const Wishes& wishes = p_.desk.wishes();
-  return wishes.repeat || wishes.skip || wishes.abort || wishes.pause;
+  return wishes.repeat || wishes.skip || wishes.abort || wishes.pause ||
+         p_.trials.after_abort() != protocols::AfterAbort::kAsAsked;
 }
 
 bool AbortedPass::partner_stops() const {
