@@ -155,6 +155,7 @@ void read_staircase(const TrackKeys& keys, Track& track) {
                                        : StaircaseParameters::AtBound::kHold;
   }
   p.right_raises = truth_of(keys, "right_raises");
+  track.falls = p.right_raises;
   const Stop stop = read_stop(keys);
   p.stop_reversals = stop.reversals;
   p.stop_trials = stop.trials;
@@ -178,6 +179,7 @@ void read_pest(const TrackKeys& keys, Track& track) {
   p.largest_step = number(keys, "largest_step", kPositive, "");
   p.stop_trials = read_stop(keys).trials;
   p.right_raises = truth_of(keys, "right_raises");
+  track.falls = p.right_raises;
   track.most_trials = p.stop_trials;
   track.begin = [p](std::uint64_t, const std::string&) { return std::make_unique<Pest>(p); };
 }
@@ -248,15 +250,34 @@ PsiParameters read_psi_function(const TrackKeys& keys, Track& track) {
       keys.of("function").reject("function", fmt::format("is refused: {}", error.what()));
     }
   }
+  track.falls = p.function.falling;
   return p;
+}
+
+/// The levels and, as a threshold may lie beyond what can be presented, as many as half of them on
+/// either side, on the axis.
+std::vector<double> thresholds_around(const PsiParameters& p, const Track& track) {
+  std::vector<double> values = p.levels;
+  if (values.size() < 2) {
+    return values;
+  }
+  const Axis& axis = p.function.axis;
+  const double low = axis.at(track.low), high = axis.at(track.high);
+  const double step = (high - low) / static_cast<double>(values.size() - 1);
+  for (std::size_t i = 1; i <= (values.size() + 1) / 2; ++i) {
+    values.push_back(axis.level(low - static_cast<double>(i) * step));
+    values.push_back(axis.level(high + static_cast<double>(i) * step));
+  }
+  std::ranges::sort(values);
+  return values;
 }
 
 void read_psi(const TrackKeys& keys, Track& track) {
   PsiParameters p = read_psi_function(keys, track);
   const auto axis_of = [&](double level) { return p.function.axis.at(level); };
   const double span = std::abs(axis_of(track.high) - axis_of(track.low));
-  p.threshold.values =
-      keys.has("threshold") ? read_grid(keys.of("threshold"), "threshold") : p.levels;
+  p.threshold.values = keys.has("threshold") ? read_grid(keys.of("threshold"), "threshold")
+                                             : thresholds_around(p, track);
   p.width.values = keys.has("width") ? read_grid(keys.of("width"), "width")
                                      : std::vector{0.125 * span, 0.25 * span, 0.5 * span, span};
   p.lapse.values =

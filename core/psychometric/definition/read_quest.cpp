@@ -208,6 +208,7 @@ QuestDefinition take_function(const TrackKeys& keys, const std::string& name,
   p.function.axis = track.axis = read_axis(keys, track);
   p.function.guess = 0.5;
   set_sigmoid(p.function, name, Scale::kLog10);
+  track.falls = p.function.falling;
   if (quest.stimulus.size() > 1) {
     throw InputError(
         fmt::format("is of one stimulus, and there are {}; state a probability, a "

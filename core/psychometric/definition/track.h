@@ -35,7 +35,8 @@ struct Track {
   std::vector<TrackDimension> further;  // of a level with several dimensions
   int most_trials{0};                   // of one track
   bool listed{false};                   // its trials are known from the beginning
-  Axis axis;                            // of its steps
+  std::optional<bool> falls;  // whether answers 1 get rarer as the level rises; none: not known
+  Axis axis;                  // of its steps
   std::optional<StaircaseParameters> staircase;    // of a staircase
   std::optional<PsychometricParameters> expected;  // that the study counts on
   std::function<std::unique_ptr<Procedure>(std::uint64_t seed, const std::string& name)> begin;

@@ -39,6 +39,9 @@ class Pest final : public Procedure {
   /// The level that PEST settled on, without a deviation; none before it has.
   std::vector<Estimate> estimates() const override;
   std::optional<double> target() const override { return parameters_.target; }
+  std::optional<LevelRange> range() const override {
+    return LevelRange{parameters_.low, parameters_.high};
+  }
 
  private:
   void step(int way);

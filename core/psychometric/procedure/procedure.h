@@ -22,13 +22,19 @@ struct EstimateInterval {
   double low, high;
 };
 
+/// From the lowest to the highest level that a procedure may present [unit of the level].
+struct LevelRange {
+  double low, high;
+};
+
 struct Estimate {
   std::string name;                 // "threshold, mean of 6 reversals"
   double value;                     // [unit of the level, or of the parameter]
   std::optional<double> deviation;  // its standard deviation as the procedure can tell [same]
   /// Degrees of freedom of Student's t for an interval from the deviation; nothing: there is none.
   std::optional<double> freedom{};
-  std::optional<EstimateInterval> interval{};  // as the procedure itself can tell
+  std::optional<EstimateInterval> interval{};  // as the procedure itself can tell; infinite: open
+  std::string remark{};                        // what is wrong with it; empty: nothing
 };
 
 /// Chooses the next level from the outcomes so far. Its state is a function of its parameters, its
@@ -55,6 +61,8 @@ class Procedure {
   /// The probability of an answer 1 at the level that the first estimate is meant for; nothing: the
   /// procedure seeks no level, or the probability depends on the observer.
   virtual std::optional<double> target() const { return std::nullopt; }
+  /// The range of its (first) dimension, if answers move the level within one.
+  virtual std::optional<LevelRange> range() const { return std::nullopt; }
 };
 
 /// Reports each outcome. @throws as report() does

@@ -23,6 +23,9 @@ class Staircase final : public Procedure {
   std::vector<Estimate> estimates() const override;
   /// Where the last steps balance, if one wrong answer makes a step.
   std::optional<double> target() const override;
+  std::optional<LevelRange> range() const override {
+    return LevelRange{parameters_.low, parameters_.high};
+  }
 
   const StaircaseState& state() const noexcept { return state_; }
   /// Levels of the reversals so far.

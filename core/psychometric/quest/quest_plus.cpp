@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace haptrial::psychometric {
 namespace {
@@ -39,6 +40,25 @@ double quantile_of(const std::vector<double>& values, const std::vector<double>&
     below += shares[i];
   }
   return values[last];
+}
+
+/// The central 95 %, open where the list of values ends it.
+void add_interval(const std::vector<double>& values, const std::vector<double>& shares,
+                  Estimate& estimate) {
+  constexpr double kTail = 0.025, kNotRejected = 0.15;
+  const double limit = kNotRejected * *std::max_element(shares.begin(), shares.end());
+  const bool low = shares.front() > limit, high = shares.back() > limit;
+  if (low && high) {
+    estimate.remark = "not told by the answers";
+    return;
+  }
+  constexpr double kOpen = std::numeric_limits<double>::infinity();
+  const bool low_open = low && values.front() != 0.0;
+  estimate.interval = {low_open ? -kOpen : quantile_of(values, shares, kTail),
+                       high ? kOpen : quantile_of(values, shares, 1.0 - kTail)};
+  if (low_open || high) {
+    estimate.remark = "cut off by its list of values";
+  }
 }
 
 }  // namespace
@@ -110,6 +130,11 @@ std::vector<double> QuestPlus::marginal(std::size_t parameter) const {
   return shares;
 }
 
+std::optional<LevelRange> QuestPlus::range() const {
+  const auto [low, high] = std::ranges::minmax(tables_->definition().stimulus.front().values);
+  return LevelRange{low, high};
+}
+
 std::vector<Estimate> QuestPlus::estimates() const {
   const auto& dimensions = tables_->definition().parameters;
   const auto top = std::max_element(posterior_.begin(), posterior_.end()) - posterior_.begin();
@@ -130,11 +155,8 @@ std::vector<Estimate> QuestPlus::estimates() const {
     for (std::size_t i = 0; i < values.size(); ++i) {
       square += shares[i] * (values[i] - mean) * (values[i] - mean);
     }
-    constexpr double kTail = 0.025;
-    const EstimateInterval interval{quantile_of(values, shares, kTail),
-                                    quantile_of(values, shares, 1.0 - kTail)};
-    means.push_back({dimensions[d].name + ", mean of the posterior", mean, std::sqrt(square),
-                     std::nullopt, interval});
+    means.push_back({dimensions[d].name + ", mean of the posterior", mean, std::sqrt(square)});
+    add_interval(values, shares, means.back());
     modes.push_back({dimensions[d].name + ", mode of the posterior", mode[d], std::nullopt});
   }
   means.insert(means.end(), modes.begin(), modes.end());

@@ -1,5 +1,8 @@
 #include "core/psychometric/quest/quest_tables.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -78,16 +81,26 @@ std::vector<double> values_at(const Dimensions& dimensions, std::size_t index) {
   return values;
 }
 
-void check_probabilities(const std::vector<double>& p, const std::vector<double>& stimulus) {
+std::string values_of(const Dimensions& dimensions, const std::vector<double>& values) {
+  std::string words;
+  for (std::size_t d = 0; d < values.size(); ++d) {
+    words += fmt::format("{}{} = {:.6g}", d == 0 ? "" : ", ", dimensions[d].name, values[d]);
+  }
+  return words;
+}
+
+void check_probabilities(const std::vector<double>& p, const QuestDefinition& definition,
+                         const std::vector<double>& stimulus,
+                         const std::vector<double>& parameters) {
   const double sum = std::accumulate(p.begin(), p.end(), 0.0);
   const bool proper = std::all_of(p.begin(), p.end(), [](double v) { return v >= 0.0; });
   if (!proper || !(std::abs(sum - 1.0) <= 1e-9)) {
-    std::string at;
-    for (double value : stimulus) {
-      at.append(" ").append(std::to_string(value));
-    }
     throw std::invalid_argument(
-        "QuestTables: the model must give probabilities with sum 1 at the stimulus" + at);
+        fmt::format("the probabilities of the answers 0 to {} are {:.4g} for {} and {}; allowed: "
+                    "each from 0 to "
+                    "1, together 1",
+                    p.size() - 1, fmt::join(p, ", "), values_of(definition.stimulus, stimulus),
+                    values_of(definition.parameters, parameters)));
   }
 }
 
@@ -122,7 +135,7 @@ void QuestTables::fill(std::size_t stimulus_index) {
   };
   for (std::size_t c = 0; c < cells_; ++c) {
     definition_.model(at.data(), parameters(c).data(), p.data());
-    check_probabilities(p, at);
+    check_probabilities(p, definition_, at, parameters(c));
     double h = 0.0;
     for (std::size_t o = 0; o < p.size(); ++o) {
       h += surprise(p[o]);
@@ -185,7 +198,7 @@ std::vector<double> QuestTables::likelihood_at(const std::vector<double>& stimul
   std::vector<double> p(outcomes());
   for (std::size_t c = 0; c < cells_; ++c) {
     definition_.model(stimulus.data(), parameters(c).data(), p.data());
-    check_probabilities(p, stimulus);
+    check_probabilities(p, definition_, stimulus, parameters(c));
     likelihood[c] = p[outcome];
   }
   return likelihood;

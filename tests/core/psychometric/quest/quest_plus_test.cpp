@@ -240,10 +240,24 @@ TEST(QuestPlusTest, PriorsMarginalsAndEstimates) {
   EXPECT_NEAR(estimates[0].value, mean, 1e-14);
   const double square = (4.0 + 2.0 * 0.25 + 3.0 * 0.25 + 1.0) / 7.0;
   EXPECT_NEAR(estimates[0].deviation.value(), std::sqrt(square - mean * mean), 1e-14);
-  ASSERT_TRUE(estimates[0].interval);
-  EXPECT_LT(estimates[0].interval->low, mean);
-  EXPECT_GT(estimates[0].interval->high, mean);
+  EXPECT_FALSE(estimates[0].interval);
+  EXPECT_EQ(estimates[0].remark, "not told by the answers");
   EXPECT_EQ(estimates[3].value, 0.5);  // mode of u
+}
+
+/// Somebody who never answers 1: how far the threshold lies beyond the list, nothing tells.
+TEST(QuestPlusTest, AnIntervalThatTheListOfValuesEndsIsOpen) {
+  PsiParameters p = wide_psi();
+  QuestPlus quest(std::make_shared<QuestTables>(psi_definition(p)), {40, 0.0});
+  while (!quest.finished()) {
+    quest.report(0.0, Level(quest.next()));
+  }
+  const Estimate threshold = quest.estimates().front();
+  ASSERT_TRUE(threshold.interval);
+  EXPECT_TRUE(std::isinf(threshold.interval->high));
+  EXPECT_TRUE(std::isfinite(threshold.interval->low));
+  EXPECT_LT(threshold.interval->low, threshold.value);
+  EXPECT_EQ(threshold.remark, "cut off by its list of values");
 }
 
 TEST(QuestPlusTest, StopsByTrialsOrEntropy) {
@@ -299,7 +313,7 @@ TEST(QuestPlusTest, DefinitionsOutOfBoundsAreNamed) {
     }
   });
   names("outcomes", [](auto& d) { d.outcomes = 1; });
-  names("stimulus -1", [](auto& d) {
+  names("are 0.4, 0.4, 0.4 for a = -1", [](auto& d) {
     d.model = [](const double*, const double*, double* out) { out[0] = out[1] = out[2] = 0.4; };
   });
 }
