@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "analysis/psychometric/fit/prior.h"
@@ -53,6 +54,21 @@ struct AdaptivePrior {
   double smallest() const { return scale * range.spacing; }
   double largest() const { return scale * (range.high - range.low); }
 
+  /// Logarithm of the density of the lapse rate: Beta(1, 10), as psignifit's.
+  static double log_of_lapse(double lapse) { return 9.0 * std::log1p(-lapse); }
+
+  static CredibleInterval of_lapse(const CellAxis& axis, double level) {
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < axis.count; ++i) {
+      shares.push_back(std::exp(log_of_lapse(axis.middle(i))));
+    }
+    const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+    for (double& share : shares) {
+      share /= sum;
+    }
+    return central(axis, shares, level);
+  }
+
   /// Density of the logarithm of the width.
   double of_log_width(double log_width) const {
     constexpr double kUniformBelow = 0.1;
@@ -71,7 +87,7 @@ class AdaptiveGrid {
         curve_(psychometric::curve_of(options.function)),
         task_(options.task),
         guess_(options.function.guess),
-        prior_{stimulus_range(x_),
+        prior_{range_of(options, x_),
                psychometric::rate_of_width(options.function.sigmoid, 1.0, options.function.tail) /
                    psychometric::rate_of_width(options.function.sigmoid, 1.0)},
         lapse_(options.lapse),
@@ -147,7 +163,8 @@ class AdaptiveGrid {
     for (std::size_t l = 0; l < axes[2].count; ++l) {
       for (std::size_t g = 0; g < axes[3].count; ++g) {
         const double lapse = axes[2].middle(l);
-        cells.push_back(prior + log_likelihood(shares, lapse, guess_of(lapse, axes[3].middle(g))));
+        cells.push_back(prior + AdaptivePrior::log_of_lapse(lapse) +
+                        log_likelihood(shares, lapse, guess_of(lapse, axes[3].middle(g))));
       }
     }
   }
@@ -230,7 +247,20 @@ AdaptivePosterior adaptive_posterior(std::span<const TrialBlock> blocks,
   result.threshold = central(axes[0], marginal_of(cells, axes, 0), level);
   const CredibleInterval log_width = central(axes[1], marginal_of(cells, axes, 1), level);
   result.width = {std::exp(log_width.low), std::exp(log_width.high)};
+  const std::vector<double> thresholds = marginal_of(cells, axes, 0);
+  const double most = *std::max_element(thresholds.begin(), thresholds.end());
+  result.low_end = axes[0].low > all[0].low ? 0.0 : thresholds.front() / most;
+  result.high_end = axes[0].high < all[0].high ? 0.0 : thresholds.back() / most;
+  const auto median = [&](std::size_t a) {
+    return quantile_at(axes[a], marginal_of(cells, axes, a), 0.5);
+  };
+  result.median = {median(0), std::exp(median(1)), median(2), 0.0, 0.0};
+  result.median.guess = options.task == Task::kYesNo          ? median(3)
+                        : options.task == Task::kForcedChoice ? options.function.guess
+                                                              : result.median.lapse;
   result.lapse = central(axes[2], marginal_of(cells, axes, 2), level);
+  const CredibleInterval prior = AdaptivePrior::of_lapse(axes[2], level);
+  result.lapse_told = !(result.lapse.high - result.lapse.low > 0.8 * (prior.high - prior.low));
   result.guess = grid.guess_interval(result.lapse, axes[3], marginal_of(cells, axes, 3), level);
   // Systematic: one of each 1 / draws of the probability.
   double below = 0.0;

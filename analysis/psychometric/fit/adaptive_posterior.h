@@ -16,22 +16,29 @@ inline constexpr std::size_t kPosteriorDraws = 999;
 
 /// What answers to adaptively chosen levels say of a function.
 struct AdaptivePosterior {
+  FittedParameters median;              // of each parameter
   CredibleInterval threshold;           // [axis]
   CredibleInterval width;               // [axis]
   CredibleInterval lapse, guess;        // a point if the rate is known
   std::vector<FittedParameters> draws;  // each as probable as the others
+  /// The density at the lowest and at the highest threshold of the prior over the largest one: if
+  /// the answers do not exclude a threshold there, the prior cuts the interval off.
+  double low_end{0.0}, high_end{0.0};
+  /// Whether the lapse rate's interval is clearly shorter than that of its prior.
+  bool lapse_told{true};
 };
 
 /// The posterior of threshold, width, lapse and, in yes/no tasks, guess rate from binomial answers.
 /// A likelihood does not depend on how a procedure chose its levels, so the intervals of a
 /// posterior stay what they are with adaptive trials, in which the cut of a profile likelihood does
-/// not hold (docs/algorithms/procedure-coverage.md). With s = highest - lowest level and d = their
-/// smallest distance, the prior is
+/// not hold (docs/algorithms/procedure-coverage.md). With s = highest - lowest level that could be
+/// presented and d = the smallest distance of those that were, the prior is
 ///
 ///     threshold   uniform from s / 2 below the lowest level to s / 2 above the highest
 ///     width       1 / (w + s / 10); 0 at d, cosine up to all of it at 2 d, cosine down from s to
 ///                 0 at 3 s (ends as psignifit's)
-///     rates       uniform between their bounds
+///     lapse rate  Beta(1, 10) between its bounds, as psignifit's
+///     guess rate  uniform between its bounds
 ///
 /// A prior uniform in the width makes intervals of single tracks too long, one uniform in its
 /// logarithm those of fine steps too short; this is the one below s / 10 and the other above.

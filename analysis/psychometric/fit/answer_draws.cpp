@@ -13,7 +13,7 @@ std::vector<double> expected_shares(std::span<const TrialBlock> blocks,
                                     const psychometric::PsychometricFunction& function) {
   std::vector<double> shares;
   for (const TrialBlock& block : blocks) {
-    shares.push_back(std::clamp(function(block.level), 0.0, 1.0));
+    shares.push_back(std::clamp(probability_of(function, block), 0.0, 1.0));
   }
   return shares;
 }

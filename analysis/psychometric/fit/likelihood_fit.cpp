@@ -53,9 +53,9 @@ bool solved(const Square& matrix, const std::array<bool, kPlaces>& free, const P
 }
 
 void check_rate(const RateBounds& bounds, const char* name) {
-  if (!(bounds.low >= 0.0 && bounds.high >= bounds.low && bounds.high < 0.5)) {
+  if (!(bounds.low >= 0.0 && bounds.high >= bounds.low && bounds.high <= kLargestRate)) {
     throw std::invalid_argument(std::string("bounds of the ") + name +
-                                " rate must have 0 <= low <= high < 0.5");
+                                " rate must have 0 <= low <= high <= 0.5");
   }
 }
 
@@ -132,6 +132,7 @@ struct LikelihoodFitter::Search {
   double value(const LikelihoodFitter& fitter, const Place& place) const noexcept;
   Place next_change(const LikelihoodFitter& fitter, const Place& place,
                     const Climb& climb) const noexcept;
+  void add_catches(const LikelihoodFitter& fitter, const Spot& spot, Climb& climb) const noexcept;
   bool told(const LikelihoodFitter& fitter, const Place& place, const Climb& climb) const noexcept;
   bool step(const LikelihoodFitter& fitter, Place& place, Climb& climb,
             const Place& change) const noexcept;
@@ -148,6 +149,9 @@ Place LikelihoodFitter::Search::start(const LikelihoodFitter& fitter) const noex
   double sum = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
   const double origin = 0.5 * (fitter.low_ + fitter.high_);
   for (std::size_t i = 0; i < correct.size(); ++i) {
+    if (fitter.coordinates_[i] == kNoStimulus) {
+      continue;
+    }
     const double n = trials(i, fitter.totals_[i]);
     const double observed = (answers(i) + 0.5) / (n + 1.0);
     const double share = std::clamp((observed - guess) / (1.0 - guess - lapse), 0.02, 0.98);
@@ -183,24 +187,36 @@ void LikelihoodFitter::Search::at(const LikelihoodFitter& fitter, const Place& p
     }
   }
   sums.put(climb, spot.rise);
+  add_catches(fitter, spot, climb);
 }
 
-/// @param elsewhere  where those beyond the last block are put
+/// Catch trials tell the guess rate alone.
+void LikelihoodFitter::Search::add_catches(const LikelihoodFitter& fitter, const Spot& spot,
+                                           Climb& climb) const noexcept {
+  for (std::size_t i = 0; i < correct.size(); ++i) {
+    if (fitter.coordinates_[i] != kNoStimulus) {
+      continue;
+    }
+    const double n = trials(i, fitter.totals_[i]), yes = answers(i), no = n - yes;
+    const double p = std::max(spot.guess, 1e-12), q = 1.0 - spot.guess;
+    const std::size_t at = spot.tied ? 2 : 3;
+    climb.possible = climb.possible && (spot.guess > 0.0 || yes == 0.0);
+    climb.slope[at] += yes / p - no / q;
+    climb.hessian[at][at] += climb.fisher ? n / (p * q) : yes / (p * p) + no / (q * q);
+  }
+}
+
+/// @param elsewhere  the place of lanes without answers: beyond the last block, and catch trials
 Blocks LikelihoodFitter::Search::blocks_from(const LikelihoodFitter& fitter, std::size_t first,
                                              double elsewhere) const noexcept {
   Blocks blocks;
   const std::size_t count = std::min(kLanes, correct.size() - first);
-  for (std::size_t i = 0; i < count; ++i) {
-    blocks.x[i] = fitter.coordinates_[first + i];
-    blocks.right[i] = correct[first + i];
-    blocks.wrong[i] = fitter.totals_[first + i] - correct[first + i];
-  }
-  for (std::size_t i = count; i < kLanes; ++i) {
-    blocks.x[i] = elsewhere;
-    blocks.right[i] = blocks.wrong[i] = 0.0;
-  }
-  if (without - first < count) {
-    (right ? blocks.right : blocks.wrong)[without - first] -= 1.0;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const bool presented = i < count && fitter.coordinates_[first + i] != kNoStimulus;
+    blocks.x[i] = presented ? fitter.coordinates_[first + i] : elsewhere;
+    blocks.right[i] = presented ? answers(first + i) : 0.0;
+    blocks.wrong[i] =
+        presented ? trials(first + i, fitter.totals_[first + i]) - blocks.right[i] : 0.0;
   }
   return blocks;
 }
@@ -251,6 +267,15 @@ bool LikelihoodFitter::Search::step(const LikelihoodFitter& fitter, Place& place
   return false;
 }
 
+StimulusRange range_of(const LikelihoodOptions& options, std::span<const double> coordinates) {
+  StimulusRange range = stimulus_range(coordinates);
+  if (options.presentable) {
+    range.low = std::min(range.low, options.presentable->low);
+    range.high = std::max(range.high, options.presentable->high);
+  }
+  return range;
+}
+
 LikelihoodFitter::LikelihoodFitter(const LikelihoodOptions& options,
                                    std::span<const TrialBlock> blocks)
     : shape_(options.function),
@@ -269,7 +294,7 @@ LikelihoodFitter::LikelihoodFitter(const LikelihoodOptions& options,
     check_rate(options.guess, "guess");
   }
   coordinates_ = coordinates(shape_.axis, blocks);
-  const StimulusRange range = stimulus_range(coordinates_);
+  const StimulusRange range = range_of(options, coordinates_);
   low_ = range.low, high_ = range.high, spacing_ = range.spacing;
   for (const TrialBlock& block : blocks) {
     totals_.push_back(block.total);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "analysis/psychometric/fit/fitted_function.h"
+#include "analysis/psychometric/fit/prior.h"
 #include "analysis/psychometric/fit/trial_blocks.h"
 
 namespace haptrial::analysis {
@@ -14,10 +16,18 @@ struct Climb;
 using Place = std::array<double, 4>;  // threshold, log width, lapse, guess
 }  // namespace climbing
 
+/// A rate above it would be no rate of lapses or guesses.
+inline constexpr double kLargestRate = 0.5;
+
 /// From low to high; equal where the value is known.
 struct RateBounds {
   double low{0.0};
   double high{0.06};  // Wichmann and Hill 2001
+};
+
+struct SearchBounds {
+  double low{0.0};
+  double high{0.0};
 };
 
 struct LikelihoodOptions {
@@ -25,8 +35,10 @@ struct LikelihoodOptions {
   // sought.
   psychometric::PsychometricParameters function{.guess = 0.5};
   Task task{Task::kForcedChoice};
-  RateBounds lapse{};  // 0 <= low <= high < 0.5
+  RateBounds lapse{};  // 0 <= low <= high <= 0.5
   RateBounds guess{};  // of a yes/no task, likewise
+  // What could be presented, on the axis, if that is more than the levels of the trials.
+  std::optional<SearchBounds> presentable{};
 };
 
 struct LikelihoodFit {
@@ -44,11 +56,6 @@ struct LikelihoodFit {
 enum class Held {
   kThreshold,  // on the axis
   kWidth,      // as its natural logarithm
-};
-
-struct SearchBounds {
-  double low{0.0};
-  double high{0.0};
 };
 
 /// A point of a profile likelihood.
@@ -104,6 +111,10 @@ class LikelihoodFitter {
   std::vector<int> totals_;
   double low_{0.0}, high_{0.0}, spacing_{0.0};
 };
+
+/// The levels with what could be presented; the smallest distance is that of the levels.
+/// @throws std::invalid_argument when there are not two different levels.
+StimulusRange range_of(const LikelihoodOptions& options, std::span<const double> coordinates);
 
 /// One fit. @throws std::invalid_argument as the constructor.
 LikelihoodFit likelihood_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options);

@@ -14,6 +14,7 @@ double cosine_fall(double part) noexcept {
 
 StimulusRange stimulus_range(std::span<const double> coordinates) {
   std::vector<double> rising(coordinates.begin(), coordinates.end());
+  std::erase_if(rising, [](double x) { return !std::isfinite(x); });
   std::sort(rising.begin(), rising.end());
   rising.erase(std::unique(rising.begin(), rising.end()), rising.end());
   if (rising.size() < 2) {

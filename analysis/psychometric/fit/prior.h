@@ -20,7 +20,7 @@ struct StimulusRange {
 /// From 1 at 0 down to 0 at 1, as a cosine; 1 below and 0 above.
 double cosine_fall(double part) noexcept;
 
-/// The range of the levels. @throws std::invalid_argument when there are not two different levels.
+/// The range of the finite levels. @throws std::invalid_argument when there are not two of them.
 StimulusRange stimulus_range(std::span<const double> coordinates);
 
 /// Densities of the priors, with s = high - low and d = spacing:

@@ -28,7 +28,7 @@ std::vector<TrialBlock> pooled(std::span<const TrialBlock> blocks) {
     throw std::invalid_argument("blocks: there are no trials");
   }
   for (const TrialBlock& block : blocks) {
-    if (!std::isfinite(block.level)) {
+    if (!std::isfinite(block.level) && block.level != kNoStimulus) {
       throw std::invalid_argument("level of a block must be finite");
     }
     if (block.total < 1 || block.correct < 0 || block.correct > block.total) {
@@ -55,13 +55,17 @@ std::vector<double> coordinates(const psychometric::Axis& axis,
   std::vector<double> result;
   result.reserve(blocks.size());
   for (const TrialBlock& block : blocks) {
-    result.push_back(axis.at(block.level));
-    if (!std::isfinite(result.back())) {
+    result.push_back(block.level == kNoStimulus ? kNoStimulus : axis.at(block.level));
+    if (!std::isfinite(result.back()) && block.level != kNoStimulus) {
       throw std::invalid_argument(
           "level of a block must lie above the origin of its axis, which takes the logarithm");
     }
   }
   return result;
+}
+
+double probability_of(const psychometric::PsychometricFunction& function, const TrialBlock& block) {
+  return block.level == kNoStimulus ? function.parameters().guess : function(block.level);
 }
 
 PsychometricDeviance deviance_of(const psychometric::PsychometricFunction& function,
@@ -70,7 +74,7 @@ PsychometricDeviance deviance_of(const psychometric::PsychometricFunction& funct
   for (const TrialBlock& block : blocks) {
     const auto n = static_cast<double>(block.total);
     const auto k = static_cast<double>(block.correct);
-    const double p = function(block.level);
+    const double p = probability_of(function, block);
     const double part =
         std::max(0.0, 2.0 * (surprise_of(k, n * p) + surprise_of(n - k, n * (1.0 - p))));
     result.deviance += part;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/psychometric/function/sigmoid.h"
 
 namespace haptrial::psychometric {
@@ -23,9 +25,10 @@ class SigmoidCurve {
   /// S and its derivatives by z.
   SigmoidPoint at(double z) const noexcept;
   void at(const double* z, SigmoidLanes& lanes) const noexcept;
-  /// The same at x, derivatives by z.
+  /// The same at x, derivatives by z; S = 0 at -infinity, where nothing is presented.
   SigmoidPoint at(double x, double threshold, double width) const noexcept {
-    return at(centre_ + spread_ * (x - threshold) / width);
+    return std::isinf(x) ? SigmoidPoint{0.0, 1.0, 0.0, 0.0}
+                         : at(centre_ + spread_ * (x - threshold) / width);
   }
   /// z of S(z) = share. @throws std::invalid_argument unless 0 < share < 1
   double z_for(double share) const;

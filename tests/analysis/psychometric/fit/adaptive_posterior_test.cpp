@@ -56,6 +56,7 @@ void draw_prior(const std::vector<TrialBlock>& blocks, const LikelihoodOptions& 
     p.guess = options.task == Task::kYesNo ? 0.06 * random.uniform() : p.guess;
     const psychometric::PsychometricFunction function(p);
     double weight = (1.0 - cosine((w - d) / d)) * cosine((w - s) / (2.0 * s)) / (w + 0.1 * s);
+    weight *= std::pow(1.0 - p.lapse, 9.0);
     for (const TrialBlock& b : blocks) {
       const double share = function(b.level);
       weight *= std::pow(share, b.correct) * std::pow(1.0 - share, b.total - b.correct);
@@ -81,6 +82,8 @@ TEST(AdaptivePosterior, IsThatOfTheStatedPrior) {
     }
     EXPECT_NEAR(std::log(found.width.low / quantile_of(widths, 0.025)), 0.0, 0.06);
     EXPECT_NEAR(std::log(found.width.high / quantile_of(widths, 0.975)), 0.0, 0.04);
+    EXPECT_NEAR(found.median.threshold, quantile_of(thresholds, 0.5), 0.05);
+    EXPECT_NEAR(std::log(found.median.width / quantile_of(widths, 0.5)), 0.0, 0.05);
     ASSERT_EQ(found.draws.size(), 999U);
     std::vector<Weighted> drawn;
     for (const FittedParameters& draw : found.draws) {
