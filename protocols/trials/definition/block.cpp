@@ -17,7 +17,7 @@ constexpr long kMostInBlock = 100000;
 
 std::string as_formula(const std::optional<double>& number, const std::string& text) {
   if (number) {
-    return fmt::format("{:.17g}", *number);
+    return fmt::format("{}", *number);
   }
   return text.find('$') != std::string::npos ? text : fmt::format("'{}'", text);
 }

@@ -25,7 +25,7 @@ std::string formula_of(Table& table, const std::string& key) {
   if (const auto text = table.whole_text(key)) {
     return *text;
   }
-  return fmt::format("{:.17g}", table.number(key, {}, ""));
+  return fmt::format("{}", table.number(key, {}, ""));
 }
 
 }  // namespace
