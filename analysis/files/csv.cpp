@@ -299,9 +299,11 @@ std::size_t CsvTable::column(std::string_view name) const {
       known.push_back(shown(column));
     }
     const std::string hint = count == 0 ? did_you_mean(shown(name), known) : "";
-    throw InputError(fmt::format("{}: {} '{}'{} allowed: {}", name_,
-                                 count == 0 ? "there is no column" : "several columns are named",
-                                 shown(name), hint.empty() ? ";" : hint, fmt::join(known, ", ")));
+    throw InputError(
+        fmt::format("{}: {} '{}'{} allowed: {}{}", name_,
+                    count == 0 ? "there is no column" : "several columns are named", shown(name),
+                    hint.empty() ? ";" : hint, fmt::join(known, ", "),
+                    is_utf8(text_) ? "" : "; the file is not UTF-8, save it as UTF-8"));
   }
   return static_cast<std::size_t>(std::find(columns_.begin(), columns_.end(), name) -
                                   columns_.begin());

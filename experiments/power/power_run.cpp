@@ -157,8 +157,11 @@ void check_watched(const PowerQuestion& question) {
     throw InputError(fmt::format("{}: the report has no test at all{}{}", question.file_name,
                                  all.because.empty() ? "" : ": ", all.because));
   }
-  throw InputError(fmt::format("{}: power.watch is \"{}\"; allowed: \"{}\"", question.file_name,
-                               watch, fmt::join(all.names, "\", \"")));
+  throw InputError(fmt::format(
+      "{}: power.watch is \"{}\", which a first study could not make{}{}; made, and allowed: "
+      "\"{}\"",
+      question.file_name, watch, all.because.empty() ? "" : ", because ", all.because,
+      fmt::join(all.names, "\", \"")));
 }
 
 PowerProgress fill(const PowerFolder& folder, const PowerQuestion& question,

@@ -80,7 +80,9 @@ Defined<Detection> indices(const DetectionCounts& counts, RateCorrection correct
   d.hit_rate = hits->value;
   d.false_alarm_rate = alarms->value;
   d.d_prime = (hits->z() - alarms->z()) / scale;
-  d.criterion = -0.5 * (hits->z() + alarms->z());
+  const double sum = hits->z() + alarms->z();
+  const bool rounding = std::abs(sum) <= 1e-15 * std::abs(hits->z());
+  d.criterion = rounding ? 0.0 : -0.5 * sum;
   if (d.d_prime != 0.0) {
     d.relative_criterion = d.criterion / d.d_prime;
   } else {

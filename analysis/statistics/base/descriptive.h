@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "analysis/statistics/base/defined.h"
@@ -15,7 +17,12 @@ struct Moments {
   double offset{0.0};   // mean - origin
   double squares{0.0};  // sum of squared deviations from the mean
 
-  double mean() const { return origin + offset; }
+  /// 0 where both parts cancel but for rounding.
+  double mean() const {
+    constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+    const double sum = origin + offset;
+    return std::abs(sum) <= kRounding * std::abs(origin) ? 0.0 : sum;
+  }
   /// count > 1.
   double variance() const { return squares / static_cast<double>(count - 1); }
 };

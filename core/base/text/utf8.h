@@ -25,6 +25,23 @@ constexpr std::size_t character_bytes(char first) noexcept {
   return byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
 }
 
+/// Whether the text consists of characters of UTF-8.
+constexpr bool is_utf8(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text.front());
+    if (bytes == 0 || bytes > text.size()) {
+      return false;
+    }
+    for (std::size_t i = 1; i < bytes; ++i) {
+      if (!continues_character(text[i])) {
+        return false;
+      }
+    }
+    text.remove_prefix(bytes);
+  }
+  return true;
+}
+
 /// The most bytes, up to `most`, after which `text` can be cut without dividing a UTF-8 character.
 /// A text that is not UTF-8 there is cut after `most` bytes.
 constexpr std::size_t whole_characters(std::string_view text, std::size_t most) noexcept {
