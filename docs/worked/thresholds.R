@@ -26,7 +26,7 @@ fit <- function(trials) {
   starts <- expand.grid(threshold = quantile(trials$x, c(0.25, 0.5, 0.75)), width = c(0.3, 1, 2))
   tries <- apply(starts, 1, function(start) {
     optim(c(start[1], log(start[2]), 0.01), likelihood, method = "L-BFGS-B",
-          lower = c(-5, log(0.01), 0), upper = c(5, log(20), 0.06),
+          lower = c(-5, log(0.01), 0), upper = c(5, log(20), 0.2),
           control = list(factr = 10, maxit = 1000))
   })
   tries[[which.min(sapply(tries, function(each) each$value))]]

@@ -8,15 +8,13 @@
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/psychometric/fit/adaptive_posterior.h"
-#include "analysis/psychometric/fit/profile_interval.h"
+#include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/statistics/base/descriptive.h"
 
 namespace haptrial::analysis::trials {
 namespace {
 
-constexpr double kAtBound = 1e-3;  // of a lapse rate
-constexpr double kLevel = 0.95;    // of intervals
+constexpr double kLevel = 0.95;  // of intervals
 constexpr std::array kBandShares{0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95};
 
 /// "larger" or "smaller": the function crosses 1/2 at the standard, and its spread is what counts.
@@ -80,56 +78,70 @@ Estimated within(double value, const ProfileInterval& interval, double lowest) {
           interval.high_open ? kOpen : interval.high};
 }
 
-/// Threshold and width, and what is one of them on another scale: their intervals hold the truth
-/// more often than a bootstrap's.
-void take_profile(FunctionReadings& r, const ProfiledFit& fit, const TrialsPlan& plan) {
-  const psychometric::Axis& axis = plan.function.axis;
-  r.x =
-      within(fit.fit.parameters.threshold, fit.threshold, -std::numeric_limits<double>::infinity());
-  r.threshold = {axis.level(r.x.value), axis.level(r.x.low), axis.level(r.x.high)};
-  r.width = within(fit.fit.parameters.width, fit.width, 0.0);
-  if (plan.reference) {
-    const Estimated converted = converted_weber(r, plan);
-    r.weber = converted.known() ? converted : r.weber;
-  }
+Estimated as_levels(const Estimated& x, const psychometric::Axis& axis) {
+  const auto level = [&](double end) { return std::isinf(end) ? end : axis.level(end); };
+  return {axis.level(x.value), level(x.low), level(x.high)};
 }
 
-/// What the draws of a posterior leave open of a number that is read off a function.
-Estimated drawn(double value, const AdaptivePosterior& posterior, const TrialsPlan& plan,
-                const Asked& asked) {
+/// Threshold and width.
+void take_stated(FunctionReadings& r, const StatedFit& fit, const TrialsPlan& plan) {
+  r.x = within(fit.estimate.threshold, fit.threshold, -std::numeric_limits<double>::infinity());
+  r.threshold = as_levels(r.x, plan.function.axis);
+  r.width = within(fit.estimate.width, fit.width, 0.0);
+}
+
+/// The median of the draws of a number that is read off a function, with its central interval.
+Estimated drawn(const StatedFit& fit, const TrialsPlan& plan, const Asked& asked) {
   const auto curve = psychometric::curve_of(plan.function);
   std::vector<double> numbers;
-  for (const FittedParameters& draw : posterior.draws) {
+  for (const FittedParameters& draw : fit.draws) {
     numbers.push_back(read_off(fitted_function(plan.function, curve, draw), asked));
   }
-  const auto low = quantile(numbers, 0.5 - 0.5 * kLevel);
-  const auto high = quantile(numbers, 0.5 + 0.5 * kLevel);
-  return {value, low ? *low : kNotKnown, high ? *high : kNotKnown};
+  const auto at = [&](double share) {
+    const auto found = quantile(numbers, share);
+    return found ? *found : kNotKnown;
+  };
+  return {at(0.5), at(0.5 - 0.5 * kLevel), at(0.5 + 0.5 * kLevel)};
 }
 
-/// The likeliest rate is often a bound, which a central interval leaves out.
-Estimated as_far_as(double value, const CredibleInterval& interval) {
-  return {value, std::min(value, interval.low), std::max(value, interval.high)};
-}
-
-/// The intervals of adaptive trials.
-void take_posterior(FunctionFit& result, FunctionReadings& r, ProfiledFit& fit,
-                    const TrialsPlan& plan) {
-  const AdaptivePosterior posterior =
-      adaptive_posterior(result.blocks, likelihood_options(plan), kLevel, kPosteriorDraws);
-  fit.threshold = {posterior.threshold.low, posterior.threshold.high};
-  fit.width = {posterior.width.low, posterior.width.high};
-  r.slope = drawn(r.slope.value, posterior, plan, {Reading::kSlope, plan.function.share});
-  r.lapse = as_far_as(r.lapse.value, posterior.lapse);
+/// What is read off the posterior of adaptive trials.
+void take_draws(FunctionFit& result, FunctionReadings& r, const StatedFit& fit,
+                const TrialsPlan& plan) {
+  r.slope = drawn(fit, plan, {Reading::kSlope, plan.function.share});
+  r.lapse = within(fit.estimate.lapse, fit.lapse, 0.0);
   if (plan.guess_free) {
-    r.guess = as_far_as(r.guess.value, posterior.guess);
+    r.guess = within(fit.estimate.guess, fit.guess, 0.0);
   }
   if (plan.reference) {
-    r.weber = drawn(r.weber.value, posterior, plan,
-                    {weber_reading(plan), plan.function.share, *plan.reference});
+    r.weber = drawn(fit, plan, {weber_reading(plan), plan.function.share, *plan.reference});
+    r.weber.high = fit.open() ? std::numeric_limits<double>::infinity() : r.weber.high;
   }
   for (BandPoint& point : result.band) {
-    point.level = drawn(point.level.value, posterior, plan, {Reading::kLevelOfShare, point.share});
+    point.level = drawn(fit, plan, {Reading::kLevelOfShare, point.share});
+  }
+}
+
+/// What scatter beyond chance makes of a bootstrap's interval.
+void widen(Estimated& e, double factor) {
+  e.low = e.value - factor * (e.value - e.low);
+  e.high = e.value + factor * (e.high - e.value);
+}
+
+void widen_rate(Estimated& e, double factor) {
+  widen(e, factor);
+  e.low = std::isnan(e.low) ? e.low : std::max(e.low, 0.0);
+  e.high = std::isnan(e.high) ? e.high : std::min(e.high, kLargestRate);
+}
+
+void remove_interval(Estimated& e) { e.low = e.high = kNotKnown; }
+
+/// Intervals that would not hold the truth as often as they say.
+void remove_intervals(FunctionFit& result, FunctionReadings& r) {
+  for (Estimated* e : {&r.threshold, &r.x, &r.width, &r.slope, &r.weber, &r.lapse, &r.guess}) {
+    remove_interval(*e);
+  }
+  for (BandPoint& point : result.band) {
+    remove_interval(point.level);
   }
 }
 
@@ -170,23 +182,63 @@ BootstrappedFit bare_fit(const std::vector<TrialBlock>& blocks, const Likelihood
   return result;
 }
 
-void add_warnings(FunctionFit& fit, const TrialsPlan& plan) {
-  const double most = plan.lapse.high;
-  if (plan.lapse.high > plan.lapse.low && fit.fitted.lapse > most - kAtBound) {
-    fit.warnings.push_back(
-        fmt::format("the lapse rate ended at its bound of {}; it may be higher", most));
+/// The intervals of listed levels that are no profile's.
+void take_scatter(FunctionFit& result, FunctionReadings& r, const StatedFit& fit,
+                  const TrialsPlan& plan) {
+  widen(r.slope, fit.widening);
+  widen(r.weber, fit.widening);
+  widen_rate(r.lapse, fit.widening);
+  widen_rate(r.guess, fit.widening);
+  for (BandPoint& point : result.band) {
+    widen(point.level, fit.widening);
   }
-  constexpr double kImprobable = 0.05;
-  if (fit.deviance_p < kImprobable) {
-    fit.warnings.push_back(fmt::format(
-        "answers scatter more about the function than chance explains (deviance {:.1f}, "
-        "p = {:.3f})",
-        fit.deviance, fit.deviance_p));
+  if (const Estimated weber = converted_weber(r, plan); weber.known()) {
+    r.weber = weber;
   }
 }
 
-void fit_likelihood(FunctionFit& result, const TrialsPlan& plan, int threads) {
-  const LikelihoodOptions options = likelihood_options(plan);
+void add_warnings(FunctionFit& result, const StatedFit& fit, const TrialsPlan& plan) {
+  std::vector<std::string>& warnings = result.warnings;
+  if (!fit.no_interval.empty()) {
+    warnings.push_back("there is no interval: " + fit.no_interval);
+  }
+  if (fit.widening > 1.0) {
+    warnings.push_back(fmt::format(
+        "the intervals are {:.1f} times as long as chance alone would make them (p = {:.3f} of the "
+        "deviance)",
+        fit.widening, result.deviance_p));
+  }
+  if (fit.lapse_at_bound) {
+    warnings.push_back(
+        fmt::format("the lapse rate ended at its bound of {}; it may be higher", plan.lapse.high));
+  }
+  if (fit.guess_at_bound) {
+    warnings.emplace_back("the guess rate ended at its bound; it may be higher");
+  }
+  if (fit.open()) {
+    warnings.emplace_back(
+        "the answers do not tell how far the threshold lies beyond what was presented");
+  }
+}
+
+/// Why the answers tell no function.
+std::string untold_because(const FunctionFit& result, const StatedFit& fit,
+                           LikelihoodOptions options) {
+  options.function.falling = !options.function.falling;
+  const LikelihoodFit turned = likelihood_fit(result.blocks, options);
+  constexpr double kRejected = 1.92;  // half the 95 % quantile of chi-square, 1
+  if (turned.log_likelihood > fit.likeliest.log_likelihood + kRejected) {
+    return options.function.falling
+               ? "the share of answers 1 falls with the level, and the function rises; a name with "
+                 "neg_ falls"
+               : "the share of answers 1 rises with the level, and the function falls";
+  }
+  return fit.open() ? "the threshold lies beyond what was presented"
+                    : "the answers do not tell threshold and width";
+}
+
+void fit_stated(FunctionFit& result, const LikelihoodOptions& options, const TrialsPlan& plan,
+                int threads) {
   std::vector<Asked> asked = asked_of(plan);
   const std::size_t band = asked.size();
   for (const double share : kBandShares) {
@@ -201,29 +253,39 @@ void fit_likelihood(FunctionFit& result, const TrialsPlan& plan, int threads) {
   const bool bootstrapped = plan.resamples > 0;
   const BootstrappedFit fit = bootstrapped ? bootstrap_fit(result.blocks, options, asked, how)
                                            : bare_fit(result.blocks, options, asked);
-  result.fitted = fit.fit.parameters;
-  if (fit.fit.undetermined) {
-    result.likelihood = Undefined{"the answers do not tell threshold and width"};
-    return;
-  }
   result.deviance = fit.deviance.deviance;
   result.deviance_p = bootstrapped ? fit.deviance_p : kNotKnown;
+  const StatedFit stated = stated_fit(result.blocks, options, result.adaptive, result.deviance_p);
+  if (!fit.fit.undetermined) {
+    result.likeliest = fit.fit.parameters;
+  }
+  if (!stated.told) {
+    result.stated = Undefined{untold_because(result, stated, options)};
+    return;
+  }
+  result.fitted = stated.estimate;
+  result.no_interval = stated.no_interval;
+  result.lapse_told = stated.lapse_told;
   FunctionReadings readings = readings_of(fit, plan);
   for (std::size_t i = 0; bootstrapped && i < kBandShares.size(); ++i) {
     result.band.push_back({kBandShares[i], estimated(fit, band + i)});
   }
-  ProfiledFit profiled = profiled_fit(result.blocks, options);
-  if (result.adaptive && plan.posteriors) {
-    take_posterior(result, readings, profiled, plan);
+  take_stated(readings, stated, plan);
+  if (result.adaptive) {
+    take_draws(result, readings, stated, plan);
+  } else {
+    take_scatter(result, readings, stated, plan);
   }
-  take_profile(readings, profiled, plan);
-  result.likelihood = readings;
-  if (bootstrapped && fit.undetermined > plan.resamples / 20) {
+  if (!stated.no_interval.empty()) {
+    remove_intervals(result, readings);
+  }
+  result.stated = readings;
+  if (bootstrapped && !result.adaptive && fit.undetermined > plan.resamples / 20) {
     result.warnings.push_back(
         fmt::format("{} of {} bootstrap samples do not tell threshold and width", fit.undetermined,
                     plan.resamples));
   }
-  add_warnings(result, plan);
+  add_warnings(result, stated, plan);
 }
 
 Estimated marginal(const BayesianFit& fit, Dimension dimension, double value) {
@@ -235,8 +297,10 @@ Estimated marginal(const BayesianFit& fit, Dimension dimension, double value) {
   return e;
 }
 
-void fit_bayesian(FunctionFit& result, const TrialsPlan& plan, int threads) {
+void fit_bayesian(FunctionFit& result, const LikelihoodOptions& likelihood, const TrialsPlan& plan,
+                  int threads) {
   BayesianOptions options;
+  options.range = range_of(likelihood, coordinates(plan.function.axis, result.blocks));
   options.function = plan.function;
   options.task = plan.task();
   options.threads = threads;
@@ -252,7 +316,7 @@ void fit_bayesian(FunctionFit& result, const TrialsPlan& plan, int threads) {
   FunctionReadings r;
   r.x = marginal(fit, kThreshold, fit.mean.threshold);
   const psychometric::Axis& axis = plan.function.axis;
-  r.threshold = {axis.level(r.x.value), axis.level(r.x.low), axis.level(r.x.high)};
+  r.threshold = as_levels(r.x, axis);
   r.width = marginal(fit, kWidth, fit.mean.width);
   r.lapse = marginal(fit, kLapse, fit.mean.lapse);
   if (plan.guess_free) {
@@ -273,6 +337,7 @@ LikelihoodOptions likelihood_options(const TrialsPlan& plan) {
   options.function = plan.function;
   options.task = plan.task();
   options.lapse = plan.lapse;
+  options.guess.high = kMostLapses;
   if (!plan.guess_free && !plan.guess_is_lapse && plan.function.guess == 0.0) {
     options.task = Task::kYesNo;  // a guess rate that is known to be 0
     options.guess = {0.0, 0.0};
@@ -280,8 +345,16 @@ LikelihoodOptions likelihood_options(const TrialsPlan& plan) {
   return options;
 }
 
+std::optional<SearchBounds> range_on_axis(const std::optional<psychometric::LevelRange>& range,
+                                          const psychometric::Axis& axis) {
+  if (!range || !std::isfinite(axis.at(range->low)) || !std::isfinite(axis.at(range->high))) {
+    return std::nullopt;
+  }
+  return SearchBounds{axis.at(range->low), axis.at(range->high)};
+}
+
 psychometric::PsychometricFunction FunctionFit::function(const TrialsPlan& plan) const {
-  if (!likelihood) {
+  if (!stated) {
     throw std::logic_error("FunctionFit: the function is not defined");
   }
   return fitted_function(plan.function, fitted);
@@ -295,23 +368,29 @@ FunctionFit fit_series(const AnsweredSeries& series, const TrialsPlan& plan, int
   result.trials = series.trials.size();
   result.adaptive = series.adaptive;
   result.blocks = blocks_of(series);
+  const auto presented = [](const TrialBlock& b) { return b.level != kNoStimulus; };
   const auto outside = [&](const TrialBlock& b) {
-    return !std::isfinite(plan.function.axis.at(b.level));
+    return b.level != kNoStimulus && !std::isfinite(plan.function.axis.at(b.level));
   };
   if (std::any_of(result.blocks.begin(), result.blocks.end(), outside)) {
     result.warnings.push_back(fmt::format("levels at or below the axis's origin of {} are left out",
                                           plan.function.axis.origin));
     std::erase_if(result.blocks, outside);
   }
-  if (result.blocks.size() < 2) {
+  if (std::ranges::count_if(result.blocks, presented) < 2) {
     const Undefined why{"there are answers at fewer than two levels"};
-    result.likelihood = why;
+    result.stated = why;
     result.bayesian = why;
     return result;
   }
-  fit_likelihood(result, plan, threads);
+  LikelihoodOptions options = likelihood_options(plan);
+  options.presentable = range_on_axis(series.range, plan.function.axis);
+  if (series.catches.total > 0) {
+    options.guess.high = kLargestRate;
+  }
+  fit_stated(result, options, plan, threads);
   if (plan.bayesian) {
-    fit_bayesian(result, plan, threads);
+    fit_bayesian(result, options, plan, threads);
   } else {
     result.bayesian = Undefined{"the definition does not ask for it"};
   }

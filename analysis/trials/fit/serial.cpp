@@ -22,7 +22,10 @@ class Recorded {
       : data_(data), plan_(plan), procedure_of_(procedure_of) {}
 
   void add(const AnsweredSeries& series, const FunctionFit& fit, const TrackMap& tracks) {
-    functions_.push_back(fit.likelihood ? std::optional(fit.function(plan_)) : std::nullopt);
+    // Functions of simulated sessions are those of the likelihood, too.
+    functions_.push_back(fit.likeliest
+                             ? std::optional(fitted_function(plan_.function, *fit.likeliest))
+                             : std::nullopt);
     for (const LevelTrial& trial : series.trials) {
       const std::size_t session = data_.trials[trial.trial].session;
       const bool chosen = trial.choice != 0;
@@ -90,7 +93,7 @@ void count_levels(SerialEffects& own, const AnsweredSeries& series, const Functi
   for (const LevelTrial& trial : series.trials) {
     own.limited += std::abs(trial.level - trial.asked) > kRounding * std::abs(trial.asked) ? 1 : 0;
   }
-  if (!fit.likelihood) {
+  if (!fit.stated) {
     return;
   }
   const auto function = fit.function(plan);
@@ -148,7 +151,8 @@ std::vector<SerialEffects> serial_effects(const TrialsData& data,
   std::map<std::string, std::pair<SerialEffects, Recorded>> people;
   for (std::size_t i = 0; i < series.size(); ++i) {
     auto& [own, recorded] =
-        people.try_emplace(series[i].participant, SerialEffects{}, Recorded(data, plan, procedure_of))
+        people
+            .try_emplace(series[i].participant, SerialEffects{}, Recorded(data, plan, procedure_of))
             .first->second;
     own.participant = series[i].participant;
     count_levels(own, series[i], fits[i], plan);

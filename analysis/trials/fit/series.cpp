@@ -67,6 +67,20 @@ int outcome_of(const StudyTrial& trial, const TrialsPlan& plan) {
   return answer == nullptr ? -1 : answer->correct;
 }
 
+std::string yes_of(const TrialsPlan& plan) { return plan.yes.empty() ? "yes" : plan.yes; }
+
+int signal_in(const StudyTrial& trial, const TrialsPlan& plan, int outcome) {
+  const GivenAnswer* answer = answer_to(trial, plan.question);
+  if (answer != nullptr && answer->correct >= 0) {
+    return answer->correct == 1 ? outcome : 1 - outcome;
+  }
+  if (!trial.probe.empty()) {
+    return 0;
+  }
+  const double level = level_of(trial, plan);
+  return std::isfinite(level) ? (level > 0.0 ? 1 : 0) : -1;
+}
+
 std::vector<std::string> factors_of(const TrialsData& data, const StudyTrial& trial,
                                     const TrialsPlan& plan) {
   std::vector<std::string> levels;
@@ -76,6 +90,34 @@ std::vector<std::string> factors_of(const TrialsData& data, const StudyTrial& tr
   return levels;
 }
 
+namespace {
+
+/// 1 or 0 for "yes" in a catch trial; -1: it is none.
+int answer_to_catch(const StudyTrial& trial, const TrialsPlan& plan) {
+  const GivenAnswer* answer = answer_to(trial, plan.question);
+  if (!plan.guess_free || !trial.counts() || trial.probe.empty() || answer == nullptr ||
+      std::isfinite(level_of(trial, plan))) {
+    return -1;
+  }
+  const int outcome = answer->text == yes_of(plan) ? 1 : 0;
+  return signal_in(trial, plan, outcome) == 0 ? outcome : -1;
+}
+
+AnsweredSeries& series_with(const std::vector<std::string>& levels, const std::string& participant,
+                            std::vector<AnsweredSeries>& own) {
+  const auto at =
+      std::ranges::find_if(own, [&](const AnsweredSeries& s) { return s.levels == levels; });
+  if (at != own.end()) {
+    return *at;
+  }
+  own.emplace_back();
+  own.back().participant = participant;
+  own.back().levels = levels;
+  return own.back();
+}
+
+}  // namespace
+
 std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& plan) {
   const std::vector<std::string> words = two_answers(data, plan);
   std::map<std::string, std::vector<AnsweredSeries>> people;
@@ -83,6 +125,14 @@ std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& 
     const StudyTrial& trial = data.trials[i];
     if (plan.level.empty() && has_surface(trial)) {
       continue;  // a function of one variable would leave the others out
+    }
+    const std::string& participant = data.session_of(trial).participant;
+    const std::vector<std::string> levels = factors_of(data, trial, plan);
+    if (const int yes = answer_to_catch(trial, plan); yes >= 0) {
+      TrialBlock& catches = series_with(levels, participant, people[participant]).catches;
+      catches.correct += yes;
+      ++catches.total;
+      continue;
     }
     const double level = level_of(trial, plan);
     const int outcome = outcome_of(trial, plan);
@@ -95,18 +145,11 @@ std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& 
       made.track = trial.levels.front().track;
     }
     add_choice(made, trial, plan, words);
-    std::vector<AnsweredSeries>& own = people[data.session_of(trial).participant];
-    const std::vector<std::string> levels = factors_of(data, trial, plan);
-    auto at = std::find_if(own.begin(), own.end(),
-                           [&](const AnsweredSeries& s) { return s.levels == levels; });
-    if (at == own.end()) {
-      own.push_back({data.session_of(trial).participant, levels, {}});
-      at = own.end() - 1;
-    }
-    at->trials.push_back(std::move(made));
+    series_with(levels, participant, people[participant]).trials.push_back(std::move(made));
   }
   std::vector<AnsweredSeries> all;
   for (auto& [participant, own] : people) {
+    std::erase_if(own, [](const AnsweredSeries& series) { return series.trials.empty(); });
     std::sort(own.begin(), own.end(),
               [](const AnsweredSeries& a, const AnsweredSeries& b) { return a.levels < b.levels; });
     for (AnsweredSeries& series : own) {
@@ -127,6 +170,9 @@ std::vector<TrialBlock> blocks_of(const AnsweredSeries& series) {
     ++block.total;
   }
   std::vector<TrialBlock> result;
+  if (series.catches.total > 0) {
+    result.push_back(series.catches);
+  }
   for (const auto& [level, block] : blocks) {
     result.push_back(block);
   }

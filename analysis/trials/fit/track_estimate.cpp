@@ -37,6 +37,23 @@ bool has_reversals(const psychometric::Procedure* procedure) {
          dynamic_cast<const psychometric::Pest*>(procedure) != nullptr;
 }
 
+/// Counts steps at an end of the range; a track that begins there has not come to it.
+std::size_t steps_at_end(const TrackEstimate& track) {
+  if (!track.range || track.steps.empty()) {
+    return 0;
+  }
+  const auto [low, high] = *track.range;
+  const double close = 1e-9 * (high - low), first = track.steps.front().applied;
+  const auto changed = std::ranges::find_if(
+      track.steps, [&](const TrackStep& step) { return std::abs(step.applied - first) > close; });
+  const auto at_end = [&](const TrackStep& step) {
+    return step.applied <= low + close || step.applied >= high - close;
+  };
+  const bool stayed = changed == track.steps.end();
+  return static_cast<std::size_t>(
+      std::count_if(stayed ? track.steps.begin() : changed, track.steps.end(), at_end));
+}
+
 void replay(TrackEstimate& track, const std::vector<psychometric::Level>& levels,
             psychometric::Procedure& procedure) {
   const auto* staircase = dynamic_cast<const psychometric::Staircase*>(&procedure);
@@ -96,8 +113,9 @@ Defined<CredibleInterval> simulated_interval(const TrackEstimate& track, const T
   if (blocks.size() < 2 || std::any_of(blocks.begin(), blocks.end(), outside)) {
     return Undefined{"there are fewer than two levels, or one is not on the axis"};
   }
-  const auto draws =
-      adaptive_posterior(blocks, likelihood_options(plan), 0.95, kPosteriorDraws).draws;
+  LikelihoodOptions options = likelihood_options(plan);
+  options.presentable = range_on_axis(track.range, plan.function.axis);
+  const auto draws = adaptive_posterior(blocks, options, 0.95, kPosteriorDraws).draws;
   const FinishedTrack again{track.estimates.front(), track.steps.size(), track.finished,
                             [&] { return procedure_of(track.track); }};
   return track_interval(again, plan.function, draws,
@@ -108,7 +126,12 @@ void add_interval(TrackEstimate& track, const TrialsPlan& plan, const ProcedureO
   for (psychometric::Estimate& e : track.estimates) {
     add_student(e);
   }
-  if (!track.adaptive || track.estimates.empty() || track.estimates.front().interval) {
+  if (!track.adaptive || track.estimates.empty() || track.estimates.front().interval ||
+      !track.estimates.front().remark.empty()) {
+    return;
+  }
+  if (track.ended_at_range()) {
+    track.no_interval = "the track was at the end of its range";
     return;
   }
   if (const auto found = simulated_interval(track, plan, procedure_of)) {
@@ -153,6 +176,8 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
                         false,
                         false,
                         {},
+                        0,
+                        {},
                         "",
                         ""});
       levels.emplace_back();
@@ -172,6 +197,8 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
     }
     if (procedure) {
       tracks[i].adaptive = true;
+      tracks[i].range = procedure->range();
+      tracks[i].at_end = steps_at_end(tracks[i]);
       replay(tracks[i], levels[i], *procedure);
     } else {
       tracks[i].because = "its levels are listed";

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,14 @@ struct TrackEstimate {
   std::vector<TrackStep> steps;
   bool adaptive{false};                           // its procedure chose levels by the answers
   bool finished{false};                           // else it was broken off
+  std::optional<psychometric::LevelRange> range;  // of what the procedure may present
+  std::size_t at_end{0};  // steps at an end of the range, but for those before the first change
   std::vector<psychometric::Estimate> estimates;  // of the procedure itself
   std::string because;                            // why it states none
   std::string no_interval;                        // why the first estimate has no interval
+
+  /// Whether the range, and not the answers, settled where the track was.
+  bool ended_at_range() const { return 10 * at_end > steps.size(); }
 };
 
 /// A procedure as the definition begins it, by the name of a track; null: its levels are listed, or

@@ -159,6 +159,24 @@ void read_tests(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   }
 }
 
+/// A procedure learns from answers that get rarer as the level rises, or more frequent.
+void match_direction(Table& table, bool falls, TrialsPlan& plan) {
+  if (plan.function.falling == falls) {
+    return;
+  }
+  if (!table.has("function")) {
+    plan.function_name = "neg_" + plan.function_name;
+    plan.function.falling = falls;
+  } else if (falls) {
+    table.reject("function", fmt::format("\"{}\", which rises", plan.function_name),
+                 fmt::format("\"neg_{}\", which falls as the procedure's right answers do",
+                             plan.function_name));
+  } else {
+    table.reject("function", fmt::format("\"{}\", which falls", plan.function_name),
+                 "a name without neg_, as the procedure's answers 1 rise with the level");
+  }
+}
+
 void read_function(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   plan.function.axis = defaults.axis;
   if (table.has("function")) {
@@ -168,6 +186,9 @@ void read_function(Table& table, const PlanDefaults& defaults, TrialsPlan& plan)
     psychometric::set_sigmoid(plan.function, plan.function_name, Scale::kNaturalLog);
   } catch (const std::invalid_argument& error) {
     table.reject("function", fmt::format("cannot be read: {}", error.what()));
+  }
+  if (defaults.falls && plan.yes.empty() && plan.question.empty()) {
+    match_direction(table, *defaults.falls, plan);
   }
   plan.function.axis.scale = chosen(table, "scale", kScales, plan.function.axis.scale);
   if (table.has("origin")) {
@@ -190,6 +211,9 @@ void read_guess(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
 }
 
 void read_lapse(Table& table, TrialsPlan& plan) {
+  if (plan.guess_is_lapse) {
+    plan.lapse = {};  // it counts on both sides
+  }
   if (table.is_table("lapse")) {
     Table lapse = table.table("lapse");
     const bool free = !lapse.has("free") || lapse.boolean("free");

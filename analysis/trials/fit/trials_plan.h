@@ -41,10 +41,15 @@ struct PlanDefaults {
   std::vector<std::string> names;    // that `by` may name besides
   psychometric::Axis axis;           // of the procedure, with its unit
   std::optional<double> guess;       // 1 / choices where an answer is right; else free
+  std::optional<bool> falls;         // answers 1 of the procedure get rarer as the level rises
   ReachingNames reaching;            // that the analysis of movements may name
   CueNames cues;                     // that the comparison of cues may name
   StatedLevels levels;               // of names of `by`, where the definition states all of them
 };
+
+/// The highest lapse rate, and guess rate without catch trials, unless stated: with lapses up to
+/// 15 % intervals hold the truth (docs/algorithms/procedure-coverage.md).
+inline constexpr double kMostLapses = 0.2;
 
 /// What [analysis] of a definition states.
 struct TrialsPlan {
@@ -63,13 +68,12 @@ struct TrialsPlan {
   psychometric::PsychometricParameters function{.guess = 0.5};
   bool guess_free{false};
   bool guess_is_lapse{false};  // a lapse is as likely to be the one answer as the other
-  RateBounds lapse{};
+  RateBounds lapse{.high = kMostLapses};
   double threshold_at{0.75};        // share of answers 1 at the threshold, lapses aside
   std::optional<double> reference;  // standard stimulus, for Weber fractions [unit of the level]
   bool bayesian{true};
   bool population{true};        // the mixed model of all participants
   bool track_intervals{true};   // of the procedures' own estimates
-  bool posteriors{true};        // intervals of functions of adaptive trials, which take most time
   bool serial{true};            // drift and repetition
   std::size_t resamples{1999};  // of each function
   std::size_t permutations{9999};
@@ -92,10 +96,12 @@ struct TrialsPlan {
 ///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors, or of
 ///                   combinations joined by ", "; a level that is not stated is a problem
 ///     question, yes, level   as TrialsPlan
-///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis
-///     guess         0 to 0.9; "free" for "yes" or "no"; "lapse", which is as large as the lapse
-///                   rate, for "larger" or "smaller"
-///     lapse         { free = true, at_most = 0.06 }, or a number
+///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis; with
+///                   "neg_" before it, it falls. It must fall if the procedure's answers 1 do, and
+///                   does so if left out
+///     guess         0 to 0.9; "free" for "yes" or "no", at most 0.2, or 0.5 with catch trials;
+///                   "lapse", which is as large as the lapse rate, for "larger" or "smaller"
+///     lapse         { free = true, at_most = 0.2 }, or a number; at most 0.06 if guess is "lapse"
 ///     scale, origin   of the axis: "linear", "log10", "ln" or "decibel"
 ///     threshold_at  between guess and 1: 0.75 of two intervals, 0.5 if the guess rate is free
 ///     reference     standard stimulus

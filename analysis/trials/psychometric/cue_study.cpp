@@ -171,7 +171,7 @@ class PersonalCues {
   /// The reason, if one of these functions is not defined.
   const FunctionFit* undefined_in(const Places& places) const {
     for (const std::size_t i : places) {
-      if (!fits_[i].likelihood) {
+      if (!fits_[i].stated) {
         return &fits_[i];
       }
     }
@@ -180,13 +180,13 @@ class PersonalCues {
 
   Undefined because_of(const FunctionFit& fit) const {
     return {fmt::format("the function of {} is not defined, because {}", fit.condition,
-                        fit.likelihood.because())};
+                        fit.stated.because())};
   }
 
   LogSd sd_of(const Places& places) const {
     std::vector<LogSd> sds;
     for (const std::size_t i : places) {
-      sds.push_back(log_sd_of(*fits_[i].likelihood, in_widths_));
+      sds.push_back(log_sd_of(*fits_[i].stated, in_widths_));
     }
     return geometric_mean(sds);
   }

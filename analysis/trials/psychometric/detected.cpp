@@ -32,19 +32,6 @@ double rating_of(const StudyTrial& trial, const TrialsPlan& plan, int outcome) {
   return outcome == 1 ? rating->value : -rating->value;
 }
 
-/// 1 signal, 0 noise, -1 neither.
-int signal_in(const StudyTrial& trial, const TrialsPlan& plan, int outcome) {
-  const GivenAnswer* answer = answer_to(trial, plan.question);
-  if (answer != nullptr && answer->correct >= 0) {
-    return answer->correct == 1 ? outcome : 1 - outcome;
-  }
-  if (!trial.probe.empty()) {
-    return 0;
-  }
-  const double level = level_of(trial, plan);
-  return std::isfinite(level) ? (level > 0.0 ? 1 : 0) : -1;
-}
-
 void add(Collected& collected, int signal, int outcome, double rating) {
   DetectionCounts& c = collected.counts;
   double& count = signal == 1 ? (outcome == 1 ? c.hits : c.misses)
@@ -65,7 +52,7 @@ std::vector<DetectedCondition> detected(const TrialsData& data, const TrialsPlan
     if (!trial.counts() || answer == nullptr) {
       continue;
     }
-    const int outcome = answer->text == (plan.yes.empty() ? "yes" : plan.yes) ? 1 : 0;
+    const int outcome = answer->text == yes_of(plan) ? 1 : 0;
     const int signal = signal_in(trial, plan, outcome);
     if (signal >= 0) {
       add(all[{data.session_of(trial).participant, factors_of(data, trial, plan)}], signal, outcome,

@@ -1,6 +1,11 @@
 #include "analysis/trials/psychometric/quantity.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace haptrial::analysis::trials {
@@ -21,6 +26,15 @@ MeanInterval within_range(MeanInterval mean, ValueRange range) {
   return mean;
 }
 
+namespace {
+
+Undefined left_out(const std::vector<std::string>& open, std::size_t others) {
+  return {fmt::format("{} of {} values lie beyond what was presented ({})", open.size(),
+                      open.size() + others, fmt::join(open, ", "))};
+}
+
+}  // namespace
+
 Quantity quantity(std::string name, std::string title, std::string unit,
                   const std::vector<QuantityValue>& values, const TrialsPlan& plan,
                   ValueRange range) {
@@ -30,8 +44,15 @@ Quantity quantity(std::string name, std::string title, std::string unit,
   result.unit = std::move(unit);
   const bool one = plan.by.empty();
   std::vector<Observation> observations;
+  std::map<std::string, std::vector<std::string>> open;  // participants by condition
   for (const QuantityValue& each : values) {
-    if (std::isfinite(each.value)) {
+    if (each.open) {
+      open[one ? "all" : fmt::format("{}", fmt::join(each.levels, ", "))].push_back(
+          each.participant);
+      if (std::ranges::find(result.open, each.participant) == result.open.end()) {
+        result.open.push_back(each.participant);
+      }
+    } else if (std::isfinite(each.value)) {
       observations.push_back(
           {each.participant, one ? std::vector<std::string>{"all"} : each.levels, each.value});
     }
@@ -47,8 +68,14 @@ Quantity quantity(std::string name, std::string title, std::string unit,
         means.push_back(*row[cell]);
       }
     }
-    const auto mean = mean_interval(means);
-    result.means.push_back(mean ? within_range(*mean, range) : mean);
+    const auto beyond = open.find(result.table.names[cell]);
+    Defined<MeanInterval> mean = mean_interval(means);
+    if (beyond != open.end()) {
+      mean = left_out(beyond->second, means.size());
+    } else if (mean) {
+      mean = within_range(*mean, range);
+    }
+    result.means.push_back(std::move(mean));
   }
   result.compared = result.table.cells.size() > 1;
   if (result.compared) {

@@ -14,6 +14,7 @@ struct QuantityValue {
   std::string participant;
   std::vector<std::string> levels;  // of TrialsPlan::by
   double value{0.0};                // finite
+  bool open{false};  // the answers do not tell how far it lies beyond what was presented
 };
 
 /// A quantity over participants: means of the conditions, and tests between them. A participant is
@@ -23,9 +24,11 @@ struct Quantity {
   std::string title;  // "threshold"
   std::string unit;   // of the values; empty: a pure number
   DesignTable table;
-  std::vector<Defined<MeanInterval>> means;  // (cells) over participants
+  std::vector<Defined<MeanInterval>> means;  // (cells) over participants; none if a value is open
+  std::vector<std::string> open;             // participants with open values, who are left out
   DesignTests tests;
   bool compared{false};  // there are at least two conditions
+  bool headline{true};   // it stands on top of a report
 };
 
 /// Where the values of a quantity can lie.
@@ -35,6 +38,8 @@ enum class ValueRange { kAny, kPositive, kShare };
 /// values, on log odds of shares. A mean that is not inside its range stays as it is.
 MeanInterval within_range(MeanInterval mean, ValueRange range);
 
+/// Open values take no part, and their condition has no mean: that of the others is too near to
+/// what was presented.
 /// @param plan  its tests are of the conditions; those of names without values are not defined
 /// @throws InputError for a planned test that compares trials with themselves, or a name that
 /// stands for several conditions.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include "core/base/error.h"
@@ -65,26 +64,40 @@ template <class Value>
 std::vector<QuantityValue> values_of(const std::vector<FunctionFit>& fits, Value&& value) {
   std::vector<QuantityValue> values;
   for (const FunctionFit& fit : fits) {
-    if (fit.likelihood) {
-      values.push_back({fit.participant, fit.levels, value(*fit.likelihood)});
+    if (fit.stated) {
+      values.push_back({fit.participant, fit.levels, value(*fit.stated), fit.stated->open()});
     }
   }
   return values;
 }
 
+/// A track's range is that of the series if it set the level that counts.
+void widen(AnsweredSeries& series, const TrackEstimate& track, const TrialsPlan& plan) {
+  if (!track.range || (!plan.level.empty() && plan.level != track.variable)) {
+    return;
+  }
+  if (!series.range) {
+    series.range = track.range;
+  }
+  series.range->low = std::min(series.range->low, track.range->low);
+  series.range->high = std::max(series.range->high, track.range->high);
+}
+
 /// Series with a track whose procedure chose levels by the answers.
 void mark_adaptive(TrialsResult& result) {
-  std::set<std::pair<std::string, std::string>> adaptive;  // participant and track
+  std::map<std::pair<std::string, std::string>, const TrackEstimate*> adaptive;
   for (const TrackEstimate& track : result.tracks) {
     if (track.adaptive) {
-      adaptive.emplace(track.participant, track.track);
+      adaptive[{track.participant, track.track}] = &track;
     }
   }
   for (AnsweredSeries& series : result.series) {
-    series.adaptive =
-        std::any_of(series.trials.begin(), series.trials.end(), [&](const LevelTrial& trial) {
-          return adaptive.contains({series.participant, trial.track});
-        });
+    for (const LevelTrial& trial : series.trials) {
+      if (const auto at = adaptive.find({series.participant, trial.track}); at != adaptive.end()) {
+        series.adaptive = true;
+        widen(series, *at->second, result.plan);
+      }
+    }
   }
 }
 
@@ -141,11 +154,20 @@ void add_detection(TrialsResult& result) {
       area.push_back({one.participant, one.levels, one.roc->area});
     }
   }
-  result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
-  result.quantities.push_back(quantity("criterion", "criterion c", "", criterion, result.plan));
+  const std::size_t first = result.quantities.size();
+  const bool chosen = std::ranges::any_of(result.tracks, &TrackEstimate::adaptive);
+  const std::string at = chosen ? " at the levels that the procedure chose" : "";
+  const auto add = [&](const char* name, const std::string& title, const auto& values,
+                       ValueRange range = ValueRange::kAny) {
+    result.quantities.push_back(quantity(name, title + at, "", values, result.plan, range));
+  };
+  add("d_prime", "sensitivity d'", d_prime);
+  add("criterion", "criterion c", criterion);
   if (!area.empty()) {
-    result.quantities.push_back(quantity("roc_area", "area under the ROC curve of ratings", "",
-                                         area, result.plan, ValueRange::kShare));
+    add("roc_area", "area under the ROC curve of ratings", area, ValueRange::kShare);
+  }
+  for (std::size_t i = first; i < result.quantities.size(); ++i) {
+    result.quantities[i].headline = !chosen;  // another grid of levels would change them
   }
 }
 

@@ -59,6 +59,16 @@ class Estimates {
     one("guess_rate", r.guess, "");
   }
 
+  /// Of adaptive trials for comparison with other programs: without an interval, which would not
+  /// hold the truth.
+  void add_likeliest(const FunctionFit& fit) {
+    const psychometric::Axis& axis = result_.plan.function.axis;
+    const FittedParameters& p = *fit.likeliest;
+    add(fit.participant, fit.levels, "", "likelihood", "threshold", {axis.level(p.threshold)},
+        axis.unit);
+    add(fit.participant, fit.levels, "", "likelihood", "width", {p.width}, axis.x_unit());
+  }
+
  private:
   const TrialsResult& result_;
   std::string text_;
@@ -113,7 +123,10 @@ void add_cue_rows(const TrialsResult& result, Estimates& rows) {
 std::string estimates_csv(const TrialsResult& result) {
   Estimates rows(result);
   for (const FunctionFit& fit : result.fits) {
-    rows.add(fit, fit.likelihood, "likelihood");
+    rows.add(fit, fit.stated, method_of(fit));
+    if (fit.adaptive && fit.likeliest) {
+      rows.add_likeliest(fit);
+    }
     rows.add(fit, fit.bayesian, "bayesian");
   }
   if (result.cues) {

@@ -11,11 +11,18 @@ namespace {
 
 constexpr int kCurvePoints = 120;
 
+/// All but the catch trials, which have no level.
+std::vector<TrialBlock> presented(const FunctionFit& fit) {
+  std::vector<TrialBlock> blocks = fit.blocks;
+  std::erase_if(blocks, [](const TrialBlock& block) { return block.level == kNoStimulus; });
+  return blocks;
+}
+
 /// Lowest and highest level that the answers and the readings of a function have.
 Range levels_of(const std::vector<const FunctionFit*>& fits) {
   Range range{INFINITY, -INFINITY};
   for (const FunctionFit* fit : fits) {
-    for (const TrialBlock& block : fit->blocks) {
+    for (const TrialBlock& block : presented(*fit)) {
       range.first = std::min(range.first, block.level);
       range.second = std::max(range.second, block.level);
     }
@@ -38,7 +45,7 @@ Series data_series(const FunctionFit& fit, const Look& look) {
     levels = 0.0;
     correct = total = 0;
   };
-  for (const TrialBlock& block : fit.blocks) {
+  for (const TrialBlock& block : presented(fit)) {
     levels += block.level * block.total;
     correct += block.correct;
     total += block.total;
@@ -52,7 +59,7 @@ Series data_series(const FunctionFit& fit, const Look& look) {
 
 Series curve_series(const FunctionFit& fit, const TrialsPlan& plan, const Range& range,
                     const Look& look) {
-  Series curve{fit.condition.empty() ? "maximum likelihood" : fit.condition, Mark::kLine, look};
+  Series curve{fit.condition.empty() ? method_of(fit) : fit.condition, Mark::kLine, look};
   const auto function = fit.function(plan);
   for (int i = 0; i < kCurvePoints; ++i) {
     const double level =
@@ -124,19 +131,19 @@ Figure function_figure(const TrialsResult& result, const std::vector<const Funct
     const FunctionFit& fit = *fits[i];
     const Look look = look_of(i);
     figure.series.push_back(data_series(fit, look));
-    if (fit.likelihood) {
+    if (fit.stated) {
       figure.series.push_back(curve_series(fit, result.plan, range, look));
       add_band(figure, fit, result.plan, range, look);
       add_marks(figure, fit, result.plan, range, look);
     }
     figure.alt += fmt::format("{}{}: threshold {}", i == 0 ? "" : "; ",
                               series_name(participant, fit.condition),
-                              fit.likelihood ? estimate_word(fit.likelihood->threshold) : "–");
+                              fit.stated ? estimate_word(fit.stated->threshold) : "–");
   }
   figure.y_range = Range{0.0, 1.02};
   figure.caption =
       "Points: shares of the answers, neighbouring levels together where one has few trials. "
-      "Thin lines: 95 % bootstrap intervals of the level at which each share is reached.";
+      "Thin lines: 95 % intervals of the level at which each share is reached.";
   return figure;
 }
 

@@ -19,6 +19,12 @@ constexpr std::size_t kMostTracks = 4;
 
 void add_quantity(Document& document, const Quantity& q) {
   document.subheading(capitalized(q.title));
+  if (!q.open.empty()) {
+    document.paragraph(
+        fmt::format("Without {}: the answers do not tell how far the value lies "
+                    "beyond what was presented.",
+                    fmt::join(q.open, ", ")));
+  }
   add_design_tests(document, q.table, q.tests, q.unit);
 }
 
@@ -38,7 +44,8 @@ void add_interval_words(Document& document, const TrialsResult& result) {
         "The interval of a staircase's or PEST's own estimate is the estimate less the errors of "
         "999 simulated tracks of the same procedure, whose observers have the functions that the "
         "track's answers leave open; that of a Bayesian procedure is the central 95 % of its "
-        "posterior.");
+        "posterior, which is right if the lapse and guess rates that it assumes are; report the "
+        "fitted function.");
   }
   if (!reasons.empty()) {
     document.paragraph(fmt::format("Estimates without an interval: {}.", fmt::join(reasons, "; ")));
@@ -47,16 +54,20 @@ void add_interval_words(Document& document, const TrialsResult& result) {
 
 void add_tracks(Document& document, const TrialsResult& result,
                 const std::vector<Drawing>& drawings) {
-  if (result.tracks.empty()) {
-    return;
+  if (std::ranges::none_of(result.tracks, &TrackEstimate::adaptive)) {
+    return;  // listed levels have neither turns nor an estimate
   }
   add_section(document, result, "Tracks of the procedure");
   add_pictures(document, drawings, "tracks-", kMostTracks);
   Rows rows;
   for (const TrackEstimate& track : result.tracks) {
+    if (!track.adaptive) {
+      continue;
+    }
     std::vector<std::string> estimates;
     for (const auto& e : track.estimates) {
-      estimates.push_back(fmt::format("{} {}", e.name, estimate_word(estimated(e))));
+      estimates.push_back(fmt::format("{} {}{}{}", e.name, estimate_word(estimated(e)),
+                                      e.remark.empty() ? "" : ", ", e.remark));
     }
     const auto reversals = std::count_if(track.steps.begin(), track.steps.end(),
                                          [](const TrackStep& step) { return step.reversal; });

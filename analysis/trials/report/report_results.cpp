@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "analysis/statistics/base/p_adjust.h"
 #include "analysis/statistics/words/wording.h"
 #include "analysis/trials/report/surface/report_surfaces.h"
 #include "analysis/trials/report/trials_report.h"
@@ -34,12 +36,12 @@ void add_means(Document& document, const TrialsResult& result) {
 }
 
 std::vector<std::string> row_of(const FunctionFit& fit, const char* how,
-                                const Defined<FunctionReadings>& readings, bool weber) {
+                                const Defined<FunctionReadings>& readings, bool weber, bool guess) {
   std::vector<std::string> row{series_name(fit.participant, fit.condition), how,
                                std::to_string(fit.trials)};
   if (!readings) {
     row.push_back("not defined, because " + readings.because());
-    row.resize(weber ? 8 : 7, "–");
+    row.resize(7U + weber + guess, "–");
     return row;
   }
   row.push_back(estimate_word(readings->threshold));
@@ -47,17 +49,56 @@ std::vector<std::string> row_of(const FunctionFit& fit, const char* how,
   if (weber) {
     row.push_back(estimate_word(readings->weber));
   }
-  row.push_back(estimate_word(readings->lapse));
-  row.push_back(how[0] == 'B' ? fmt::format("η {:.2f}", fit.overdispersion)
+  const bool bayesian = how[0] == 'B';
+  row.push_back(bayesian || fit.lapse_told ? estimate_word(readings->lapse)
+                                           : "not told by the answers");
+  if (guess) {
+    row.push_back(estimate_word(readings->guess));
+  }
+  row.push_back(bayesian ? fmt::format("η {:.2f}", fit.overdispersion)
                 : fit.deviance_p == fit.deviance_p
                     ? fmt::format("{:.1f}, {}", fit.deviance, p_value(fit.deviance_p))
                     : fmt::format("{:.1f}", fit.deviance));
   return row;
 }
 
+/// Whose answers scatter, which of the rows to report, and what a deviance cannot show.
+void add_fit_words(Document& document, const TrialsResult& result) {
+  if (result.plan.bayesian) {
+    document.paragraph(
+        "Report the first row of each; means and tests are of it. The Bayesian fit is for "
+        "comparison: it allows for answers that scatter, and its prior of the lapse rate, which "
+        "has a mean of 0.09, moves threshold and width where the answers do not tell that rate.");
+  }
+  std::vector<double> p;
+  std::size_t few = 0;
+  for (const FunctionFit& fit : result.fits) {
+    if (std::isfinite(fit.deviance_p)) {
+      p.push_back(fit.deviance_p);
+      few += 5 * fit.blocks.size() > fit.trials ? 1U : 0U;
+    }
+  }
+  if (p.empty()) {
+    return;
+  }
+  constexpr double kLevel = 0.05;
+  const auto below = [](const std::vector<double>& values) {
+    return std::ranges::count_if(values, [](double each) { return each < kLevel; });
+  };
+  document.paragraph(fmt::format(
+      "Answers scatter more about the function than chance explains in {} of {} at the level 0.05; "
+      "{:.2g} are expected by chance. After Holm's adjustment {} remain.{}",
+      below(p), counted(p.size(), "function"), kLevel * static_cast<double>(p.size()),
+      below(holm_adjusted(p)),
+      few > 0 ? fmt::format(" {} fewer than five answers at a level on average, which hardly show "
+                            "such scatter.",
+                            counted(few, "function") + (few == 1 ? " has" : " have"))
+              : ""));
+}
+
 void add_fit_table(Document& document, const TrialsResult& result) {
   const psychometric::Axis& axis = result.plan.function.axis;
-  const bool weber = result.plan.reference.has_value();
+  const bool weber = result.plan.reference.has_value(), guess = result.plan.guess_free;
   std::vector<std::string> heading{"participant", "fit", "trials",
                                    with_unit("threshold [95 %]", axis.unit),
                                    with_unit("width [95 %]", axis.x_unit())};
@@ -65,15 +106,19 @@ void add_fit_table(Document& document, const TrialsResult& result) {
     heading.emplace_back("Weber fraction [95 %]");
   }
   heading.emplace_back("lapse rate");
+  if (guess) {
+    heading.emplace_back("guess rate");
+  }
   heading.emplace_back("deviance, or overdispersion");
   Rows rows;
   for (const FunctionFit& fit : result.fits) {
-    rows.push_back(row_of(fit, "likelihood", fit.likelihood, weber));
+    rows.push_back(row_of(fit, method_of(fit), fit.stated, weber, guess));
     if (result.plan.bayesian) {
-      rows.push_back(row_of(fit, "Bayesian", fit.bayesian, weber));
+      rows.push_back(row_of(fit, "Bayesian", fit.bayesian, weber, guess));
     }
   }
   document.table(heading, rows, "Every participant's function");
+  add_fit_words(document, result);
   std::vector<std::string> warnings;
   for (const FunctionFit& fit : result.fits) {
     for (const std::string& warning : fit.warnings) {

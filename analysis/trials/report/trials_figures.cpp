@@ -139,7 +139,7 @@ std::vector<Figure> track_figures(const TrialsResult& result) {
     Series reversals{"reversal", Mark::kPoints, kReversal};
     std::size_t tracks = 0;
     for (const TrackEstimate& track : result.tracks) {
-      if (track.participant != person.participant) {
+      if (track.participant != person.participant || !track.adaptive) {
         continue;
       }
       Series line{track.track, Mark::kLine, look_of(tracks)};

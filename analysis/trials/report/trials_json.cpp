@@ -87,13 +87,14 @@ Json to_json(const Defined<T>& value) {
 Json to_json(const FunctionFit& fit) {
   Json blocks = Json::array();
   for (const TrialBlock& b : fit.blocks) {
-    blocks.push_back({{"level", b.level}, {"ones", b.correct}, {"trials", b.total}});
+    blocks.push_back({{"level", to_json(b.level)}, {"ones", b.correct}, {"trials", b.total}});
   }
   return {{"participant", fit.participant},
           {"condition", fit.condition},
           {"trials", fit.trials},
-          {"intervals_from", fit.adaptive ? "posterior" : "profile likelihood and bootstrap"},
-          {"likelihood", to_json(fit.likelihood)},
+          {"estimates_from", fit.adaptive ? "posterior" : "profile likelihood and bootstrap"},
+          {method_of(fit), to_json(fit.stated)},
+          {"no_interval_because", fit.no_interval},
           {"bayesian", to_json(fit.bayesian)},
           {"deviance", to_json(fit.deviance)},
           {"deviance_p", to_json(fit.deviance_p)},
@@ -109,12 +110,14 @@ Json to_json(const TrackEstimate& track) {
                          {"value", to_json(e.value)},
                          {"deviation", e.deviation ? to_json(*e.deviation) : Json()},
                          {"low_95", e.interval ? to_json(e.interval->low) : Json()},
-                         {"high_95", e.interval ? to_json(e.interval->high) : Json()}});
+                         {"high_95", e.interval ? to_json(e.interval->high) : Json()},
+                         {"remark", e.remark}});
   }
   return {{"participant", track.participant},
           {"track", track.track},
           {"variable", track.variable},
           {"trials", track.steps.size()},
+          {"trials_at_an_end_of_the_range", track.at_end},
           {"estimates", estimates},
           {"none_because", track.because},
           {"no_interval_because", track.no_interval}};

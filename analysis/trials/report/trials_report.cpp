@@ -90,21 +90,24 @@ std::string function_words(const TrialsPlan& plan) {
 /// Where the intervals of functions come from.
 std::string interval_words(const TrialsResult& result) {
   const auto adaptive = [](const FunctionFit& fit) { return fit.adaptive; };
-  std::string words = "Functions are fitted to each participant by maximum likelihood.";
+  std::string words;
   if (std::any_of(result.fits.begin(), result.fits.end(), adaptive)) {
     words +=
-        " Intervals of adaptive trials are the central 95 % of the posterior of threshold, width "
-        "and lapse rate, which does not depend on how levels were chosen; the prior is flat in the "
-        "threshold and the rates, and 1 / (w + s / 10) in the width w, with levels over a range "
-        "s.";
+        "Estimates of functions of adaptive trials are medians of the posterior of threshold, "
+        "width and lapse rate, their intervals its central 95 %: it does not depend on how levels "
+        "were chosen. The prior is flat in the threshold from s / 2 below to s / 2 above the range "
+        "s of what could be presented and in the guess rate, Beta(1, 10) in the lapse rate, and "
+        "1 / (w + s / 10) in the width w. A side of an interval is open if the prior ends it.";
   }
   if (!std::all_of(result.fits.begin(), result.fits.end(), adaptive)) {
     words += fmt::format(
-        " Intervals of threshold, width and Weber fraction at listed levels are those of the "
+        "{}Functions of listed levels are fitted by maximum likelihood. Intervals of threshold, "
+        "width and Weber fraction at listed levels are those of the "
         "profile likelihood (Venzon and Moolgavkar 1988), those of slope, lapse rate and band "
         "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
-        "2001).",
-        result.plan.resamples);
+        "2001). If answers scatter more than chance explains (p below 0.05), the intervals are as "
+        "much longer as a quasi-likelihood makes them.",
+        words.empty() ? "" : " ", result.plan.resamples);
   }
   return words;
 }

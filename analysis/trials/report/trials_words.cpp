@@ -1,9 +1,11 @@
 #include "analysis/trials/report/trials_words.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "analysis/statistics/words/design_lines.h"
 #include "analysis/statistics/words/wording.h"
@@ -28,10 +30,77 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
                                 mean_word(result, q, cell), unit_word(result, q),
                                 counted(q.table.participants(cell), "participant")));
   }
+  if (!q.open.empty()) {
+    lines.push_back(fmt::format(
+        "{}: the answers of {} do not tell how far it lies beyond what was presented; they are in "
+        "no mean and no test",
+        capitalized(q.title), fmt::join(q.open, ", ")));
+  }
+}
+
+/// Why single estimates are missing or without an interval.
+void say_gaps(const TrialsResult& result, std::vector<std::string>& lines) {
+  std::map<std::string, std::vector<std::string>> undefined, without;
+  for (const FunctionFit& fit : result.fits) {
+    const std::string name = series_name(fit.participant, fit.condition);
+    if (!fit.stated) {
+      undefined[fit.stated.because()].push_back(name);
+    } else if (!fit.no_interval.empty()) {
+      without[fit.no_interval].push_back(name);
+    }
+  }
+  for (const auto& [because, names] : undefined) {
+    lines.push_back(fmt::format("{} of {} could not be determined, because {} ({})", names.size(),
+                                counted(result.fits.size(), "function"), because,
+                                fmt::join(names, "; ")));
+  }
+  for (const auto& [because, names] : without) {
+    lines.push_back(fmt::format("{} of {} without an interval, because {} ({})", names.size(),
+                                counted(result.fits.size(), "function"), because,
+                                fmt::join(names, "; ")));
+  }
+}
+
+/// Parameters of surfaces whose posterior the definition's list of values cuts off.
+void say_cut_parameters(const TrialsResult& result, std::vector<std::string>& lines) {
+  std::map<std::string, std::pair<int, int>> cut;  // of how many
+  for (const SurfaceCondition& one : result.surfaces) {
+    for (const SurfaceParameter& p :
+         one.fit ? one.fit->parameters : std::vector<SurfaceParameter>{}) {
+      cut[p.name].first += p.at_edge ? 1 : 0;
+      ++cut[p.name].second;
+    }
+  }
+  for (const auto& [name, counts] : cut) {
+    if (counts.first > 0) {
+      lines.push_back(fmt::format(
+          "Parameter {}: its list of values cuts off the posterior in {} of {} fits and decides "
+          "the estimate there",
+          name, counts.first, counts.second));
+    }
+  }
+}
+
+/// Tracks whose range, and not the answers, settled where they were.
+void say_ended_tracks(const TrialsResult& result, std::vector<std::string>& lines) {
+  std::vector<std::string> ended;
+  for (const TrackEstimate& track : result.tracks) {
+    const bool own = !track.estimates.empty() && track.estimates.front().interval;
+    if (track.ended_at_range() && !own) {
+      ended.push_back(fmt::format("{} {}, {} of {} trials", track.participant, track.track,
+                                  track.at_end, track.steps.size()));
+    }
+  }
+  if (!ended.empty()) {
+    lines.push_back(fmt::format(
+        "{} at an end of the range ({}): their own estimates tell the range, not the participant",
+        counted(ended.size(), "track") + (ended.size() == 1 ? " was" : " were"),
+        fmt::join(ended, "; ")));
+  }
 }
 
 void add_tests(const Quantity& q, bool effects, std::vector<std::string>& lines) {
-  if (!q.compared) {
+  if (!q.compared || !q.headline) {
     return;
   }
   const auto add = [&](std::vector<std::string> more) {
@@ -101,11 +170,6 @@ void add_cue_lines(const CuePlan& plan, const std::string& unit, const CueStudy&
   }
 }
 
-std::size_t undetermined(const TrialsResult& result) {
-  return static_cast<std::size_t>(std::count_if(
-      result.fits.begin(), result.fits.end(), [](const FunctionFit& f) { return !f.likelihood; }));
-}
-
 }  // namespace
 
 std::string estimate_word(const Estimated& e) {
@@ -162,11 +226,16 @@ std::string series_name(const std::string& participant, const std::string& condi
   return condition.empty() ? participant : participant + ", " + condition;
 }
 
+const char* method_of(const FunctionFit& fit) { return fit.adaptive ? "posterior" : "likelihood"; }
+
 std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t cell) {
   const auto& mean = q.means[cell];
   const psychometric::Axis& axis = result.plan.function.axis;
   const auto level = [&](double value) { return on_axis(q) ? axis.level(value) : value; };
   if (!mean) {
+    if (q.table.participants(cell) != 1 || !q.open.empty()) {
+      return "no mean, because " + mean.because();
+    }
     for (const auto& row : q.table.means) {
       if (row[cell]) {
         return number(level(*row[cell]));
@@ -214,7 +283,7 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
     add_cue_lines(*result.plan.cues, result.plan.function.axis.x_unit(), *result.cues, lines);
   }
   for (const Quantity& q : result.quantities) {
-    if (q.name != "log_width" && !result.cues) {  // beside cues, a table says it
+    if (q.headline && q.name != "log_width" && !result.cues) {  // beside cues, a table says it
       say_quantity(result, q, lines);
     }
   }
@@ -224,10 +293,9 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
   if (result.reaching) {
     add_reaching(*result.reaching, lines);
   }
-  if (const std::size_t count = undetermined(result); count > 0) {
-    lines.push_back(fmt::format("{} of {} could not be determined from the answers", count,
-                                counted(result.fits.size(), "function")));
-  }
+  say_gaps(result, lines);
+  say_cut_parameters(result, lines);
+  say_ended_tracks(result, lines);
   add_touched(result.data, &StudyTrial::touched, &TouchedBody::inverted,
               "a tetrahedron would have been turned inside out: the force stayed below that",
               lines);

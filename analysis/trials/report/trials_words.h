@@ -22,6 +22,8 @@ Estimated estimated(const psychometric::Estimate& e);
 std::string percent(double share);
 /// "P07", or "P07, visual".
 std::string series_name(const std::string& participant, const std::string& condition);
+/// How a function was fitted: "likelihood", or "posterior" of adaptive trials.
+const char* method_of(const FunctionFit& fit);
 /// The mean of a condition over participants with its interval. Thresholds, whose values are on the
 /// axis, are given as levels.
 std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t cell);

@@ -287,7 +287,7 @@ procedure.first_down | | the same until the first reversal; 0: as down
 procedure.first_up | | likewise; 0: as up
 procedure.schedule | reversals | what takes the next size of steps
 procedure.at_bound | hold | what a step beyond the range does: stays, stays without a reversal, ends the track
-procedure.right_raises | | whether right answers raise the level
+procedure.right_raises | | whether right answers raise the level; they get rarer as it rises, and the function of [analysis] falls (neg_norm)
 procedure.stop.reversals | no such end | after which the track ends
 procedure.stop.trials | needed | after which the track ends
 procedure.stop.entropy | no such end | of the posterior, below which the track ends
@@ -324,7 +324,7 @@ procedure.parameters.NAME.nuisance | false | whether trials are not spent on kno
 procedure.probability | needed; or a function | formula of the answer 1, or a list, of the answers 1, 2, and so on
 procedure.function | logistic, or of quest_plus a probability | sigmoid of the function
 procedure.guess | | answers 1 far below the threshold
-procedure.threshold | the levels | thresholds that are considered: a list, or { from, to, count, spacing }
+procedure.threshold | the levels, and half as far beyond them | thresholds that are considered: a list, or { from, to, count, spacing }
 procedure.threshold.from | | first one
 procedure.threshold.to | | last one
 procedure.threshold.count | | how many
@@ -554,13 +554,13 @@ trials:analysis.yes | what the procedure learnt, else the right one | the answer
 trials:analysis.level | the one that the procedure set | variable for the level
 trials:analysis.rating | the second question | question of how sure the participant was
 trials:analysis.stimulus | the first factor | factor that says what was presented, of an identification
-trials:analysis.function | norm | sigmoid that is fitted
+trials:analysis.function | norm; neg_norm with right_raises | sigmoid that is fitted; with neg_ before its name it falls
 trials:analysis.scale | of the procedure | of the axis
 trials:analysis.origin | of the procedure | of the axis
-trials:analysis.guess | 1 / choices, else free | guess rate, "free", or "lapse" for the lapse rate
-trials:analysis.lapse | { free = true, at_most = 0.06 } | lapse rate, or how it is fitted
+trials:analysis.guess | 1 / choices, else free | guess rate, "free" (at most 0.2; with catch trials 0.5), or "lapse" for the lapse rate
+trials:analysis.lapse | { free = true, at_most = 0.2 } | lapse rate, or how it is fitted
 trials:analysis.lapse.free | true | whether it is fitted
-trials:analysis.lapse.at_most | 0.06 | its upper bound
+trials:analysis.lapse.at_most | 0.2; 0.06 if guess is "lapse" | its upper bound
 trials:analysis.threshold_at | halfway from the guess rate to 1; 0.5 if that is free | share of answers 1 at the threshold, lapses aside
 trials:analysis.reference | no Weber fractions | standard stimulus
 trials:analysis.bayesian | true | whether the Bayesian fit is added

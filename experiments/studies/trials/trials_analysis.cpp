@@ -80,10 +80,9 @@ std::map<std::string, std::vector<std::string>> stated_levels(const protocols::T
   for (auto& [name, all] : formulas) {
     if (root.has("variables") && root.table("variables").has(name)) {
       Table variables = root.table("variables");
-      all.push_back(variables.is_table(name) ? "$" + name
-                    : variables.has_text(name)
-                        ? variables.text(name)
-                        : fmt::format("{:.17g}", variables.number(name, {}, "")));
+      all.push_back(variables.is_table(name)   ? "$" + name
+                    : variables.has_text(name) ? variables.text(name)
+                                               : fmt::format("{}", variables.number(name, {}, "")));
     }
     std::vector<std::string> levels;
     for (const std::string& formula : all) {
@@ -172,6 +171,9 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   defaults.guess = guess_of(d);
   if (track.staircase) {
     defaults.axis = track.staircase->axis;
+  }
+  if (std::ranges::all_of(d.tracks, [&](const auto& each) { return each.falls == track.falls; })) {
+    defaults.falls = track.falls;
   }
   defaults.axis.unit = track.unit;
   return defaults;

@@ -96,8 +96,8 @@ Rehearsed rehearsed_of(const trials::TrialsResult& result) {
     r.values.push_back({"repetition of the answer before", result.repetition->difference});
   }
   for (const trials::FunctionFit& fit : result.fits) {
-    if (!fit.likelihood) {
-      r.failures.push_back("a psychometric function was not fitted: " + fit.likelihood.because());
+    if (!fit.stated) {
+      r.failures.push_back("a psychometric function was not fitted: " + fit.stated.because());
     }
   }
   for (const trials::DetectedCondition& one : result.detected) {
@@ -122,7 +122,6 @@ class TrialsRehearsal final : public Rehearsal {
     plan_.resamples = 0;
     plan_.bayesian = false;
     plan_.track_intervals = false;
-    plan_.posteriors = false;
     plan_.serial = watched.find(": ") == std::string::npos;  // names of other tests have one
     plan_.population = !plan_.by.empty();                    // it tests nothing but conditions
     plan_.permutations =

@@ -29,9 +29,9 @@ TrialsPlan read(const std::string& text, const PlanDefaults& d = defaults()) {
   return plan;
 }
 
-std::string problems_of(const std::string& text) {
+std::string problems_of(const std::string& text, const PlanDefaults& d = defaults()) {
   try {
-    read(text);
+    read(text, d);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -92,6 +92,23 @@ TEST(TrialsPlanTest, ALogarithmicFunctionHasALogarithmicAxis) {
             psychometric::Scale::kNaturalLog);
   EXPECT_EQ(read("[analysis]\nfunction = \"gumbel\"\n", d).function.axis.scale,
             psychometric::Scale::kLinear);
+}
+
+/// A comparison below the standard: right answers raise the level.
+TEST(TrialsPlanTest, AFunctionFallsAsTheProcedureDoes) {
+  PlanDefaults d = defaults();
+  d.falls = true;
+  EXPECT_TRUE(read("[analysis]\nbayesian = true\n", d).function.falling);
+  EXPECT_EQ(read("[analysis]\nbayesian = true\n", d).function_name, "neg_norm");
+  EXPECT_TRUE(read("[analysis]\nfunction = \"neg_logistic\"\n", d).function.falling);
+  EXPECT_FALSE(read("[analysis]\nfunction = \"norm\"\nyes = \"firmer\"\n", d).function.falling);
+  EXPECT_THAT(problems_of("[analysis]\nfunction = \"norm\"\n", d),
+              HasSubstr("\"neg_norm\", which falls as the procedure's right answers do"));
+}
+
+TEST(TrialsPlanTest, LapsesAreFewerWhereTheyCountTwice) {
+  EXPECT_EQ(read("[analysis]\nbayesian = true\n").lapse.high, 0.2);
+  EXPECT_EQ(read("[analysis]\nguess = \"lapse\"\n").lapse.high, 0.06);
 }
 
 TEST(TrialsPlanTest, TheThresholdIsAShareOfAnswersApartFromLapses) {

@@ -135,6 +135,7 @@ TEST(CueStudyTest, WhatIsMissingIsSaid) {
 TEST(CueStudyTest, AFunctionOrAStandardThatIsNotDefinedIsSaid) {
   SimulatedCues study;
   study.participants = 3;
+  study.repetitions = 40;
   TrialsData data = test::simulated_cues(study);
   for (StudyTrial& trial : data.trials) {
     if (trial.session == 0 && factor_level(data, trial, "modality") == "eye") {
@@ -168,7 +169,7 @@ TEST(CueStudyTest, TestsAreAdjustedOverLevels) {
 
 TEST(CueStudyTest, TheReportCountsItsTests) {
   SimulatedCues study;
-  study.participants = 3;
+  study.participants = 8;
   const TrialsResult result = analyze(test::simulated_cues(study), test::plan_of(study), {}, 1);
   ASSERT_TRUE(result.cues);
   int cues = 0;

@@ -45,5 +45,15 @@ TEST(QuantityTest, IntervalsOfPositiveValuesStayAbove0) {
   EXPECT_NEAR(narrow.low, plain.low, 1e-4);
 }
 
+TEST(QuantityTest, AnOpenValueLeavesNoMean) {
+  const std::vector<QuantityValue> values{
+      {"A", {}, 310.0}, {"B", {}, 315.0}, {"C", {}, 326.0, true}, {"D", {}, 312.0}};
+  const Quantity thresholds = quantity("threshold", "threshold", "N/m", values, TrialsPlan{});
+  ASSERT_EQ(thresholds.means.size(), 1u);
+  ASSERT_FALSE(thresholds.means[0]);
+  EXPECT_EQ(thresholds.means[0].because(), "1 of 4 values lie beyond what was presented (C)");
+  EXPECT_EQ(thresholds.open, std::vector<std::string>{"C"});
+}
+
 }  // namespace
 }  // namespace haptrial::analysis::trials

@@ -51,7 +51,7 @@ TEST(TrialsStudyTest, ThresholdsOfTwoIntervalsAreThoseOfThePeople) {
               3.0 * q.means[0]->deviation / std::sqrt(40.0));
   EXPECT_LT(q.means[0]->deviation, 0.3);
   // The Weber fraction is the threshold's difference over the standard.
-  const FunctionReadings& r = *result.fits[0].likelihood;
+  const FunctionReadings& r = *result.fits[0].stated;
   EXPECT_NEAR(r.weber.value, (r.threshold.value - 300.0) / 300.0, 1e-9);
   EXPECT_NEAR(r.x.value, std::log(r.threshold.value - 300.0), 1e-9);
   EXPECT_FALSE(q.compared);
@@ -88,9 +88,9 @@ TEST(TrialsStudyTest, IntervalsHoldTheTruthAndBothFitsAgree) {
   const TrialsResult result = analyzed(study, plan);
   int likelihood = 0, bayesian = 0;
   for (const FunctionFit& fit : result.fits) {
-    ASSERT_TRUE(fit.likelihood);
+    ASSERT_TRUE(fit.stated);
     ASSERT_TRUE(fit.bayesian);
-    const Estimated a = fit.likelihood->x, b = fit.bayesian->x;
+    const Estimated a = fit.stated->x, b = fit.bayesian->x;
     likelihood += a.low <= test::kTypicalLogThreshold && test::kTypicalLogThreshold <= a.high;
     bayesian += b.low <= test::kTypicalLogThreshold && test::kTypicalLogThreshold <= b.high;
     EXPECT_LT(std::abs(a.value - b.value), 0.5 * (b.high - b.low));
@@ -257,13 +257,13 @@ TEST(TrialsStudyTest, ATrackIsReplayedAsItRan) {
 void expect_same_estimates(const TrialsResult& a, const TrialsResult& b) {
   ASSERT_EQ(a.fits.size(), b.fits.size());
   for (std::size_t i = 0; i < a.fits.size(); ++i) {
-    ASSERT_EQ(bool(a.fits[i].likelihood), bool(b.fits[i].likelihood));
-    if (a.fits[i].likelihood) {
-      EXPECT_EQ(a.fits[i].likelihood->x.value, b.fits[i].likelihood->x.value);
-      EXPECT_EQ(a.fits[i].likelihood->width.value, b.fits[i].likelihood->width.value);
-      EXPECT_EQ(a.fits[i].likelihood->slope.value, b.fits[i].likelihood->slope.value);
-      EXPECT_EQ(a.fits[i].likelihood->lapse.value, b.fits[i].likelihood->lapse.value);
-      EXPECT_NE(a.fits[i].likelihood->x.low, b.fits[i].likelihood->x.low);
+    ASSERT_EQ(bool(a.fits[i].stated), bool(b.fits[i].stated));
+    if (a.fits[i].stated) {
+      EXPECT_EQ(a.fits[i].stated->x.value, b.fits[i].stated->x.value);
+      EXPECT_EQ(a.fits[i].stated->width.value, b.fits[i].stated->width.value);
+      EXPECT_EQ(a.fits[i].stated->slope.value, b.fits[i].stated->slope.value);
+      EXPECT_EQ(a.fits[i].stated->lapse.value, b.fits[i].stated->lapse.value);
+      EXPECT_EQ(a.fits[i].stated->x.low, b.fits[i].stated->x.low);
     }
   }
   ASSERT_TRUE(a.drift && b.drift && a.repetition && b.repetition);
@@ -296,10 +296,10 @@ TEST(TrialsStudyTest, AdaptiveTrialsHaveIntervalsThatHoldTheTruth) {
   int held = 0, own_held = 0;
   for (const FunctionFit& fit : result.fits) {
     EXPECT_TRUE(fit.adaptive);
-    if (fit.likelihood) {
-      const Estimated x = fit.likelihood->x;
+    if (fit.stated) {
+      const Estimated x = fit.stated->x;
       held += x.low <= test::kTypicalLogThreshold && test::kTypicalLogThreshold <= x.high ? 1 : 0;
-      EXPECT_TRUE(std::isfinite(fit.likelihood->width.high)) << "the prior ends it";
+      EXPECT_TRUE(std::isfinite(fit.stated->width.high)) << "the prior ends it";
     }
   }
   for (const TrackEstimate& track : result.tracks) {
@@ -311,13 +311,48 @@ TEST(TrialsStudyTest, AdaptiveTrialsHaveIntervalsThatHoldTheTruth) {
   EXPECT_GE(held, 9);
   EXPECT_GE(own_held, 19);
   TrialsPlan bare = plan;
-  bare.posteriors = bare.track_intervals = false;
+  bare.track_intervals = false;
   expect_same_estimates(result, analyze(test::simulated_trials(study), bare, begin, 2));
   plan.functions = false;
   const TrialsResult without = analyze(test::simulated_trials(study), plan, begin, 2);
   EXPECT_FALSE(without.tracks[0].estimates.at(0).interval);
   EXPECT_EQ(without.tracks[0].no_interval,
             "no function of what the procedure learnt from is fitted");
+}
+
+/// A range whose easiest level is too hard: tracks lie at its end.
+TEST(TrialsStudyTest, TracksAtTheEndOfTheirRangeTellNoMean) {
+  SimulatedTrials study;
+  study.participants = 6;
+  study.conditions = 1;
+  psychometric::StaircaseParameters p;
+  p.axis.unit = "N/m";
+  p.low = 305.0;
+  p.high = 325.0;
+  p.start = 320.0;
+  p.steps = {{4.0, 4.0, 0}};
+  p.stop_trials = study.trials / 2;
+  p.skip = 2;
+  const ProcedureOf begin = [p](const std::string&) {
+    return std::make_unique<psychometric::Staircase>(p);
+  };
+  TrialsData data = test::simulated_trials(study);
+  for (StudyTrial& trial : data.trials) {  // answers at chance: the track goes to its end
+    trial.levels[0].applied = trial.levels[0].asked = trial.trial % 7 == 0 ? 321.0 : 325.0;
+    trial.levels[0].outcome = trial.trial % 2 == 0 ? 1.0 : 0.0;
+  }
+  TrialsPlan plan = test::plan_of(study);
+  plan.serial = false;
+  const TrialsResult result = analyze(data, plan, begin, 1);
+  for (const TrackEstimate& track : result.tracks) {
+    EXPECT_TRUE(track.ended_at_range()) << track.at_end << " of " << track.steps.size();
+    EXPECT_TRUE(track.estimates.empty() || !track.estimates.front().interval);
+  }
+  for (const Quantity& q : result.quantities) {
+    for (const auto& mean : q.means) {
+      EXPECT_FALSE(mean) << q.name;
+    }
+  }
 }
 
 TEST(TrialsStudyTest, PracticeAndAbortedTrialsCountNowhere) {
@@ -352,7 +387,7 @@ TEST(TrialsStudyTest, AnswersThatTellNothingAreNotDefined) {
     trial.levels[0].outcome = 1.0;  // everything right
   }
   const TrialsResult result = analyze(data, test::plan_of(study), {}, 1);
-  EXPECT_FALSE(result.fits[0].likelihood);
+  EXPECT_FALSE(result.fits[0].stated);
   EXPECT_THAT(of(result, "threshold").means, IsEmpty());
   EXPECT_FALSE(result.drift);
 }
