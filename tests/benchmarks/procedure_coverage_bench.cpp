@@ -4,6 +4,7 @@
 // number of threads.
 //
 //     bench_procedure_coverage [observers] [threads] [part of a name] [beta-binomial fits of each]
+//     bench_procedure_coverage 150 2 troubles   # lapses, false alarms, thresholds beyond the range
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/analysis/psychometric/fit/coverage_grid.h"
 #include "tests/analysis/psychometric/fit/procedure_study.h"
 #include "tests/analysis/psychometric/surface/surface_counts.h"
 
@@ -87,6 +89,25 @@ void report_surfaces(int observers, int threads) {
              percent(c.contours_held, c.contours), c.contours);
 }
 
+void print_count(const char* what, const haptrial::test::CoverageCount& c) {
+  fmt::print("  {}: stated {:5.1f} %, holds {:5.1f} %, open {:5.1f} %", what,
+             percent(c.stated, c.observers), percent(c.held, c.stated),
+             percent(c.open, c.observers));
+}
+
+/// What trouble does to the intervals that a report states.
+void report_troubles(int observers, int threads) {
+  for (const haptrial::test::CoverageCell& cell : haptrial::test::coverage_cells()) {
+    const auto counts = haptrial::test::count_coverage(cell, observers, threads);
+    fmt::print("{:9} {} place {} lapses {:.2f} false alarms {:.2f} correlation {:.2f}",
+               cell.procedure, cell.alternatives, cell.place, cell.lapse, cell.false_alarms,
+               cell.correlation);
+    print_count("fit", counts.fit);
+    print_count("own", counts.own);
+    fmt::print("\n");
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -102,6 +123,9 @@ int main(int argc, char** argv) {
   }
   if (std::string("surfaces").find(part) != std::string::npos) {
     report_surfaces(observers, threads);
+  }
+  if (part == "troubles") {
+    report_troubles(observers, threads);
   }
   return 0;
 }

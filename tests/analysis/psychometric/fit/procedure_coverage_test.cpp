@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "tests/analysis/psychometric/fit/coverage_grid.h"
 #include "tests/analysis/psychometric/fit/procedure_study.h"
 
 namespace haptrial::test {
@@ -66,6 +67,27 @@ TEST_P(BayesianProcedureCoverage, HoldsTheThreshold) {
 INSTANTIATE_TEST_SUITE_P(Procedures, BayesianProcedureCoverage,
                          testing::Values("Psi", "Psi that assumes no lapses",
                                          "QUEST+ with lapses"));
+
+/// Lapses and false alarms beyond what was usual, and thresholds at and beyond the last level: the
+/// interval holds the truth, or there is none.
+TEST(ProcedureCoverage, TroublesLeaveIntervalsThatHoldTheThreshold) {
+  const std::vector<CoverageCell> cells{{"listed", 1, 0, 0.02, 0.3},
+                                        {"listed", 4, 0, 0.15},
+                                        {"listed", 2, 1},
+                                        {"staircase", 2, 2},
+                                        {"staircase", 1, 0, 0.1, 0.3},
+                                        {"PEST", 4, 1},
+                                        {"Psi", 2, 0, 0.15},
+                                        {"QUEST+", 1, 2}};
+  for (const CoverageCell& cell : cells) {
+    const CellCounts counts = count_coverage(cell, 80, 2);
+    const auto n = static_cast<unsigned>(counts.fit.stated);
+    ASSERT_GT(n, 0U) << cell.procedure;
+    // Fewer than 93 % may be held once in 1,000 studies.
+    EXPECT_GT(gsl_cdf_binomial_P(static_cast<unsigned>(counts.fit.held), 0.93, n), 1e-3)
+        << cell.procedure << " " << cell.alternatives << ": " << counts.fit.held << " of " << n;
+  }
+}
 
 TEST(ProcedureCoverage, SettingsAndMagnitudesHoldWhatTheyAreMeantFor) {
   expect_held(result_of("adjustment", 1000).natural, "adjustment");
