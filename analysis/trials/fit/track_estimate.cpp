@@ -100,10 +100,14 @@ AnsweredSeries series_of(const TrackEstimate& track) {
   return series;
 }
 
+/// Whether a function of what the procedure learnt from is fitted.
+bool fitted(const TrackEstimate& track, const TrialsPlan& plan) {
+  return plan.functions && plan.yes.empty() && (plan.level.empty() || plan.level == track.variable);
+}
+
 Defined<CredibleInterval> simulated_interval(const TrackEstimate& track, const TrialsPlan& plan,
                                              const ProcedureOf& procedure_of) {
-  if (!plan.functions || !plan.yes.empty() ||
-      (!plan.level.empty() && plan.level != track.variable)) {
+  if (!fitted(track, plan)) {
     return Undefined{"no function of what the procedure learnt from is fitted"};
   }
   const auto blocks = blocks_of(series_of(track));
@@ -123,6 +127,16 @@ Defined<CredibleInterval> simulated_interval(const TrackEstimate& track, const T
 }
 
 void add_interval(TrackEstimate& track, const TrialsPlan& plan, const ProcedureOf& procedure_of) {
+  if (track.adaptive && !track.estimates.empty() && track.estimates.front().interval &&
+      fitted(track, plan)) {
+    for (psychometric::Estimate& e : track.estimates) {
+      e.interval.reset();
+    }
+    track.no_interval =
+        "the procedure's posterior assumes its own lapse and guess rates; the fitted function's "
+        "does not";
+    return;
+  }
   for (psychometric::Estimate& e : track.estimates) {
     add_student(e);
   }

@@ -47,9 +47,10 @@ using ProcedureOf = std::function<std::unique_ptr<psychometric::Procedure>(const
 /// procedure the track has steps, but no estimate; only staircases and PEST have reversals.
 std::vector<TrackEstimate> track_estimates(const TrialsData& data, const ProcedureOf& procedure_of);
 
-/// 95 % intervals of the estimates: what the procedure states itself, Student's t if its error has
-/// degrees of freedom, else track_interval() with the posterior of the track's own trials. That one
-/// takes a function of the plan; without an interval the track says why.
+/// 95 % intervals of the estimates: what the procedure states itself unless a function is fitted
+/// (its posterior assumes lapse and guess rates, the function's does not), Student's t if its error
+/// has degrees of freedom, else track_interval() with the posterior of the track's own trials. That
+/// one takes a function of the plan; without an interval the track says why.
 void add_track_intervals(std::vector<TrackEstimate>& tracks, const TrialsPlan& plan,
                          const ProcedureOf& procedure_of, int threads);
 

@@ -44,8 +44,7 @@ void add_interval_words(Document& document, const TrialsResult& result) {
         "The interval of a staircase's or PEST's own estimate is the estimate less the errors of "
         "999 simulated tracks of the same procedure, whose observers have the functions that the "
         "track's answers leave open; that of a Bayesian procedure is the central 95 % of its "
-        "posterior, which is right if the lapse and guess rates that it assumes are; report the "
-        "fitted function.");
+        "posterior.");
   }
   if (!reasons.empty()) {
     document.paragraph(fmt::format("Estimates without an interval: {}.", fmt::join(reasons, "; ")));

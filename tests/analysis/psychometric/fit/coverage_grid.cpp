@@ -169,7 +169,7 @@ Answers answers_of(const CoverageCell& cell, Procedure& procedure, CorrelatedObs
   return found;
 }
 
-LikelihoodOptions options_of(const CoverageCell& cell) {
+LikelihoodOptions grid_options(const CoverageCell& cell) {
   LikelihoodOptions options;
   const double guess = cell.alternatives == 1 ? 0.0 : 1.0 / cell.alternatives;
   options.function = gaussian(0.0, 1.0, 0.0, guess);
@@ -204,7 +204,7 @@ double deviance_p(const std::vector<TrialBlock>& blocks, const LikelihoodOptions
   return static_cast<double>(larger) / (kDraws + 1);
 }
 
-void count(CoverageCount& counts, const ProfileInterval& interval, double truth) {
+void count_interval(CoverageCount& counts, const ProfileInterval& interval, double truth) {
   ++counts.stated;
   counts.held += interval.holds(truth) ? 1 : 0;
   counts.open += interval.low_open || interval.high_open ? 1 : 0;
@@ -233,7 +233,7 @@ struct ObserverCounts {
   CoverageCount fit, own;
 };
 
-ObserverCounts observed(const CoverageCell& cell, std::uint64_t seed) {
+ObserverCounts counts_of_observer(const CoverageCell& cell, std::uint64_t seed) {
   RandomStream random(seed, "coverage/grid");
   const double sigma = 0.7 * std::pow(2.0, random.uniform());
   const double inside = random.uniform(-1.0, 1.0);
@@ -243,7 +243,7 @@ ObserverCounts observed(const CoverageCell& cell, std::uint64_t seed) {
   CorrelatedObserver observer(truth, cell.correlation, random);
   const auto procedure = begin(cell, seed);
   const Answers answers = answers_of(cell, *procedure, observer, random);
-  const LikelihoodOptions options = options_of(cell);
+  const LikelihoodOptions options = grid_options(cell);
   ObserverCounts counts{{.observers = 1}, {.observers = 1}};
   const auto presented = std::ranges::count_if(
       answers.blocks, [](const TrialBlock& block) { return block.level != kNoStimulus; });
@@ -254,17 +254,18 @@ ObserverCounts observed(const CoverageCell& cell, std::uint64_t seed) {
   const double p = adaptive ? 1.0 : deviance_p(answers.blocks, options, random);
   const StatedFit fit = stated_fit(answers.blocks, options, adaptive, p);
   if (fit.told && fit.no_interval.empty()) {
-    count(counts.fit, fit.threshold, threshold);
+    count_interval(counts.fit, fit.threshold, threshold);
   }
   const std::optional<double> target = procedure->target();
   if (const auto own = own_interval(cell, *procedure, answers, options, seed);
       own && (!target || (*target > truth.guess && *target < 1.0 - truth.lapse))) {
-    count(counts.own, *own, target ? PsychometricFunction(truth).x_for(*target) : threshold);
+    count_interval(counts.own, *own,
+                   target ? PsychometricFunction(truth).x_for(*target) : threshold);
   }
   return counts;
 }
 
-void add(CoverageCount& sum, const CoverageCount& one) {
+void add_counts(CoverageCount& sum, const CoverageCount& one) {
   sum.observers += one.observers;
   sum.stated += one.stated;
   sum.held += one.held;
@@ -301,11 +302,11 @@ std::vector<CoverageCell> coverage_cells() {
 
 CellCounts count_coverage(const CoverageCell& cell, int observers, int threads) {
   std::vector<ObserverCounts> all(static_cast<std::size_t>(observers));
-  parallel_for(all.size(), threads, [&](std::size_t i) { all[i] = observed(cell, i); });
+  parallel_for(all.size(), threads, [&](std::size_t i) { all[i] = counts_of_observer(cell, i); });
   CellCounts counts;
   for (const ObserverCounts& one : all) {
-    add(counts.fit, one.fit);
-    add(counts.own, one.own);
+    add_counts(counts.fit, one.fit);
+    add_counts(counts.own, one.own);
   }
   return counts;
 }

@@ -11,7 +11,7 @@
 namespace haptrial::analysis {
 namespace {
 
-LikelihoodOptions options_of(Task task) {
+LikelihoodOptions stated_options(Task task) {
   LikelihoodOptions options{.task = task};
   options.function.sigmoid = psychometric::Sigmoid::kGaussian;
   options.lapse.high = 0.2;
@@ -28,13 +28,13 @@ const std::vector<TrialBlock> kCatches{{kNoStimulus, 300, 1000},
                                        {3.0, 40, 40}};
 
 TEST(StatedFit, CatchTrialsTellTheGuessRate) {
-  const StatedFit with = stated_fit(kCatches, options_of(Task::kYesNo), false, 1.0);
+  const StatedFit with = stated_fit(kCatches, stated_options(Task::kYesNo), false, 1.0);
   EXPECT_NEAR(with.estimate.guess, 0.3, 0.02);
   EXPECT_FALSE(with.guess_at_bound);
-  const StatedFit adaptive = stated_fit(kCatches, options_of(Task::kYesNo), true, 1.0);
+  const StatedFit adaptive = stated_fit(kCatches, stated_options(Task::kYesNo), true, 1.0);
   EXPECT_NEAR(adaptive.estimate.guess, 0.3, 0.02);
   // A low bound is marked, and the answers speak against it.
-  LikelihoodOptions low = options_of(Task::kYesNo);
+  LikelihoodOptions low = stated_options(Task::kYesNo);
   low.guess.high = 0.06;
   const StatedFit bounded = stated_fit(kCatches, low, false, 1.0);
   EXPECT_TRUE(bounded.guess_at_bound);
@@ -46,9 +46,9 @@ TEST(StatedFit, AFallingFunctionHasTheSameCatchTrials) {
   for (TrialBlock& block : mirrored) {
     block.level = block.level == kNoStimulus ? kNoStimulus : -block.level;
   }
-  LikelihoodOptions falls = options_of(Task::kYesNo);
+  LikelihoodOptions falls = stated_options(Task::kYesNo);
   falls.function.falling = true;
-  const StatedFit a = stated_fit(kCatches, options_of(Task::kYesNo), false, 1.0);
+  const StatedFit a = stated_fit(kCatches, stated_options(Task::kYesNo), false, 1.0);
   const StatedFit b = stated_fit(mirrored, falls, false, 1.0);
   EXPECT_NEAR(a.estimate.threshold, -b.estimate.threshold, 1e-6);
   EXPECT_NEAR(a.estimate.guess, b.estimate.guess, 1e-6);
@@ -64,7 +64,7 @@ TEST(StatedFit, AnAdaptiveEstimateLiesWithinItsInterval) {
   rule.steps = {{0.5, 0.5, 0}};
   rule.stop_reversals = 8;
   rule.stop_trials = 100;
-  LikelihoodOptions options = options_of(Task::kForcedChoice);
+  LikelihoodOptions options = stated_options(Task::kForcedChoice);
   options.presentable = SearchBounds{-3.0, 3.0};
   int outside = 0;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
@@ -89,7 +89,7 @@ TEST(StatedFit, AnAdaptiveEstimateLiesWithinItsInterval) {
 
 // At the easiest level that there is every second answer is wrong.
 TEST(StatedFit, AThresholdBeyondWhatCouldBePresentedIsOpen) {
-  LikelihoodOptions options = options_of(Task::kForcedChoice);
+  LikelihoodOptions options = stated_options(Task::kForcedChoice);
   options.presentable = SearchBounds{305.0, 325.0};
   const std::vector<TrialBlock> blocks{{315.0, 3, 6}, {320.0, 5, 10}, {325.0, 32, 60}};
   const StatedFit fit = stated_fit(blocks, options, true, 1.0);
@@ -99,7 +99,7 @@ TEST(StatedFit, AThresholdBeyondWhatCouldBePresentedIsOpen) {
 }
 
 TEST(StatedFit, MoreLapsesThanAllowedLeaveNoInterval) {
-  LikelihoodOptions options = options_of(Task::kForcedChoice);
+  LikelihoodOptions options = stated_options(Task::kForcedChoice);
   options.lapse.high = 0.06;
   const std::vector<TrialBlock> lapsing{
       {-1.0, 20, 40}, {0.0, 28, 40}, {1.0, 33, 40}, {3.0, 33, 40}, {4.0, 33, 40}};
@@ -111,7 +111,7 @@ TEST(StatedFit, MoreLapsesThanAllowedLeaveNoInterval) {
 }
 
 TEST(StatedFit, ScatterBeyondChanceMakesIntervalsLonger) {
-  const LikelihoodOptions options = options_of(Task::kForcedChoice);
+  const LikelihoodOptions options = stated_options(Task::kForcedChoice);
   const std::vector<TrialBlock> blocks{{-2.0, 14, 40}, {-1.0, 29, 40}, {-0.5, 18, 40},
                                        {0.0, 35, 40},  {0.5, 25, 40},  {1.0, 39, 40},
                                        {2.0, 36, 40}};
