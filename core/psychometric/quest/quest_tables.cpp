@@ -95,12 +95,11 @@ void check_probabilities(const std::vector<double>& p, const QuestDefinition& de
   const double sum = std::accumulate(p.begin(), p.end(), 0.0);
   const bool proper = std::all_of(p.begin(), p.end(), [](double v) { return v >= 0.0; });
   if (!proper || !(std::abs(sum - 1.0) <= 1e-9)) {
-    throw std::invalid_argument(
-        fmt::format("the probabilities of the answers 0 to {} are {:.4g} for {} and {}; allowed: "
-                    "each from 0 to "
-                    "1, together 1",
-                    p.size() - 1, fmt::join(p, ", "), values_of(definition.stimulus, stimulus),
-                    values_of(definition.parameters, parameters)));
+    throw std::invalid_argument(fmt::format(
+        "the probabilities of the answers 0 to {} are {:.4g} for {} and {}; allowed: numbers "
+        "from 0 to 1 with the sum 1",
+        p.size() - 1, fmt::join(p, ", "), values_of(definition.stimulus, stimulus),
+        values_of(definition.parameters, parameters)));
   }
 }
 
