@@ -31,7 +31,7 @@ struct Quantity {
   bool headline{true};   // it stands on top of a report
 };
 
-/// Where the values of a quantity can lie.
+/// The range that holds every value of a quantity.
 enum class ValueRange { kAny, kPositive, kShare };
 
 /// A mean whose interval stays where values can lie: the delta method on logarithms of positive

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "analysis/document/design/design_blocks.h"
+#include "analysis/statistics/tests/wilcoxon.h"
 #include "analysis/statistics/words/wording.h"
 #include "analysis/trials/report/trials_report.h"
 #include "analysis/trials/report/trials_words.h"
@@ -90,6 +91,22 @@ std::string words_of_chance(const TrialsResult& result) {
                   : "";
 }
 
+/// ", on ranks p = 0.12", which single participants far out do not decide.
+std::string on_ranks(const std::vector<SerialEffects>& serial,
+                     Defined<double> SerialCoefficients::*effect) {
+  std::vector<double> values;
+  for (const SerialEffects& s : serial) {
+    if (const auto& value = s.effects.*effect) {
+      values.push_back(*value);
+    }
+  }
+  const std::vector<double> zero(values.size(), 0.0);
+  const auto test = wilcoxon_signed_rank(values, zero, Tail::kTwoSided);
+  return test
+             ? fmt::format(", on ranks {}{}", p_value(test->p), test->exact ? "" : " (approximate)")
+             : "";
+}
+
 void add_serial(Document& document, const TrialsResult& result) {
   if (result.serial.empty()) {
     return;
@@ -108,11 +125,14 @@ void add_serial(Document& document, const TrialsResult& result) {
   document.paragraph(fmt::format(
       "Drift: how the log odds of an answer 1 change over the session beside the function. "
       "Repetition: how much the answer before moves the log odds of giving it again. Over "
-      "participants against 0: drift {}; repetition {}.{}",
-      t_result(result.drift), t_result(result.repetition), words_of_chance(result)));
+      "participants against 0: drift {}{}; repetition {}{}. Numbers of single people have no "
+      "intervals: those of few answers may lie far out.{}",
+      t_result(result.drift), on_ranks(result.serial, &SerialCoefficients::drift),
+      t_result(result.repetition), on_ranks(result.serial, &SerialCoefficients::repetition),
+      words_of_chance(result)));
 }
 
-/// In which stages the force limit was reached: one before the stimulus harms no answer.
+/// The stages in which the force limit was reached: one before the stimulus harms no answer.
 std::string limit_words(const std::vector<ParticipantTrials>& people) {
   struct Limited {
     std::size_t participants{0};

@@ -158,7 +158,7 @@ TEST(WilcoxonSignedRank, IsExactWithEqualPairs) {
   EXPECT_EQ(with->p, without->p);
 }
 
-// Fifty values are approximated, and so are their ranks' sums by drawn arrangements.
+// p of fifty values is approximate; drawn arrangements of their ranks give the same to 0.01.
 TEST(RankTests, ApproximateTheExactP) {
   RandomStream random(45, "approximation");
   Values a = drawn(random, 50), b = drawn(random, 50);

@@ -122,7 +122,7 @@ TEST(Friedman, MatchesACaseWorkedByHand) {
   EXPECT_NEAR(test->p, 6.0 / 1296.0, 1e-14);
 }
 
-// Of more than twelve participants, and of too many arrangements, p is that of chi squared.
+// With more than twelve participants, and with too many arrangements, p is that of chi squared.
 TEST(Friedman, SaysWhetherPIsExact) {
   RandomStream random(54, "many");
   const auto made = [&](std::size_t people, std::size_t conditions) {
