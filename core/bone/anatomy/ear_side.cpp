@@ -74,6 +74,12 @@ std::optional<EarSide> ear_side(const BoneModel& model) {
   return directions->outwards.x() < 0.0 ? EarSide::kRight : EarSide::kLeft;
 }
 
+Eigen::Vector3d outside_view(const BoneModel& model) {
+  const Eigen::Vector3d right(-1.0, 0.2, 0.1);
+  return ear_side(model) == EarSide::kLeft ? Eigen::Vector3d(-right.x(), right.y(), right.z())
+                                           : right;
+}
+
 BoneModel mirrored(const BoneModel& model) {
   BoneModel other = model;
   const geometry::VoxelGrid& grid = model.grid;

@@ -23,6 +23,10 @@ std::optional<EarDirections> ear_directions(const BoneModel& model);
 /// to the left. Nothing where the structures do not say, or lie along no such axis.
 std::optional<EarSide> ear_side(const BoneModel& model);
 
+/// From where an ear is seen from outside, a little from the back and from above; a right ear where
+/// the structures do not say.
+Eigen::Vector3d outside_view(const BoneModel& model);
+
 /// The same bone with left and right exchanged: a left ear becomes a right one.
 BoneModel mirrored(const BoneModel& model);
 

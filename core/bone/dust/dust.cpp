@@ -88,6 +88,15 @@ static bool is_buried(const DustGrid& grid, Ref ref, std::int32_t enough) {
   });
 }
 
+/// Whether all of the cell's dust will fall on in the next step, as far as is known of it.
+static bool falls(const DustState& state, Ref ref) {
+  const DustGrid::Cell& cell = state.grid.at(ref);
+  const std::uint32_t free = DustState::known(kDown) | DustState::open(kDown);
+  const Ref below = state.grid.beside(ref, DustGrid::direction(0, 0, -1));
+  return (cell.flags & free) == free &&
+         (below == DustGrid::kNone || cell.amount + state.grid.at(below).amount <= state.capacity);
+}
+
 void Dust::quads(std::vector<DustQuad>& quads) const {
   constexpr double kLeast = 0.004;  // of a full cell: less is not seen
   constexpr double kSize = 1.6;     // neighbours overlap, so that a pile has no gaps
@@ -101,7 +110,7 @@ void Dust::quads(std::vector<DustQuad>& quads) const {
     for (int place = 0; place < DustGrid::kBlockCells; ++place) {
       const Ref ref = block * DustGrid::kBlockCells + place;
       const double filled = static_cast<double>(state_->grid.at(ref).amount) / state_->capacity;
-      if (filled < kLeast || is_buried(state_->grid, ref, enough)) {
+      if (filled < kLeast || is_buried(state_->grid, ref, enough) || falls(*state_, ref)) {
         continue;
       }
       const double size = kSize * state_->parameters.cell * std::cbrt(std::min(1.0, filled));

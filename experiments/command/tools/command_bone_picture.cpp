@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/shortest_turn.h"
+#include "core/bone/anatomy/ear_side.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/surface/surface_depths.h"
 #include "core/render/bone/bone_scene.h"
@@ -70,15 +71,16 @@ Eigen::AlignedBox3d box_of(const bone::BoneModel& model) {
   return box;
 }
 
-Camera camera_of(const BonePictureOptions& options, const Eigen::AlignedBox3d& box) {
-  const Eigen::Vector3d from = vector_of("--from", options.from);
+Camera camera_of(const BonePictureOptions& options, const bone::BoneModel& model) {
+  const Eigen::Vector3d from =
+      options.from.empty() ? bone::outside_view(model) : vector_of("--from", options.from);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   if (from.cross(up).norm() < 1e-3 * from.norm() || from.norm() == 0.0) {
     throw InputError("--from is along z, the up direction; choose another direction");
   }
   const double aspect =
       static_cast<double>(options.width) / (options.stereo ? 2 : 1) / options.height;
-  Camera camera = render::looking_at(box, from, up, aspect);
+  Camera camera = render::looking_at(box_of(model), from, up, aspect);
   if (!options.at.empty()) {
     const Eigen::Vector3d target = kMillimetre * vector_of("--at", options.at);
     camera.eye += target - camera.target;
@@ -133,7 +135,7 @@ int bone_picture(const BonePictureOptions& options) {
     carve(volume, parse_plane_cut("--cut", cut), spared);
   }
   render::BoneFrame frame;
-  frame.camera = camera_of(options, box_of(model));
+  frame.camera = camera_of(options, model);
   if (options.stereo) {
     frame.stereo = render::StereoPair{*options.stereo * kMillimetre, {}};
   }

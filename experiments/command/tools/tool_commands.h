@@ -58,8 +58,8 @@ struct BonePictureOptions {
   std::vector<std::string> drill;    // strokes: see experiments/command/tools/bone_carving.h
   std::vector<std::string> cut;      // planes
   bool spare{false};                 // nothing but bone is drilled or cut
-  std::vector<double> from{-1.0, 0.2, 0.1};  // towards the eye: the side of a right ear
-  std::vector<double> at;                    // what is in the middle [mm]; default: the bone's
+  std::vector<double> from{};        // towards the eye; default: outside_view()
+  std::vector<double> at;            // what is in the middle [mm]; default: the bone's
   double zoom{1.0};
   std::string burr;              // from its centre to a place on its handle
   std::optional<double> stereo;  // between the eyes [mm]

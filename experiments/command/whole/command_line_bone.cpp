@@ -112,8 +112,9 @@ void add_picture(CLI::App& bone, int& status) {
   auto& o = options_of<BonePictureOptions>(*sub, status, bone_picture);
   sub->add_option("IN", o.in, "Bone (.nrrd)")->required();
   sub->add_option("OUT", o.out, "New picture (.png)")->required();
-  sub->add_option("--from", o.from,
-                  "Direction from the bone to the eye: X,Y,Z (default: -1,0.2,0.1)")
+  sub->add_option(
+         "--from", o.from,
+         "Direction from the bone to the eye: X,Y,Z (default: -1,0.2,0.1, of a left ear 1,0.2,0.1)")
       ->delimiter(',');
   sub->add_option("--at", o.at,
                   "Point in the middle of the picture: X,Y,Z [mm] (default: the bone's middle)")

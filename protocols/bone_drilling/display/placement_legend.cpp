@@ -155,18 +155,23 @@ class Legend {
     painter_.begin_over();
     plate({0.5 * em, height_ - 9.5 * em}, {12.0 * em, height_ - 0.5 * em});
     painter_.end();
-    for (const auto& [axis, name] : arrows) {
-      const Eigen::Vector3d seen = to_picture * axis;
-      const Eigen::Vector2d along(seen.x(), -seen.y());
-      const Eigen::Vector2d to = from + 3.0 * em * along;
+    std::array<Eigen::Vector2d, 3> along, words;
+    for (std::size_t i = 0; i < arrows.size(); ++i) {
+      const Eigen::Vector3d seen = to_picture * arrows[i].first;
+      along[i] = {seen.x(), -seen.y()};
+      const Eigen::Vector2d to = from + 3.0 * em * along[i];
       painter_.begin_over();
       painter_.line(from, to, 2.0, kInk);
       painter_.disc(to, 0.25 * em, kInk);
       painter_.end();
-      const Eigen::Vector2d beside = to + (along.norm() > 0.2 ? 0.9 * em * along.normalized()
-                                                              : Eigen::Vector2d(0.6 * em, -em));
-      line(name, beside + Eigen::Vector2d(0.0, 0.35 * em),
-           along.x() < -0.3 ? render::Align::kRight : render::Align::kLeft);
+      words[i] = to + Eigen::Vector2d(0.0, 0.35 * em) +
+                 (along[i].norm() > 0.2 ? 0.9 * em * along[i].normalized()
+                                        : Eigen::Vector2d(0.6 * em, -em));
+    }
+    set_words_apart(words, 1.1 * em, 3.0 * em);
+    for (std::size_t i = 0; i < arrows.size(); ++i) {
+      line(arrows[i].second, words[i],
+           along[i].x() < -0.3 ? render::Align::kRight : render::Align::kLeft);
     }
   }
 
@@ -195,6 +200,21 @@ class Legend {
 };
 
 }  // namespace
+
+void set_words_apart(std::span<Eigen::Vector2d> places, double row, double wide) {
+  std::vector<Eigen::Vector2d*> order;
+  for (Eigen::Vector2d& place : places) {
+    order.push_back(&place);
+  }
+  std::ranges::stable_sort(order, {}, [](const Eigen::Vector2d* place) { return place->y(); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    for (std::size_t above = 0; above < i; ++above) {
+      if (std::abs(order[i]->x() - order[above]->x()) < wide) {
+        order[i]->y() = std::max(order[i]->y(), order[above]->y() + row);
+      }
+    }
+  }
+}
 
 std::vector<PlacedStructure> placed_structures(const BoneDefinition& d,
                                                const bone::BoneModel& model, int width,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,11 @@ struct PlacedStructure {
 /// All that has voxels but plain bone, by label. @param width, height  of the picture [px]
 std::vector<PlacedStructure> placed_structures(const BoneDefinition& definition,
                                                const bone::BoneModel& model, int width, int height);
+
+/// Moves words down that would lie on one another, from top to bottom.
+/// @param places  where the words begin [px]
+/// @param row     height of a line; words at places that are nearer than `wide` share lines [px]
+void set_words_apart(std::span<Eigen::Vector2d> places, double row, double wide);
 
 /// Which ear a bone is and how it is placed: "a left ear by its structures; placed as ...".
 std::string placement_words(const BoneDefinition& definition, const bone::BoneModel& model);

@@ -19,6 +19,8 @@ TEST(EarSideTest, TheMadeEarIsARightOneAndItsMirrorImageALeftOne) {
   ASSERT_TRUE(directions);
   EXPECT_LT(directions->outwards.x(), -0.5);
   EXPECT_GT(directions->back.y(), 0.0);
+  EXPECT_GT(outside_view(right).dot(directions->outwards), 0.9);
+  EXPECT_GT(outside_view(left).dot(ear_directions(left)->outwards), 0.9);
 }
 
 TEST(EarSideTest, AMirrorImageHasEveryVoxelOnTheOtherSideOfThePatient) {

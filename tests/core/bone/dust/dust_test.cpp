@@ -461,6 +461,27 @@ TEST(DustTest, TheSameCallsGiveTheSameDustAndTimeMayBeCut) {
   }
 }
 
+TEST(DustTest, ATrickleIsDrawnWhereItLiesAndNotWhileItFalls) {
+  const BoneVolume bone = volume_of(32, [](int, int, int k) { return k < 8; });
+  Dust dust(aligned());
+  const DustBone bones[] = {{&bone}};
+  dust.follow(bones);
+  for (int n = 0; n < 60; ++n) {
+    dust.deposit({middle(16, 16, 28), 1e-3, 0.5});
+    dust.step(dust.step_time());
+  }
+  EXPECT_GT(dust.amount_at(middle(16, 16, 18)), 0.0) << "in the air";
+  std::vector<DustQuad> quads;
+  dust.quads(quads);
+  ASSERT_FALSE(quads.empty());
+  std::size_t in_air = 0;
+  for (const DustQuad& quad : quads) {
+    const double height = quad.position.z() - middle(16, 16, 8).z();
+    in_air += height > 5.0 * kEdge && height < 15.0 * kEdge ? 1 : 0;
+  }
+  EXPECT_EQ(in_air, 0u);
+}
+
 TEST(DustTest, OnlyCellsWithFullCellsAtAllFacesAreLeftOutOfThePicture) {
   const BoneVolume bone = volume_of(32, [](int i, int j, int k) {
     return k < 8 || std::min({i, j, 31 - i, 31 - j}) < 8;  // a pit

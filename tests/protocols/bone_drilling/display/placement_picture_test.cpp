@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
 #include "tests/experiments/small_drilling.h"
@@ -59,6 +60,14 @@ TEST(PlacementPictureTest, AStructureIsWhereTheCameraHasIt) {
   EXPECT_NEAR(placed[0].pixel.y(), 180.0 - scale * from_eye.dot(right.cross(forward)), 1e-6);
   d.simulator.camera.start.target.x() += 0.2;
   EXPECT_FALSE(placed_structures(d, *d.bones.front(), 640, 360)[0].in_sight);
+}
+
+TEST(PlacementPictureTest, WordsOfAxesLieOnLinesOfTheirOwn) {
+  std::array<Eigen::Vector2d, 3> words{{{40.0, 52.0}, {44.0, 50.0}, {100.0, 51.0}}};
+  set_words_apart(words, 10.0, 30.0);
+  EXPECT_EQ(words[1], Eigen::Vector2d(44.0, 50.0));
+  EXPECT_EQ(words[0], Eigen::Vector2d(40.0, 60.0));
+  EXPECT_EQ(words[2], Eigen::Vector2d(100.0, 51.0)) << "nothing is near it";
 }
 
 TEST(PlacementPictureTest, TheCavityIsRedAndNothingElse) {
