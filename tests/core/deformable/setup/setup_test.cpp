@@ -1,9 +1,11 @@
 // A file that states a body and its loads.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 
 #include "core/base/files/file_text.h"
 #include "core/deformable/setup/setup_body.h"
@@ -126,6 +128,31 @@ TEST_F(SetupTest, BadFilesGetASentence) {
                     "}]\n");
               }),
               HasSubstr("is in a region that is held and in one that is moved"));
+}
+
+std::string box_in_obj(const Vector3d& low, const Vector3d& high, int first) {
+  std::string text;
+  for (int corner = 0; corner < 8; ++corner) {
+    text += fmt::format("v {} {} {}\n", corner % 2 == 0 ? low.x() : high.x(),
+                        corner / 2 % 2 == 0 ? low.y() : high.y(), corner < 4 ? low.z() : high.z());
+  }
+  for (const auto& f : {std::array{0, 2, 3, 1},
+                        {4, 5, 7, 6},
+                        {0, 1, 5, 4},
+                        {2, 6, 7, 3},
+                        {0, 4, 6, 2},
+                        {1, 3, 7, 5}}) {
+    text += fmt::format("f {} {} {} {}\n", f[0] + first, f[1] + first, f[2] + first, f[3] + first);
+  }
+  return text;
+}
+
+TEST_F(SetupTest, ACubeThatHangsOnAnEdgeIsLeftOut) {
+  write_text(folder_ / "boxes.obj",
+             box_in_obj({0, 0, 0}, {4, 4, 4}, 1) + box_in_obj({4, 4, 0}, {5, 5, 1}, 9));
+  const auto body = body_of(setup("[body]\nmesh = \"boxes.obj\"\nscale = 0.01\nresolution = 5\n" +
+                                  std::string(kMaterial)));
+  EXPECT_EQ(body.tetrahedra.size(), 5u * 4 * 4 * 4);
 }
 
 TEST_F(SetupTest, TetGensFilesAreRead) {
