@@ -98,7 +98,7 @@ void run(const Case& one, int resolution) {
   geometry::VoxelSolid solid;
   const double voxels = milliseconds(5, [&] { solid = geometry::voxelize(one.mesh, grid, rule); });
   double flood = 0.0;
-  if (rule == InsideRule::kParity) {
+  if (geometry::check_mesh(one.mesh).closed) {
     flood = milliseconds(3, [&] { geometry::voxelize(one.mesh, grid, InsideRule::kFlood); });
   }
   std::optional<geometry::TetMesh> mesh;
