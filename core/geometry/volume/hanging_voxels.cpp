@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -30,14 +32,14 @@ class JoinedParts {
   std::size_t size(std::size_t part) const { return sizes_[part]; }
   std::size_t of_voxel(std::size_t voxel) const { return static_cast<std::size_t>(part_[voxel]); }
 
-  /// Pairs of parts that touch by an edge or a corner, each both ways.
-  std::set<std::pair<std::size_t, std::size_t>> touching() const {
-    std::set<std::pair<std::size_t, std::size_t>> pairs;
+  /// The corners that pairs of parts share, each pair both ways.
+  std::map<std::pair<std::size_t, std::size_t>, std::set<Place>> shared() const {
+    std::map<std::pair<std::size_t, std::size_t>, std::set<Place>> pairs;
     for_inside([&](const Place& at) {
       for (int side = 0; side < 27; ++side) {
         const Place to{at[0] + side % 3 - 1, at[1] + side / 3 % 3 - 1, at[2] + side / 9 - 1};
         if (is_inside(to) && part_[index(to)] != part_[index(at)]) {
-          pairs.emplace(of_voxel(index(at)), of_voxel(index(to)));
+          add_corners(at, to, pairs[{of_voxel(index(at)), of_voxel(index(to))}]);
         }
       }
     });
@@ -46,6 +48,17 @@ class JoinedParts {
 
  private:
   static constexpr std::int32_t kNone = -1;
+
+  static void add_corners(const Place& a, const Place& b, std::set<Place>& corners) {
+    for (int corner = 0; corner < 8; ++corner) {
+      Place place;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        place[axis] =
+            a[axis] == b[axis] ? a[axis] + (corner >> axis) % 2 : std::max(a[axis], b[axis]);
+      }
+      corners.insert(place);
+    }
+  }
 
   std::size_t index(const Place& at) const { return solid_.grid.index(at[0], at[1], at[2]); }
   bool is_inside(const Place& at) const {
@@ -98,13 +111,21 @@ class JoinedParts {
 
 }  // namespace
 
+/// Whether all lie on one line, around which a part could swing.
+static bool on_a_line(const std::set<Place>& corners) {
+  const auto vector = [&](const Place& to) {
+    const Place& from = *corners.begin();
+    return Eigen::Vector3i(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+  };
+  const Eigen::Vector3i along = vector(*corners.rbegin());
+  return std::ranges::all_of(
+      corners, [&](const Place& corner) { return vector(corner).cross(along).isZero(); });
+}
+
 std::size_t drop_hanging_voxels(VoxelSolid& solid) {
   constexpr double kSmallPart = 0.05;
   const JoinedParts parts(solid);
-  const auto touching = parts.touching();
-  if (touching.empty()) {
-    return 0;
-  }
+  const auto shared = parts.shared();
   std::vector<std::size_t> order(parts.count());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater<>(), [&](std::size_t p) { return parts.size(p); });
@@ -112,10 +133,14 @@ std::size_t drop_hanging_voxels(VoxelSolid& solid) {
   std::size_t all = 0;
   for (std::size_t n = 0; n < order.size(); ++n) {
     all += parts.size(order[n]);
-    hangs[order[n]] = std::any_of(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n),
-                                  [&](std::size_t larger) {
-                                    return !hangs[larger] && touching.contains({order[n], larger});
-                                  });
+    std::set<Place> corners;
+    for (std::size_t larger = 0; larger < n; ++larger) {
+      const auto pair = shared.find({order[n], order[larger]});
+      if (pair != shared.end() && !hangs[order[larger]]) {
+        corners.insert(pair->second.begin(), pair->second.end());
+      }
+    }
+    hangs[order[n]] = !corners.empty() && on_a_line(corners);
   }
   std::size_t dropped = 0;
   for (std::size_t p = 0; p < hangs.size(); ++p) {

@@ -6,8 +6,8 @@
 
 namespace haptrial::geometry {
 
-/// Empties voxels that hang on the rest by edges or corners alone: their tetrahedra would swing
-/// there as on a hinge, which no force and no stiffness holds. Parts that touch nothing stay.
+/// Empties voxels that hang on the rest by edges or corners in one line: their tetrahedra would
+/// swing there as on a hinge, which no force and no stiffness holds. Parts that touch nothing stay.
 /// Border voxels are not marked anew.
 /// @returns how many voxels were emptied
 /// @throws InputError if a part that hangs so is more than a twentieth of the solid.

@@ -333,7 +333,7 @@ double voxelizing_memory(const Mesh& mesh, const VoxelGrid& grid, InsideRule rul
   // A flood keeps which neighbours are cut off, and where it has yet to go on. A small cone adds
   // crossings of its own; a hierarchy takes the place of the crossings where it is large.
   return rule == InsideRule::kFlood ? 2.0 * labels + 9.0 * labels + crossings
-         : rule == InsideRule::kWinding
+         : rule == InsideRule::kWinding && !winds_whole(mesh)
              ? labels + 4.0 * crossings + 400.0 * static_cast<double>(mesh.triangles.size())
              : labels + crossings;
 }

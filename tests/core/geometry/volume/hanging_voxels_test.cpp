@@ -27,6 +27,14 @@ TEST(HangingVoxelsTest, WhatTouchesByAnEdgeOrACornerGoes) {
   EXPECT_EQ(solid.labels, block_and({}).labels);
 }
 
+TEST(HangingVoxelsTest, WhatTwoEdgesHoldStays) {
+  VoxelSolid solid = block_and({{4, 4, 0}, {4, 3, 1}, {3, 4, 1}, {4, 2, 1}});
+  solid.labels[solid.grid.index(3, 3, 0)] = VoxelLabel::kOutside;
+  VoxelSolid before = solid;
+  EXPECT_EQ(drop_hanging_voxels(solid), 0u);
+  EXPECT_EQ(solid.labels, before.labels);
+}
+
 TEST(HangingVoxelsTest, WhatIsJoinedByAFaceOrTouchesNothingStays) {
   for (const auto& others : {std::vector<std::array<std::int32_t, 3>>{{4, 0, 0}, {5, 0, 0}},
                              {{7, 7, 7}, {6, 7, 7}},
