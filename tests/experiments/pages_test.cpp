@@ -95,7 +95,8 @@ TEST(PageInputTest, KeysAndTheConsoleGiveTheSameAnswers) {
   const protocols::SessionTexts words;
   const Item choice = item_of(ItemKind::kChoice);
   PageInput keys(choice, words);
-  EXPECT_FALSE(keys.press({'9'})) << "there is no ninth";
+  EXPECT_TRUE(keys.press({'9'})) << "there is no ninth, and the hint says so";
+  EXPECT_TRUE(keys.page(nullptr).hint_is_urgent);
   keys.press({KeyPress::kEnter});
   EXPECT_FALSE(keys.answer()) << "nothing is chosen";
   EXPECT_TRUE(keys.press({'2'}));
