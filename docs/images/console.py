@@ -14,7 +14,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/experiments"))
 from browser import Driver, state, wait  # noqa: E402
 
-PASS = 60  # longer than any pass [s]
 PLOT = 9  # of a run, before its picture is taken [s]
 
 
@@ -42,7 +41,7 @@ class Session:
 
 
 def running(page, stage):
-    wait(stage, lambda: page.text("what").endswith(stage), PASS)
+    wait(stage, lambda: page.text("what").endswith(stage))
     time.sleep(PLOT)
 
 
@@ -55,7 +54,7 @@ def trial(page, url, images):
     page.type("note", "asked which hand to use: the right one")
     page.click("keep")
     page.picture(images / "console-running.png", height=980)
-    wait("the second trial", lambda: page.text("trial").startswith("2 of"), PASS)
+    wait("the second trial", lambda: page.text("trial").startswith("2 of"))
     running(page, "training \u00b7 trial runs")
     page.click("emergency_stop")
     state(page, "STOPPED")
