@@ -94,6 +94,14 @@ void add_band(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, co
   }
 }
 
+/// The axis of the shares: answers are right or wrong only in a forced choice.
+std::string share_label(const TrialsPlan& plan) {
+  if (!plan.yes.empty()) {
+    return "Proportion \"" + plan.yes + "\"";
+  }
+  return plan.task() == Task::kForcedChoice ? "Proportion correct" : "Proportion of answers 1";
+}
+
 /// Lines at the guess rate and from the threshold down.
 void add_marks(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, const Range& range,
                Look look) {
@@ -122,10 +130,9 @@ void add_marks(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, c
 
 Figure function_figure(const TrialsResult& result, const std::vector<const FunctionFit*>& fits) {
   const std::string& participant = fits.front()->participant;
-  Figure figure = new_figure(
-      result, "function-" + file_word(participant), "Psychometric function of " + participant,
-      level_label(result),
-      result.plan.yes.empty() ? "Proportion correct" : "Proportion \"" + result.plan.yes + "\"");
+  Figure figure = new_figure(result, "function-" + file_word(participant),
+                             "Psychometric function of " + participant, level_label(result),
+                             share_label(result.plan));
   const Range range = levels_of(fits);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const FunctionFit& fit = *fits[i];
