@@ -9,8 +9,8 @@
 #include "core/render/flat/text_screen.h"
 #include "core/render/trial/trial_display.h"
 #include "experiments/screen/pace.h"
-#include "experiments/screen/screen.h"
 #include "experiments/screen/screen_pointer.h"
+#include "experiments/screen/session_mark.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
 

@@ -16,6 +16,7 @@
 #include "core/stimulus/observer.h"
 #include "experiments/control/session_control.h"
 #include "experiments/screen/screen_pointer.h"
+#include "experiments/screen/session_mark.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
 
@@ -37,12 +38,6 @@ struct Flash {
   std::uint64_t onsets{0};  // of the run, up to and with those that it shows
   std::int64_t frame{0};    // of take_frames(), from 0
   std::int64_t time_ns{0};  // when it was shown, as a frame's
-};
-
-/// A mark over every picture of a session.
-struct SessionMark {
-  std::string words;   // in the upper left corner; empty: none
-  bool framed{false};  // in orange: the session does not count
 };
 
 /// What happens at the screen; called on its thread. They must not call back into the screen.

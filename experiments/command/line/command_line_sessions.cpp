@@ -9,7 +9,7 @@ namespace haptrial::experiments {
 void add_dry_run(CLI::App& app, int& status) {
   CLI::App* sub =
       subcommand(app, "dry-run", "Run a whole study with virtual subjects, faster than real time",
-                 "haptrial dry-run force_training --jobs 2",
+                 "haptrial dry-run first_experiment --jobs 2",
                  {"a session file for each subject, for analyze", "guide-experimenter.md"});
   auto& o = options_of<DryRunOptions>(*sub, status, dry_run);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
@@ -43,7 +43,7 @@ void add_dry_run(CLI::App& app, int& status) {
 
 void add_run(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "run", "Run one participant's session in real time",
-                             "haptrial run force_training --subject P01",
+                             "haptrial run first_experiment --subject P01",
                              {"the session file ID.h5, for analyze", "guide-experimenter.md"});
   auto& o = options_of<RunOptions>(*sub, status, run);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
@@ -178,7 +178,7 @@ void add_replay(CLI::App& app, int& status) {
 
 void add_validate(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "validate", "Check a definition and show the study that it plans",
-                             "haptrial validate force_training", {"", "guide-experimenter.md"});
+                             "haptrial validate first_experiment", {"", "guide-experimenter.md"});
   auto& definition = options_of<std::string>(*sub, status, validate);
   sub->add_option("DEFINITION", definition, "Experiment definition (.toml)")->required();
 }

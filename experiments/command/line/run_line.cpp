@@ -35,8 +35,8 @@ int run_line(std::span<char* const> line,
   app.require_subcommand(1);
   app.footer(
       "First steps:\n"
-      "  haptrial validate force_training\n"
-      "  haptrial dry-run force_training --subjects 4 --out out/try\n"
+      "  haptrial validate first_experiment\n"
+      "  haptrial dry-run first_experiment --subjects 4 --out out/try\n"
       "  haptrial analyze out/try\n"
       "\n'haptrial SUBCOMMAND --help' shows the options and an example of a subcommand.\n"
       "Documentation: README.md and docs/ of the source.\n"
