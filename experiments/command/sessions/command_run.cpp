@@ -151,8 +151,9 @@ int run(const RunOptions& asked) {
     options.out = options.teach ? "out/teaching" : "out/sessions";
   }
   check_run_options(options);
-  fmt::print("preparing {}\n", options.definition);  // bones take seconds
-  std::fflush(stdout);
+  if (::isatty(STDERR_FILENO) != 0) {
+    fmt::print(stderr, "preparing {}\n", options.definition);  // bones take seconds
+  }
   const Experiment experiment = load_experiment(options.definition, options.language);
   const protocols::Definition& setup = *experiment.definition;
   if (const std::string chosen = choose_session(options, experiment); !chosen.empty()) {
