@@ -27,7 +27,8 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
   for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
     lines.push_back(fmt::format("{}{}: {}{} ({})", capitalized(q.title),
                                 result.plan.by.empty() ? std::string() : ", " + q.table.names[cell],
-                                mean_word(result, q, cell), unit_word(result, q),
+                                mean_word(result, q, cell),
+                                q.open.empty() ? unit_word(result, q) : std::string(),
                                 counted(q.table.participants(cell), "participant")));
   }
   if (!q.open.empty()) {

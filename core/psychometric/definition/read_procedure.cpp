@@ -264,7 +264,7 @@ std::vector<double> thresholds_around(const PsiParameters& p, const Track& track
   const Axis& axis = p.function.axis;
   const double low = axis.at(track.low), high = axis.at(track.high);
   const double step = (high - low) / static_cast<double>(values.size() - 1);
-  for (std::size_t i = 1; i <= (values.size() + 1) / 2; ++i) {
+  for (std::size_t i = 1; i <= (p.levels.size() + 1) / 2; ++i) {
     values.push_back(axis.level(low - static_cast<double>(i) * step));
     values.push_back(axis.level(high + static_cast<double>(i) * step));
   }
