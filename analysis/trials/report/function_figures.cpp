@@ -108,7 +108,7 @@ void add_marks(Figure& figure, const FunctionFit& fit, const TrialsPlan& plan, c
   look.width = 1.0;
   look.dash = "(8,5)";
   const auto function = fit.function(plan);
-  const double threshold = fit.likelihood->threshold.value;
+  const double threshold = fit.stated->threshold.value;
   const double guess = function.parameters().guess;
   Series marks{figure.series.size() < 5 ? "guess rate, threshold" : "", Mark::kSegments, look};
   const auto add = [&](double x, double y, double x2, double y2) {
