@@ -57,7 +57,7 @@ std::string beyond(std::size_t resamples, double fraction) {
   const double needed = 1.0 / std::min(fraction, 1.0 - fraction);
   return fmt::format("its ends lie beyond the {} resamples{}", resamples,
                      needed < kWorthMaking
-                         ? fmt::format("; about {:.1g} would reach them", 2.0 * needed)
+                         ? fmt::format("; about {:.0f} would reach them", 2.0 * needed)
                          : ", as far as so few values take them");
 }
 
