@@ -23,7 +23,7 @@ name = "go_nogo"
 [design]
 participants = 1
 [factors]
-kind = ["go", "nogo"]
+kind = ["go", "go", "go", "nogo"]
 [fields.rest]
 type = "viscous"
 damping = 1.0

@@ -170,10 +170,12 @@ radius = 0.008
 [[stages]]
 name = "back"
 fields = ["back"]
+show = ["start", "hand"]
 until = { inside = "start", for = 0.3 }
 timeout = { after = 5.0, then = "abort" }
 [[stages]]
 name = "reach"
+show = ["target", "hand"]
 onset = { speed_above = 0.03 }
 until = { inside = "target", speed_below = 0.05, for = 0.1 }
 timeout = { after = 3.0, then = "go on" }

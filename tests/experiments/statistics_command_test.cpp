@@ -123,7 +123,7 @@ TEST_F(StatisticsCommandTest, RowsWithMissingFieldsAreLeftOutAndCountedIfAsked) 
   ASSERT_EQ(run.status, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("Left out: 4 of 11 rows, which have a missing field\n"));
   EXPECT_THAT(run.output, HasSubstr("Left out for lack of a value in some condition: D\n"));
-  EXPECT_THAT(run.output, HasSubstr("paired t(2) = -5.00"));
+  EXPECT_THAT(run.output, HasSubstr("paired t(2) = -5.20"));
   EXPECT_THAT(
       run_command("haptrial statistics " + file("nothing.csv", "subject,condition,score\nA,x,\n") +
                   " --leave-out-missing")

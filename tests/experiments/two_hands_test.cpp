@@ -250,8 +250,6 @@ TEST(TwoHandsDefinitionTest, WhatCannotBeIsSaid) {
               HasSubstr("second_hand.tool_stiffness is 9000; allowed: a number of at least 0 and "
                         "at most 5000 [N/m]"));
   EXPECT_THAT(says("[heat]\nloss = 1.0\nrinsed_loss = 0.5\n"), HasSubstr("heat.rinsed_loss"));
-  EXPECT_THAT(says("[bleeding]\nstructures = [\"sigmoid sinus\"]\n"),
-              HasSubstr("has no structure 'sigmoid sinus'"));
 }
 
 TEST(TwoHandsDefinitionTest, ABoneWithTwoHandsIsNotSharedOverALink) {

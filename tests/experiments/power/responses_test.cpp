@@ -106,9 +106,11 @@ TEST(PowerQuestion, RefusesBadInputWithASentence) {
   const std::string met = "[power.responses]\nmet = \"$stiffness\"\n";
   const std::string name = "stiffness_discrimination";
   expect_refused(power_of(name, "watch = \"sign test\"\n" + met + kVary),
-                 "power.watch is \"sign test\"; allowed: \"drift over the trials\"");
+                 "power.watch is \"sign test\", which a first study could not make; made, and "
+                 "allowed: \"drift over the trials\"");
   expect_refused(power_of(name, "watch = \"threshold: paired t\"\n" + met + kVary),
-                 "power.watch is \"threshold: paired t\"; allowed: \"drift over the trials\", "
+                 "power.watch is \"threshold: paired t\", which a first study could not make; made, and "
+                 "allowed: \"drift over the trials\", "
                  "\"repetition of the answer before\"");
   std::string huge = "watch = \"drift over the trials\"\n" + met;
   for (const char* key : {"observer.drift", "observer.repetition", "observer.lapse.median"}) {

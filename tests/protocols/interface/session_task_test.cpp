@@ -587,7 +587,7 @@ TEST_F(RealThreadTest, PassesAreHandedOverWhileTheLoopRuns) {
   launch(1000.0);
   std::vector<PassResult> results;
   for (int row = 0; row < 6; ++row) {
-    ConstantPass pass({0, 2, 0}, 50);
+    ConstantPass pass({0, 1, 0}, 50);  // without ramps 2 N would be a swing
     task_.start(pass, row);
     wait_idle();
     results.push_back(task_.result());
@@ -601,7 +601,7 @@ TEST_F(RealThreadTest, PassesAreHandedOverWhileTheLoopRuns) {
     ASSERT_EQ(rows[i].sequence, i);
   }
   for (int row = 0; row < 6; ++row) {
-    EXPECT_EQ(results[row].state, PassState::kCompleted);
+    EXPECT_EQ(results[row].state, PassState::kCompleted) << device::describe(results[row].fault);
     EXPECT_EQ(results[row].last_sample - results[row].first_sample, 49u);
     EXPECT_EQ(rows[results[row].first_sample].pass, row);
     EXPECT_EQ(rows[results[row].last_sample].pass, row);

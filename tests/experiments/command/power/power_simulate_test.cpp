@@ -187,7 +187,8 @@ TEST_F(PowerSimulateTest, MistakesGetASentence) {
   };
   question("power.toml", "");
   bad(std::string("watch = \"sign test\"\n") + kParts + kVary,
-      "power.toml: power.watch is \"sign test\"; allowed: \"condition: ");
+      "power.toml: power.watch is \"sign test\", which a first study could not make; made, and "
+      "allowed: \"condition: ");
   std::string huge;
   for (const char* name : {"mean", "participant", "trial"}) {
     huge += "[[power.vary]]\nkey = \"power.responses." + std::string(name) + "\"\nvalues = [";
