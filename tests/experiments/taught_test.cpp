@@ -68,7 +68,6 @@ TEST_F(TaughtTest, TheHandIsLedByTheLawAndBothFilesAgree) {
   const auto own = learns.samples(0, learns.sample_count());
   const auto theirs = teaches.samples(0, teaches.sample_count());
   std::size_t led = 0;
-  std::size_t alone = 0;  // ticks with nothing but the coupling
   for (const LinkRow& row : rows) {
     if (row.heard == 0 || row.round_trip < 0.0) {
       continue;
@@ -86,12 +85,10 @@ TEST_F(TaughtTest, TheHandIsLedByTheLawAndBothFilesAgree) {
     const Eigen::Vector3d law =
         row.force + 80.0 * (row.position - hand.position) + 2.0 * (row.velocity - hand.velocity);
     ASSERT_LT((law - row.coupling).norm(), 2e-4) << "tick " << row.sequence;
-    const double beside = (hand.force - row.coupling).norm();  // the guard may add its damper
-    ASSERT_LT(beside, 0.1) << "tick " << row.sequence;
-    alone += beside < 2e-4;
+    ASSERT_LT((hand.force - row.coupling).norm(), 0.1)  // the guard may add its damper
+        << "tick " << row.sequence;
   }
   EXPECT_GT(led, 500u);
-  EXPECT_GT(alone, led / 2);
   // Who teaches feels nothing of the coupling.
   EXPECT_TRUE(std::ranges::all_of(others, [](const LinkRow& r) { return r.coupling.norm() == 0; }));
   EXPECT_THAT(learns.events(), testing::Contains(testing::Field(&record::EventRow::kind, "link")));
