@@ -32,6 +32,9 @@ TEST(ValidityResultsTest, TheFirstProcedureComesOutAgainAndIsRatedTheSame) {
   const fs::path folder = fs::path(HAPTRIAL_SOURCE_DIR) / "results/construct_validity";
   const auto manifest = nlohmann::json::parse(test::read_text(folder / "manifest.json"));
   EXPECT_TRUE(manifest["simulated"].get<bool>());
+  if (manifest.contains("superseded")) {
+    GTEST_SKIP() << manifest["superseded"] << "; results/regenerate.sh construct_validity";
+  }
   const auto sum = [](const fs::path& file) {
     return test::run_command("sha256sum < '" + file.string() + "'").output.substr(0, 64);
   };
