@@ -13,8 +13,8 @@ class SessionReader;
 
 namespace haptrial::exchange {
 
-/// What a session presented in each pass and what was answered: variables, levels of procedures,
-/// answers. The columns depend on the definition.
+/// The variables, the levels of procedures and the answers of each pass of a session. The columns
+/// depend on the definition.
 struct PassFacts {
   std::vector<ColumnDoc> columns;                         // in the order in which they first occur
   std::vector<std::map<std::string, std::string>> cells;  // (passes) text by column

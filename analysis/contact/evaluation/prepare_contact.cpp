@@ -47,7 +47,7 @@ double mean_period(const PoseStream& pose) {
   return (pose.time.back() - pose.time.front()) / static_cast<double>(pose.size() - 1);
 }
 
-/// Of the poses that a velocity is taken over [s].
+/// The time over which poses give a velocity [s].
 double velocity_width(const PoseStream& path) {
   return std::max(kPeriodsOfVelocity * mean_period(path) * (1.0 + 1e-9), kLeastVelocityWidth);
 }

@@ -37,7 +37,7 @@ struct LikelihoodOptions {
   Task task{Task::kForcedChoice};
   RateBounds lapse{};  // 0 <= low <= high <= 0.5
   RateBounds guess{};  // of a yes/no task, likewise
-  // What could be presented, on the axis, if that is more than the levels of the trials.
+  // The range that could be presented, on the axis, if it is more than the levels of the trials.
   std::optional<SearchBounds> presentable{};
 };
 

@@ -9,8 +9,8 @@
 
 namespace haptrial::analysis {
 
-/// What a report states of a function: estimates and intervals from one method, and what is wrong
-/// with them.
+/// The estimates and intervals that a report states of a function, from one method, and what is
+/// wrong with them.
 struct StatedFit {
   LikelihoodFit likeliest;
   FittedParameters estimate;  // of the likelihood; of adaptive trials the posterior's medians

@@ -104,7 +104,7 @@ Estimated drawn(const StatedFit& fit, const TrialsPlan& plan, const Asked& asked
   return {at(0.5), at(0.5 - 0.5 * kLevel), at(0.5 + 0.5 * kLevel)};
 }
 
-/// What is read off the posterior of adaptive trials.
+/// Reads slope, Weber fraction and band off draws from the posterior of adaptive trials.
 void take_draws(FunctionFit& result, FunctionReadings& r, const StatedFit& fit,
                 const TrialsPlan& plan) {
   r.slope = drawn(fit, plan, {Reading::kSlope, plan.function.share});
@@ -121,7 +121,7 @@ void take_draws(FunctionFit& result, FunctionReadings& r, const StatedFit& fit,
   }
 }
 
-/// What scatter beyond chance makes of a bootstrap's interval.
+/// Makes a bootstrap's interval longer where answers scatter beyond chance.
 void widen(Estimated& e, double factor) {
   e.low = e.value - factor * (e.value - e.low);
   e.high = e.value + factor * (e.high - e.value);

@@ -47,7 +47,7 @@ struct FunctionFit {
   std::size_t trials{0};
   bool adaptive{false};  // levels depended on the answers
   std::vector<TrialBlock> blocks;
-  /// Of the likelihood; if adaptive of the posterior (stated_fit).
+  /// Readings of the likelihood; of adaptive trials, of the posterior (stated_fit).
   Defined<FunctionReadings> stated{Undefined{"nothing was fitted"}};
   Defined<FunctionReadings> bayesian{Undefined{"nothing was fitted"}};
   FittedParameters fitted;                    // as stated

@@ -97,8 +97,8 @@ std::string short_number(const std::string& side) {
   return problem == std::errc() && rest == end ? fmt::format("{}", number) : side;
 }
 
-/// What a planned test may compare: levels of one factor of `by`, or combinations of all; nothing
-/// if the definition does not state some level.
+/// The sides that a planned test may compare: levels of one factor of `by`, or combinations of all;
+/// empty if the definition does not state some level.
 std::vector<std::string> stated_sides(const std::vector<std::string>& by,
                                       const StatedLevels& stated) {
   std::vector<std::string> sides, combinations{""};

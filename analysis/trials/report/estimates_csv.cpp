@@ -59,8 +59,8 @@ class Estimates {
     one("guess_rate", r.guess, "");
   }
 
-  /// Of adaptive trials for comparison with other programs: without an interval, which would not
-  /// hold the truth.
+  /// Adds the likelihood's estimates of adaptive trials, for comparison with other programs; their
+  /// intervals would not hold the truth and are left out.
   void add_likeliest(const FunctionFit& fit) {
     const psychometric::Axis& axis = result_.plan.function.axis;
     const FittedParameters& p = *fit.likeliest;

@@ -62,7 +62,7 @@ std::vector<std::string> row_of(const FunctionFit& fit, const char* how,
   return row;
 }
 
-/// Whose answers scatter, which of the rows to report, and what a deviance cannot show.
+/// Says whose answers scatter, which of the rows to report, and what a deviance cannot show.
 void add_fit_words(Document& document, const TrialsResult& result) {
   if (result.plan.bayesian) {
     document.paragraph(
