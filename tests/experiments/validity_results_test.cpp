@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -32,8 +33,9 @@ TEST(ValidityResultsTest, TheFirstProcedureComesOutAgainAndIsRatedTheSame) {
   const fs::path folder = fs::path(HAPTRIAL_SOURCE_DIR) / "results/construct_validity";
   const auto manifest = nlohmann::json::parse(test::read_text(folder / "manifest.json"));
   EXPECT_TRUE(manifest["simulated"].get<bool>());
-  if (manifest.contains("superseded")) {
-    GTEST_SKIP() << manifest["superseded"] << "; results/regenerate.sh construct_validity";
+  if (manifest.contains("superseded") && std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {
+    GTEST_SKIP() << "the results are superseded: results/regenerate.sh construct_validity takes "
+                    "half an hour; set HAPTRIAL_EVERY_STUDY=1 to compare them all the same";
   }
   const auto sum = [](const fs::path& file) {
     return test::run_command("sha256sum < '" + file.string() + "'").output.substr(0, 64);
