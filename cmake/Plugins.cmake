@@ -1,22 +1,3 @@
-# haptrial_inside(OUT): the archives that export nothing: what runs, shows and writes sessions, links
-# between sites, the commands, simulations of power, and all that the shipped experiments have to
-# themselves.
-function(haptrial_inside out)
-  set(archives "")
-  get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
-  foreach(name ${modules})
-    get_property(folder GLOBAL PROPERTY HAPTRIAL_FOLDER_${name})
-    if(folder MATCHES "^experiments/(command|console|control|devices|loop|pages|power|runner|screen|study|studies/(drilling|force|shipped|trials))" OR
-       folder MATCHES "^protocols/(bone_drilling|force_training|trials|tutoring)" OR
-       folder MATCHES "^core/(deformable/calibration|hint|markers|nerve|network|pages|record/(recovery|write)|stream)" OR
-       folder MATCHES "^analysis/(bone_drilling|contact|exchange|force_training|link|power|trials)")
-      list(APPEND archives libhaptrial_${name}.a)
-    endif()
-  endforeach()
-  list(JOIN archives ":" archives)
-  set(${out} ${archives} PARENT_SCOPE)
-endfunction()
-
 # Plug-ins take the program's own functions: the command exports them, and haptrial::plugin has the
 # headers without the libraries (docs/decisions/0015-plug-ins-take-the-program.md).
 function(haptrial_plugins)
@@ -45,14 +26,5 @@ function(haptrial_plugins)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/haptrial/experiments/plugin
           COMPONENT development)
 
-  set(exports ${CMAKE_SOURCE_DIR}/cmake/exports.txt)
-  haptrial_inside(inside)
-  target_link_options(haptrial PRIVATE LINKER:--dynamic-list=${exports} LINKER:--exclude-libs,${inside}
-                                       LINKER:--gc-sections LINKER:-z,pack-relative-relocs)
-  if(HAPTRIAL_LLD AND NOT HAPTRIAL_SANITIZER)
-    # Functions with the same instructions are one. Constants keep their own addresses: by these a
-    # picture's type is told.
-    target_link_options(haptrial PRIVATE LINKER:--icf=all)
-  endif()
-  set_property(TARGET haptrial APPEND PROPERTY LINK_DEPENDS ${exports})
+  set_target_properties(haptrial PROPERTIES ENABLE_EXPORTS ON)
 endfunction()

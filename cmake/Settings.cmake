@@ -8,7 +8,7 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_CXX_FLAGS_RELEASE "-O3")  # the modules lower it: haptrial_optimise
+set(CMAKE_CXX_FLAGS_RELEASE "-O2")  # kernels take more: haptrial_optimise
 
 # No fused multiply-add unless it is written: the same source gives the same bits on every
 # instruction set that a kernel is dispatched to.
@@ -25,16 +25,6 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # The compiler looks for memory to free every time that its heap has grown by a third; with this it
   # begins at 256 MB, which takes 40 MB more and a sixth less time.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=262144>)
-endif()
-
-# lld links a test in a third of the time of GNU's linker and makes a smaller command (Plugins.cmake).
-# OSMesa brings the libraries of LLVM 15 anyway, and this lld knows relocations that are packed.
-find_program(HAPTRIAL_LLD NAMES ld.lld-15 ld.lld)
-if(HAPTRIAL_LLD)
-  set(linker ${CMAKE_BINARY_DIR}/linker)
-  file(MAKE_DIRECTORY ${linker})
-  file(CREATE_LINK ${HAPTRIAL_LLD} ${linker}/ld.lld SYMBOLIC)  # the name that compilers look for
-  add_link_options(-B${linker} -fuse-ld=lld)
 endif()
 
 set(HAPTRIAL_SANITIZER "" CACHE STRING "address or thread")
