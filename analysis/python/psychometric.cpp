@@ -2,8 +2,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/psychometric/fit/adaptive_posterior.h"
-#include "analysis/psychometric/fit/profile_interval.h"
+#include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/python/arrays.h"
 #include "core/base/error.h"
 #include "core/psychometric/function/psychometric_function.h"
@@ -13,6 +12,7 @@ namespace {
 
 using analysis::LikelihoodOptions;
 using analysis::Task;
+using psychometric::Axis;
 using psychometric::PsychometricFunction;
 using psychometric::PsychometricParameters;
 using psychometric::Scale;
@@ -72,53 +72,51 @@ py::dict described(const PsychometricParameters& p) {
   return values;
 }
 
-/// From low to high; an open side is `lowest`, or infinite.
-template <class Interval, class Level>
-py::tuple interval(const Interval& from, Level level, double lowest) {
-  double low = level(from.low);
-  double high = level(from.high);
-  if constexpr (requires { from.low_open; }) {
-    low = from.low_open ? lowest : low;
-    high = from.high_open ? std::numeric_limits<double>::infinity() : high;
+/// From low to high; an open side is `lowest`, or infinite; NaN where the fit has no interval.
+template <class Level>
+py::tuple interval(const analysis::StatedFit& fit, const analysis::ProfileInterval& from,
+                   Level level, double lowest) {
+  if (!fit.no_interval.empty()) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return py::make_tuple(kNone, kNone);
   }
-  return py::make_tuple(low, high);
+  return py::make_tuple(from.low_open ? lowest : level(from.low),
+                        from.high_open ? std::numeric_limits<double>::infinity()
+                                       : level(from.high));
 }
 
 /// A fit's numbers, and the function that it found; levels in the unit of the stimulus.
 py::dict fit(const std::vector<analysis::TrialBlock>& blocks, const LikelihoodOptions& options,
-             bool adaptive, double level) {
-  std::optional<analysis::AdaptivePosterior> posterior;
+             bool adaptive) {
   std::optional<PsychometricFunction> function;
-  analysis::ProfiledFit found;
+  analysis::StatedFit found;
   analysis::PsychometricDeviance deviance;
   {
     const py::gil_scoped_release release;
-    found = analysis::profiled_fit(blocks, options, level);
-    if (adaptive) {
-      posterior = analysis::adaptive_posterior(blocks, options, level);
-    }
-    function = analysis::fitted_function(options.function, found.fit.parameters);
-    deviance = analysis::deviance_of(*function, blocks);
+    found = analysis::stated_fit(blocks, options, adaptive,
+                                 std::numeric_limits<double>::quiet_NaN());
+    function = analysis::fitted_function(options.function, found.estimate);
+    deviance = analysis::deviance_of(
+        analysis::fitted_function(options.function, found.likeliest.parameters), blocks);
   }
   const auto on_axis = [&](double x) { return options.function.axis.level(x); };
   const auto same = [](double value) { return value; };
-  py::dict result;
-  result["function"] = *function;
-  result["threshold"] = on_axis(found.fit.parameters.threshold);
   const double lowest = options.function.axis.scale == Scale::kLinear
                             ? -std::numeric_limits<double>::infinity()
                             : options.function.axis.origin;
-  result["threshold_interval"] = posterior ? interval(posterior->threshold, on_axis, lowest)
-                                           : interval(found.threshold, on_axis, lowest);
-  result["width"] = found.fit.parameters.width;
-  result["width_interval"] =
-      posterior ? interval(posterior->width, same, 0.0) : interval(found.width, same, 0.0);
+  py::dict result;
+  result["function"] = *function;
+  result["threshold"] = on_axis(found.estimate.threshold);
+  result["threshold_interval"] = interval(found, found.threshold, on_axis, lowest);
+  result["width"] = found.estimate.width;
+  result["width_interval"] = interval(found, found.width, same, 0.0);
   result["width_unit"] = options.function.axis.x_unit();
-  result["lapse"] = found.fit.parameters.lapse;
-  result["guess"] = found.fit.parameters.guess;
-  result["log_likelihood"] = found.fit.log_likelihood;
+  result["lapse"] = found.estimate.lapse;
+  result["guess"] = found.estimate.guess;
+  result["log_likelihood"] = found.likeliest.log_likelihood;
   result["deviance"] = deviance.deviance;
-  result["undetermined"] = found.fit.undetermined;
+  result["undetermined"] = !found.told;
+  result["no_interval"] = found.no_interval;
   return result;
 }
 
@@ -171,7 +169,7 @@ void bind_psychometric(py::module_& module) {
       [](const Numbers& levels, const std::vector<int>& correct, const std::vector<int>& total,
          const std::string& function, std::optional<double> guess, std::pair<double, double> lapse,
          const std::string& scale, double origin, double share, double tail, bool adaptive,
-         double level) {
+         const std::optional<std::pair<double, double>>& presentable) {
         LikelihoodOptions options;
         options.function = function_shape(function, scale, origin, share, tail);
         options.function.guess = guess.value_or(0.0);
@@ -180,11 +178,15 @@ void bind_psychometric(py::module_& module) {
         if (guess && *guess == 0.0) {
           options.guess = {0.0, 0.0};
         }
-        return fit(blocks_of(levels, correct, total), options, adaptive, level);
+        if (presentable) {
+          const Axis& axis = options.function.axis;
+          options.presentable = {axis.at(presentable->first), axis.at(presentable->second)};
+        }
+        return fit(blocks_of(levels, correct, total), options, adaptive);
       },
       py::arg("levels"), py::arg("correct"), py::arg("total"), py::arg("function"),
       py::arg("guess"), py::arg("lapse"), py::arg("scale"), py::arg("origin"), py::arg("share"),
-      py::arg("tail"), py::arg("adaptive"), py::arg("level"));
+      py::arg("tail"), py::arg("adaptive"), py::arg("presentable"));
 }
 
 }  // namespace haptrial::python

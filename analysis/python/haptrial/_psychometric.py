@@ -13,8 +13,8 @@ PsychometricFunction = _haptrial.PsychometricFunction
 
 @dataclasses.dataclass(frozen=True)
 class Fit:
-    """A psychometric function that was fitted. Intervals hold the truth as often as their level
-    says; a side that is infinite (of a width also 0, of a logarithmic axis its origin) means that the
+    """A psychometric function that was fitted. Intervals hold the truth in 95 % of cases, or are
+    NaN, and `no_interval` says why; a side that is infinite (of a width also 0, of a logarithmic axis its origin) means that the
     answers do not tell how far it goes."""
     function: PsychometricFunction               #: probability of answer 1 at a level
     threshold: float                             #: level at which the function, free of guesses and
@@ -28,6 +28,7 @@ class Fit:
     log_likelihood: float                        #: without binomial coefficients
     deviance: float                              #: 2 (log-likelihood of the shares - its own)
     undetermined: bool                           #: the answers do not tell threshold and width
+    no_interval: str                             #: why there are no intervals; "": there are
 
 
 def psychometric_function(function: str = "logistic", *, threshold: float, width: float,
@@ -50,8 +51,8 @@ def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | No
         function: str = "norm", guess: float | None = 0.5,
         lapse: tuple[float, float] = (0.0, 0.06), scale: str = "", origin: float = 0.0,
         share: float = 0.5, tail: float = 0.05, adaptive: bool = False,
-        level: float = 0.95) -> Fit:
-    """Fits a psychometric function by maximum likelihood, as reports do.
+        presentable: tuple[float, float] | None = None) -> Fit:
+    """Fits a psychometric function as reports do: estimates and 95 % intervals of one method.
 
     levels    (blocks) [unit of the level]
     correct   (blocks) answers 1 ("correct", "yes") at each level
@@ -59,12 +60,13 @@ def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | No
     guess     known lower asymptote of a forced choice, 1 / alternatives; None: it is fitted
               (yes/no tasks), 0: known to be 0
     lapse     lowest and highest lapse rate that is allowed [1]
-    adaptive  the levels depended on the answers (staircase, QUEST+): intervals then come from the
-              posterior (docs/algorithms/procedure-coverage.md), else from profile likelihoods
-    level     of the intervals [1]
+    adaptive  the levels depended on the answers (staircase, QUEST+): medians and intervals of the
+              posterior (docs/algorithms/procedure-coverage.md), else of the likelihood
+    presentable   lowest and highest level that a trial could have had, if no trial had them
+              [unit of the level]
     function, scale, origin, share, tail   as psychometric_function()"""
     right = np.asarray(correct, dtype=int)
     asked = np.ones_like(right) if total is None else np.asarray(total, dtype=int)
     return Fit(**_haptrial.fit(np.asarray(levels, dtype=float), right.tolist(), asked.tolist(),
                                function, guess, lapse, scale, origin, share, tail, adaptive,
-                               level))
+                               presentable))

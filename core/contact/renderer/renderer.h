@@ -31,6 +31,7 @@ struct RendererOptions {
   Friction friction{};        // of proxies; the others have none
   double crease_angle{-1.0};  // force shading over edges less sharp than this; negative: none [rad]
   int resolution{64};         // of voxel and distance field: cells along the longest side, 4 to 512
+  double unit{1.0};           // of the body's lengths, that tells how deep 1 mm is > 0 [m]
 };
 
 /// What a renderer answers on a tick, in the object's frame.

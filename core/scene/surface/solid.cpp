@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/contact/renderer/make_renderer.h"
+#include "core/contact/renderer/normal_spring.h"
 #include "core/scene/shape/require.h"
 
 namespace haptrial::scene {
@@ -18,6 +19,7 @@ contact::RendererOptions options_of(const SolidParameters& p) {
   contact::RendererOptions options;
   options.stiffness = p.gains.stiffness * p.scale;
   options.damping = p.gains.damping * p.scale;
+  options.unit = p.scale;
   options.radius = p.tool_radius / p.scale;
   options.friction = p.friction;
   options.crease_angle = p.crease_angle;
@@ -82,9 +84,9 @@ Vector3d Solid::push(const contact::Contact& contact, const Felt& felt,
   }
   const Vector3d lean = normal - relief_.slope;  // g
   const double most = limit_ / (1.0 + relief_.steepest);
-  const double wanted =
-      felt.shares.stiffness * parameters_.gains.stiffness * depth -
-      felt.shares.damping * parameters_.gains.damping * lean.dot(felt.hand.velocity);
+  const double damping = felt.shares.damping * contact::damper_share(depth);
+  const double wanted = felt.shares.stiffness * parameters_.gains.stiffness * depth -
+                        damping * parameters_.gains.damping * lean.dot(felt.hand.velocity);
   state.limited = wanted > most;
   const Vector3d force = std::clamp(wanted, 0.0, most) * lean + dragged;
   state.stimulus = force - whole;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/contact/renderer/normal_spring.h"
 #include "core/scene/shape/require.h"
 
 namespace haptrial::scene {
@@ -26,8 +27,9 @@ SurfaceDistance Surface::free_side(const Vector3d& p) const noexcept {
 
 /// Without the relief, which is what is felt of it beyond.
 Vector3d Surface::flat_force(const SurfaceDistance& here, const Felt& felt) const noexcept {
+  const double damping = felt.shares.damping * contact::damper_share(-here.distance);
   const double wanted = -felt.shares.stiffness * gains_.stiffness * here.distance -
-                        felt.shares.damping * gains_.damping * here.normal.dot(felt.hand.velocity);
+                        damping * gains_.damping * here.normal.dot(felt.hand.velocity);
   return here.distance < 0.0 ? Vector3d(std::clamp(wanted, 0.0, limit_) * here.normal)
                              : Vector3d(Vector3d::Zero());
 }
@@ -47,8 +49,9 @@ Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
     return Vector3d::Zero();
   }
   const double most = limit_ / (1.0 + relief_.steepest);
+  const double damping = felt.shares.damping * contact::damper_share(depth);
   const double wanted = felt.shares.stiffness * gains_.stiffness * depth -
-                        felt.shares.damping * gains_.damping * lean.dot(felt.hand.velocity);
+                        damping * gains_.damping * lean.dot(felt.hand.velocity);
   const double pushed = std::clamp(wanted, 0.0, most);
   state.limited = wanted > most;
   const Vector3d force = pushed * lean;

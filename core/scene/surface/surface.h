@@ -24,9 +24,10 @@ struct ReliefHere {
 
 /// A wall, box, sphere or cylinder that pushes the hand out along its normal n, with relief h:
 ///
-///     e = depth + h(p),  g = n - ∇h,  f = clip(k e - b g · v, 0, F) g  if e > 0, else 0
+///     e = depth + h(p),  g = n - ∇h,  f = clip(k e - b c(e) g · v, 0, F) g  if e > 0, else 0
 ///
-/// n points to the free side; depth is the distance behind the surface. The hand is never pulled.
+/// n points to the free side; depth is the distance behind the surface; c is contact::damper_share,
+/// so that the damper does not strike the hand. The hand is never pulled.
 /// F = limit / (1 + steepest slope), so that |f| stays within the limit. Passive: f at rest is
 /// minus the gradient of phi(e) with phi' = clip(k e, 0, F), and clip is monotone, so the damper
 /// takes energy. Reliefs tilt the force against the way uphill, as on real ridges, and change it

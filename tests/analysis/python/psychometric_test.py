@@ -26,7 +26,8 @@ class FitTest(unittest.TestCase):
         for participant in ("S01", "S02"):
             trials = answers(participant)
             fit = haptrial.fit(trials["applied"], trials["outcome"], function="weibull", guess=0.5,
-                               scale="log10", origin=300.0, adaptive=True)
+                               scale="log10", origin=300.0, adaptive=True,
+                               presentable=(305.0, 600.0))
             for name, value, interval in (("threshold", fit.threshold, fit.threshold_interval),
                                           ("width", fit.width, fit.width_interval)):
                 row = written.loc[(participant, name)]

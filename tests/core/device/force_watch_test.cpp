@@ -2,14 +2,21 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "core/device/energy_watch.h"
 #include "core/device/virtual_device.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
+#include "tests/support/shared_data.h"
 
 namespace haptrial::device::force_watch_test {
 namespace {
@@ -151,6 +158,45 @@ TEST(EnergyWatchTest, ALittleGeneratedAllTheTimeIsForgotten) {
   EnergyWatch watch;
   for (int i = 0; i < 100'000; ++i) {  // 0.1 W
     ASSERT_FALSE(watch.look(Vector3d(1.0, 0.0, 0.0), Vector3d(1e-4, 0.0, 0.0), {}, 1e-3));
+  }
+}
+
+/// Rows of numbers in a file of data from outside; empty where it is absent.
+std::vector<std::vector<double>> recorded(const std::string& name) {
+  std::vector<std::vector<double>> rows;
+  const auto file = test::shared_data(name);
+  std::ifstream text(file ? file->string() : std::string());
+  std::string row;
+  std::getline(text, row);  // the header
+  while (std::getline(text, row)) {
+    std::ranges::replace(row, ',', ' ');
+    std::istringstream cells(row);
+    rows.emplace_back(std::istream_iterator<double>(cells), std::istream_iterator<double>());
+  }
+  return rows;
+}
+
+/// The force of a medium of 20 N·s/m and of a wall of 2000 N/m that a recorded hand would feel on
+/// its way of half a metre. (The force that was recorded is of no use here: it has the vibration of
+/// the arm that the hand led, 2 N at 20 Hz.)
+TEST(ForceWatchTest, ARecordedHandDoesNotOscillate) {
+  const auto rows = recorded("haptic/csrl_ur_admittance_human_500Hz.csv");
+  if (rows.empty()) {
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds "
+                    "csrl_ur_admittance_human_500Hz.csv";
+  }
+  ForceWatch in_medium(12.0, 3.0);
+  std::vector<ForceWatch> at_walls(3, ForceWatch(12.0, 30.0));
+  constexpr std::size_t kWindow = 8;  // readings of a slope
+  for (std::size_t i = kWindow; i < rows.size(); ++i) {
+    const auto place = [&](std::size_t at) { return Vector3d(rows[at].data() + 1); };
+    const Vector3d drag = -20.0 * (place(i) - place(i - kWindow)) / (kWindow * 2e-3);
+    ASSERT_EQ(in_medium.look(drag, Vector3d::Zero(), 2e-3), Fault::kNone) << rows[i][0];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double depth = place(i)[axis] - place(0)[axis];
+      const Vector3d push = -std::clamp(2000.0 * depth, 0.0, 12.0) * Vector3d::Unit(axis);
+      ASSERT_NE(at_walls[axis].look(push, Vector3d::Zero(), 2e-3), Fault::kOscillation) << rows[i][0];
+    }
   }
 }
 

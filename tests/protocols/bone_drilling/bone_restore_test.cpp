@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/field_row.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/trial_facts.h"
 #include "core/record/read/integrity.h"
@@ -67,7 +68,9 @@ class BoneRestoreTest : public testing::Test {
   /// That a session of drilling has.
   static record::TableList tables() {
     return record::with_tables(record::drilling_tables(),
-                               {&record::table_of<record::DampingRow>()});
+                               {&record::table_of<record::DampingRow>(),
+                                &record::table_of<record::OpeningRow>(),
+                                &record::table_of<record::FieldRow>()});
   }
 
   /// FILE.partial as a crash leaves it: without a row for the pass that was under way.
