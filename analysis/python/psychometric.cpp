@@ -80,9 +80,9 @@ py::tuple interval(const analysis::StatedFit& fit, const analysis::ProfileInterv
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return py::make_tuple(kNone, kNone);
   }
-  return py::make_tuple(from.low_open ? lowest : level(from.low),
-                        from.high_open ? std::numeric_limits<double>::infinity()
-                                       : level(from.high));
+  return py::make_tuple(
+      from.low_open ? lowest : level(from.low),
+      from.high_open ? std::numeric_limits<double>::infinity() : level(from.high));
 }
 
 /// A fit's numbers, and the function that it found; levels in the unit of the stimulus.
@@ -93,8 +93,8 @@ py::dict fit(const std::vector<analysis::TrialBlock>& blocks, const LikelihoodOp
   analysis::PsychometricDeviance deviance;
   {
     const py::gil_scoped_release release;
-    found = analysis::stated_fit(blocks, options, adaptive,
-                                 std::numeric_limits<double>::quiet_NaN());
+    found =
+        analysis::stated_fit(blocks, options, adaptive, std::numeric_limits<double>::quiet_NaN());
     function = analysis::fitted_function(options.function, found.estimate);
     deviance = analysis::deviance_of(
         analysis::fitted_function(options.function, found.likeliest.parameters), blocks);

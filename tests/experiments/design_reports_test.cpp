@@ -103,7 +103,7 @@ TEST_F(DesignReportsTest, Mixed) {
              "--factor group --factor condition --planned 'expert < novice'");
   EXPECT_THAT(text, HasSubstr("between participants: group (expert, novice)"));
   EXPECT_THAT(text, HasSubstr("mixed analysis of variance"));
-  EXPECT_THAT(text, HasSubstr("- Group × condition: "));
+  EXPECT_THAT(text, HasSubstr("- Effect of group × condition: "));
   EXPECT_THAT(text, HasSubstr("interaction.svg"));
   const auto& effects = json_["participants_as_unit"]["effects"];
   ASSERT_EQ(effects.size(), 3u);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/scene/shape/require.h"
 
@@ -109,6 +110,20 @@ SurfaceDistance PlacedShape::distance(const Vector3d& p) const noexcept {
       return of_cylinder(from, axis_, radius_, half_length_);
   }
   return {};
+}
+
+double PlacedShape::deepest() const noexcept {
+  switch (kind_) {
+    case Kind::kHalfSpace:
+      break;
+    case Kind::kSphere:
+      return radius_;
+    case Kind::kBox:
+      return half_.minCoeff();
+    case Kind::kCylinder:
+      return std::min(radius_, half_length_);
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace haptrial::scene

@@ -50,6 +50,8 @@ class PlacedShape {
 
   /// Servo thread: no allocation, lock, I/O or throw.
   SurfaceDistance distance(const Eigen::Vector3d& p) const noexcept;
+  /// How far the point that lies deepest is from the surface; infinite for a half-space [m].
+  double deepest() const noexcept;
 
   /// Whether p is inside or on the surface: what "until inside" asks. False if p is not finite.
   /// Servo thread.

@@ -7,37 +7,49 @@
 #include "core/scene/shape/require.h"
 
 namespace haptrial::scene {
+namespace {
 
 using Eigen::Vector3d;
+
+constexpr double kCore = 2e-3;  // over which the force fades towards the middle of a shape [m]
+
+}  // namespace
 
 Surface::Surface(const SurfaceParameters& parameters, const Setting& setting)
     : shape_(parameters.shape),
       inside_(parameters.felt_from_inside),
       gains_(control::PdController(parameters.gains).gains()),
-      limit_(setting.limit) {}
+      limit_(setting.limit),
+      deepest_(shape_.deepest()),
+      core_(std::min(kCore, deepest_)) {}
 
-SurfaceDistance Surface::free_side(const Vector3d& p) const noexcept {
-  SurfaceDistance found = shape_.distance(p);
+/// Towards the middle of a shape the depth grows ever less, so that the force, its gradient times
+/// the spring, fades: a hand that is pushed through would be struck where it turns round.
+Surface::Side Surface::free_side(const Vector3d& p) const noexcept {
+  const SurfaceDistance found = shape_.distance(p);
   if (inside_) {
-    found.distance = -found.distance;
-    found.normal = -found.normal;
+    return {found.distance, -found.normal, 1.0};
   }
-  return found;
+  const double whole = deepest_ - core_;
+  const double beyond = std::max(-found.distance - whole, 0.0);
+  const double share = 1.0 - beyond / core_;
+  return {beyond > 0.0 ? whole + 0.5 * (1.0 + share) * beyond : -found.distance, found.normal,
+          share};
 }
 
 /// Without the relief, which is what is felt of it beyond.
-Vector3d Surface::flat_force(const SurfaceDistance& here, const Felt& felt) const noexcept {
-  const double damping = felt.shares.damping * contact::damper_share(-here.distance);
-  const double wanted = -felt.shares.stiffness * gains_.stiffness * here.distance -
-                        damping * gains_.damping * here.normal.dot(felt.hand.velocity);
-  return here.distance < 0.0 ? Vector3d(std::clamp(wanted, 0.0, limit_) * here.normal)
-                             : Vector3d(Vector3d::Zero());
+Vector3d Surface::flat_force(const Side& here, const Felt& felt) const noexcept {
+  const double damping = felt.shares.damping * contact::damper_share(here.depth);
+  const double wanted = felt.shares.stiffness * gains_.stiffness * here.depth -
+                        damping * gains_.damping * here.share * here.normal.dot(felt.hand.velocity);
+  return here.depth > 0.0 ? Vector3d(std::clamp(wanted, 0.0, limit_) * here.share * here.normal)
+                          : Vector3d(Vector3d::Zero());
 }
 
 Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
-  const SurfaceDistance here = free_side(felt.hand.position);
-  const double depth = relief_.height - here.distance;  // e
-  const Vector3d lean = here.normal - relief_.slope;    // g
+  const Side here = free_side(felt.hand.position);
+  const double depth = relief_.height + here.depth;                // e
+  const Vector3d lean = here.share * here.normal - relief_.slope;  // g
   state.normal = here.normal;
   state.contact = depth > 0.0;
   state.depth = std::max(depth, 0.0);
@@ -63,7 +75,7 @@ Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
 }
 
 double Surface::energy(const Vector3d& p) const noexcept {
-  return stored(std::max(relief_.height - free_side(p).distance, 0.0), 1.0);
+  return stored(std::max(relief_.height + free_side(p).depth, 0.0), 1.0);
 }
 
 double Surface::stored(double depth, double share) const noexcept {

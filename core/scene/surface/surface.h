@@ -27,7 +27,8 @@ struct ReliefHere {
 ///     e = depth + h(p),  g = n - ∇h,  f = clip(k e - b c(e) g · v, 0, F) g  if e > 0, else 0
 ///
 /// n points to the free side; depth is the distance behind the surface; c is contact::damper_share,
-/// so that the damper does not strike the hand. The hand is never pulled.
+/// so that the damper does not strike the hand. The hand is never pulled. Over the last 2 mm before
+/// the middle of a sphere, box or cylinder the force fades, so that it does not turn round at once.
 /// F = limit / (1 + steepest slope), so that |f| stays within the limit. Passive: f at rest is
 /// minus the gradient of phi(e) with phi' = clip(k e, 0, F), and clip is monotone, so the damper
 /// takes energy. Reliefs tilt the force against the way uphill, as on real ridges, and change it
@@ -44,13 +45,21 @@ class Surface {
   const SurfaceTouch& touch() const noexcept { return touch_; }
 
  private:
-  SurfaceDistance free_side(const Eigen::Vector3d& p) const noexcept;
-  Eigen::Vector3d flat_force(const SurfaceDistance& here, const Felt& felt) const noexcept;
+  /// Seen from where the hand is free.
+  struct Side {
+    double depth;            // behind the surface; negative: free [m]
+    Eigen::Vector3d normal;  // n
+    double share;            // length of the depth's gradient: 1, and 0 in the middle of a shape
+  };
+  Side free_side(const Eigen::Vector3d& p) const noexcept;
+  Eigen::Vector3d flat_force(const Side& here, const Felt& felt) const noexcept;
 
   PlacedShape shape_;
   bool inside_;
   control::PdGains gains_;
   double limit_;
+  double deepest_;  // depth of the middle [m]
+  double core_;     // over which the force fades before it [m]
   ReliefHere relief_;
   SurfaceTouch touch_;
 };

@@ -195,7 +195,8 @@ TEST(ForceWatchTest, ARecordedHandDoesNotOscillate) {
     for (int axis = 0; axis < 3; ++axis) {
       const double depth = place(i)[axis] - place(0)[axis];
       const Vector3d push = -std::clamp(2000.0 * depth, 0.0, 12.0) * Vector3d::Unit(axis);
-      ASSERT_NE(at_walls[axis].look(push, Vector3d::Zero(), 2e-3), Fault::kOscillation) << rows[i][0];
+      ASSERT_NE(at_walls[axis].look(push, Vector3d::Zero(), 2e-3), Fault::kOscillation)
+          << rows[i][0];
     }
   }
 }
