@@ -373,7 +373,7 @@ fields.NAME.curve.max_spatial_frequency | | of each
 fields.NAME.curve.seed | | of the path
 fields.NAME.delay | | before the pulse
 fields.NAME.stiffness | | of the spring that holds, or of the bristles of friction
-fields.NAME.damping | | against the motion
+fields.NAME.damping | | against the motion; that of a surface begins over the first 1 mm
 fields.NAME.point | | of the wall
 fields.NAME.normal | | direction out of the surface
 fields.NAME.centre | | of the solid
