@@ -174,6 +174,7 @@ void bind_psychometric(py::module_& module) {
         options.function = function_shape(function, scale, origin, share, tail);
         options.function.guess = guess.value_or(0.0);
         options.lapse = {lapse.first, lapse.second};
+        options.guess.high = lapse.second;
         options.task = guess && *guess > 0.0 ? Task::kForcedChoice : Task::kYesNo;
         if (guess && *guess == 0.0) {
           options.guess = {0.0, 0.0};

@@ -49,7 +49,7 @@ def psychometric_function(function: str = "logistic", *, threshold: float, width
 
 def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | None = None, *,
         function: str = "norm", guess: float | None = 0.5,
-        lapse: tuple[float, float] = (0.0, 0.06), scale: str = "", origin: float = 0.0,
+        lapse: tuple[float, float] = (0.0, 0.2), scale: str = "", origin: float = 0.0,
         share: float = 0.5, tail: float = 0.05, adaptive: bool = False,
         presentable: tuple[float, float] | None = None) -> Fit:
     """Fits a psychometric function as reports do: estimates and 95 % intervals of one method.
@@ -59,7 +59,8 @@ def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | No
     total     (blocks) answers at each level; without it every item is one trial, correct 0 or 1
     guess     known lower asymptote of a forced choice, 1 / alternatives; None: it is fitted
               (yes/no tasks), 0: known to be 0
-    lapse     lowest and highest lapse rate that is allowed [1]
+    lapse     lowest and highest lapse rate that is allowed; a guess rate that is fitted
+              has the same highest [1]
     adaptive  the levels depended on the answers (staircase, QUEST+): medians and intervals of the
               posterior (docs/algorithms/procedure-coverage.md), else of the likelihood
     presentable   lowest and highest level that a trial could have had, if no trial had them

@@ -22,7 +22,7 @@ class FitTest(unittest.TestCase):
     def test_is_the_reports(self):
         written = pd.read_csv(support.stiffness_study() / "estimates.csv",
                               float_precision="round_trip")
-        written = written[written["source"] == "likelihood"].set_index(["participant", "name"])
+        written = written[written["source"] == "posterior"].set_index(["participant", "name"])
         for participant in ("S01", "S02"):
             trials = answers(participant)
             fit = haptrial.fit(trials["applied"], trials["outcome"], function="weibull", guess=0.5,
