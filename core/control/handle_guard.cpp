@@ -33,7 +33,7 @@ constexpr double kTryingAnew = 0.2;       // of what was too little, damping [1/
 constexpr double kTryingStiffness = 0.3;  // [1/s]
 constexpr double kCalmingEnds = 0.5;      // of c [1/s]
 constexpr double kFastest = 80.0;         // change of a share [1/s]
-constexpr double kFastestForce = 1000.0;   // change of the force by that of the shares [N/s]
+constexpr double kFastestForce = 500.0;   // the same, times the force [N/s]
 constexpr double kSlow = 4.0;             // a hand's own movement ends about there [Hz]
 
 }  // namespace
@@ -58,14 +58,14 @@ const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eige
     recover(dt);
   }
   const double size = force.allFinite() ? force.norm() : 0.0;
-  const auto go_towards = [size, dt](double& share, double wanted) {
-    const double most = std::min(kFastest, kFastestForce * share / std::max(size, 1e-3)) * dt;
+  const double most = std::min(kFastest, kFastestForce / std::max(size, 1.0)) * dt;
+  const auto go_towards = [most](double& share, double wanted) {
     share += std::clamp(wanted - share, -most, most);
   };
   const GainShares wanted = wanted_shares();
   go_towards(shares_.damping, wanted.damping);
   go_towards(shares_.stiffness, wanted.stiffness);
-  calm_now_ += std::clamp(calm_ - calm_now_, -kFastest * dt, kFastest * dt);
+  go_towards(calm_now_, calm_);
   calm(velocity, dt);
   return shares_;
 }
