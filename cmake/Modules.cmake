@@ -94,21 +94,6 @@ function(haptrial_stand_ins)
   endforeach()
 endfunction()
 
-# Plug-ins with what the command refuses, and one without: stand_in_plugin.
-function(haptrial_stand_in_plugins)
-  foreach(flaw none other_program unlinked bad_name taken_device taken_field bad_words)
-    string(REPLACE "_none" "" name stand_in_plugin_${flaw})
-    string(TOUPPER STAND_IN_${flaw} definition)
-    add_library(${name} MODULE ${CMAKE_SOURCE_DIR}/tests/support/stand_in_plugin.cpp)
-    target_link_libraries(${name} PRIVATE haptrial_plugin)
-    target_compile_definitions(${name} PRIVATE ${definition})
-    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
-    haptrial_optimise(${name} tests/support)
-    add_dependencies(${name} haptrial_plugin_abi)
-    add_dependencies(test_experiments ${name})
-  endforeach()
-endfunction()
-
 # haptrial_page(MODULE FILE FUNCTION HEADER): a page is built in, as what FUNCTION() of HEADER returns.
 function(haptrial_page module file HAPTRIAL_PAGE_FUNCTION HAPTRIAL_PAGE_HEADER)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
@@ -234,7 +219,6 @@ function(haptrial_layer_tests)
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)
   add_dependencies(test_experiments stand_in_dhd stand_in_hd stand_in_lsl)
-  haptrial_stand_in_plugins()
 endfunction()
 
 # What tests of a module need beside it: peers, slow methods to compare with, files to try.

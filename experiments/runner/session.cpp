@@ -16,7 +16,6 @@
 #include "experiments/devices/devices.h"
 #include "experiments/devices/session_pedal.h"
 #include "experiments/loop/servo_thread.h"
-#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/next_trial.h"
@@ -344,9 +343,6 @@ void Session::run_trials() {
 void Session::note_setting() {
   if (!d_.language.empty()) {
     record_.event("language", d_.language);
-  }
-  for (const std::string& plugin : plugin_lines()) {
-    record_.event(kPluginEvent, plugin);
   }
 }
 

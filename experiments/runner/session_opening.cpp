@@ -17,7 +17,6 @@
 #include "core/record/rows/page_answer.h"
 #include "core/record/rows/trial_facts.h"
 #include "experiments/control/interrupt.h"
-#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/runner/version.h"
 #include "protocols/interface/study_rules.h"
 
@@ -143,7 +142,6 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   check_same_session(request, before.info);
   const record::SessionReader file(request.file.string() + ".partial");
   check_same_tutor(request, file);
-  check_same_plugins(file);
   trials.check_resumed(file);
   return writer;
 }

@@ -15,7 +15,6 @@
 #include "core/base/parallel.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
-#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/runner/session.h"
 #include "experiments/runner/version.h"
 #include "experiments/study/dry_parts.h"
@@ -188,18 +187,13 @@ class Crew {
 std::string facts_of(const protocols::Definition& definition, const DryRun& dry_run) {
   const std::string language =
       definition.language.empty() ? std::string() : ", language " + definition.language;
-  std::string plugins;
-  for (const std::string& plugin : plugin_lines()) {
-    plugins += "# plug-in " + plugin + "\n";
-  }
   const std::string scripts =
       definition.scripts().empty()
           ? std::string()
           : fmt::format("# scripts {:016x} (FNV-1a)\n", fnv1a(definition.scripts()));
-  return fmt::format(
-      "# haptrial {} ({}), dry run: seed {}, trials {}, session {}{} (0: all)\n{}{}{}",
-      program_version(), program_commit(), dry_run.seed, dry_run.max_trials, dry_run.session,
-      language, plugins, scripts, definition.text);
+  return fmt::format("# haptrial {} ({}), dry run: seed {}, trials {}, session {}{} (0: all)\n{}{}",
+                     program_version(), program_commit(), dry_run.seed, dry_run.max_trials,
+                     dry_run.session, language, scripts, definition.text);
 }
 
 }  // namespace

@@ -42,9 +42,9 @@ for cell in json.load(open("own_method.ipynb"))["cells"]:
 PYTHON
 step "a worked notebook" in_home "python3 notebook.py"
 step "install libhaptrial-dev" in_home "$apt g++ make cmake ./libhaptrial-dev_*.deb"
-step "build a plug-in" in_home "cp -r /usr/share/doc/haptrial/docs/worked worked &&
-  cmake -S worked/plugin -B built && cmake --build built --target field"
-step "use it" in_home "haptrial --plugin built/field.so keys trials | grep 'type: valley'"
+step "build a program" in_home "cp -r /usr/share/doc/haptrial/docs/worked worked &&
+  cmake -S worked/own -B built && cmake --build built --target valley"
+step "use it" in_home "built/valley keys trials | grep 'type: valley'"
 step "remove" inside apt-get purge -q -y haptrial python3-haptrial libhaptrial-dev
 step "nothing is left" in_home "! find /usr /etc /var/lib -path /var/lib/dpkg -prune -o \
   -path /var/lib/apt -prune -o -iname '*haptrial*' -print | grep ."

@@ -132,12 +132,6 @@ TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
       source +
       "COMP_WORDS=(haptrial rate import --st) COMP_CWORD=3; _haptrial; echo ${COMPREPLY[@]}");
   EXPECT_EQ(nested_options.output, "--study\n");
-  const CommandResult with_plugins = run_command(
-      source +
-      "COMP_WORDS=(haptrial --plugin a.so --plugin b.so rate i) COMP_CWORD=6; _haptrial; "
-      "echo ${COMPREPLY[@]}\nCOMP_WORDS=(haptrial --plugin a.so --pl) COMP_CWORD=3; _haptrial; "
-      "echo ${COMPREPLY[@]}");
-  EXPECT_EQ(with_plugins.output, "import\n--plugin\n");
 }
 
 /// The names below "Subcommands:" in a help.
@@ -484,7 +478,6 @@ TEST_F(CommandTest, FilesThatNeverEndAreRefused) {
     expect_bad_input("haptrial statistics " + path(file) + " --value value", sentence);
     expect_bad_input("haptrial align " + path(file) + " " + path(file) + " --out " + path("a"),
                      sentence);
-    expect_bad_input("haptrial --plugin " + path(file) + " validate " + shipped(), sentence);
     expect_bad_input("haptrial validate " + path(file), sentence);
     expect_bad_input("haptrial device-test force-dimension --library " + path(file), sentence);
   }

@@ -56,57 +56,72 @@ TEST_F(InstallTest, AProgramWithAProtocolOfItsOwnRunsStudies) {
   EXPECT_NE(ran.output.find("S02: threshold "), std::string::npos) << ran.output;
   ran = test::run_command(program + "info " + sessions + "/S01.h5");
   EXPECT_EQ(ran.status, 0) << ran.output << ran.errors;
+  ran = test::run_command("haptrial analyze " + sessions);
+  EXPECT_EQ(ran.status, 2) << "the command has no such protocol";
+  EXPECT_NE(ran.errors.find("/S01.h5: this program cannot read its definition, and may lack kinds "
+                            "of the program that recorded it"),
+            std::string::npos)
+      << ran.errors;
+  EXPECT_NE(ran.errors.find("experiment.protocol is 'springs'; allowed: force_training"),
+            std::string::npos)
+      << ran.errors;
+  ran = test::run_command(program + "keys springs");
+  EXPECT_NE(ran.output.find("at most 1000 | stiffness of the spring that others are compared with"),
+            std::string::npos)
+      << ran.output << ran.errors;
   ran = test::run_command(program + "validate " HAPTRIAL_SOURCE_DIR
                                     "/experiments/force_training.toml");
   EXPECT_EQ(ran.status, 0) << "it has the others' as well: " << ran.errors;
 }
 
-/// Each kind of plug-in, with nothing of the source tree, in the command as it is installed.
-TEST_F(InstallTest, TheInstalledCommandLoadsPlugins) {
-  const test::CommandResult built = build("plugin");
+/// Programs with a device, a field or a score of their own, with nothing of the source tree.
+TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
+  const test::CommandResult built = build("own");
   ASSERT_EQ(built.status, 0) << built.output << built.errors;
-  const std::string program = root_ + "/installed/bin/haptrial ";
-  const auto plugin = [&](const char* name) {
-    return " --plugin '" + root_ + "/build/" + name + ".so' ";
-  };
-  const std::string sessions = root_ + "/sessions";
-  test::CommandResult ran =
-      test::run_command(program + plugin("protocol") +
-                        "dry-run " HAPTRIAL_SOURCE_DIR
-                        "/docs/worked/protocol/springs.toml --subjects 1 --trials 8 --out " +
-                        sessions);
-  ASSERT_EQ(ran.status, 0) << ran.errors;
-  ran = test::run_command(program + "analyze " + sessions);
-  EXPECT_EQ(ran.status, 2);
-  EXPECT_NE(ran.errors.find("plug-in springs 1.0"), std::string::npos) << ran.errors;
-  ran = test::run_command(program + plugin("score") + plugin("protocol") + "analyze " + sessions);
-  ASSERT_EQ(ran.status, 0) << ran.errors;
-  EXPECT_NE(ran.output.find("S01: threshold "), std::string::npos) << ran.output;
-  EXPECT_NE(ran.output.find("8 scores of plug-ins"), std::string::npos) << ran.output;
-  const test::CommandResult table = test::run_command("cat " + sessions + "/plugin_scores.csv");
-  EXPECT_NE(table.output.find("S01,1,7,8,compare,way,0."), std::string::npos) << table.output;
-
-  ran = test::run_command(program + plugin("protocol") + "keys springs");
-  EXPECT_NE(ran.output.find("at most 1000 | stiffness of the spring that others are compared with"),
-            std::string::npos)
-      << ran.output << ran.errors;
-
-  ran = test::run_command(program + plugin("device") + "devices");
+  const std::string folder = root_ + "/build/";
+  test::CommandResult ran = test::run_command(folder + "circle devices");
   EXPECT_NE(ran.output.find("circle           ready"), std::string::npos) << ran.output;
-  ran = test::run_command(program + plugin("device") + "device-test circle:0.5");
+  ran = test::run_command(folder + "circle device-test circle:0.5");
   EXPECT_EQ(ran.status, 2) << ran.output;
   EXPECT_NE(ran.errors.find("a radius up to 0.07"), std::string::npos) << ran.errors;
+
+  const std::string valley = "cd '" + root_ + "' && " + folder + "valley ";
   ran = test::run_command("cd '" + root_ +
                           "' && cp " HAPTRIAL_SOURCE_DIR
                           "/experiments/first_experiment.toml valley.toml && printf "
                           "'\n[fields.valley]\ntype = \"valley\"\nstrength = 2\nwidth = 0.02\n'"
-                          " >> valley.toml && " +
-                          program + plugin("field") + "validate valley.toml");
+                          " >> valley.toml");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(valley + "dry-run valley.toml --subjects 1 --trials 2 --out sessions");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(valley + "analyze sessions");
   EXPECT_EQ(ran.status, 0) << ran.errors;
-  ran = test::run_command(program + plugin("field") + "keys trials");
+  ran = test::run_command(valley + "keys trials");
   EXPECT_NE(ran.output.find("| `strength` | number or text | N | needed | "), std::string::npos);
   EXPECT_NE(ran.output.find("distance at which a valley has its strength (type: valley) |"),
             std::string::npos);
+  for (const char* line : {"analyze sessions", "replay sessions/S01.h5 --frames nowhere"}) {
+    ran = test::run_command("cd '" + root_ + "' && haptrial " + line);
+    EXPECT_EQ(ran.status, 2) << line;
+    EXPECT_NE(ran.errors.find("sessions/S01.h5: this program cannot read its definition, and may "
+                              "lack kinds of the program that recorded it: valley.toml:"),
+              std::string::npos)
+        << ran.errors;
+    EXPECT_NE(ran.errors.find("fields.valley.type is 'valley'; allowed: "), std::string::npos)
+        << ran.errors;
+    EXPECT_EQ(ran.errors.find('\n'), ran.errors.size() - 1) << ran.errors;
+  }
+
+  ran = test::run_command("cd '" + root_ +
+                          "' && haptrial dry-run " HAPTRIAL_SOURCE_DIR
+                          "/experiments/first_experiment.toml --subjects 1 --trials 2 --out first");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(folder + "way_of_hand analyze " + root_ + "/first");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_NE(ran.output.find("2 own scores: "), std::string::npos) << ran.output;
+  const test::CommandResult table = test::run_command("cat " + root_ + "/first/own_scores.csv");
+  EXPECT_NE(table.output.find("S01,1,1,2,"), std::string::npos) << table.output;
+  EXPECT_NE(table.output.find(",way,0."), std::string::npos) << table.output;
 }
 
 TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {

@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"
-#include "experiments/plugin/loaded/loaded_plugins.h"
+#include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 
@@ -48,20 +48,20 @@ int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads) 
           1);  // what is read of thousands of files stays; what was read with is reused
   AnalysisRequest request;
   request.folder = options.folder;
-  request.files = with_plugins(options.folder,
-                               [&] { return study_files(options.folder, pilots, protocol_of); });
+  request.files = with_recorded_kinds(
+      options.folder, [&] { return study_files(options.folder, pilots, protocol_of); });
   request.out = report_folder(options.folder, pilots);
   request.pilots = pilots;
   request.threads = threads;
   request.planned = options.planned;
   request.reference = options.reference;
-  const std::vector<std::string> lines =
-      with_plugins(options.folder, [&] { return study_of(request.files.first).analyze(request); });
+  const std::vector<std::string> lines = with_recorded_kinds(
+      options.folder, [&] { return study_of(request.files.first).analyze(request); });
   print_report(lines, request.out);
   report_link(request);
   if (!analysis::scores().empty()) {
-    const fs::path table = request.out / "plugin_scores.csv";
-    fmt::print("{} scores of plug-ins: {}\n", analysis::write_scores(request.files.files, table),
+    const fs::path table = request.out / "own_scores.csv";
+    fmt::print("{} own scores: {}\n", analysis::write_scores(request.files.files, table),
                fs::absolute(table).lexically_normal().string());
   }
   return 0;

@@ -55,8 +55,9 @@ void add_run(CLI::App& app, int& status) {
                   "first that is left)");
   sub->add_option(
          "--device", o.devices,
-         "Device: virtual, mouse, gamepad, force-dimension, open-haptics, replay:FILE or a "
-         "plug-in's (default: virtual); repeated for each device of an experiment with several")
+         "Device: virtual, mouse, gamepad, force-dimension, open-haptics, replay:FILE or one "
+         "of this program's own (default: virtual); repeated for each device of an experiment with "
+         "several")
       ->allow_extra_args(false);
   sub->add_option("--library", o.library,
                   "Path of the vendor's library (default: found by the system)");
@@ -193,8 +194,9 @@ void add_device_test(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "device-test", "Check whether a device is fit for experiments",
                              "haptrial device-test force-dimension", {"", "devices.md"});
   auto& o = options_of<DeviceTestOptions>(*sub, status, device_test);
-  sub->add_option("NAME", o.name,
-                  "Device: virtual, mouse, force-dimension, open-haptics or a plug-in's")
+  sub->add_option(
+         "NAME", o.name,
+         "Device: virtual, mouse, force-dimension, open-haptics or one of this program's own")
       ->required();
   sub->add_option(
       "--definition", o.definition,

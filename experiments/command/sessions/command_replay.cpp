@@ -10,8 +10,8 @@
 #include "experiments/command/sessions/session_commands.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
-#include "experiments/plugin/loaded/loaded_plugins.h"
 #include "experiments/screen/video.h"
+#include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {
@@ -63,7 +63,7 @@ class PictureFolder {
 int replay(const ReplayOptions& options) {
   constexpr int kMostFps = 240;
   const int fps = checked_number("--fps", options.fps, 1, kMostFps);
-  const Study& study = *with_plugins(
+  const Study& study = *with_recorded_kinds(
       options.file, [&] { return &study_of(record::SessionReader(options.file).info()); });
   const protocols::Protocol& protocol = study.protocol();
   std::optional<VideoWriter> video;
@@ -104,7 +104,7 @@ int replay(const ReplayOptions& options) {
     progress.reset();
     lines.push_back(line);
   };
-  with_plugins(options.file, [&] { protocol.replay(request); });
+  with_recorded_kinds(options.file, [&] { protocol.replay(request); });
   progress.reset();
   if (video) {
     video->finish();

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
-#include <vector>
 
 #include "experiments/command/line/command_lines.h"
 #include "experiments/command/start/examples.h"
@@ -32,10 +31,6 @@ void accept_examples(CLI::App& app) {
 }  // namespace
 
 void declare_subcommands(CLI::App& app, int& status) {
-  app.add_option_function<std::vector<std::string>>(
-      "--plugin", [](const std::vector<std::string>&) {},  // read already
-      "Plug-in (.so) to load, for any subcommand; repeated for each plug-in. The folder "
-      "HAPTRIAL_PLUGINS of the environment is loaded first");
   add_examples(app, status);
   add_new(app, status);
   add_doctor(app, status);

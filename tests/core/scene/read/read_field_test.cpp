@@ -5,10 +5,12 @@
 
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/scene/read/field_kinds.h"
 #include "core/scene/read/read_shape.h"
 #include "core/scene/scene.h"
 #include "tests/support/message_of.h"
@@ -177,6 +179,10 @@ TEST(ReadFieldTest, AnUnknownTypeIsOneSentence) {
   const std::string sentence = told(R"(a = { type = "sping", to = [0, 0, 0], stiffness = 5 })");
   EXPECT_THAT(sentence, HasSubstr("spring"));
   EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+}
+
+TEST(ReadFieldTest, AWordThatIsTakenIsNotAddedAgain) {
+  EXPECT_THROW(add_kind_of_field({"spring", nullptr}), std::invalid_argument);
 }
 
 TEST(ReadFieldTest, WhatAFieldMayLieOnIsNamed) {

@@ -1,9 +1,11 @@
-// A field that [fields] may have: a valley along x, whose walls grow with the cube of the distance.
+// haptrial with one kind of field more: a valley along x, whose walls grow with the cube of the
+// distance.
 #include <algorithm>
 #include <cmath>
 
 #include "core/scene/read/field_kinds.h"
-#include "experiments/plugin/plugin.h"
+#include "experiments/command/keys/key_list.h"
+#include "experiments/command/whole/whole_command.h"
 
 namespace {
 
@@ -43,13 +45,14 @@ FieldKind read_valley(const FieldReader& read) {
   return OwnParameters{"valley", std::make_shared<ValleyNumbers>(strength, width)};
 }
 
-void add(haptrial::experiments::PluginParts& parts) {
-  parts.field({"valley", read_valley});
-  parts.key_words(
-      "fields.NAME.strength | | force of a valley at the distance width from its middle\n"
-      "fields.NAME.width | | distance at which a valley has its strength");
-}
-
 }  // namespace
 
-HAPTRIAL_PLUGIN("valley", "1.0", add)
+int main(int argc, char** argv) {
+  using namespace haptrial::experiments;
+  return whole_command(argc, argv, [] {
+    add_kind_of_field({"valley", read_valley});
+    add_key_words(
+        "fields.NAME.strength | | force of a valley at the distance width from its middle\n"
+        "fields.NAME.width | | distance at which a valley has its strength");
+  });
+}

@@ -1,7 +1,7 @@
-// A score: how far the hand went in each pass.
+// haptrial with one score more: how far the hand went in each pass.
 #include "analysis/scores/score.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/plugin/plugin.h"
+#include "experiments/command/whole/whole_command.h"
 
 namespace {
 
@@ -27,11 +27,9 @@ class WayOfHand final : public analysis::Score {
   }
 };
 
-void add(experiments::PluginParts& parts) {
-  static const WayOfHand way;
-  parts.score(way);
-}
-
 }  // namespace
 
-HAPTRIAL_PLUGIN("way-of-hand", "1.0", add)
+int main(int argc, char** argv) {
+  static const WayOfHand way;
+  return experiments::whole_command(argc, argv, [] { analysis::add_score(way); });
+}

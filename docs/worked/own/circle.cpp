@@ -1,11 +1,12 @@
-// A device without hardware: its handle goes round in a circle. --device circle, or circle:RADIUS.
+// haptrial with one device more, which needs no hardware: its handle goes round in a circle.
+// --device circle, or circle:RADIUS.
 #include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "core/base/error.h"
 #include "core/device/own_devices.h"
-#include "experiments/plugin/plugin.h"
+#include "experiments/command/whole/whole_command.h"
 
 namespace {
 
@@ -47,10 +48,10 @@ std::unique_ptr<device::Device> open(const std::string& setting, int, double rat
   return std::make_unique<Circle>(radius, rate);
 }
 
-void add(experiments::PluginParts& parts) {
-  parts.device({"circle", "a handle that goes round by itself, once a second", open});
-}
-
 }  // namespace
 
-HAPTRIAL_PLUGIN("circle", "1.0", add)
+int main(int argc, char** argv) {
+  return experiments::whole_command(argc, argv, [] {
+    device::add_own_device({"circle", "a handle that goes round by itself, once a second", open});
+  });
+}
