@@ -30,7 +30,7 @@ const std::string kEnd = "<!-- end of the tables -->\n";
 
 /// The text between the marks. @param from  receives where it begins
 std::string block(const std::string& page, const std::string& name, std::size_t& from) {
-  const std::string begin = "<!-- tables: " + name + " -->\n";
+  const std::string begin = "<!-- tables: " + name + " -->\n\n";
   from = page.find(begin);
   if (from == std::string::npos) {
     return "";
