@@ -55,8 +55,7 @@ function(haptrial_group name folder)
   set_property(GLOBAL PROPERTY HAPTRIAL_FOLDER_${name} ${folder})
 endfunction()
 
-# The command: build/haptrial, and build/haptrial_forces, which has the force studies alone. They know
-# the commit that they were built from.
+# The command: build/haptrial. It knows the commit that it was built from.
 function(haptrial_command)
   execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} rev-parse --short=12 HEAD
                   OUTPUT_VARIABLE HAPTRIAL_COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -70,14 +69,10 @@ function(haptrial_command)
   configure_file(${CMAKE_SOURCE_DIR}/cmake/version.cpp.in ${CMAKE_BINARY_DIR}/version.cpp @ONLY)
   target_sources(haptrial_runner PRIVATE ${CMAKE_BINARY_DIR}/version.cpp)
   add_executable(haptrial ${CMAKE_SOURCE_DIR}/experiments/main.cpp)
-  target_link_libraries(haptrial PRIVATE haptrial_command_whole)
-  add_executable(haptrial_forces ${CMAKE_SOURCE_DIR}/experiments/force_main.cpp)
-  target_link_libraries(haptrial_forces PRIVATE haptrial_command_line haptrial_studies_force)
-  foreach(program haptrial haptrial_forces)
-    haptrial_precompile(${program} modules experiments)
-    haptrial_optimise(${program} experiments)
-    set_target_properties(${program} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
-  endforeach()
+  target_link_libraries(haptrial PRIVATE haptrial_command_line)
+  haptrial_precompile(haptrial modules experiments)
+  haptrial_optimise(haptrial experiments)
+  set_target_properties(haptrial PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
 endfunction()
 
 # Shared libraries with the symbols of the vendors' ones, in the build folder.
@@ -209,8 +204,8 @@ function(haptrial_layer_tests)
     list(FILTER sources EXCLUDE REGEX "/tests/protocols/trials/")
     list(APPEND sources ${helpers})
     list(REMOVE_DUPLICATES sources)
-    haptrial_test(${layer} command_whole ${sources})
-    add_dependencies(test_${layer} haptrial haptrial_forces)  # its tests run the commands
+    haptrial_test(${layer} command_line ${sources})
+    add_dependencies(test_${layer} haptrial)  # its tests run the command
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/protocols/trials/*.cpp)

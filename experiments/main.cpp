@@ -1,3 +1,3 @@
-#include "experiments/command/whole/whole_command.h"
+#include "experiments/command/line/whole_command.h"
 
 int main(int argc, char** argv) { return haptrial::experiments::whole_command(argc, argv); }

@@ -283,8 +283,7 @@ TEST(ArchitectureTest, EverySourceBelongsToAModule) {
   }
   for (const char* layer_name : {"core", "protocols", "analysis", "experiments"}) {
     for (const fs::path& file : sources(kRoot / layer_name, true)) {
-      const bool is_main =
-          file == kRoot / "experiments/main.cpp" || file == kRoot / "experiments/force_main.cpp";
+      const bool is_main = file == kRoot / "experiments/main.cpp";
       EXPECT_TRUE(is_main || folders.contains(file.parent_path())) << file << " is never compiled";
     }
   }

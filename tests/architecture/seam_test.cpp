@@ -68,7 +68,6 @@ TEST(SeamTest, NothingThatServesEveryProtocolNamesOne) {
                                 "experiments/command",
                                 "experiments/command/sessions",
                                 "experiments/command/devices",
-                                "experiments/command/line",
                                 "experiments/command/analysis"};
   for (const char* folder : kFolders) {
     int files = 0;

@@ -44,7 +44,7 @@ foreach(source ${benchmarks})
                                                     PkgConfig::gsl)
     continue()
   endif()
-  target_link_libraries(bench_${name} PRIVATE haptrial_command_whole fmt::fmt Threads::Threads)
+  target_link_libraries(bench_${name} PRIVATE haptrial_command_line fmt::fmt Threads::Threads)
 endforeach()
 target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_session.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/experiments/shipped.cpp

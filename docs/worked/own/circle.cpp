@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/device/own_devices.h"
-#include "experiments/command/whole/whole_command.h"
+#include "experiments/command/line/whole_command.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include "core/scene/read/field_kinds.h"
 #include "experiments/command/keys/key_list.h"
-#include "experiments/command/whole/whole_command.h"
+#include "experiments/command/line/whole_command.h"
 
 namespace {
 

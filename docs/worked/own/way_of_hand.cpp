@@ -1,7 +1,7 @@
 // haptrial with one score more: how far the hand went in each pass.
 #include "analysis/scores/score.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/whole/whole_command.h"
+#include "experiments/command/line/whole_command.h"
 
 namespace {
 

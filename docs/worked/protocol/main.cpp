@@ -1,6 +1,6 @@
 // The command haptrial with one protocol more.
 #include "experiments/command/keys/key_list.h"
-#include "experiments/command/whole/whole_command.h"
+#include "experiments/command/line/whole_command.h"
 #include "experiments/studies/registry.h"
 #include "springs.h"
 

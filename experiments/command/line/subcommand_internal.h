@@ -6,7 +6,7 @@
 
 namespace haptrial::experiments {
 
-// How a file that adds subcommands describes them. `status` is that of run_line().
+// How a file that adds subcommands describes them. `status` is that of declare_subcommands().
 
 /// What the help says below the options, apart from the example.
 struct HelpNotes {

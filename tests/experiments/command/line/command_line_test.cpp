@@ -1,6 +1,6 @@
 // The words of the command line: what the help says, and what is said of a mistyped word.
 
-#include "experiments/command/whole/command_line.h"
+#include "experiments/command/line/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

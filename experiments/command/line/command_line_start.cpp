@@ -1,7 +1,7 @@
 #include "experiments/command/keys/key_commands.h"
+#include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
 #include "experiments/command/start/start_commands.h"
-#include "experiments/command/whole/command_line_internal.h"
 
 namespace haptrial::experiments {
 

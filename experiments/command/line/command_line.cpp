@@ -1,11 +1,10 @@
-#include "experiments/command/whole/command_line.h"
+#include "experiments/command/line/command_line.h"
 
 #include <CLI/CLI.hpp>
 #include <string>
 
 #include "experiments/command/line/command_lines.h"
 #include "experiments/command/start/examples.h"
-#include "experiments/command/whole/command_line_internal.h"
 
 namespace haptrial::experiments {
 

@@ -1,8 +1,8 @@
 // Surface meshes.
 
+#include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
 #include "experiments/command/tools/tool_commands.h"
-#include "experiments/command/whole/command_line_internal.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -1,8 +1,8 @@
 // Ratings of drillings.
 
 #include "experiments/command/drilling/drilling_commands.h"
+#include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
-#include "experiments/command/whole/command_line_internal.h"
 
 namespace haptrial::experiments {
 namespace {

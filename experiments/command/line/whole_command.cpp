@@ -1,17 +1,21 @@
-#include "experiments/command/line/run_line.h"
+#include "experiments/command/line/whole_command.h"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <span>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/base/text/exception_words.h"
 #include "experiments/command/libraries.h"
+#include "experiments/command/line/command_line.h"
 #include "experiments/command/line/command_line_check_internal.h"
 #include "experiments/runner/version.h"
+#include "experiments/studies/shipped/shipped_studies.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -24,10 +28,9 @@ void complain(const std::string& sentence) {
   [[maybe_unused]] const int written = std::fputs(("haptrial: " + sentence + "\n").c_str(), stderr);
 }
 
-}  // namespace
-
-int run_line(std::span<char* const> line,
-             const std::function<void(CLI::App& app, int& status)>& declare) {
+/// Reads a line of words and runs the subcommand that it gives.
+/// @returns the exit status. @throws what the subcommand throws
+int run_line(std::span<char* const> line) {
   CLI::App app("Run force-feedback experiments, record them and analyse the results.");
   app.name("haptrial");
   app.set_version_flag("--version", fmt::format("haptrial {} ({})\n{}", program_version(),
@@ -42,7 +45,7 @@ int run_line(std::span<char* const> line,
       "Documentation: README.md and docs/ of the source.\n"
       "Exit status: 0 done, 1 failed, 2 bad input.");
   int status = 0;
-  declare(app, status);
+  declare_subcommands(app, status);
   const auto words = line.subspan(1);
   check_words(app, words);
   try {
@@ -56,6 +59,8 @@ int run_line(std::span<char* const> line,
   return status;
 }
 
+/// The exit status of a program: what `command` returns, or 1 or 2 after a sentence on standard
+/// error for what it threw.
 int exit_status(const std::function<int()>& command) {
   try {
     const int status = command();
@@ -67,6 +72,18 @@ int exit_status(const std::function<int()>& command) {
     complain(haptrial::sentence_of(error));
     return is_bad_input(error) ? kBadInput : kFailed;
   }
+}
+
+}  // namespace
+
+int whole_command(int argc, char** argv, const std::function<void()>& add_own) {
+  return exit_status([&] {
+    add_shipped_studies();
+    if (add_own) {
+      add_own();
+    }
+    return run_line({argv, static_cast<std::size_t>(argc)});
+  });
 }
 
 }  // namespace haptrial::experiments

@@ -1,9 +1,9 @@
 // Bones.
 
 #include "experiments/command/drilling/drilling_commands.h"
+#include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
 #include "experiments/command/tools/tool_commands.h"
-#include "experiments/command/whole/command_line_internal.h"
 
 namespace haptrial::experiments {
 namespace {

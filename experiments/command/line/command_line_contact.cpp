@@ -1,8 +1,8 @@
 // Recorded contact and its rendering.
 
 #include "experiments/command/contact/contact_commands.h"
+#include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
-#include "experiments/command/whole/command_line_internal.h"
 
 namespace haptrial::experiments {
 namespace {
