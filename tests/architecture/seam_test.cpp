@@ -67,7 +67,6 @@ TEST(SeamTest, NothingThatServesEveryProtocolNamesOne) {
                                 "experiments/study",
                                 "experiments/command",
                                 "experiments/command/sessions",
-                                "experiments/command/devices",
                                 "experiments/command/analysis"};
   for (const char* folder : kFolders) {
     int files = 0;

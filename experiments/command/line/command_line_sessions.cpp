@@ -1,7 +1,7 @@
 // Sessions: to run them, look into them, mend and show them; definitions and devices.
-#include "experiments/command/devices/device_commands.h"
 #include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
+#include "experiments/command/sessions/device_commands.h"
 #include "experiments/command/sessions/session_commands.h"
 
 namespace haptrial::experiments {

@@ -1,6 +1,6 @@
 // haptrial device-test: what it measures, on devices that are right and on some that are wrong.
 
-#include "experiments/command/devices/device_check.h"
+#include "experiments/command/sessions/device_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

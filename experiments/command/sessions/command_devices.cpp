@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/device/vendor/catalog.h"
-#include "experiments/command/devices/device_commands.h"
+#include "experiments/command/sessions/device_commands.h"
 
 namespace haptrial::experiments {
 

@@ -1,4 +1,4 @@
-#include "experiments/command/devices/device_check.h"
+#include "experiments/command/sessions/device_check.h"
 
 #include <fmt/format.h>
 
