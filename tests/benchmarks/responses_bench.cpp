@@ -11,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "experiments/command/line/shipped_studies.h"
 #include "experiments/studies/experiment.h"
-#include "experiments/studies/shipped/shipped_studies.h"
 #include "experiments/study/study_run.h"
 #include "protocols/trials/response_session.h"
 

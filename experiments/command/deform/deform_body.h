@@ -7,7 +7,7 @@
 #include "core/deformable/setup/setup_body.h"
 #include "core/deformable/springs/law/spring_body.h"
 #include "experiments/command/deform/deform_commands.h"
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 
 namespace haptrial::experiments {
 

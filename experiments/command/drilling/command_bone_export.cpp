@@ -14,7 +14,7 @@
 #include "core/geometry/files/mesh_io.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/drilling/drilling_commands.h"
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 #include "experiments/control/interrupt.h"
 #include "protocols/bone_drilling/drilled_bone.h"
 

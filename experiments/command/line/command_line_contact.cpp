@@ -1,6 +1,6 @@
 // Recorded contact and its rendering.
 
-#include "experiments/command/contact/contact_commands.h"
+#include "experiments/command/analysis/contact_commands.h"
 #include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
 

@@ -14,8 +14,8 @@
 #include "experiments/command/libraries.h"
 #include "experiments/command/line/command_line.h"
 #include "experiments/command/line/command_line_check_internal.h"
+#include "experiments/command/line/shipped_studies.h"
 #include "experiments/runner/version.h"
-#include "experiments/studies/shipped/shipped_studies.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "core/bone/data/load_bone.h"
 #include "core/bone/model/bone_model.h"
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 #include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {

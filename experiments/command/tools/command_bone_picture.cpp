@@ -11,7 +11,7 @@
 #include "core/render/bone/bone_scene.h"
 #include "core/render/bone/bone_tools.h"
 #include "core/render/gl/offscreen.h"
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 #include "experiments/command/tools/bone_carving.h"
 #include "experiments/command/tools/tool_commands.h"
 

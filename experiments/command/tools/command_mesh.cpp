@@ -16,7 +16,7 @@
 #include "core/geometry/volume_files/tet_files.h"
 #include "core/geometry/volume_files/volume_files.h"
 #include "core/render/mesh/mesh_scene.h"
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 #include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {

@@ -13,7 +13,7 @@
 #include "core/geometry/volume/distance_map.h"
 #include "core/geometry/volume_files/volume_files.h"
 #include "core/render/mesh/distance_slice.h"
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 #include "experiments/command/tools/tool_commands.h"
 
 namespace haptrial::experiments {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 
 namespace haptrial::experiments {
 

@@ -1,4 +1,4 @@
-#include "experiments/studies/shipped/shipped_studies.h"
+#include "experiments/command/line/shipped_studies.h"
 
 #include "experiments/studies/drilling/bone_study.h"
 #include "experiments/studies/force/force_study.h"

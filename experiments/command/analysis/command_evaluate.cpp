@@ -15,9 +15,9 @@
 #include "core/base/error.h"
 #include "core/base/text/nearest.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/command/analysis/contact_commands.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/contact/contact_commands.h"
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 
 namespace haptrial::experiments {
 namespace {

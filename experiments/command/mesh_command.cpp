@@ -1,4 +1,4 @@
-#include "experiments/command/mesh/mesh_command.h"
+#include "experiments/command/mesh_command.h"
 
 #include <fmt/format.h>
 
