@@ -113,6 +113,12 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
   }
 
   ran = test::run_command("cd '" + root_ +
+                          "' && haptrial run valley.toml --subject S01 --out sessions --resume");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.errors.find("fields.valley.type is 'valley'; allowed: "), std::string::npos)
+      << ran.errors;
+
+  ran = test::run_command("cd '" + root_ +
                           "' && haptrial dry-run " HAPTRIAL_SOURCE_DIR
                           "/experiments/first_experiment.toml --subjects 1 --trials 2 --out first");
   ASSERT_EQ(ran.status, 0) << ran.errors;
