@@ -6,11 +6,18 @@
 
 #include "core/base/definition/table_words_internal.h"
 #include "core/base/definition/toml_text_internal.h"
-#include "core/base/definition/toml_words_internal.h"
 #include "core/base/error.h"
 #include "core/base/text/utf8.h"
 
 namespace haptrial {
+namespace {
+
+/// At most `most` bytes of `text`, whole characters.
+std::string shortened(std::string_view text, std::size_t most) {
+  return text.size() <= most ? std::string(text) : std::string(cut_text(text, most - 3)) + "...";
+}
+
+}  // namespace
 
 std::string words(const Bounds& bounds, std::string_view unit) {
   const std::string in = unit.empty() ? "" : fmt::format(" [{}]", unit);
@@ -46,17 +53,13 @@ std::string shown(const toml::node& node) {
       out << value;
     }
   });
-  std::string text = out.str();
-  if (text.size() > 60) {
-    text.resize(whole_characters(text, 57));
-    text += "...";
-  }
-  return text;
+  return shortened(out.str(), 60);
 }
 
 std::string shown_with_kind(const toml::node& node) {
-  return node.is_string() ? fmt::format("the text \"{}\"", short_text(*node.value<std::string>()))
-                          : shown(node);
+  return node.is_string()
+             ? fmt::format("the text \"{}\"", shortened(*node.value<std::string>(), 40))
+             : shown(node);
 }
 
 std::string rewritten(const toml::node& node, std::string_view key, Wanted wanted) {

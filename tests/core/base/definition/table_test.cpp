@@ -431,29 +431,30 @@ std::string refusal(const std::string& text) {
 TEST(TableTest, WhatIsNotADefinitionIsRefusedWithItsLine) {
   EXPECT_THAT(refusal(""), StartsWith("f.toml: the definition is empty; write "));
   EXPECT_THAT(refusal("# a comment\n\n  # another\n"), HasSubstr("the definition is empty"));
-  EXPECT_THAT(refusal("a = 1\nb = \n"), StartsWith("f.toml:2: b has no value"));
-  EXPECT_THAT(refusal("a = 1\na = 2\n"), StartsWith("f.toml:2: a is given twice"));
-  EXPECT_THAT(refusal("a = \"\xff\xfe\"\n"), StartsWith("f.toml:1: the line holds bytes"));
-  EXPECT_THAT(refusal(std::string("a = 1\n\0\0b", 9)), StartsWith("f.toml:2: the line holds"));
-  EXPECT_THAT(refusal("\x89PNG\r\n\x1a\n\x01\x02"), StartsWith("f.toml:1: the line holds"));
+  EXPECT_THAT(refusal("a = 1\nb = \n"), StartsWith("f.toml:2:5: not valid TOML: "));
+  EXPECT_THAT(refusal("a = 1\na = 2\n"), StartsWith("f.toml:2:5: not valid TOML: "));
+  EXPECT_THAT(refusal("a = \"\xff\xfe\"\n"), HasSubstr("invalid utf-8"));
+  EXPECT_THAT(refusal(std::string("a = 1\n\0\0b", 9)), StartsWith("f.toml:2:1: not valid TOML"));
+  EXPECT_THAT(refusal("\x89PNG\r\n\x1a\n\x01\x02"),
+              StartsWith("f.toml:1:1: not valid TOML: the line holds bytes that are not UTF-8"));
 }
 
 TEST(TableTest, DeepNestingIsRefusedAndNotFollowed) {
-  EXPECT_THAT(refusal("a = " + std::string(100000, '[')), HasSubstr("f.toml:1: not valid TOML"));
+  EXPECT_THAT(refusal("a = " + std::string(100000, '[')), HasSubstr(": not valid TOML"));
   std::string braces = "a = ";
   std::string dots = "\n";
   for (int i = 0; i < 200000; ++i) {
     braces += "{b=";
     dots += "b.";
   }
-  EXPECT_THAT(refusal(braces), HasSubstr("f.toml:1: not valid TOML"));
-  EXPECT_THAT(refusal(dots + "b = 1\n"), StartsWith("f.toml:2: the line has more than 100 dots"));
-  EXPECT_THAT(refusal("\n[" + dots.substr(1) + "b]\n"), StartsWith("f.toml:2: the line has"));
+  EXPECT_THAT(refusal(braces), HasSubstr(": not valid TOML"));
+  EXPECT_THAT(refusal(dots + "b = 1\n"), HasSubstr("the line has more than 100 dots"));
+  EXPECT_THAT(refusal("\n[" + dots.substr(1) + "b]\n"), StartsWith("f.toml:2:"));
   std::string quoted;
   for (int i = 0; i < 200000; ++i) {
     quoted += i % 2 == 0 ? "\"\\\",\"." : "','.";
   }
-  EXPECT_THAT(refusal(quoted + "b = 1\n"), StartsWith("f.toml:1: the line has"));
+  EXPECT_THAT(refusal(quoted + "b = 1\n"), StartsWith("f.toml:1:"));
 }
 
 TEST(TableTest, AListOfDecimalsMayBeLong) {
@@ -503,8 +504,7 @@ TEST_F(TableFileTest, WhatCannotBeADefinitionIsRefusedByName) {
   EXPECT_THAT(refusal(file("")), HasSubstr("the definition is empty"));
   EXPECT_THAT(refusal(file("# " + std::string(2 << 20, 'x'))),
               HasSubstr("has 2097154 bytes; allowed: at most"));
-  EXPECT_THAT(refusal(file("a = 1\nb = oops\n")),
-              HasSubstr("d.toml:2: oops is a text without quotes"));
+  EXPECT_THAT(refusal(file("a = 1\nb = oops\n")), HasSubstr("d.toml:2:5: not valid TOML: "));
 }
 
 }  // namespace
