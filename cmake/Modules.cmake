@@ -244,6 +244,8 @@ function(haptrial_test_needs)
                                             haptrial_nerve_record haptrial_hint PkgConfig::hdf5)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
+  file(GLOB truth CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/contact_truth/*.cpp)
+  target_sources(test_contact_analysis PRIVATE ${truth})
   target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_repair)
   target_link_libraries(test_trials PRIVATE haptrial_deformable_setup)  # bodies as they are calibrated
   target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)

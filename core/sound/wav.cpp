@@ -129,14 +129,4 @@ void SoundTrack::add(const DrillState& drill) {
   writer_.write(buffer_);
 }
 
-void write_drill_sound(const std::filesystem::path& file, std::span<const DrillState> states,
-                       double rate, const SpectrumTable& table, const ThinBone& thin,
-                       std::uint64_t seed, bool overwrite) {
-  SoundTrack track(file, rate, table, thin, seed, overwrite);
-  for (const DrillState& state : states) {
-    track.add(state);
-  }
-  track.finish();
-}
-
 }  // namespace haptrial::sound

@@ -65,9 +65,4 @@ class SoundTrack {
   std::vector<float> buffer_;
 };
 
-/// All of it in one call.
-void write_drill_sound(const std::filesystem::path& file, std::span<const DrillState> states,
-                       double rate, const SpectrumTable& table, const ThinBone& thin,
-                       std::uint64_t seed, bool overwrite = false);
-
 }  // namespace haptrial::sound

@@ -101,44 +101,6 @@ void fit_torques(const ForceStream& force, const std::vector<Eigen::Matrix3d>& t
 
 }  // namespace
 
-std::vector<Stretch> quiet_stretches(const ForceStream& force, double width, double factor) {
-  check(force);
-  if (!(width > 0.0) || !(factor >= 1.0)) {
-    throw std::invalid_argument("width must be above 0 and factor 1 or more");
-  }
-  const double first = force.time.front();
-  const auto windows = static_cast<std::size_t>((force.time.back() - first) / width);
-  std::vector<double> spread(windows, 0.0);
-  std::size_t i = 0;
-  for (std::size_t w = 0; w < windows; ++w) {
-    const double end = first + static_cast<double>(w + 1) * width;
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    double squares = 0.0, count = 0.0;
-    for (; i < force.size() && force.time[i] < end; ++i) {
-      count += 1.0;
-      const Eigen::Vector3d step = force.force[i] - mean;
-      mean += step / count;
-      squares += step.dot(force.force[i] - mean);
-    }
-    spread[w] = count >= 3.0 ? std::sqrt(squares / (count - 1.0)) : INFINITY;
-  }
-  std::vector<Stretch> stretches;
-  const double least = windows > 0 ? *std::min_element(spread.begin(), spread.end()) : 0.0;
-  for (std::size_t w = 0; w < windows; ++w) {
-    const Stretch one{first + static_cast<double>(w) * width,
-                      first + static_cast<double>(w + 1) * width};
-    if (!(spread[w] <= factor * least)) {
-      continue;
-    }
-    if (!stretches.empty() && w > 0 && spread[w - 1] <= factor * least) {
-      stretches.back().second = one.second;
-    } else {
-      stretches.push_back(one);
-    }
-  }
-  return stretches;
-}
-
 LoadFit estimate_load(const ContactRecording& recording, const SensorMount& mount,
                       const std::vector<Stretch>& free, const std::optional<Eigen::Vector3d>& up) {
   if (up && !(up->norm() > 0.0 && up->allFinite())) {

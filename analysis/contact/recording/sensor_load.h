@@ -36,12 +36,6 @@ struct LoadFit {
 
 using Stretch = std::pair<double, double>;  // from, to [s]
 
-/// Stretches in which the force hardly changes: the standard deviation within `width` seconds, over
-/// all three components, is at most `factor` times the smallest one. A proposal, since a
-/// steady press is quiet, too.
-/// @throws std::invalid_argument for a bad stream, width <= 0 or factor < 1.
-std::vector<Stretch> quiet_stretches(const ForceStream& force, double width, double factor);
-
 /// The load by least squares over samples in the stretches, where the probe touches nothing.
 /// @param up  direction against gravity in W, if known: then the weight has one unknown, else three
 /// @throws std::invalid_argument for bad streams, a bad mount, `up` of no length, or when the

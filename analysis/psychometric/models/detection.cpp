@@ -108,20 +108,6 @@ double choice_density(double x, void* choice) {
 
 }  // namespace
 
-RateCorrection rate_correction_named(std::string_view name) {
-  if (name == "none") {
-    return RateCorrection::kNone;
-  }
-  if (name == "loglinear") {
-    return RateCorrection::kLogLinear;
-  }
-  if (name == "extremes") {
-    return RateCorrection::kExtremes;
-  }
-  throw std::invalid_argument("name of a correction: \"" + std::string(name) +
-                              "\"; allowed: none, loglinear, extremes");
-}
-
 Defined<Detection> detection(const DetectionCounts& counts, RateCorrection correction,
                              double level) {
   return indices(counts, correction, level, 1.0);

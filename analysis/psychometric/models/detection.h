@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string_view>
-
 #include "analysis/statistics/base/defined.h"
 
 namespace haptrial::analysis {
@@ -20,8 +18,6 @@ enum class RateCorrection {
   kLogLinear,  // (count + 1/2) / (trials + 1), always (Hautus 1995)
   kExtremes,   // 0 becomes 1 / (2 n), 1 becomes 1 - 1 / (2 n) (Macmillan and Kaplan 1985)
 };
-/// none, loglinear or extremes. @throws std::invalid_argument naming `name`.
-RateCorrection rate_correction_named(std::string_view name);
 
 /// Equal-variance indices of yes/no detection, z the normal quantile, H and F the rates:
 ///

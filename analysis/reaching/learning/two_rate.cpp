@@ -260,20 +260,6 @@ std::vector<std::size_t> all_rows_of(std::span<const AdaptationSequence> sequenc
 
 }  // namespace
 
-std::vector<TwoRateState> two_rate_states(const TwoRateModel& model,
-                                          std::span<const AdaptationTrial> trials) {
-  std::vector<TwoRateState> states;
-  TwoRateState now;
-  for (const AdaptationTrial& trial : trials) {
-    now.error = trial.error_clamp ? 0.0 : trial.perturbation - now.adaptation();
-    now.measured = trial.error_clamp ? now.adaptation() : model.error_scale * now.error;
-    states.push_back(now);
-    now.fast = model.fast.retention * now.fast + model.fast.learning * now.error;
-    now.slow = model.slow.retention * now.slow + model.slow.learning * now.error;
-  }
-  return states;
-}
-
 Defined<TwoRateFit> fit_two_rate(std::span<const AdaptationSequence> sequences,
                                  const TwoRateOptions& options) {
   if (!all_perturbations_finite(sequences)) {

@@ -38,18 +38,6 @@ struct AdaptationTrial {
 };
 using AdaptationSequence = std::vector<AdaptationTrial>;
 
-struct TwoRateState {
-  double fast{0.0};   // x_f before the trial
-  double slow{0.0};   // x_s
-  double error{0.0};  // e, in units of the perturbation
-  double measured{0.0};
-  double adaptation() const { return fast + slow; }
-};
-
-/// What the model does over a sequence; `measured` of the trials is not read.
-std::vector<TwoRateState> two_rate_states(const TwoRateModel& model,
-                                          std::span<const AdaptationTrial> trials);
-
 struct TwoRateOptions {
   bool fit_error_scale{false};  // otherwise the scale of `start` is kept
   TwoRateModel start{};         // one of five points from which the search begins

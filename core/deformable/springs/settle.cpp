@@ -15,7 +15,6 @@ using Eigen::Vector3d;
 
 constexpr int kLookEvery = 4;   // steps
 constexpr double kFar = 100.0;  // of the body's extent: where no body that holds together gets to
-constexpr double kTighter = 0.1;
 
 void check(const RestCriterion& criterion) {
   for (const double limit :
@@ -58,14 +57,6 @@ bool within(const SpringMotion& motion, const Box& box) {
   return true;
 }
 
-double largest_way(const std::vector<Vector3d>& from, const std::vector<Vector3d>& to) {
-  double largest = 0;
-  for (std::size_t v = 0; v < from.size(); ++v) {
-    largest = std::max(largest, (to[v] - from[v]).norm());
-  }
-  return largest;
-}
-
 }  // namespace
 
 RestResult settle(SpringMotion& motion, const RestCriterion& criterion) {
@@ -95,27 +86,6 @@ RestResult settle(SpringMotion& motion, const RestCriterion& criterion) {
   result.steps = motion.steps() - first;
   result.inverted = motion.inverted();
   return result;
-}
-
-ConfirmedRest settle_confirmed(SpringMotion& motion, const RestCriterion& criterion) {
-  const std::vector<Vector3d> start = motion.positions();
-  ConfirmedRest rest;
-  rest.first = settle(motion, criterion);
-  rest.second = rest.first;
-  if (rest.first.outcome != Settling::kSettled) {
-    return rest;
-  }
-  const std::vector<Vector3d> first = motion.positions();
-  RestCriterion tighter = criterion;
-  tighter.below.max_speed *= kTighter;
-  tighter.below.mean_speed *= kTighter;
-  tighter.below.max_acceleration *= kTighter;
-  tighter.below.mean_acceleration *= kTighter;
-  rest.second = settle(motion, tighter);
-  const std::vector<Vector3d> second = motion.positions();
-  rest.change = largest_way(first, second);
-  rest.displacement = largest_way(start, second);
-  return rest;
 }
 
 std::vector<std::int32_t> held_vertices(const LoadCase& load) {

@@ -31,17 +31,6 @@ struct RestResult {
 /// @throws InputError for a criterion that is not allowed.
 RestResult settle(SpringMotion& motion, const RestCriterion& criterion);
 
-struct ConfirmedRest {
-  RestResult first;       // by the criterion
-  RestResult second;      // from there by limits ten times lower
-  double change{};        // the largest way of a vertex from the first rest to the second [m]
-  double displacement{};  // the largest way of a vertex from the start to the second [m]
-};
-
-/// The same, and confirmed by a tighter criterion: `change` is small beside `displacement` if the
-/// first one was tight enough.
-ConfirmedRest settle_confirmed(SpringMotion& motion, const RestCriterion& criterion);
-
 /// The vertices that a load holds.
 std::vector<std::int32_t> held_vertices(const LoadCase& load);
 

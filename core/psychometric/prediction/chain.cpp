@@ -5,17 +5,14 @@
 namespace haptrial::psychometric {
 
 Chain::Chain(const StaircaseParameters& parameters, const AnswerProbability& probability,
-             bool endless, std::size_t most_states)
+             std::size_t most_states)
     : parameters_(parameters),
       probability_(probability),
-      endless_(endless),
       states_(parameters, most_states),
       nodes_(parameters.schedule == StaircaseParameters::Schedule::kTrials ? parameters.steps.size()
                                                                            : 1) {
   checks::require(static_cast<bool>(probability), "Staircase", "probability must be given");
-  StaircaseState start = begin(parameters_);
-  start.reversals = endless ? 1 : 0;
-  states_.index_of(start);
+  states_.index_of(begin(parameters_));
 }
 
 std::size_t Chain::phase_of(int trial) const {
@@ -44,9 +41,6 @@ Chain::Answer Chain::follow(std::size_t index, int trial, bool right) {
   state.trials = trial - 1;
   const bool reversal = advance(parameters_, state, right, state.x);
   state.trials = 0;
-  if (endless_) {
-    state.reversals = 1;
-  }
   return {states_.index_of(state), reversal};
 }
 

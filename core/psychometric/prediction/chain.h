@@ -21,8 +21,7 @@ class Chain {
     double probability;  // of a right answer
   };
 
-  /// @param endless  never stops, and forgets how many reversals there were
-  Chain(const StaircaseParameters& parameters, const AnswerProbability& probability, bool endless,
+  Chain(const StaircaseParameters& parameters, const AnswerProbability& probability,
         std::size_t most_states);
 
   /// From a state on trial `trial` (1, 2, ...).
@@ -40,7 +39,6 @@ class Chain {
 
   StaircaseParameters parameters_;
   AnswerProbability probability_;
-  bool endless_;
   ChainStates states_;
   std::vector<std::vector<std::optional<Node>>> nodes_;  // for each size of steps by trials
 };

@@ -169,7 +169,7 @@ StaircasePrediction predict_staircase(const StaircaseParameters& parameters,
                                       const AnswerProbability& probability, double target) {
   check(parameters);
   check_estimator(parameters);
-  Chain chain(parameters, probability, false, 2'000'000);
+  Chain chain(parameters, probability, 2'000'000);
   Walk walk(parameters, chain);
   const bool of_levels = parameters.estimator == Estimator::kMeanOfLevels;
   const bool to_the_end = !of_levels && parameters.stop_reversals == 0 && parameters.last > 0;

@@ -55,8 +55,8 @@ StaircaseStep weighted_step(double target, double down);
 ///
 ///     p = (step_up / (step_up + step_down))^(1/n)
 ///
-/// (García-Pérez 1998, Vision Research 38; Levitt 1971 for equal steps). predict_staircase() and
-/// settle() tell for steps that are not small.
+/// (García-Pérez 1998, Vision Research 38; Levitt 1971 for equal steps). predict_staircase() tells
+/// for steps that are not small.
 /// @throws std::invalid_argument unless down >= 1 and both sizes are above 0
 double balance_of(int down, const StaircaseStep& step);
 

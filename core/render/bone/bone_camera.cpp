@@ -91,12 +91,6 @@ Camera zoomed(const Camera& camera, double factor) {
   return changed;
 }
 
-Camera dollied(const Camera& camera, double factor) {
-  Camera moved = camera;
-  moved.eye = camera.target + factor * (camera.eye - camera.target);
-  return moved;
-}
-
 EyeView view_of(const Camera& camera, double aspect) {
   return view_from(camera, 0.0, camera.distance(), aspect);
 }

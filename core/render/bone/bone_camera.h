@@ -21,8 +21,6 @@ Camera orbited(const Camera& camera, double right, double above);
 Camera translated(const Camera& camera, double right, double above);
 /// Things become `factor` > 0 times as large in the picture, by a narrower field of view.
 Camera zoomed(const Camera& camera, double factor);
-/// The eye goes to `factor` > 0 times its distance from the target.
-Camera dollied(const Camera& camera, double factor);
 
 /// A stereo pair, side by side: left eye left.
 struct StereoPair {

@@ -76,7 +76,11 @@ TEST(SoundTrackTest, IsAsLongAsTheStatesAndTheSameEachTime) {
   const test::TemporaryFolder folder;
   std::vector<DrillState> states(700, {Burr::kDiamond, 1.0, true, 1.0, 1e-3});
   const auto bytes = [&](const char* name, std::uint64_t seed) {
-    write_drill_sound(folder / name, states, 1000.0, default_sound(), {}, seed);
+    SoundTrack track(folder / name, 1000.0, default_sound(), {}, seed);
+    for (const DrillState& state : states) {
+      track.add(state);
+    }
+    track.finish();
     return file_text(folder / name);
   };
   const std::string first = bytes("a.wav", 1);
@@ -84,8 +88,7 @@ TEST(SoundTrackTest, IsAsLongAsTheStatesAndTheSameEachTime) {
   EXPECT_NE(first, bytes("c.wav", 2));
   EXPECT_EQ(read_recording(folder / "a.wav").samples.size(), 33'600U);
   EXPECT_THROW(bytes("a.wav", 1), InputError);  // is there already
-  EXPECT_THROW(write_drill_sound(folder / "no" / "d.wav", states, 1e3, default_sound(), {}, 1),
-               InputError);
+  EXPECT_THROW(SoundTrack(folder / "no" / "d.wav", 1e3, default_sound(), {}, 1), InputError);
   { const SoundTrack unfinished(folder / "e.wav", 1000.0, default_sound(), {}, 1); }
   EXPECT_FALSE(std::filesystem::exists(folder / "e.wav"));
   EXPECT_FALSE(std::filesystem::exists(folder / "e.wav.partial"));

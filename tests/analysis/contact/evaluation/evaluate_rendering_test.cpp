@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "analysis/contact/simulation/simulated_probe.h"
-#include "analysis/contact/truth/true_contact.h"
 #include "core/base/random.h"
 #include "core/geometry/mesh/procedural.h"
+#include "tests/support/contact_truth/true_contact.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::evaluation {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/contact/truth/true_contact.h"
 #include "core/base/random.h"
 #include "core/contact/proxy/proxy.h"
 #include "core/contact/surface/contact_surface.h"
+#include "tests/support/contact_truth/true_contact.h"
 
 namespace haptrial::evaluation::identify_contact_test {
 namespace {

@@ -75,20 +75,6 @@ TEST(SensorLoadTest, AContactKeepsItsForcesWithoutTheLoad) {
   EXPECT_LT(worst, 2e-3);  // orientations between samples 1/60 s apart: 1/8 (1/60)² 0.7 rad/s² 3 N
 }
 
-TEST(SensorLoadTest, QuietStretchesAreThoseWithoutAHand) {
-  ForceStream force;
-  RandomStream random(3, "quiet");
-  for (const double t : even_times(0.0, 6.0, 0.001)) {
-    const double pressed = t > 2.0 && t < 5.0 ? 3.0 + std::sin(20.0 * t) : 0.0;
-    force.time.push_back(t);
-    force.force.emplace_back(0.01 * random.normal(), pressed, 0.01 * random.normal());
-  }
-  const auto stretches = quiet_stretches(force, 0.1, 2.0);
-  ASSERT_EQ(stretches.size(), 2u);
-  EXPECT_NEAR(stretches[0].second, 2.0, 0.1001);
-  EXPECT_NEAR(stretches[1].first, 5.0, 0.1001);
-}
-
 /// Recordings of noisy streams with known lags: the interval should hold them.
 TEST(StreamLagTest, KnownLagsAreFoundAndIntervalsHoldThem) {
   int held = 0;

@@ -73,8 +73,6 @@ TEST(Detection, CorrectsExtremeRates) {
   EXPECT_NEAR(inner->d_prime, z(0.75) - z(0.2), 1e-13);
   EXPECT_FALSE(detection({0, 0, 3, 4}, RateCorrection::kLogLinear));
   EXPECT_THROW(detection({-1, 2, 3, 4}, RateCorrection::kNone), std::invalid_argument);
-  EXPECT_EQ(rate_correction_named("loglinear"), RateCorrection::kLogLinear);
-  EXPECT_THROW(rate_correction_named("half"), std::invalid_argument);
 }
 
 TEST(Detection, HasAnIntervalThatHoldsTheTruth) {

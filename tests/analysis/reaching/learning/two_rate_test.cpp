@@ -14,6 +14,29 @@
 namespace haptrial::analysis {
 namespace {
 
+struct TwoRateState {
+  double fast{0.0};   // x_f before the trial
+  double slow{0.0};   // x_s
+  double error{0.0};  // e, in units of the perturbation
+  double measured{0.0};
+  double adaptation() const { return fast + slow; }
+};
+
+/// The model over a sequence; `measured` of the trials is not read.
+std::vector<TwoRateState> two_rate_states(const TwoRateModel& model,
+                                          std::span<const AdaptationTrial> trials) {
+  std::vector<TwoRateState> states;
+  TwoRateState now;
+  for (const AdaptationTrial& trial : trials) {
+    now.error = trial.error_clamp ? 0.0 : trial.perturbation - now.adaptation();
+    now.measured = trial.error_clamp ? now.adaptation() : model.error_scale * now.error;
+    states.push_back(now);
+    now.fast = model.fast.retention * now.fast + model.fast.learning * now.error;
+    now.slow = model.slow.retention * now.slow + model.slow.learning * now.error;
+  }
+  return states;
+}
+
 /// 20 trials without field, `learn` in the field with a clamp on every eighth, 20 in the opposite
 /// field, 60 in a clamp.
 AdaptationSequence schedule(int learn) {

@@ -8,7 +8,6 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/bone/pieces/pieces_search.h"
 #include "tests/core/bone/pieces/pieces_support.h"
 #include "tests/support/allocation_guard.h"
 
@@ -526,7 +525,11 @@ TEST(BoneWorldTest, NothingIsLostBetweenAServoAndASearchingThreadAndTheReplayIsT
     }
   });
   {
-    PiecesSearch search(world, std::chrono::milliseconds(0));
+    const std::jthread search([&world](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        world.search();
+      }
+    });
     for (int tick = 0; tick < kTicks; ++tick) {
       live.tick(world, drill, tick);
       std::this_thread::sleep_for(std::chrono::microseconds(50));

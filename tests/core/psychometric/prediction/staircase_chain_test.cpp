@@ -8,7 +8,6 @@
 
 #include "core/base/random.h"
 #include "core/psychometric/function/psychometric_function.h"
-#include "core/psychometric/prediction/settled_staircase.h"
 #include "core/psychometric/procedure/staircase.h"
 
 namespace haptrial::psychometric {
@@ -173,74 +172,6 @@ TEST(StaircaseChainTest, WhatCannotBePredictedSaysSo) {
   EXPECT_THROW(predict_staircase(
                    p, [](double) { return 1.5; }, 0.0),
                std::invalid_argument);
-}
-
-// Two alternatives, psi = 0.5 + 0.5 Phi; bounds at 8 sigma on both sides of the threshold.
-TEST(SettledStaircaseTest, TwoDownOneUpDoesNotSitAt0707) {
-  const double steps[] = {0.2, 1.0, 2.0};
-  const double shares[] = {0.702, 0.666, 0.617};
-  for (int i = 0; i < 3; ++i) {
-    const auto settled = settle(two_down_one_up(steps[i]), two_alternatives);
-    EXPECT_NEAR(two_alternatives(settled.mean_level), shares[i], 0.0005) << steps[i];
-  }
-}
-
-TEST(SettledStaircaseTest, AgreesWithALongTrack) {
-  const auto p = two_down_one_up(1.0);
-  const auto settled = settle(p, two_alternatives);
-  RandomStream random(2, "answers");
-  auto state = begin(p);
-  double levels = 0.0, turns = 0.0;
-  int reversals = 0;
-  constexpr int kTrials = 2'000'000;
-  for (int i = 0; i < kTrials; ++i) {
-    const double x = state.x;
-    levels += x;
-    if (advance(p, state, random.uniform() < two_alternatives(x), x)) {
-      turns += x;
-      ++reversals;
-    }
-  }
-  // The standard deviation of the means is below 0.005, from 100 tracks of that length.
-  EXPECT_NEAR(settled.mean_level, levels / kTrials, 0.02);
-  EXPECT_NEAR(settled.mean_reversal, turns / reversals, 0.02);
-  EXPECT_NEAR(settled.trials_a_reversal, static_cast<double>(kTrials) / reversals, 0.02);
-}
-
-// A walk between two levels: right at 0 with 0.3, at 1 with 0.6. Levels' shares are 2/3.. by
-// balance: share(0) (1 - 0.3) = share(1) 0.6.
-TEST(SettledStaircaseTest, TwoLevelsInClosedForm) {
-  Parameters p;
-  p.low = 0.0;
-  p.high = 1.0;
-  p.start = 1.0;
-  p.down = 1;
-  p.steps = {{1.0, 1.0, 0}};
-  p.stop_trials = 1;
-  const auto settled = settle(p, [](double level) { return level < 0.5 ? 0.3 : 0.6; });
-  EXPECT_NEAR(settled.mean_level, 0.7 / 1.3, 1e-12);
-}
-
-// p^n step_down = (1 - p^n) step_up (García-Pérez 1998) holds as steps become small: what is left
-// is in proportion to the step, so two sizes tell where it ends. Ratios have a common measure.
-TEST(SettledStaircaseTest, SmallStepsSettleAtTheBalance) {
-  const double ratios[] = {0.28, 0.55, 0.75, 5.0 / 6.0};
-  for (int n = 1; n <= 4; ++n) {
-    const auto settled_share = [&](double up) {
-      auto p = two_down_one_up(up);
-      p.low = -3.2;  // multiples of every measure, so that the bounds add no other levels
-      p.high = 4.8;
-      p.down = n;
-      p.steps = {{ratios[n - 1] * up, up, 0}};
-      return two_alternatives(settle(p, two_alternatives).mean_level);
-    };
-    const double coarse = settled_share(0.4);
-    const double fine = settled_share(0.2);
-    const double balance = balance_of(n, {ratios[n - 1], 1.0, 0});
-    EXPECT_GT(coarse, fine);
-    EXPECT_GT(fine, balance);
-    EXPECT_NEAR(2.0 * fine - coarse, balance, 0.0005) << n;
-  }
 }
 
 }  // namespace

@@ -74,7 +74,6 @@ TEST(BoneCameraTest, ZoomMakesThingsAsManyTimesAsLarge) {
   const Eigen::Vector3d point = kCamera.target + 0.004 * kCamera.pose().linear().col(1);
   const double before = clip(view_of(kCamera, 1.0), point).y();
   EXPECT_NEAR(clip(view_of(zoomed(kCamera, 3.0), 1.0), point).y(), 3.0 * before, 1e-9);
-  EXPECT_NEAR(dollied(kCamera, 0.5).distance(), 0.5 * kCamera.distance(), 1e-12);
   const Camera moved = translated(kCamera, 0.01, -0.02);
   EXPECT_NEAR((moved.target - kCamera.target).norm(), std::hypot(0.01, 0.02), 1e-12);
   EXPECT_NEAR(clip(view_of(moved, 1.0), kCamera.target).x(),

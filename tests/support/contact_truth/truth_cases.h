@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "analysis/contact/truth/true_contact.h"
+#include "tests/support/contact_truth/true_contact.h"
 
 namespace haptrial::test {
 

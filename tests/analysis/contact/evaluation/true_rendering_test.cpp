@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "analysis/contact/truth/rubbed_profile.h"
-#include "analysis/contact/truth/true_contact.h"
 #include "core/contact/renderer/make_renderer.h"
 #include "core/geometry/mesh/procedural.h"
-#include "tests/analysis/contact/truth/truth_cases.h"
+#include "tests/support/contact_truth/rubbed_profile.h"
+#include "tests/support/contact_truth/true_contact.h"
+#include "tests/support/contact_truth/truth_cases.h"
 
 namespace haptrial::evaluation {
 namespace {

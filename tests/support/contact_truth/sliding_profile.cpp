@@ -1,4 +1,4 @@
-#include "analysis/contact/truth/sliding_profile.h"
+#include "tests/support/contact_truth/sliding_profile.h"
 
 #include <algorithm>
 #include <cmath>

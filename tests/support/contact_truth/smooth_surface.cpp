@@ -1,4 +1,4 @@
-#include "analysis/contact/truth/smooth_surface.h"
+#include "tests/support/contact_truth/smooth_surface.h"
 
 #include <cmath>
 #include <numbers>
