@@ -39,17 +39,11 @@ static void read_link_options(Table& table, TutoringOptions& o) {
   o.authority = table.number_or("authority", o.authority, {0.0, 1.0}, "1");
   o.felt_back = table.number_or("felt_back", o.felt_back, {0.0, 1.0}, "1");
   if (table.has("passivity")) {
-    const std::string how = table.choice("passivity", {"tank", "waves", "none"});
-    o.passivity = how == "tank"    ? Passivity::kTank
-                  : how == "waves" ? Passivity::kWaves
-                                   : Passivity::kNone;
+    o.passivity =
+        table.choice("passivity", {"tank", "none"}) == "tank" ? Passivity::kTank : Passivity::kNone;
   }
   if (table.has("deadband")) {
     o.deadband = table.boolean("deadband");
-    if (o.deadband && o.passivity == Passivity::kWaves) {
-      table.reject("deadband", "true",
-                   "false with passivity = \"waves\", which need every message");
-    }
   }
   if (table.has("jitter_buffer")) {
     o.jitter_buffer = table.boolean("jitter_buffer");

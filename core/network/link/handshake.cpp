@@ -11,7 +11,7 @@
 namespace haptrial::network {
 namespace {
 
-constexpr std::string_view kVersion = "haptrial link 01";
+constexpr std::string_view kVersion = "haptrial link 02";
 constexpr std::size_t kTermBytes = 34;
 constexpr std::size_t kProofBytes = 32;
 static_assert(kVersion.size() == 16 && kProofBytes == crypto_auth_BYTES);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace haptrial::network {
 
@@ -16,13 +15,8 @@ CoupledSide::CoupledSide(const SideParameters& parameters, const Vector3d& start
       buffer_(std::make_unique<JitterBuffer>(parameters.late,
                                              std::llround(1e9 * parameters.longest_buffer))),
       tank_(parameters.tank),
-      waves_(parameters.waves, parameters.gains, start),
       deadband_(parameters.deadband),
-      last_place_(start) {
-  if (parameters.sparse && parameters.passivity == Passivity::kWaves) {
-    throw std::invalid_argument("CoupledSide: waves need a message every tick");
-  }
-}
+      last_place_(start) {}
 
 void CoupledSide::hear(const TickMessage& message, std::int64_t now_ns) noexcept {
   if (!window_.accept(message.sequence)) {
@@ -70,9 +64,6 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
   const control::Lead lead{1.0 - own.lead, own.felt_back};
   const double share =  // of the coupling that is on
       strength_ * std::clamp(std::max(lead.partner, lead.felt_back), 0.0, 1.0);
-  if (p_.passivity == Passivity::kWaves) {
-    return felt_by_waves(own.tool, share, dt);
-  }
   if (!linked_) {
     tank_.let_go(moved, energy_heard_);
     return Vector3d::Zero();
@@ -84,18 +75,6 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
   return p_.passivity == Passivity::kNone
              ? whole
              : played_ + tank_.limit(wanted, moved, own.tool.velocity, energy_heard_, dt, share);
-}
-
-Vector3d CoupledSide::felt_by_waves(const PointState& own, double share, double dt) noexcept {
-  if (!linked_ || share <= 0.0) {
-    waves_.let_go(own.position);
-    return Vector3d::Zero();
-  }
-  const bool fresh = used_.sequence != wave_used_;
-  wave_used_ = used_.sequence;
-  const Vector3d force = waves_.step(fresh ? used_.wave : Vector3d::Zero(), own, dt, share);
-  waves_.correct(partner_.tool.position, own.position);
-  return force;
 }
 
 /// A word about the session waits for no deadband.
@@ -119,7 +98,6 @@ std::optional<TickMessage> CoupledSide::told(const Own& own, std::int64_t now_ns
   m.position = own.tool.position;
   m.velocity = own.tool.velocity;
   m.force = p_.sparse ? deadband_.sent().force : own.force;
-  m.wave = waves_.outgoing();
   m.energy = tank_.sent();
   m.lead = own.lead;
   m.world = own.world;

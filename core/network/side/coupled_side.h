@@ -20,7 +20,6 @@ namespace haptrial::network {
 class CoupledSide {
  public:
   /// @param start  of the own tool, in W [m]
-  /// @throws std::invalid_argument as WavePort does; where messages are to be sparse with waves
   explicit CoupledSide(const SideParameters& parameters,
                        const Eigen::Vector3d& start = Eigen::Vector3d::Zero());
 
@@ -73,7 +72,6 @@ class CoupledSide {
   void look_at_link(std::int64_t now_ns, double dt) noexcept;
   void look_at_partner(std::int64_t now_ns, double dt) noexcept;
   Eigen::Vector3d felt(const Own& own, double dt) noexcept;
-  Eigen::Vector3d felt_by_waves(const PointState& own, double share, double dt) noexcept;
   std::optional<TickMessage> told(const Own& own, std::int64_t now_ns, double dt) noexcept;
   bool due(const Own& own, double dt) noexcept;
 
@@ -82,7 +80,6 @@ class CoupledSide {
   ClockOffset clock_;
   std::unique_ptr<JitterBuffer> buffer_;  // large
   control::EnergyTank tank_;
-  control::WavePort waves_;
   control::Deadband deadband_;
 
   TickMessage newest_;        // by sequence number
@@ -100,7 +97,6 @@ class CoupledSide {
   double stead_{1.0};     // of the own world, for what the partner's does not do, 0 to 1
   double own_share_{1.0};
   std::uint64_t losses_{0};
-  std::uint64_t wave_used_{0};  // sequence number: each wave counts once
   std::uint64_t sent_{0};
   std::uint32_t told_flags_{0};
   TurnState told_turn_;

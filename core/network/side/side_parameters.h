@@ -5,23 +5,20 @@
 #include "core/control/tutoring/deadband.h"
 #include "core/control/tutoring/energy_tank.h"
 #include "core/control/tutoring/tutoring_law.h"
-#include "core/control/tutoring/wave_port.h"
 
 namespace haptrial::network {
 
 /// What keeps a coupling over a delay from swinging up.
 enum class Passivity : std::uint8_t {
-  kNone,   // nothing: right where only one side feels the other
-  kTank,   // control::EnergyTank
-  kWaves,  // control::WavePort; the partner's own force is not played beside them
+  kNone,  // nothing: right where only one side feels the other
+  kTank,  // control::EnergyTank
 };
 
 struct SideParameters {
   control::TutoringGains gains;
   Passivity passivity{Passivity::kTank};
   control::TankParameters tank;
-  control::WaveParameters waves;
-  bool sparse{false};  // only the messages that Deadband asks for; not with waves
+  bool sparse{false};  // only the messages that Deadband asks for
   control::DeadbandParameters deadband;
   bool even{false};            // partner's ticks as evenly as they were sent; costs delay
   double late{0.01};           // share of messages that may be too late for that

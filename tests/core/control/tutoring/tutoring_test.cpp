@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 
 #include "core/base/random.h"
 #include "core/control/tutoring/energy_tank.h"
 #include "core/control/tutoring/tutoring_law.h"
-#include "core/control/tutoring/wave_port.h"
 
 namespace haptrial::control {
 namespace {
@@ -111,62 +109,6 @@ TEST(EnergyTankTest, WhatIsNotANumberIsNoForce) {
   const Vector3d bad = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(tank.limit(bad, Vector3d::Zero(), Vector3d::Zero(), 1.0, kDt).isZero(0.0));
   EXPECT_TRUE(tank.limit(Vector3d::Ones(), bad, Vector3d::Zero(), 1.0, kDt).isZero(0.0));
-}
-
-/// What goes in at both ends less what is under way is 0, whatever the hands do.
-TEST(WavePortTest, TheLineLosesNothing) {
-  RandomStream random(2, "wave");
-  const WaveParameters waves{5.0, 0.0};
-  const TutoringGains gains{200.0, 2.0, 1.0};
-  WavePort left(waves, gains);
-  WavePort right(waves, gains);
-  std::deque<Vector3d> there(50, Vector3d::Zero());
-  std::deque<Vector3d> back(50, Vector3d::Zero());
-  PointState a;
-  PointState b;
-  double most = 0.0;
-  for (int tick = 0; tick < 100'000; ++tick) {
-    for (PointState* hand : {&a, &b}) {
-      hand->velocity += any(random, 0.05) - 0.02 * hand->velocity - 0.01 * hand->position;
-      hand->position += hand->velocity * kDt;
-    }
-    left.step(back.front(), a, kDt);
-    right.step(there.front(), b, kDt);
-    back.pop_front();
-    there.pop_front();
-    there.push_back(left.outgoing());
-    back.push_back(right.outgoing());
-    double stored = 0.0;
-    for (const auto* line : {&there, &back}) {
-      for (const Vector3d& wave : *line) {
-        stored += 0.5 * wave.squaredNorm() * kDt;
-      }
-    }
-    const double into = left.into_line() + right.into_line();
-    most = std::max(most, std::abs(left.into_line()));
-    ASSERT_NEAR(into, stored, 1e-12 * static_cast<double>(tick + 1) * std::max(1.0, most));
-  }
-  EXPECT_GT(most, 1e-3);
-}
-
-TEST(WavePortTest, WithoutStrengthAWaveGoesBackAsItCame) {
-  WavePort port({5.0, 0.0}, {200.0, 2.0, 1.0});
-  const Vector3d wave(0.3, -0.2, 0.1);
-  EXPECT_TRUE(port.step(wave, {}, kDt, 0.0).isZero(1e-12));
-  EXPECT_TRUE(port.outgoing().isApprox(wave));
-}
-
-TEST(WavePortTest, ADriftIsUndoneOnlyWithEnergyThatWasTaken) {
-  WavePort port({5.0, 0.5}, {200.0, 2.0, 1.0});
-  const Vector3d partner(0.01, 0.0, 0.0);
-  port.correct(partner, Vector3d::Zero());
-  EXPECT_TRUE(port.reference().position.isZero(0.0)) << "nothing was taken yet";
-  const double before = port.budget();
-  for (int i = 0; i < 100; ++i) {
-    port.step(Vector3d(0.2, 0.0, 0.0), {}, kDt);
-  }
-  EXPECT_GT(port.budget(), before);
-  EXPECT_THROW(WavePort({0.0, 0.5}, {}), std::invalid_argument);
 }
 
 }  // namespace
