@@ -8,7 +8,6 @@
 #include "analysis/document/palette.h"
 #include "analysis/power/depth_check.h"
 #include "analysis/power/power_words.h"
-#include "analysis/power/strain_report.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -185,7 +184,6 @@ Document power_report(const PowerResult& result, const Drawing& drawing) {
   }
   add_cells(report, result);
   add_levels(report, result);
-  add_strains(report, result);
   add_check(report, result);
   add_failures(report, result);
   report.heading("The question");

@@ -32,14 +32,6 @@ std::optional<std::size_t> PowerResult::participants() const {
   return at == keys.end() ? std::nullopt : std::optional<std::size_t>(at - keys.begin());
 }
 
-PowerResult under(const PowerResult& result, const PowerStrain& strain) {
-  PowerResult strained = result;
-  strained.nulls = strain.nulls;
-  strained.cells = strain.cells;
-  strained.strains.clear();
-  return strained;
-}
-
 Level level_in(const PowerCell& cell, const std::string& test, double alpha) {
   const TestCount count = cell.counts.of(test);
   if (count.made == 0) {

@@ -54,13 +54,6 @@ struct PowerKey {
   std::optional<double> none;  // without an effect; nothing: it makes none
 };
 
-/// Something that went wrong in the same studies.
-struct PowerStrain {
-  std::string name;                     // "one participant lost"
-  std::string refused;                  // why it was not simulated; empty: it was
-  std::vector<PowerCell> nulls, cells;  // as of PowerResult
-};
-
 /// What a simulation of power found. Every participant is simulated.
 struct PowerResult {
   std::string title;  // of the experiment
@@ -74,7 +67,6 @@ struct PowerResult {
   std::vector<PowerKey> keys;
   std::vector<PowerCell> nulls;  // without an effect
   std::vector<PowerCell> cells;
-  std::vector<PowerStrain> strains;  // none unless asked for
 
   /// Place of the number of participants among the keys.
   std::optional<std::size_t> participants() const;
@@ -82,9 +74,6 @@ struct PowerResult {
 
 /// Coverage of the band in which rejections without an effect should lie.
 inline constexpr double kNullBand = 0.99;
-
-/// The result that a strain alone gives.
-PowerResult under(const PowerResult& result, const PowerStrain& strain);
 
 /// Whether a test keeps its level in every cell without an effect.
 enum class Level { kKept, kAbove, kBelow, kUnknown };

@@ -73,18 +73,6 @@ Json to_json(const PowerResult& result, const std::vector<PowerCell>& cells) {
   return all;
 }
 
-Json to_json(const PowerResult& result, const PowerStrain& strain) {
-  if (!strain.refused.empty()) {
-    return {{"what", strain.name}, {"not_simulated_because", strain.refused}};
-  }
-  const PowerResult strained = under(result, strain);
-  return {{"what", strain.name},
-          {"is_power", is_power(strained)},
-          {"participants_needed", size_lines(strained)},
-          {"without_an_effect", to_json(result, strain.nulls)},
-          {"cells", to_json(result, strain.cells)}};
-}
-
 /// A field with a comma or a quotation mark in quotes.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) {
@@ -128,14 +116,6 @@ std::string power_csv(const PowerResult& result) {
   for (const PowerCell& cell : result.cells) {
     csv += csv_row(result, cell, "study");
   }
-  for (const PowerStrain& strain : result.strains) {
-    for (const PowerCell& cell : strain.nulls) {
-      csv += csv_row(result, cell, "no effect, " + strain.name);
-    }
-    for (const PowerCell& cell : strain.cells) {
-      csv += csv_row(result, cell, "study, " + strain.name);
-    }
-  }
   return csv;
 }
 
@@ -150,22 +130,19 @@ std::string power_json(const PowerResult& result) {
                      {"agrees", row.agrees}});
   }
   Json json{{"simulated", true},
-                  {"experiment", result.title},
-                  {"watch", result.watch},
-                  {"alpha", result.alpha},
-                  {"target", result.target},
-                  {"depth", result.in_full ? "sessions" : "responses"},
-                  {"seed", result.seed},
-                  {"program", result.program},
-                  {"is_power", is_power(result)},
-                  {"verdict", verdict(result)},
-                  {"participants_needed", size_lines(result)},
-                  {"without_an_effect", to_json(result, result.nulls)},
-                  {"cells", to_json(result, result.cells)},
-                  {"depth_check", check}};
-  for (const PowerStrain& strain : result.strains) {
-    json["what_may_go_wrong"].push_back(to_json(result, strain));
-  }
+            {"experiment", result.title},
+            {"watch", result.watch},
+            {"alpha", result.alpha},
+            {"target", result.target},
+            {"depth", result.in_full ? "sessions" : "responses"},
+            {"seed", result.seed},
+            {"program", result.program},
+            {"is_power", is_power(result)},
+            {"verdict", verdict(result)},
+            {"participants_needed", size_lines(result)},
+            {"without_an_effect", to_json(result, result.nulls)},
+            {"cells", to_json(result, result.cells)},
+            {"depth_check", check}};
   return json.dump(1) + "\n";
 }
 

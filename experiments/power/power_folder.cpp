@@ -148,17 +148,8 @@ analysis::PowerResult PowerFolder::merged() const {
       add(study, question_, counts);
     }
   }
-  for (const QuestionStrain& strain : question_.strains) {
-    result.strains.push_back({strain.name, strain.refused, {}, {}});
-  }
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const QuestionCell& asked = question_.cells[i];
-    if (asked.strain == 0) {
-      (asked.null ? result.nulls : result.cells).push_back(std::move(cells[i]));
-    } else {
-      analysis::PowerStrain& strain = result.strains[asked.strain - 1];
-      (asked.null ? strain.nulls : strain.cells).push_back(std::move(cells[i]));
-    }
+    (question_.cells[i].null ? result.nulls : result.cells).push_back(std::move(cells[i]));
   }
   for (const fs::path& each : {folder_, folder_ / kParts}) {
     for (const auto& entry : fs::directory_iterator(each)) {

@@ -58,7 +58,6 @@ Json header_of(const PowerQuestion& question, const PowerUnit& unit) {
           {"program", program_words()},
           {"question", question.fingerprint},
           {"cell", question.cells[unit.cell].name},
-          {"strain", question.cells[unit.cell].strain},
           {"depth", unit.sessions ? "sessions" : "responses"},
           {"first", unit.first},
           {"count", unit.count}};

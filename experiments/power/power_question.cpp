@@ -27,15 +27,14 @@ std::string written(double value) {
              : fmt::format("{}", value);
 }
 
-void check_size(const PowerPlan& plan, std::size_t strains, const std::string& file_name) {
-  double cells = 1.0 + static_cast<double>(strains);
+void check_size(const PowerPlan& plan, const std::string& file_name) {
+  double cells = 1.0;
   for (const VariedKey& key : plan.vary) {
     cells *= static_cast<double>(key.values.size());
   }
   if (cells > kMostCells) {
-    throw InputError(fmt::format("{}: power.vary has {:.3g} cells{}; allowed: at most {:g}",
-                                 file_name, cells,
-                                 strains == 0 ? "" : " with what may go wrong", kMostCells));
+    throw InputError(fmt::format("{}: power.vary has {:.3g} cells; allowed: at most {:g}",
+                                 file_name, cells, kMostCells));
   }
 }
 
@@ -149,47 +148,6 @@ void check_levels(const PowerQuestion& question) {
   }
 }
 
-long participants_of(const NamedText& definition) {
-  Table root = Table::parse(definition.text, definition.file_name);
-  return root.table("design").integer("participants", 1, 1'000'000);
-}
-
-/// Whether every key but the number of participants is at its first level.
-bool is_at_first(const PowerPlan& plan, const QuestionCell& cell) {
-  for (std::size_t i = 0; i < cell.levels.size(); ++i) {
-    const VariedKey& key = plan.vary[i];
-    if (key.key != "design.participants" && cell.levels[i] != key.values.front()) {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// What may go wrong, in every cell. What one cell does not allow is not simulated at all.
-void add_strained(PowerQuestion& question) {
-  const std::vector<QuestionCell> planned = question.cells;
-  for (std::size_t number = 1; number <= question.strains.size(); ++number) {
-    QuestionStrain& strain = question.strains[number - 1];
-    std::vector<QuestionCell> strained = planned;
-    for (QuestionCell& cell : strained) {
-      cell.strain = number;
-      cell.checked = false;
-    }
-    try {
-      for (const QuestionCell& cell : strained) {
-        if (strain.refused.empty() && is_at_first(question.plan, cell)) {
-          check_cell(question, cell);
-        }
-      }
-    } catch (const InputError& error) {
-      strain.refused = error.what();
-    }
-    if (strain.refused.empty()) {
-      question.cells.insert(question.cells.end(), strained.begin(), strained.end());
-    }
-  }
-}
-
 }  // namespace
 
 std::string program_words() {
@@ -211,30 +169,13 @@ std::vector<NamedText> PowerQuestion::parts_of(const QuestionCell& cell) const {
     (own ? asked : given).push_back({plan.vary[i].key, written(cell.levels[i])});
   }
   std::vector<NamedText> all = parts;
-  const auto give = [&all](const std::vector<GivenKey>& to_question,
-                           const std::vector<GivenKey>& to_definition) {
-    all.back().text = with_values(all.back().text, all.back().file_name, to_question);
-    all.front().text = with_values(all.front().text, all.front().file_name, to_definition);
-  };
-  give(asked, given);
-  if (cell.strain > 0) {
-    asked.clear();
-    given.clear();
-    for (GivenKey& key : keys_under(strains[cell.strain - 1], participants_of(all.front()))) {
-      (key.key.starts_with("power.") ? asked : given).push_back(std::move(key));
-    }
-    give(asked, given);
-  }
+  all.back().text = with_values(all.back().text, all.back().file_name, asked);
+  all.front().text = with_values(all.front().text, all.front().file_name, given);
   return all;
 }
 
-PowerQuestion load_question(const fs::path& file, bool robust) {
-  const std::string asked = file_text(file);
-  const GivenKey key{"power.robust", "true"};
-  const bool has_table = Table::parse(asked, file.string()).has("power");
-  Table root = Table::parse(
-      robust && has_table ? with_values(asked, file.string(), std::span(&key, 1)) : asked,
-      file.string());
+PowerQuestion load_question(const fs::path& file) {
+  Table root = Table::parse(file_text(file), file.string());
   if (!root.has("power")) {
     throw InputError(fmt::format(
         "{}: has no table [power]; give it watch and [[power.vary]] (docs/guide-power.md)",
@@ -274,14 +215,9 @@ PowerQuestion parse_question(const std::vector<NamedText>& parts, const fs::path
   question.title = experiment.definition->name;
   question.fingerprint =
       fmt::format("{:016x}", Fnv1a().add(question.text).add(program_words()).value());
-  if (question.plan.robust) {
-    question.strains = strains_of(*question.study->rehearsal(parts, question.plan.watch),
-                                  question.plan);
-  }
-  check_size(question.plan, question.strains.size(), question.file_name);
+  check_size(question.plan, question.file_name);
   question.cells = cells_of(question.plan);
   check_levels(question);
-  add_strained(question);
   return question;
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
-#include "experiments/power/power_strains.h"
 #include "experiments/studies/rehearsal/power_plan.h"
 #include "experiments/studies/study.h"
 
@@ -18,7 +17,6 @@ struct QuestionCell {
   bool null{false};            // every effect is at its `none`
   bool checked{false};         // also in full sessions
   std::string name;            // "design.participants 12, observer.drift 0.01"
-  std::size_t strain{0};       // of PowerQuestion::strains, from 1; 0: all goes as planned
 };
 
 /// A definition with its table [power], ready to be simulated.
@@ -31,8 +29,7 @@ struct PowerQuestion {
   std::filesystem::path folder;  // of the definition, for files that it names
   std::string title;
   const Study* study{nullptr};
-  std::vector<QuestionStrain> strains;  // none unless the plan is robust
-  std::vector<QuestionCell> cells;      // as planned, those without an effect first; then strained
+  std::vector<QuestionCell> cells;  // those without an effect first
   std::string fingerprint;          // of the text and of this program
 
   /// The definition of a cell.
@@ -42,8 +39,7 @@ struct PowerQuestion {
 
 /// @throws InputError for a file without [power], a definition with mistakes, a key that cannot be
 /// varied, or more than 10,000 cells
-/// @param robust  as if [power] had robust = true
-PowerQuestion load_question(const std::filesystem::path& file, bool robust = false);
+PowerQuestion load_question(const std::filesystem::path& file);
 /// The same from a definition with [power], or from one and what a file of its own asks about it.
 /// @param folder  of the definition
 PowerQuestion parse_question(const std::vector<NamedText>& parts,

@@ -595,7 +595,6 @@ power.seed | | of every random number
 power.depth | responses | whether answers alone or full sessions are simulated
 power.check.cells | | cells that are also simulated in full
 power.check.replications | | studies of each of them
-power.robust | false | whether what may go wrong is simulated, too
 power.responses | nothing is known | what responses need to know (docs/guide-power.md)
 power.vary[].key | | key that is varied, with its tables: observer.lapse.median
 power.vary[].values | | its values

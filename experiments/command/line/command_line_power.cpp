@@ -21,8 +21,6 @@ void add_simulated_studies(CLI::App& power, int& status) {
   sub->add_option("--jobs", o.jobs, "Number of threads (default: one per processor)");
   sub->add_option("--part", o.part, "Do part I of N of the work, I/N, without a report");
   sub->add_option("--minutes", o.minutes, "Begin nothing after this time, and exit with status 0");
-  sub->add_flag("--robust", o.robust,
-                "Simulate also what may go wrong, such as lapses or lost participants");
 }
 
 template <class Command>
@@ -44,7 +42,6 @@ void add_array_script(CLI::App& power, int& status) {
   sub->add_option("--tasks", o.tasks, "Number of tasks of the array (default: 100)");
   sub->add_option("--hours", o.hours, "Time limit of a task [h] (default: 1)");
   sub->add_option("--script", o.script, "File of the script (default: the folder's name, .sbatch)");
-  sub->add_flag("--robust", o.robust, "As of haptrial power simulate");
 }
 
 }  // namespace

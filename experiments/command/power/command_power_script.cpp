@@ -68,7 +68,7 @@ std::string quoted(const std::string& text) {
 int power_script(const PowerScriptOptions& options) {
   const int tasks = checked_number("--tasks", options.tasks, 1, 10'000);
   const double hours = checked_real("--hours", options.hours, 0.05, 1000.0);
-  const PowerQuestion question = load_question(options.question, options.robust);
+  const PowerQuestion question = load_question(options.question);
   check_watched(question);
   const std::vector<PowerUnit> units = units_of(question);
   const double each = seconds_of_a_unit(question, units);
@@ -91,11 +91,10 @@ int power_script(const PowerScriptOptions& options) {
           "#SBATCH --mem={}M\n"
           "#SBATCH --requeue\n"
           "#SBATCH --signal=B:TERM@60\n"
-          "exec haptrial power simulate {} --out {}{} --part $SLURM_ARRAY_TASK_ID/{} --jobs 1 "
+          "exec haptrial power simulate {} --out {} --part $SLURM_ARRAY_TASK_ID/{} --jobs 1 "
           "--minutes {:g}\n",
           units.size(), each, all / 3600.0, tasks, minutes, megabytes_of_a_task(),
-          quoted(options.question), quoted(options.out), options.robust ? " --robust" : "", tasks,
-          work));
+          quoted(options.question), quoted(options.out), tasks, work));
   fmt::print(
       "{} parts of about {:.2g} s, {:.2g} hours of computing, {:.2g} minutes for each of {} "
       "tasks\n",

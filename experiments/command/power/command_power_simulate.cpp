@@ -9,8 +9,8 @@
 #include "experiments/command/power/power_commands.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
-#include "experiments/study/launch_rank.h"
 #include "experiments/power/power_run.h"
+#include "experiments/study/launch_rank.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -54,7 +54,7 @@ int power_simulate(const PowerSimulateOptions& options) {
   if (options.minutes) {
     share.minutes = checked_real("--minutes", *options.minutes, 0.0, 1e6);
   }
-  const PowerQuestion question = load_question(options.question, options.robust);
+  const PowerQuestion question = load_question(options.question);
   check_watched(question);
   const PowerFolder folder(
       options.out.empty() ? fs::path("out") / (question.title + "-power") : fs::path(options.out),

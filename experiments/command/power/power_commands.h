@@ -11,7 +11,6 @@ struct PowerSimulateOptions {
   std::string part;      // "2/8": of the units; empty: all
   std::optional<int> jobs;
   std::optional<double> minutes;
-  bool robust{false};  // also with what may go wrong
 };
 int power_simulate(const PowerSimulateOptions& options);
 
@@ -26,7 +25,6 @@ struct PowerScriptOptions {
   int tasks{100};      // of the array
   double hours{1.0};   // limit of a task
   std::string script;  // file; empty: FOLDER.sbatch
-  bool robust{false};
 };
 /// Writes a batch script for a Slurm array.
 int power_script(const PowerScriptOptions& options);

@@ -128,19 +128,6 @@ class ForceRehearsal final : public Rehearsal {
     return !parts_ || parts_->participant > 0.0 || parts_->interaction > 0.0;
   }
 
-  /// Practice over a session is that of two standard deviations of a trial.
-  std::vector<Strain> strains() const override {
-    if (!parts_) {
-      return {};
-    }
-    const auto given = [](const char* key, double value) {
-      return GivenKey{std::string("power.responses.") + key, fmt::format("{}", value)};
-    };
-    return {{"practice is left in", {given("practice", -2.0 * parts_->trial / d_.design.trials)}},
-            {"blocks that differ twice as much", {given("block", 2.0 * parts_->block)}},
-            {"trials that differ twice as much", {given("trial", 2.0 * parts_->trial)}}};
-  }
-
   Rehearsed responses(std::uint64_t seed) const override {
     if (!parts_) {
       throw InputError(

@@ -58,7 +58,6 @@ PowerPlan read_power_plan(Table& root) {
     plan.checked_replications =
         check.integer_or("replications", plan.checked_replications, 2, 100'000);
   }
-  plan.robust = table.has("robust") && table.boolean("robust");
   table.leave("responses");
   for (Table& each : table.tables("vary")) {
     plan.vary.push_back(read_vary(each));

@@ -34,7 +34,6 @@ struct PowerPlan {
   PowerDepth depth{PowerDepth::kResponses};
   int checked_cells{0};  // cells that are also simulated in full
   int checked_replications{4};
-  bool robust{false};  // also with what may go wrong
   std::vector<VariedKey> vary;
 };
 
@@ -45,7 +44,6 @@ struct PowerPlan {
 ///     [alpha], [target], [replications], [null_replications], [block], [seed]
 ///     [depth]         "responses" or "sessions"
 ///     [check]         { cells, replications }: cells that are also simulated in full
-///     [robust]        whether what may go wrong is simulated as well
 ///     [responses]     the study's own: what responses need to know
 ///     [[power.vary]]  key, values, [none]
 ///

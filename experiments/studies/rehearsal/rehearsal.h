@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/definition/given/given_values.h"
-
 namespace haptrial::experiments {
 
 /// A number of a report by its name.
@@ -24,12 +22,6 @@ struct Rehearsed {
   double hours{0.0};                  // in the lab, roughly
 };
 
-/// Something that goes wrong in a study, as other values of keys of its definition.
-struct Strain {
-  std::string name;  // "lapses in 5 % of the trials"
-  std::vector<GivenKey> keys;
-};
-
 /// A study whose report can be had for simulated participants, one report for each seed. What a
 /// kind of study gives to the simulation of power (experiments/power), and all that it needs to
 /// know of it. Calls from several threads at once.
@@ -40,8 +32,6 @@ class Rehearsal {
   /// Whether virtual participants differ from each other: a test over participants who do not says
   /// nothing of people.
   virtual bool people_differ() const = 0;
-  /// What may go wrong with people in such a study, beside those who are lost.
-  virtual std::vector<Strain> strains() const { return {}; }
   /// A study at the level of responses: a function of the seed.
   /// @throws InputError if this definition can only be simulated in full
   virtual Rehearsed responses(std::uint64_t seed) const = 0;

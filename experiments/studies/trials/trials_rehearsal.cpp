@@ -142,27 +142,6 @@ class TrialsRehearsal final : public Rehearsal {
     return people && people->varies();
   }
 
-  std::vector<Strain> strains() const override {
-    using protocols::Decides;
-    const Decides decides = d_->observer.decides;
-    std::vector<Strain> all{{"lapses in 5 % of the trials", {{"observer.lapse", "0.05"}}}};
-    if (decides == Decides::kLargest || decides == Decides::kSmallest) {
-      all.push_back({"the first interval is preferred", {{"observer.bias_first", "0.3"}}});
-    }
-    if (decides == Decides::kYes) {
-      all.push_back({"criteria drift by 0.005 a trial", {{"observer.drift", "0.005"}}});
-    }
-    if (all.size() > 1) {
-      all.push_back({"answers repeat the one before", {{"observer.repetition", "0.3"}}});
-    }
-    if (plan_.functions) {
-      const bool gumbel = plan_.function.sigmoid == psychometric::Sigmoid::kGumbel;
-      all.push_back({"functions of another family are fitted",
-                     {{"analysis.function", gumbel ? "\"norm\"" : "\"gumbel\""}}});
-    }
-    return all;
-  }
-
   Rehearsed responses(std::uint64_t seed) const override {
     if (d_->script) {
       throw InputError(fmt::format(

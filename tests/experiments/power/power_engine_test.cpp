@@ -47,19 +47,15 @@ class NormalRehearsal final : public Rehearsal {
     participants_ = root.table("design").integer("participants", 2, 1000);
     Table people = root.table("people");
     effect_ = people.number("effect", {}, "");
-    noise_ = people.number_or("noise", noise_, {}, "");
   }
   bool people_differ() const override { return true; }
-  std::vector<Strain> strains() const override {
-    return {{"twice the noise", {{"people.noise", "2"}}}, {"no effect", {{"people.effect", "0"}}}};
-  }
   Rehearsed responses(std::uint64_t seed) const override {
     RandomStream random(seed, "normal");
     std::vector<std::vector<double>> rows;
     std::vector<double> a, b;
     for (long p = 0; p < participants_; ++p) {
       const double person = random.normal();
-      const auto noise = [&] { return noise_ * random.normal(); };
+      const auto noise = [&] { return random.normal(); };
       rows.push_back(
           {person + noise(), person + effect_ + noise(), person + 0.5 * effect_ + noise()});
       a.push_back(rows.back()[0]);
@@ -74,7 +70,6 @@ class NormalRehearsal final : public Rehearsal {
  private:
   long participants_{0};
   double effect_{0.0};
-  double noise_{1.0};
 };
 
 class NormalStudy final : public Study {
@@ -150,58 +145,6 @@ TEST(PowerEngine, FindsTheNoncentralTAndFInFortyCells) {
     }
   }
   EXPECT_LE(outside, 10) << "of 80 shares 4 are expected outside of their 95 % bands";
-}
-
-TEST(PowerEngine, StrainsAreNamedOnceAndLeaveTheQuestionAlone) {
-  const PowerQuestion q = question_of(1, {8}, {1.0});
-  const auto strains = strains_of(NormalRehearsal(kText), q.plan);
-  ASSERT_EQ(strains.size(), 4u);
-  EXPECT_THAT(strains[3].refused, HasSubstr("the question itself varies people.effect"));
-  EXPECT_EQ(strains[2].refused, "");
-  const auto left = [&](std::size_t strain, long n) {
-    return keys_under(strains[strain], n).back().value;
-  };
-  EXPECT_EQ(left(0, 8), "7");
-  EXPECT_EQ(left(1, 10), "9");
-  EXPECT_EQ(left(1, 11), "9") << "a tenth of a person is a person";
-  EXPECT_EQ(left(1, 20), "18");
-}
-
-TEST(PowerEngine, StrainedStudiesHaveThePowerOfTheNoncentralT) {
-  constexpr int kReplications = 1000;
-  const TemporaryFolder folder;
-  PowerQuestion q = question_of(kReplications, {6, 12}, {1.5});
-  q.strains = strains_of(NormalRehearsal(kText), q.plan);
-  q.strains.pop_back();
-  const std::vector<QuestionCell> planned = q.cells;
-  for (std::size_t strain = 1; strain <= q.strains.size(); ++strain) {
-    for (QuestionCell cell : planned) {
-      cell.strain = strain;
-      q.cells.push_back(cell);
-    }
-  }
-  const auto result = simulated_in(folder.path() / "power", q, 2);
-  ASSERT_EQ(result.strains.size(), 3u);
-  const auto expect = [&](const analysis::PowerCell& cell, double n, double noise) {
-    const double power = *analysis::t_power({analysis::TDesign::kPaired, 0.05, false}, n,
-                                            cell.levels[1] / (noise * std::sqrt(2.0)));
-    const auto count = cell.counts.of("paired t");
-    EXPECT_TRUE(analysis::binomial_band(count.made, power, 0.999).holds(count.rejected))
-        << n << " participants, noise " << noise << ": " << count.rejected << ", not " << power;
-  };
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double n = result.cells[i].levels[0];
-    expect(result.cells[i], n, 1.0);
-    expect(result.strains[0].cells[i], n - 1.0, 1.0);
-    expect(result.strains[1].cells[i], n - (n > 10.0 ? 2.0 : 1.0), 1.0);
-    expect(result.strains[2].cells[i], n, 2.0);
-    EXPECT_TRUE(analysis::is_power(analysis::under(result, result.strains[2])));
-  }
-  const std::string report = analysis::to_markdown(analysis::power_report(result, {}));
-  EXPECT_THAT(report, HasSubstr("What may go wrong (simulated)"));
-  EXPECT_THAT(report, HasSubstr("twice the noise"));
-  EXPECT_EQ(analysis::power_json(result),
-            analysis::power_json(simulated_in(folder.path() / "again", q, 1)));
 }
 
 TEST(PowerEngine, GivesTheSameBytesForAnyNumberOfThreads) {

@@ -108,21 +108,6 @@ TEST_F(PowerSimulateTest, FromAQuestionToAReport) {
               HasSubstr("0 of 8 parts were made"));
 }
 
-TEST_F(PowerSimulateTest, WhatMayGoWrongIsAskedForAndReported) {
-  const CommandResult done = power("simulate " + quick() + " --robust --out " + path("robust"));
-  ASSERT_EQ(done.status, 0) << done.errors;
-  const std::string report = read_text(folder_ / "robust/report.md");
-  for (const char* what :
-       {"one participant lost", "practice is left in", "blocks that differ twice as much"}) {
-    EXPECT_THAT(report, HasSubstr(what));
-    EXPECT_THAT(read_text(folder_ / "robust/power.csv"), HasSubstr(what));
-    EXPECT_THAT(read_text(folder_ / "robust/power.json"), HasSubstr(what));
-  }
-  EXPECT_EQ(power("merge " + path("robust")).status, 0) << "the question is in the folder";
-  EXPECT_EQ(read_text(folder_ / "robust/report.md"), report);
-  expect_bad_input("simulate " + quick() + " --out " + path("robust"), "parts of another definition");
-}
-
 TEST_F(PowerSimulateTest, SharesGoOnWhereOthersStopped) {
   const std::string question = quick();
   const CommandResult first = power("simulate " + question + " --part 1/2 --out " + path("out"));
