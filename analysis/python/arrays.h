@@ -42,7 +42,6 @@ void bind_session(py::module_& module);
 void bind_scores(py::module_& module);
 void bind_psychometric(py::module_& module);
 void bind_procedures(py::module_& module);
-void bind_geometry(py::module_& module);
 void bind_touch(py::module_& module);
 
 }  // namespace haptrial::python

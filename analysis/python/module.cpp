@@ -38,6 +38,5 @@ PYBIND11_MODULE(_haptrial, module) {
   haptrial::python::bind_scores(module);
   haptrial::python::bind_psychometric(module);
   haptrial::python::bind_procedures(module);
-  haptrial::python::bind_geometry(module);
   haptrial::python::bind_touch(module);
 }

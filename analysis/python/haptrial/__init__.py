@@ -14,7 +14,6 @@ arrays, procedures, psychometric functions and objects that are touched, for exp
 All quantities are in SI units (m, s, N, Hz); a column or key says where one is not. What is wrong
 with an input is told in one sentence of a ValueError, the one that the command `haptrial` prints.
 """
-from ._geometry import DistanceMap, distance_map, nearest, read_mesh, tetrahedra
 from ._procedures import Procedure, procedure, procedures
 from ._psychometric import Fit, PsychometricFunction, fit, psychometric_function
 from ._run import dry_run
@@ -22,7 +21,6 @@ from ._scores import Alignments, align, force_scores, score, score_keys
 from ._session import Info, Session, open, study
 from ._touch import Contact, SoftBody, TouchedMesh
 
-__all__ = ["Alignments", "Contact", "DistanceMap", "Fit", "Info", "Procedure",
-           "PsychometricFunction", "Session", "SoftBody", "TouchedMesh", "align", "distance_map", "dry_run", "fit", "force_scores", "nearest", "open",
-           "procedure", "procedures", "psychometric_function", "read_mesh", "score", "score_keys",
-           "study", "tetrahedra"]
+__all__ = ["Alignments", "Contact", "Fit", "Info", "Procedure", "PsychometricFunction", "Session",
+           "SoftBody", "TouchedMesh", "align", "dry_run", "fit", "force_scores", "open",
+           "procedure", "procedures", "psychometric_function", "score", "score_keys", "study"]

@@ -4,8 +4,10 @@ import unittest
 import numpy as np
 
 import haptrial
-from geometry_test import CUBE, FACES
 
+CUBE = np.array([[x, y, z] for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)])
+FACES = np.array([[0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
+                  [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]])
 BLOCK = 0.1 * (CUBE - 0.5)   # a tenth of a metre about the origin
 
 
@@ -51,6 +53,8 @@ class TouchedMeshTest(unittest.TestCase):
     def test_what_is_wrong_is_told(self):
         with self.assertRaisesRegex(ValueError, "stiffness"):
             haptrial.TouchedMesh(BLOCK, FACES, stiffness=-1.0)
+        with self.assertRaisesRegex(ValueError, "vertices x 3"):
+            haptrial.TouchedMesh(BLOCK[:, :2], FACES)
         with self.assertRaisesRegex(ValueError, "magnet"):
             haptrial.TouchedMesh(BLOCK, FACES, renderer="magnet")
         with self.assertRaisesRegex(ValueError, "period"):
