@@ -17,7 +17,7 @@ namespace haptrial::bone {
 /// A structure as a mesh beside the scan, in millimetres.
 struct MeshStructure {
   std::string name;            // as structure_named() takes it
-  std::filesystem::path file;  // .stl, .obj, .ply or .off
+  std::filesystem::path file;  // .stl, .obj or .ply
   /// Its axes are RAS and not LPS; by default what the file says ("SPACE=RAS", as 3D Slicer
   /// writes), else LPS.
   std::optional<bool> ras;

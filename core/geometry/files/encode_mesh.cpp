@@ -29,19 +29,6 @@ std::string encode_obj(const Mesh& mesh) {
   return fmt::to_string(out);
 }
 
-std::string encode_off(const Mesh& mesh) {
-  Buffer out;
-  fmt::format_to(std::back_inserter(out), "OFF\n{} {} 0\n", mesh.vertices.size(),
-                 mesh.triangles.size());
-  for (const Eigen::Vector3d& v : mesh.vertices) {
-    fmt::format_to(std::back_inserter(out), "{} {} {}\n", v.x(), v.y(), v.z());
-  }
-  for (const Triangle& t : mesh.triangles) {
-    fmt::format_to(std::back_inserter(out), "3 {} {} {}\n", t[0], t[1], t[2]);
-  }
-  return fmt::to_string(out);
-}
-
 std::string encode_ply(const Mesh& mesh) {
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\n"
@@ -83,16 +70,14 @@ std::string encode_stl(const Mesh& mesh) {
 
 std::string encode_mesh(const Mesh& mesh, MeshFormat format) {
   switch (format) {
-    case MeshFormat::kObj:
-      return encode_obj(mesh);
     case MeshFormat::kPly:
       return encode_ply(mesh);
     case MeshFormat::kStl:
       return encode_stl(mesh);
-    case MeshFormat::kOff:
+    case MeshFormat::kObj:
       break;
   }
-  return encode_off(mesh);
+  return encode_obj(mesh);
 }
 
 }  // namespace haptrial::geometry

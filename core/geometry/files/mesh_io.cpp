@@ -55,10 +55,7 @@ MeshFormat mesh_format(const fs::path& file) {
   if (ending == ".stl") {
     return MeshFormat::kStl;
   }
-  if (ending == ".off") {
-    return MeshFormat::kOff;
-  }
-  throw InputError(fmt::format("{}: ends in '{}'; allowed: .obj, .ply, .stl, .off", file.string(),
+  throw InputError(fmt::format("{}: ends in '{}'; allowed: .obj, .ply, .stl", file.string(),
                                file.extension().string()));
 }
 
@@ -77,9 +74,6 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, std::string_view name
       break;
     case MeshFormat::kStl:
       mesh = reading::read_stl(bytes, name, report);
-      break;
-    case MeshFormat::kOff:
-      mesh = reading::read_off(bytes, name, report);
       break;
   }
   if (mesh.triangles.empty()) {
@@ -114,7 +108,6 @@ std::uint64_t reading_memory(std::uint64_t file_bytes, MeshFormat format) {
     case MeshFormat::kStl:
       return kStl * file_bytes;
     case MeshFormat::kObj:
-    case MeshFormat::kOff:
       break;
   }
   return kText * file_bytes;

@@ -10,9 +10,9 @@
 
 namespace haptrial::geometry {
 
-enum class MeshFormat { kObj, kPly, kStl, kOff };
+enum class MeshFormat { kObj, kPly, kStl };
 
-/// By the name's ending: .obj, .ply, .stl or .off, in either case.
+/// By the name's ending: .obj, .ply or .stl, in either case.
 /// @throws InputError for any other.
 MeshFormat mesh_format(const std::filesystem::path& file);
 
@@ -20,8 +20,8 @@ MeshFormat mesh_format(const std::filesystem::path& file);
 inline constexpr double kMaxCoordinate = 1e12;
 
 /// Reads a mesh. Faces with more than three corners, concave ones too, are cut into triangles
-/// (FaceCutter); normals, colours, texture coordinates, names and materials are left out. OBJ, PLY
-/// and OFF keep their vertices as they are, referenced or not; STL has none of its own, so corners
+/// (FaceCutter); normals, colours, texture coordinates, names and materials are left out. OBJ and
+/// PLY keep their vertices as they are, referenced or not; STL has none of its own, so corners
 /// with equal coordinates become one vertex.
 /// @param name  stands in messages for the file
 /// @throws InputError with one sentence (file, line or byte, what was found, what is allowed) for
@@ -33,7 +33,7 @@ Mesh parse_mesh(std::string_view bytes, MeshFormat format, std::string_view name
 /// The same from a file. @throws InputError also where it cannot be read.
 Mesh read_mesh(const std::filesystem::path& file, const WorkReport& report = {});
 
-/// The bytes of a file: text with round-trip doubles (OBJ, OFF), binary doubles (PLY), binary
+/// The bytes of a file: text with round-trip doubles (OBJ), binary doubles (PLY), binary
 /// floats without shared vertices (STL).
 std::string encode_mesh(const Mesh& mesh, MeshFormat format);
 /// Writes a file whole or not at all. @param overwrite  replace a file that is there.

@@ -89,7 +89,6 @@ class Gathering {
 };
 
 Mesh read_obj(std::string_view bytes, std::string_view name, const WorkReport& report);
-Mesh read_off(std::string_view bytes, std::string_view name, const WorkReport& report);
 Mesh read_ply(std::string_view bytes, std::string_view name, const WorkReport& report);
 Mesh read_stl(std::string_view bytes, std::string_view name, const WorkReport& report);
 

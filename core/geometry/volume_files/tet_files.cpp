@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -130,50 +128,6 @@ std::string vtu_head(std::uint64_t points, std::uint64_t cells, const Fields& of
   return head + "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
 }
 
-void write_gmsh(const fs::path& file, const TetMesh& mesh, bool overwrite,
-                const WorkReport& report) {
-  constexpr std::int32_t kTetrahedron = 4;
-  if (mesh.tetrahedra.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw InputError(
-        fmt::format("{}: {} tetrahedra are too many for the Gmsh format; choose .vtu or .h5",
-                    file.string(), mesh.tetrahedra.size()));
-  }
-  WholeFile out(file, overwrite);
-  const std::int32_t one = 1;  // shows the order of bytes
-  out.write("$MeshFormat\n2.2 1 8\n");
-  out.write_all(std::span(&one, 1));
-  out.write(fmt::format("\n$EndMeshFormat\n$Nodes\n{}\n", mesh.vertices.size()));
-  std::string bytes;
-  const auto put = [&](const auto& value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  in_batches(mesh.vertices.size(), report, 0.0, 0.3, [&](std::size_t first, std::size_t last) {
-    bytes.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      put(static_cast<std::int32_t>(i + 1));
-      put(mesh.vertices[i].x());
-      put(mesh.vertices[i].y());
-      put(mesh.vertices[i].z());
-    }
-    out.write(bytes);
-  });
-  out.write(fmt::format("\n$EndNodes\n$Elements\n{}\n", mesh.tetrahedra.size()));
-  const std::array<std::int32_t, 3> block{kTetrahedron,
-                                          static_cast<std::int32_t>(mesh.tetrahedra.size()), 2};
-  out.write_all(std::span<const std::int32_t>(block));
-  in_batches(mesh.tetrahedra.size(), report, 0.3, 1.0, [&](std::size_t first, std::size_t last) {
-    bytes.clear();
-    for (std::size_t i = first; i < last; ++i) {
-      const Tetrahedron& t = mesh.tetrahedra[i];
-      put(std::array<std::int32_t, 7>{static_cast<std::int32_t>(i + 1), 1, 1, t[0] + 1, t[1] + 1,
-                                      t[2] + 1, t[3] + 1});
-    }
-    out.write(bytes);
-  });
-  out.write("\n$EndElements\n");
-  out.finish();
-}
-
 void write_tet_hdf5(const fs::path& file, const TetMesh& mesh, bool overwrite,
                     const WorkReport& report) {
   WholeFile out(file, overwrite);
@@ -228,13 +182,13 @@ void write_vtu(const fs::path& file, const TetMesh& mesh, const Fields& of_verti
 
 void check_tet_ending(const fs::path& file) {
   const std::string ending = file.extension().string();
-  for (const char* known : {".node", ".ele", ".vtu", ".msh", ".h5"}) {
+  for (const char* known : {".node", ".ele", ".vtu", ".h5"}) {
     if (ending == known) {
       return;
     }
   }
-  throw InputError(fmt::format("{}: ends in '{}'; allowed: .node, .ele, .vtu, .msh, .h5",
-                               file.string(), ending));
+  throw InputError(
+      fmt::format("{}: ends in '{}'; allowed: .node, .ele, .vtu, .h5", file.string(), ending));
 }
 
 void write_tet_mesh(const fs::path& file, const TetMesh& mesh, bool overwrite,
@@ -243,8 +197,6 @@ void write_tet_mesh(const fs::path& file, const TetMesh& mesh, bool overwrite,
   const std::string ending = file.extension().string();
   if (ending == ".vtu") {
     write_vtu(file, mesh, {}, {}, overwrite, report);
-  } else if (ending == ".msh") {
-    write_gmsh(file, mesh, overwrite, report);
   } else if (ending == ".h5") {
     write_tet_hdf5(file, mesh, overwrite, report);
   } else {

@@ -14,7 +14,6 @@ namespace haptrial::geometry {
 ///
 ///     .node, .ele  TetGen: both files, numbers from 0, the surface as boundary marker
 ///     .vtu         VTK, for ParaView: binary, the surface as point data on_surface
-///     .msh         Gmsh 2.2, binary
 ///     .h5          HDF5: /vertices (n x 3), /tetrahedra (m x 4), /on_surface (n)
 ///
 /// Source: Morris 2006, §5.2.3 (files for TetGen).

@@ -145,7 +145,7 @@ void print_springs(const DeformBody& body, const std::vector<double>& constants)
 }
 
 bool is_mesh(const std::filesystem::path& file) {
-  constexpr std::array kEndings{".obj", ".ply", ".stl", ".off"};
+  constexpr std::array kEndings{".obj", ".ply", ".stl"};
   return std::ranges::find(kEndings, file.extension().string()) != kEndings.end();
 }
 
@@ -156,8 +156,7 @@ TetMesh mesh_alone(const DeformInfoOptions& o, const MemoryBudget& budget) {
   (file.extension() == ".node" ? setup.source.tetrahedra : setup.source.mesh) =
       std::filesystem::absolute(file);
   if (file.extension() != ".node" && !is_mesh(file)) {
-    throw InputError(
-        fmt::format("{}: allowed: .toml, .obj, .ply, .stl, .off or .node", o.input.file));
+    throw InputError(fmt::format("{}: allowed: .toml, .obj, .ply, .stl or .node", o.input.file));
   }
   setup.source.scale = checked_real("--scale", o.scale, 1e-12, 1e12);
   setup.source.resolution = checked_number("--resolution", o.resolution, 1, 1000);

@@ -44,7 +44,7 @@ int rate_simulate(const RateSimulateOptions& options);
 
 struct BoneExportOptions {
   std::string in;            // bone or session (.h5)
-  std::string out;           // new .nrrd, .stl, .obj, .ply or .off
+  std::string out;           // new .nrrd, .stl, .obj or .ply
   std::optional<int> trial;  // of a session; default: the first
   std::string structure;     // of a mesh; empty: the whole surface
   bool ras{false};           // axes of a mesh: else LPS

@@ -456,7 +456,7 @@ objects.NAME.renderer | proxy | how contact is rendered
 objects.NAME.resolution | | of voxel and distance field: cells along the longest side
 objects.NAME.shape | needed, or mesh | of the body
 objects.NAME.radius | | of the body, of a torus that of the circle in its middle
-objects.NAME.mesh | needed, or shape | file beside the definition: .obj, .ply, .stl or .off
+objects.NAME.mesh | needed, or shape | file beside the definition: .obj, .ply or .stl
 objects.NAME.size | | along x, y and z
 objects.NAME.length | | along z
 objects.NAME.tube | | radius of a torus's tube

@@ -48,7 +48,7 @@ void add_bone_import(CLI::App& bone, int& status) {
   sub->add_option("--segmentation", o.segmentation,
                   "Structures of the scan as 3D Slicer saves them (.seg.nrrd)");
   sub->add_option("--structure", o.structures,
-                  "Structure as a mesh: NAME=FILE (.stl, .obj, .ply, .off) [mm]; may be repeated")
+                  "Structure as a mesh: NAME=FILE (.stl, .obj, .ply) [mm]; may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--mesh-axes", o.mesh_axes,
                   "Axes of meshes: lps, ras or auto, as their files say (default: auto, then lps)");
@@ -88,7 +88,7 @@ void add_bone_export(CLI::App& bone, int& status) {
                  {"the file OUT", "guide-scan.md"});
   auto& o = options_of<BoneExportOptions>(*sub, status, bone_export);
   sub->add_option("IN", o.in, "Bone (.nrrd) or session of bone drilling (.h5)")->required();
-  sub->add_option("OUT", o.out, "New mesh (.stl, .obj, .ply, .off) [mm] or labels (.seg.nrrd)")
+  sub->add_option("OUT", o.out, "New mesh (.stl, .obj, .ply) [mm] or labels (.seg.nrrd)")
       ->required();
   sub->add_option("--trial", o.trial, "Procedure of a session (default: 1)");
   sub->add_option("--structure", o.structure, "Structure of the mesh (default: the whole surface)");

@@ -74,7 +74,7 @@ void add_evaluate(CLI::App& app, int& status) {
          "on which the "
          "friction is tested that fits RECORDING, and the other way round; may be repeated")
       ->allow_extra_args(false);
-  sub->add_option("--mesh", o.mesh, "Mesh of the body (.obj, .ply, .stl, .off)");
+  sub->add_option("--mesh", o.mesh, "Mesh of the body (.obj, .ply, .stl)");
   sub->add_option("--units", o.units, "Unit of the mesh: m, cm or mm (default: m)");
   take_contact_renderings(*sub, o);
   take_contact_sensors(*sub, o);

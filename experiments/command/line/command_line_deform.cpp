@@ -20,9 +20,8 @@ void add_deform_info(CLI::App& deform, int& status) {
   CLI::App* sub = subcommand(deform, "info", "Describe a body: shapes, volume, mass, step, memory",
                              "haptrial deform info gear.toml", {"", kPage});
   auto& o = options_of<DeformInfoOptions>(*sub, status, deform_info);
-  take_deform_input(
-      *sub, o.input,
-      "Definition of a body (.toml), mesh (.obj, .ply, .stl, .off) or tetrahedra (.node)");
+  take_deform_input(*sub, o.input,
+                    "Definition of a body (.toml), mesh (.obj, .ply, .stl) or tetrahedra (.node)");
   sub->add_option("--resolution", o.resolution,
                   "Number of cubes along the longest axis of a mesh (default: 20)");
   sub->add_option("--scale", o.scale, "Length of one unit of a mesh [m] (default: 1)");
@@ -110,7 +109,7 @@ void add_deform_skin(CLI::App& deform, int& status) {
                  {"a mesh for each state in the folder of --out", kPage});
   auto& o = options_of<DeformSkinOptions>(*sub, status, deform_skin);
   take_deform_input(*sub, o.input);
-  sub->add_option("SURFACE", o.surface, "Surface (.obj, .ply, .stl, .off)")->required();
+  sub->add_option("SURFACE", o.surface, "Surface (.obj, .ply, .stl)")->required();
   sub->add_option("STATES", o.states, "Displacements of the body's vertices (.csv)")->required();
   sub->add_option("--out", o.out, "New folder")->required();
   sub->add_option("--scale", o.scale, "Length of one unit of the surface [m] (default: 1)");

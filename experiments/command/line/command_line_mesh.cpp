@@ -13,7 +13,7 @@ struct MeshCommand {
   MeshOptions& o;
 
   void take_input() const {
-    sub.add_option("IN", o.input.file, "Mesh (.obj, .ply, .stl, .off)")->required();
+    sub.add_option("IN", o.input.file, "Mesh (.obj, .ply, .stl)")->required();
     sub.add_option("--scale", o.input.scale, "Length of one unit of the file [m] (default: 1)");
     sub.add_option("--max-memory", o.input.max_memory,
                    "Limit of memory [GB]; a larger input is refused (default: the free memory)");
@@ -38,7 +38,7 @@ struct MeshCommand {
   }
 };
 
-constexpr const char* kNewMesh = "New mesh (.obj, .ply, .stl, .off)";
+constexpr const char* kNewMesh = "New mesh (.obj, .ply, .stl)";
 constexpr const char* kNewPicture = "New picture (.png)";
 
 MeshCommand begin(CLI::App* sub, int& status, int (*command)(const MeshOptions&)) {
@@ -109,7 +109,7 @@ void add_tetrahedralize(CLI::App& mesh, int& status) {
                        "haptrial mesh tetrahedralize gear.ply gear.vtu --resolution 40"),
             status, mesh_tetrahedralize);
   split.take_input();
-  split.take_output("New mesh (.node with .ele, .vtu, .msh, .h5)");
+  split.take_output("New mesh (.node with .ele, .vtu, .h5)");
   split.take_voxels();
   split.take_picture(kNewPicture);
 }

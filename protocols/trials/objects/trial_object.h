@@ -37,7 +37,7 @@ struct TrialObject {
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.
 ///
-///     mesh            a file, .obj, .ply, .stl or .off, beside the definition
+///     mesh            a file, .obj, .ply or .stl, beside the definition
 ///     shape           "sphere"     radius
 ///                     "ellipsoid"  size
 ///                     "box"        size, [x, y, z]

@@ -53,10 +53,10 @@ TEST_F(MeshCommandTest, RepairJoinsAndOrients) {
 
 TEST_F(MeshCommandTest, VoxelsAndTetrahedraAreCountedAndDrawn) {
   const auto result =
-      run("haptrial mesh make torus t.off\n"
-          "haptrial mesh voxelize t.off t.nrrd --resolution 30 --picture v.png --up z\n"
-          "haptrial mesh tetrahedralize t.off t.vtu --resolution 30 --over --picture t.png\n"
-          "haptrial mesh tetrahedralize t.off t.node --resolution 20 --inside flood");
+      run("haptrial mesh make torus t.obj\n"
+          "haptrial mesh voxelize t.obj t.nrrd --resolution 30 --picture v.png --up z\n"
+          "haptrial mesh tetrahedralize t.obj t.vtu --resolution 30 --over --picture t.png\n"
+          "haptrial mesh tetrahedralize t.obj t.node --resolution 20 --inside flood");
   EXPECT_EQ(result.status, 0) << result.errors;
   EXPECT_THAT(result.output, AllOf(HasSubstr("grid        30 x 30 x 9 voxels"),
                                    HasSubstr("grid        32 x 32 x 11 voxels"),

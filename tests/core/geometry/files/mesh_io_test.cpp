@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 const char* ending(MeshFormat format) {
-  constexpr std::array<const char*, 4> kEndings{"obj", "ply", "stl", "off"};
+  constexpr std::array<const char*, 3> kEndings{"obj", "ply", "stl"};
   return kEndings[static_cast<std::size_t>(format)];
 }
 
@@ -104,17 +104,16 @@ TEST_P(MeshFormatsTest, AssimpReadsWhatWeWrite) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MeshFormatsTest,
-                         ::testing::Values(MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kStl,
-                                           MeshFormat::kOff),
+                         ::testing::Values(MeshFormat::kObj, MeshFormat::kPly, MeshFormat::kStl),
                          [](const auto& each) { return std::string(ending(each.param)); });
 
 /// A torus as assimp writes it, in its text and binary variants.
 TEST(MeshIoTest, WhatAssimpWritesIsReadTheSame) {
-  const std::string torus = encode_mesh(make_torus(0.5, 0.25, 12, 9), MeshFormat::kOff);
-  const Places expected = places(parse_mesh(torus, MeshFormat::kOff, "torus"));
+  const std::string torus = encode_mesh(make_torus(0.5, 0.25, 12, 9), MeshFormat::kObj);
+  const Places expected = places(parse_mesh(torus, MeshFormat::kObj, "torus"));
   for (const char* variant : {"obj", "ply", "plyb", "stl", "stlb"}) {
     Assimp::Importer importer;
-    ASSERT_NE(importer.ReadFileFromMemory(torus.data(), torus.size(), 0, "off"), nullptr);
+    ASSERT_NE(importer.ReadFileFromMemory(torus.data(), torus.size(), 0, "obj"), nullptr);
     Assimp::Exporter exporter;
     const aiExportDataBlob* blob = exporter.ExportToBlob(importer.GetScene(), variant);
     ASSERT_NE(blob, nullptr) << variant << exporter.GetErrorString();
@@ -143,15 +142,6 @@ TEST(MeshIoTest, ObjCornersMayCountBackwardsAndCarryMore) {
   EXPECT_EQ(mesh.vertices[1], Eigen::Vector3d(1, 0, 0));
   EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 1, 3},
                                           Triangle{0, 1, 4}));
-}
-
-TEST(MeshIoTest, OffPassesOverColoursAndComments) {
-  const Mesh mesh = parse_mesh(
-      "COFF # head\n4 2 5\n0 0 0 255 0 0 255\n1 0 0 0 0 0 0\n\n# a comment\n1 1 0 1 1 1 1\n"
-      "0 1 0 1 1 1 1\n4 0 1 2 3 0.5 0.5 0.5\n3 0 1 2\n",
-      MeshFormat::kOff, "m");
-  EXPECT_EQ(mesh.vertices.size(), 4u);
-  EXPECT_THAT(mesh.triangles, ElementsAre(Triangle{0, 1, 2}, Triangle{0, 2, 3}, Triangle{0, 1, 2}));
 }
 
 TEST(MeshIoTest, PlyElementsAndPropertiesComeInAnyOrder) {
@@ -220,21 +210,6 @@ TEST(MeshIoTest, BadObjGetsASentence) {
       obj("v 0 0 0\ncurv 0 1 1 2\n"),
       "m:2: 'curv' is no statement of a polygon mesh in OBJ; allowed: v, f and others of polygons");
   EXPECT_THAT(obj("\x89PNG\r\n\x1a\n\x01\x02"), StartsWith("m:1: '?PNG' is no statement"));
-}
-
-TEST(MeshIoTest, BadOffGetsASentence) {
-  const auto off = [](std::string_view text) { return refusal(text, MeshFormat::kOff); };
-  EXPECT_EQ(off("PLY\n"), "m:1: the file begins with 'PLY'; allowed: OFF");
-  EXPECT_EQ(off("OFF\n"), "m:1: the file ends where the number of vertices should stand");
-  EXPECT_EQ(off("OFF BINARY\n"), "m:1: this is a binary OFF file; convert it to text");
-  EXPECT_THAT(
-      off("OFF\n4000000000 1 0\n0 0 0\n"),
-      AllOf(StartsWith("m:2: the header states 4000000000 vertices"), HasSubstr("at most")));
-  EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n"), "m:3: the file ends before the last of its 1 faces");
-  EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0 1\n"), "m:4: a face has the corner 1; allowed: 0 to 0");
-  EXPECT_EQ(off("OFF\n1 1 0\n0 0 0\n3 0 0\n"),
-            "m:4: the file ends where a corner of a face should stand");
-  EXPECT_THAT(off("OFF\n1 1 0\n0 0 0\n999999 0 0\n"), HasSubstr("a face has 999999 corners"));
 }
 
 TEST(MeshIoTest, BadPlyGetsASentence) {

@@ -1,4 +1,4 @@
-// Files as other programs write them: one solid in every dialect of the four formats, by recipe.
+// Files as other programs write them: one solid in every dialect of the three formats, by recipe.
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -108,9 +108,9 @@ std::string obj(const Words& one = [](int i) { return fmt::format(" {}", i + 1);
   return "o prism\n" + corners("v ") + obj_faces(one);
 }
 
-std::string off_faces(const std::string& between = " ", const std::string& after = "") {
+std::string ply_faces() {
   return faces([](const auto& face) { return fmt::format("{}", face.size()); },
-               [&](int i) { return fmt::format("{}{}", between, i); }, after);
+               [](int i) { return fmt::format(" {}", i); });
 }
 
 std::string ply_head(const std::string& coding, const std::string& more = "",
@@ -120,7 +120,7 @@ std::string ply_head(const std::string& coding, const std::string& more = "",
       "property float y\nproperty float z\n{}element face 8\nproperty list {}\nend_header\n",
       coding, more, list);
 }
-std::string ply_text() { return ply_head("ascii") + corners("") + off_faces(); }
+std::string ply_text() { return ply_head("ascii") + corners("") + ply_faces(); }
 
 template <class T>
 std::string raw(T value, bool big = false) {
@@ -211,21 +211,6 @@ std::vector<File> obj_files() {
   };
 }
 
-std::vector<File> off_files() {
-  const std::string plain = "OFF\n12 8 18\n" + corners("") + off_faces();
-  return {
-      {"polygons", "off", plain},
-      {"counts beside the word", "off", replaced(plain, "OFF\n", "OFF ")},
-      {"lines of DOS", "off", replaced(plain, "\n", "\r\n")},
-      {"lines of old Macs", "off", replaced(plain, "\n", "\r")},
-      {"comments", "off", "# prism\n" + replaced(plain, "\n6 ", "\n\n# a face\n6 "), "", true},
-      {"faces over two lines", "off", "OFF\n12 8 18\n" + corners("") + off_faces("\n "), "", true},
-      {"colours of faces", "off", "OFF\n12 8 18\n" + corners("") + off_faces(" ", " 0.5 0.5 0.5")},
-      {"colours of corners", "off", "COFF\n12 8 18\n" + corners("", " 255 0 0 255") + off_faces()},
-      {"cut off", "off", plain.substr(0, plain.size() - 12), "the file ends"},
-  };
-}
-
 std::vector<File> ply_files() {
   const std::string extra = "property uchar red\nproperty list uchar float tags\n";
   const std::string edges = "element edge 1\nproperty int a\nproperty int b\n";
@@ -241,11 +226,11 @@ std::vector<File> ply_files() {
       {"least byte first", "ply", ply_binary(false)},
       {"greatest byte first", "ply", ply_binary(true)},
       {"more of each corner", "ply",
-       ply_head("ascii", extra) + corners("", " 200 2 0.5 0.5") + off_faces()},
-      {"edges", "ply", ply_head("ascii", edges) + corners("") + "0 1\n" + off_faces()},
+       ply_head("ascii", extra) + corners("", " 200 2 0.5 0.5") + ply_faces()},
+      {"edges", "ply", ply_head("ascii", edges) + corners("") + "0 1\n" + ply_faces()},
       {"other types", "ply",
-       ply_head("ascii", "", "ushort uint32 vertex_index") + corners("") + off_faces()},
-      {"faces first", "ply", first + off_faces() + corners("")},
+       ply_head("ascii", "", "ushort uint32 vertex_index") + corners("") + ply_faces()},
+      {"faces first", "ply", first + ply_faces() + corners("")},
       {"strips", "ply", strips, "given as strips of triangles"},
       {"cut off", "ply", ply_binary(false).substr(0, 400), "which the file has left"},
   };
@@ -275,7 +260,7 @@ std::vector<File> stl_files() {
 
 std::vector<File> all_files() {
   std::vector<File> all;
-  for (const auto& part : {obj_files(), off_files(), ply_files(), stl_files()}) {
+  for (const auto& part : {obj_files(), ply_files(), stl_files()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;
@@ -303,7 +288,7 @@ TEST(PublicMeshesTest, EveryDialectIsTheSameSolidOrRefused) {
 
 TEST(PublicMeshesTest, EndingsMayBeInCapitals) {
   const test::TemporaryFolder folder;
-  for (const File& file : {obj_files()[0], off_files()[0], ply_files()[3], stl_files()[7]}) {
+  for (const File& file : {obj_files()[0], ply_files()[3], stl_files()[7]}) {
     const auto path = folder / ("PRISM." + upper(file.ending));
     std::ofstream(path, std::ios::binary) << file.bytes;
     EXPECT_NEAR(check_mesh(read_mesh(path)).volume, kVolume, 1e-9) << file.ending;
