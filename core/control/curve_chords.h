@@ -49,8 +49,7 @@ struct ChordKernel {
 /// @throws std::invalid_argument when this machine cannot run it.
 ChordKernel chord_kernel(InstructionSet set = best_instruction_set());
 
-/// These exist where the compiler targets x86-64.
+/// Exists where the compiler targets x86-64.
 ChordKernel chord_kernel_avx2();
-ChordKernel chord_kernel_avx512();
 
 }  // namespace haptrial::control

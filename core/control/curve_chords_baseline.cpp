@@ -23,8 +23,7 @@ ChordKernel chord_kernel_baseline() { return {measure, scan}; }
 }  // namespace
 
 ChordKernel chord_kernel(InstructionSet set) {
-  return choose(set, chord_kernel_baseline, HAPTRIAL_X86(chord_kernel_avx2),
-                HAPTRIAL_X86(chord_kernel_avx512))();
+  return choose(set, chord_kernel_baseline, HAPTRIAL_X86(chord_kernel_avx2))();
 }
 
 }  // namespace haptrial::control

@@ -192,10 +192,8 @@ Contact together(const Contact& a, const Contact& b) noexcept {
 Drill::Drill(const BurrParameters& burr, std::span<const Structure> structures, InstructionSet set,
              const std::array<bool, 256>& soft)
     : burr_(burr),
-      touch_(choose(set, kernel::touch_burr_baseline, HAPTRIAL_X86(kernel::touch_burr_avx2),
-                    HAPTRIAL_X86(kernel::touch_burr_avx512))),
-      find_(choose(set, kernel::find_burr_baseline, HAPTRIAL_X86(kernel::find_burr_avx2),
-                   HAPTRIAL_X86(kernel::find_burr_avx512))),
+      touch_(choose(set, kernel::touch_burr_baseline, HAPTRIAL_X86(kernel::touch_burr_avx2))),
+      find_(choose(set, kernel::find_burr_baseline, HAPTRIAL_X86(kernel::find_burr_avx2))),
       soft_(soft),
       any_soft_(std::find(soft.begin(), soft.end(), true) != soft.end()),
       // One more: the kernel writes the next place before it knows whether it is kept.

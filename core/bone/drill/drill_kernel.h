@@ -70,8 +70,5 @@ void find_burr_baseline(const Cloud&, const Range&, const Placement&, const Bric
 std::int32_t touch_burr_avx2(const Cloud&, const Range&, const Placement&, const Bricks&, Hit*,
                              std::int32_t, Sums&);
 void find_burr_avx2(const Cloud&, const Range&, const Placement&, const Bricks&, std::int32_t*);
-std::int32_t touch_burr_avx512(const Cloud&, const Range&, const Placement&, const Bricks&, Hit*,
-                               std::int32_t, Sums&);
-void find_burr_avx512(const Cloud&, const Range&, const Placement&, const Bricks&, std::int32_t*);
 
 }  // namespace haptrial::bone::kernel

@@ -19,8 +19,7 @@ void sum_windings_baseline(const float* corners, std::size_t triangles, const Po
 void winding_sums(std::span<const Eigen::Vector3f> corners, const PointLanes& points,
                   std::array<float, kPointLanes>& sums, InstructionSet set) {
   const auto sum =
-      choose(set, kernel::sum_windings_baseline, HAPTRIAL_X86(kernel::sum_windings_avx2),
-             HAPTRIAL_X86(kernel::sum_windings_avx512));
+      choose(set, kernel::sum_windings_baseline, HAPTRIAL_X86(kernel::sum_windings_avx2));
   alignas(64) std::array<float, kPointLanes> re;
   alignas(64) std::array<float, kPointLanes> im{};
   alignas(64) std::array<float, kPointLanes> turns{};

@@ -53,10 +53,8 @@ namespace {
 
 void sum_windings_baseline(const float* corners, std::size_t triangles, const PointLanes& points,
                            float* re, float* im, float* turns);
-/// These exist where the compiler targets x86-64.
+/// Exists where the compiler targets x86-64.
 void sum_windings_avx2(const float* corners, std::size_t triangles, const PointLanes& points,
                        float* re, float* im, float* turns);
-void sum_windings_avx512(const float* corners, std::size_t triangles, const PointLanes& points,
-                         float* re, float* im, float* turns);
 
 }  // namespace haptrial::geometry::kernel

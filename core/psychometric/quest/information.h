@@ -31,16 +31,13 @@ using RowSums = void(const float* rows, std::size_t count, std::size_t cells,
 /// @throws std::invalid_argument when this machine cannot run it.
 RowSums* row_sums(InstructionSet set = best_instruction_set());
 
-/// These exist where the compiler targets x86-64.
+/// Exists where the compiler targets x86-64, as row_sum_avx2() does.
 void row_sums_avx2(const float* rows, std::size_t count, std::size_t cells,
                    const GroupedWeights& weights, double* sums);
-void row_sums_avx512(const float* rows, std::size_t count, std::size_t cells,
-                     const GroupedWeights& weights, double* sums);
 
 /// One such sum in double precision, over any number of cells.
 using RowSum = double(const double* row, std::size_t cells, const double* weights);
 double row_sum_avx2(const double* row, std::size_t cells, const double* weights);
-double row_sum_avx512(const double* row, std::size_t cells, const double* weights);
 /// By the best set of this machine; all give the same bits.
 double row_sum(const double* row, std::size_t cells, const double* weights) noexcept;
 

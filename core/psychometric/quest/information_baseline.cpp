@@ -25,12 +25,12 @@ double row_sum_baseline(const double* row, std::size_t cells, const double* weig
 }  // namespace
 
 RowSums* row_sums(InstructionSet set) {
-  return choose(set, row_sums_baseline, HAPTRIAL_X86(row_sums_avx2), HAPTRIAL_X86(row_sums_avx512));
+  return choose(set, row_sums_baseline, HAPTRIAL_X86(row_sums_avx2));
 }
 
 double row_sum(const double* row, std::size_t cells, const double* weights) noexcept {
-  static RowSum* const sum = choose(best_instruction_set(), row_sum_baseline,
-                                    HAPTRIAL_X86(row_sum_avx2), HAPTRIAL_X86(row_sum_avx512));
+  static RowSum* const sum =
+      choose(best_instruction_set(), row_sum_baseline, HAPTRIAL_X86(row_sum_avx2));
   return sum(row, cells, weights);
 }
 

@@ -20,6 +20,7 @@ TEST(InstructionSetTest, ChoosesTheFunctionOfTheSetOrRefusesIt) {
     const bool there = std::find(available.begin(), available.end(), all[i]) != available.end();
     if (there) {
       EXPECT_EQ(choose(all[i], baseline, avx2, avx512)(), static_cast<int>(i));
+      EXPECT_EQ(choose(all[i], baseline, avx2)(), std::min(static_cast<int>(i), 1));
       EXPECT_NO_THROW(require_instruction_set(all[i]));
     } else {
       EXPECT_THROW(choose(all[i], baseline, avx2, avx512), std::invalid_argument);

@@ -32,8 +32,7 @@ using ForceKernel = std::size_t (*)(const ForceQuery& query) noexcept;
 ForceKernel force_kernel(InstructionSet set = best_instruction_set());
 
 std::size_t add_forces_baseline(const ForceQuery& query) noexcept;
-/// These exist where the compiler targets x86-64.
+/// Exists where the compiler targets x86-64.
 std::size_t add_forces_avx2(const ForceQuery& query) noexcept;
-std::size_t add_forces_avx512(const ForceQuery& query) noexcept;
 
 }  // namespace haptrial::deformable

@@ -47,8 +47,7 @@ namespace haptrial::deformable {
 std::size_t add_forces_baseline(const ForceQuery& query) noexcept { return add_forces(query); }
 
 ForceKernel force_kernel(InstructionSet set) {
-  return choose(set, add_forces_baseline, HAPTRIAL_X86(add_forces_avx2),
-                HAPTRIAL_X86(add_forces_avx512));
+  return choose(set, add_forces_baseline, HAPTRIAL_X86(add_forces_avx2));
 }
 
 }  // namespace haptrial::deformable

@@ -33,7 +33,7 @@ double box_distance(const Boxes& boxes, int child, const Eigen::Vector3d& p) {
 namespace kernel {
 
 const Kernels& kernels_for(InstructionSet set) {
-  return choose(set, baseline_kernels, HAPTRIAL_X86(avx2_kernels), HAPTRIAL_X86(avx512_kernels))();
+  return choose(set, baseline_kernels, HAPTRIAL_X86(avx2_kernels))();
 }
 
 ClosestPoint closest_in_double(const BvhData& data, const Eigen::Vector3d& point,

@@ -36,10 +36,9 @@ struct Kernels {
   void (*flatten)(const Corners* corners, const Frame& frame, Leaf& leaf);
 };
 
-/// The last two exist where the compiler targets x86-64.
+/// The second exists where the compiler targets x86-64.
 const Kernels& baseline_kernels();
 const Kernels& avx2_kernels();
-const Kernels& avx512_kernels();
 
 /// @throws std::invalid_argument when this machine cannot run `set`.
 const Kernels& kernels_for(InstructionSet set);
