@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 const fs::path kSource = HAPTRIAL_SOURCE_DIR;
 
 std::vector<fs::path> documents() {
-  std::vector<fs::path> files{kSource / "README.md"};
+  std::vector<fs::path> files{kSource / "README.md", kSource / "CONTRIBUTING.md"};
   for (const auto& entry : fs::recursive_directory_iterator(kSource / "docs")) {
     if (entry.path().extension() == ".md") {
       files.push_back(entry.path());
