@@ -158,11 +158,13 @@ TEST(TimedDeviceTest, FitDevicesPassWithFigures) {
         hand + "haptrial device-test open-haptics --seconds 2 --library '" + kLibraries +
             "/libstand_in_hd.so'"}) {
     test::CommandResult result = run_command(line);
-    // A pause of 20 ms of a busy machine is a fault to a driver, and rightly so.
-    while (!failures(result.output).empty()) {
+    // A pause of 20 ms of a busy machine is a fault to a driver, and one that is longer lets the
+    // hand miss its turn, rightly so: one such run is forgiven.
+    if (!failures(result.output).empty()) {
       std::fprintf(stderr, "once more: %s\n%s", line.c_str(), failures(result.output).c_str());
       result = run_command(line);
     }
+    EXPECT_EQ(failures(result.output), "") << line;
     EXPECT_THAT(result.output, AllOf(ContainsRegex("rate +[0-9.]+ Hz"), HasSubstr("99.9th"),
                                      ContainsRegex("(1.00|0.99) N moved")));
     const bool fit = result.output.find("FAIL") == std::string::npos;
