@@ -11,7 +11,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Ways into a cell; the patterns' steps in the order in which ties go.
-enum Way : std::uint8_t { kStraight, kSecond, kThird };
+enum StepDirection : std::uint8_t { kStraight, kSecond, kThird };
 
 /// Places before column 0 that a step may read; they are infinite.
 constexpr std::size_t kLead = 2;
@@ -75,7 +75,7 @@ struct SymmetricSteps {
   }
 
   template <class Note>
-  static void back(Way way, std::size_t& row, std::size_t& column, Note note) {
+  static void back(StepDirection way, std::size_t& row, std::size_t& column, Note note) {
     row -= way != kThird;
     column -= way != kSecond;
     note();
@@ -107,7 +107,7 @@ struct AsymmetricSteps : StartsOnce {
   }
 
   template <class Note>
-  static void back(Way way, std::size_t& row, std::size_t& column, Note note) {
+  static void back(StepDirection way, std::size_t& row, std::size_t& column, Note note) {
     row -= 1;
     column -= way == kStraight ? 1 : way == kSecond ? 0 : 2;
     note();
@@ -133,7 +133,7 @@ struct SymmetricP1Steps : StartsOnce {
   }
 
   template <class Note>
-  static void back(Way way, std::size_t& row, std::size_t& column, Note note) {
+  static void back(StepDirection way, std::size_t& row, std::size_t& column, Note note) {
     if (way != kStraight) {  // the pair in the middle of the step
       row -= way == kSecond;
       column -= way == kThird;
@@ -245,7 +245,7 @@ struct Search {
     };
     note();
     while (row > 0 || (column > 0 && !options.open_begin)) {
-      Steps::back(static_cast<Way>(ways_of(row)[column]), row, column, note);
+      Steps::back(static_cast<StepDirection>(ways_of(row)[column]), row, column, note);
     }
     path.erase(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(free));
     return true;

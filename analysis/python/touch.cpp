@@ -34,10 +34,10 @@ class MeshTouch {
 /// An elastic body with the ball that touches it.
 class SoftTouch {
  public:
-  SoftTouch(deformable::FeltMesh mesh, const deformable::Tissue& tissue,
+  SoftTouch(deformable::HapticMesh mesh, const deformable::Tissue& tissue,
             const deformable::TouchOptions& options)
       : body_(std::make_shared<deformable::Compliance>(
-            std::make_shared<const deformable::FeltMesh>(std::move(mesh)), tissue)),
+            std::make_shared<const deformable::HapticMesh>(std::move(mesh)), tissue)),
         ball_(body_, options) {}
 
   deformable::BallTouch& felt() { return ball_; }
@@ -154,7 +154,7 @@ std::unique_ptr<MeshTouch> touched_mesh(const Numbers& vertices, const Corners& 
                                                               resolution});
 }
 
-std::unique_ptr<SoftTouch> soft_body(deformable::FeltMesh mesh, double young, double poisson,
+std::unique_ptr<SoftTouch> soft_body(deformable::HapticMesh mesh, double young, double poisson,
                                      double radius, double stiffness, double static_friction,
                                      double dynamic_friction) {
   deformable::check_memory(mesh);

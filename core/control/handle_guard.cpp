@@ -32,9 +32,8 @@ constexpr double kGivingBack = 7.5;       // of g [1/s]
 constexpr double kTryingAnew = 0.2;       // of what was too little, damping [1/s]
 constexpr double kTryingStiffness = 0.3;  // [1/s]
 constexpr double kCalmingEnds = 0.5;      // of c [1/s]
-constexpr double kFastest = 80.0;         // change of a share [1/s]
-constexpr double kFastestForce = 500.0;   // the same, times the force [N/s]
-constexpr double kSlow = 4.0;             // a hand's own movement ends about there [Hz]
+constexpr double kFastest = 80.0;  // change of a share, so that 6 N change by 0.5 N in 1 ms [1/s]
+constexpr double kSlow = 4.0;      // a hand's own movement ends about there [Hz]
 
 }  // namespace
 
@@ -57,10 +56,8 @@ const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eige
   } else if (quiet_for_ > kQuiet) {
     recover(dt);
   }
-  const double size = force.allFinite() ? force.norm() : 0.0;
-  const double most = std::min(kFastest, kFastestForce / std::max(size, 1.0)) * dt;
-  const auto go_towards = [most](double& share, double wanted) {
-    share += std::clamp(wanted - share, -most, most);
+  const auto go_towards = [dt](double& share, double wanted) {
+    share += std::clamp(wanted - share, -kFastest * dt, kFastest * dt);
   };
   const GainShares wanted = wanted_shares();
   go_towards(shares_.damping, wanted.damping);

@@ -13,8 +13,8 @@ namespace {
 constexpr std::array kBuiltIn{"virtual", "mouse", "gamepad", "force-dimension", "open-haptics"};
 constexpr const char* kReplay = "replay";  // with a file
 
-std::vector<OwnDevice>& all_own() {
-  static std::vector<OwnDevice> devices;
+std::vector<RegisteredDevice>& all_own() {
+  static std::vector<RegisteredDevice> devices;
   return devices;
 }
 
@@ -26,9 +26,9 @@ bool is_word(const std::string& name) {
 
 }  // namespace
 
-const std::vector<OwnDevice>& own_devices() { return all_own(); }
+const std::vector<RegisteredDevice>& own_devices() { return all_own(); }
 
-void add_own_device(const OwnDevice& device) {
+void add_own_device(const RegisteredDevice& device) {
   if (!is_word(device.name)) {
     throw std::invalid_argument(fmt::format(
         "add_own_device: '{}' is no name; allowed: letters, digits and '-'", device.name));
@@ -43,16 +43,17 @@ void add_own_device(const OwnDevice& device) {
 
 std::vector<std::string> device_names() {
   std::vector<std::string> names(kBuiltIn.begin(), kBuiltIn.end());
-  for (const OwnDevice& each : all_own()) {
+  for (const RegisteredDevice& each : all_own()) {
     names.push_back(each.name);
   }
   return names;
 }
 
-const OwnDevice* own_device(const std::string& choice) {
+const RegisteredDevice* own_device(const std::string& choice) {
   const std::string name = choice.substr(0, choice.find(':'));
-  const auto found = std::find_if(all_own().begin(), all_own().end(),
-                                  [&](const OwnDevice& device) { return device.name == name; });
+  const auto found =
+      std::find_if(all_own().begin(), all_own().end(),
+                   [&](const RegisteredDevice& device) { return device.name == name; });
   return found != all_own().end() ? &*found : nullptr;
 }
 

@@ -9,7 +9,7 @@
 namespace haptrial::device {
 
 /// A device that is driven from outside of the program. --device NAME opens it, or NAME:SETTING.
-struct OwnDevice {
+struct RegisteredDevice {
   std::string name;  // letters, digits and '-'
   std::string what;  // one line for the list of devices
   /// @param setting  what stands behind the colon; may be empty
@@ -20,13 +20,13 @@ struct OwnDevice {
 };
 
 /// In the order in which they were added. Call before threads are started.
-const std::vector<OwnDevice>& own_devices();
+const std::vector<RegisteredDevice>& own_devices();
 /// @throws std::invalid_argument for a name that is taken or has other characters
-void add_own_device(const OwnDevice& device);
+void add_own_device(const RegisteredDevice& device);
 /// What --device takes without a file: the program's own devices, then added ones.
 std::vector<std::string> device_names();
 /// The one that NAME or NAME:SETTING asks for; null if there is none.
-const OwnDevice* own_device(const std::string& choice);
+const RegisteredDevice* own_device(const std::string& choice);
 /// SETTING of NAME:SETTING; empty without one.
 std::string setting_of(const std::string& choice);
 

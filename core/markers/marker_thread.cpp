@@ -13,7 +13,7 @@ namespace haptrial::markers {
 using record::MarkerWay;
 
 MarkerThread::MarkerThread(OnsetLog& log, const MarkerOptions& options,
-                           std::vector<MarkerMeaning> meanings, Ways ways,
+                           std::vector<MarkerMeaning> meanings, MarkerOutputs ways,
                            std::function<std::int64_t()> now)
     : log_(log),
       options_(options),

@@ -29,14 +29,14 @@ struct SentOnset {
 class MarkerThread {
  public:
   /// Where onsets go, beside the serial line.
-  struct Ways {
+  struct MarkerOutputs {
     SerialLine* serial{nullptr};                    // null: none
     std::function<bool(const TimedOnset&)> stream;  // @returns whether it was taken; empty: none
     std::function<void(const TimedOnset&)> other;   // for what is told in its own way; also ends
   };
   /// @param now  the session's clock [ns]; asked by the thread. All of it outlives the object.
   MarkerThread(OnsetLog& log, const MarkerOptions& options, std::vector<MarkerMeaning> meanings,
-               Ways ways, std::function<std::int64_t()> now);
+               MarkerOutputs ways, std::function<std::int64_t()> now);
   ~MarkerThread();
   MarkerThread(const MarkerThread&) = delete;
   MarkerThread& operator=(const MarkerThread&) = delete;
@@ -64,7 +64,7 @@ class MarkerThread {
   OnsetLog& log_;
   MarkerOptions options_;
   std::vector<MarkerMeaning> meanings_;
-  Ways ways_;
+  MarkerOutputs ways_;
   std::function<std::int64_t()> now_;
 
   // The thread's own.

@@ -24,7 +24,7 @@ void MarkerLatencies::add(std::span<const record::MarkerRow> rows) {
     if (row.way == record::MarkerWay::kNone) {
       continue;
     }
-    Way& way = ways_[row.way];
+    OutputDelays& way = ways_[row.way];
     if (std::isnan(row.latency)) {
       ++way.lost;
     } else {
@@ -35,7 +35,7 @@ void MarkerLatencies::add(std::span<const record::MarkerRow> rows) {
 
 void MarkerLatencies::add(const MarkerLatencies& others) {
   for (const auto& [which, other] : others.ways_) {
-    Way& way = ways_[which];
+    OutputDelays& way = ways_[which];
     way.lost += other.lost;
     way.latencies.insert(way.latencies.end(), other.latencies.begin(), other.latencies.end());
   }

@@ -31,11 +31,11 @@ class MarkerLatencies {
   std::vector<MarkerTimes> times() const;
 
  private:
-  struct Way {
+  struct OutputDelays {
     std::vector<double> latencies;  // [s]
     std::size_t lost{0};
   };
-  std::map<record::MarkerWay, Way> ways_;
+  std::map<record::MarkerWay, OutputDelays> ways_;
 };
 
 /// "serial: 240 markers, median 0.031 ms, 99 % 0.102 ms, largest 0.400 ms after their tick".

@@ -14,10 +14,10 @@
 #include "core/scene/field/push.h"
 #include "core/scene/field/vibration.h"
 #include "core/scene/field/viscous.h"
+#include "core/scene/surface/deformable_object.h"
 #include "core/scene/surface/relief.h"
-#include "core/scene/surface/solid.h"
+#include "core/scene/surface/rigid_object.h"
 #include "core/scene/surface/surface.h"
-#include "core/scene/surface/yielding.h"
 
 namespace haptrial::scene {
 
@@ -28,8 +28,8 @@ using FieldKind =
                  GratingParameters, TextureParameters, ViscousParameters, MatrixViscousParameters,
                  InertiaParameters, FrictionParameters, SineVibrationParameters,
                  NoiseVibrationParameters, TapParameters, DetentParameters, ClickParameters,
-                 MoverParameters, PathParameters, SolidParameters, YieldingParameters,
-                 OwnParameters>;
+                 MoverParameters, PathParameters, RigidObjectParameters, DeformableObjectParameters,
+                 RegisteredParameters>;
 
 /// One field of force as a definition states it: plain data that may change between trials.
 struct Field {
@@ -45,12 +45,12 @@ const std::string& surface_of(const Field& field) noexcept;
 
 inline bool is_surface(const Field& field) noexcept {
   return std::holds_alternative<SurfaceParameters>(field.kind) ||
-         std::holds_alternative<SolidParameters>(field.kind);
+         std::holds_alternative<RigidObjectParameters>(field.kind);
 }
 /// One of [objects], not of [fields].
 inline bool is_object(const Field& field) noexcept {
-  return std::holds_alternative<SolidParameters>(field.kind) ||
-         std::holds_alternative<YieldingParameters>(field.kind);
+  return std::holds_alternative<RigidObjectParameters>(field.kind) ||
+         std::holds_alternative<DeformableObjectParameters>(field.kind);
 }
 /// A relief shapes the force of the surface that it lies on and has none of its own.
 inline bool is_relief(const Field& field) noexcept {

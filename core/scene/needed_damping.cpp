@@ -10,7 +10,9 @@
 namespace haptrial::scene {
 namespace {
 
-Steepness of_gains(const control::PdGains& gains) { return {true, gains.stiffness, gains.damping}; }
+StiffnessBound of_gains(const control::PdGains& gains) {
+  return {true, gains.stiffness, gains.damping};
+}
 
 /// @param matrix  symmetric
 double largest_eigenvalue(const Eigen::Matrix3d& matrix) {
@@ -19,7 +21,7 @@ double largest_eigenvalue(const Eigen::Matrix3d& matrix) {
       .maxCoeff();
 }
 
-Steepness of_matrix(const MatrixViscousParameters& p) {
+StiffnessBound of_matrix(const MatrixViscousParameters& p) {
   const Eigen::Matrix3d& b = p.matrix;
   const double size = b.cwiseAbs().maxCoeff();
   const double largest = largest_eigenvalue(b + b.transpose());
@@ -32,8 +34,8 @@ Steepness of_matrix(const MatrixViscousParameters& p) {
 /// phi(e) with e = depth + h: its second derivative is at most k |g|² along g, and phi' <= limit
 /// where h curves. A surface that closes in around the hand adds k at most.
 /// @param closes_in  a surface may lie around the hand
-Steepness of_surface(const std::vector<Field>& fields, const Field& field,
-                     const control::PdGains& gains, bool closes_in) {
+StiffnessBound of_surface(const std::vector<Field>& fields, const Field& field,
+                          const control::PdGains& gains, bool closes_in) {
   double slope = 0.0;
   double curvature = 0.0;
   for (const Field& other : fields) {
@@ -54,8 +56,8 @@ Steepness of_surface(const std::vector<Field>& fields, const Field& field,
   return {true, gains.stiffness * lean + around + field.limit * curvature, gains.damping * lean};
 }
 
-Steepness of_surface(const std::vector<Field>& fields, const Field& field,
-                     const SurfaceParameters& p) {
+StiffnessBound of_surface(const std::vector<Field>& fields, const Field& field,
+                          const SurfaceParameters& p) {
   const bool closes_in = p.felt_from_inside && !std::holds_alternative<HalfSpace>(p.shape);
   return of_surface(fields, field, p.gains, closes_in);
 }
@@ -64,8 +66,9 @@ Steepness of_surface(const std::vector<Field>& fields, const Field& field,
 /// it was given, and turns against the hand by k at most, also where friction holds the proxy.
 /// Shading turns the force away from that way, and renderers without a proxy jump: of them nothing
 /// is proven.
-Steepness of_solid(const std::vector<Field>& fields, const Field& field, const SolidParameters& p) {
-  Steepness found = of_surface(fields, field, p.gains, true);
+StiffnessBound of_solid(const std::vector<Field>& fields, const Field& field,
+                        const RigidObjectParameters& p) {
+  StiffnessBound found = of_surface(fields, field, p.gains, true);
   found.passive = p.renderer == contact::RendererKind::kProxy && p.crease_angle < 0.0;
   return found;
 }
@@ -73,7 +76,7 @@ Steepness of_solid(const std::vector<Field>& fields, const Field& field, const S
 /// The spring between hand and ball and the body behind it, along each other; friction bends a
 /// bristle that is no stiffer. Of a body that is not prepared the spring alone is known. What moves
 /// keeps an account of its energy, in which the hand has a damping.
-Steepness of_yielding(const YieldingParameters& p) {
+StiffnessBound of_yielding(const DeformableObjectParameters& p) {
   if (p.springs) {
     return {true, 0.0, deformable::EnergyAccount::kDamping};
   }
@@ -87,50 +90,56 @@ struct SteepnessOf {
   const std::vector<Field>& fields;
   const Field& field;
 
-  Steepness operator()(const ConstantParameters&) const { return {true, 0.0, 0.0}; }
-  Steepness operator()(const RampParameters&) const { return {}; }
-  Steepness operator()(const PulseParameters&) const { return {}; }
-  Steepness operator()(const SpringParameters& p) const { return of_gains(p.gains); }
-  Steepness operator()(const LineChannelParameters& p) const { return of_gains(p.gains); }
-  Steepness operator()(const AxisChannelParameters& p) const { return of_gains(p.gains); }
-  Steepness operator()(const PlaneParameters& p) const { return of_gains(p.gains); }
-  Steepness operator()(const SurfaceParameters& p) const { return of_surface(fields, field, p); }
-  Steepness operator()(const SolidParameters& p) const { return of_solid(fields, field, p); }
-  Steepness operator()(const YieldingParameters& p) const { return of_yielding(p); }
-  Steepness operator()(const GratingParameters&) const { return {true, 0.0, 0.0}; }
-  Steepness operator()(const TextureParameters&) const { return {true, 0.0, 0.0}; }
-  Steepness operator()(const ViscousParameters& p) const { return {true, 0.0, p.damping}; }
-  Steepness operator()(const MatrixViscousParameters& p) const { return of_matrix(p); }
-  Steepness operator()(const InertiaParameters&) const { return {}; }
-  Steepness operator()(const FrictionParameters& p) const { return {true, p.stiffness, 0.0}; }
-  Steepness operator()(const SineVibrationParameters&) const { return {}; }
-  Steepness operator()(const NoiseVibrationParameters&) const { return {}; }
-  Steepness operator()(const TapParameters&) const { return {}; }
-  Steepness operator()(const DetentParameters& p) const {
+  StiffnessBound operator()(const ConstantParameters&) const { return {true, 0.0, 0.0}; }
+  StiffnessBound operator()(const RampParameters&) const { return {}; }
+  StiffnessBound operator()(const PulseParameters&) const { return {}; }
+  StiffnessBound operator()(const SpringParameters& p) const { return of_gains(p.gains); }
+  StiffnessBound operator()(const LineChannelParameters& p) const { return of_gains(p.gains); }
+  StiffnessBound operator()(const AxisChannelParameters& p) const { return of_gains(p.gains); }
+  StiffnessBound operator()(const PlaneParameters& p) const { return of_gains(p.gains); }
+  StiffnessBound operator()(const SurfaceParameters& p) const {
+    return of_surface(fields, field, p);
+  }
+  StiffnessBound operator()(const RigidObjectParameters& p) const {
+    return of_solid(fields, field, p);
+  }
+  StiffnessBound operator()(const DeformableObjectParameters& p) const { return of_yielding(p); }
+  StiffnessBound operator()(const GratingParameters&) const { return {true, 0.0, 0.0}; }
+  StiffnessBound operator()(const TextureParameters&) const { return {true, 0.0, 0.0}; }
+  StiffnessBound operator()(const ViscousParameters& p) const { return {true, 0.0, p.damping}; }
+  StiffnessBound operator()(const MatrixViscousParameters& p) const { return of_matrix(p); }
+  StiffnessBound operator()(const InertiaParameters&) const { return {}; }
+  StiffnessBound operator()(const FrictionParameters& p) const { return {true, p.stiffness, 0.0}; }
+  StiffnessBound operator()(const SineVibrationParameters&) const { return {}; }
+  StiffnessBound operator()(const NoiseVibrationParameters&) const { return {}; }
+  StiffnessBound operator()(const TapParameters&) const { return {}; }
+  StiffnessBound operator()(const DetentParameters& p) const {
     return {true, 2.0 * std::numbers::pi * p.peak / p.spacing, 0.0};
   }
-  Steepness operator()(const ClickParameters& p) const { return {true, p.peak / p.travel, 0.0}; }
-  Steepness operator()(const MoverParameters& p) const {
+  StiffnessBound operator()(const ClickParameters& p) const {
+    return {true, p.peak / p.travel, 0.0};
+  }
+  StiffnessBound operator()(const MoverParameters& p) const {
     return {false, p.gains.stiffness, p.gains.damping};
   }
-  Steepness operator()(const PathParameters& p) const {
+  StiffnessBound operator()(const PathParameters& p) const {
     return {false, p.gains.stiffness, p.gains.damping};
   }
-  Steepness operator()(const OwnParameters&) const { return {}; }
+  StiffnessBound operator()(const RegisteredParameters&) const { return {}; }
 };
 
 }  // namespace
 
-Steepness steepness(const std::vector<Field>& fields, std::size_t which) {
+StiffnessBound steepness(const std::vector<Field>& fields, std::size_t which) {
   const Field& field = fields.at(which);
   return std::visit(SteepnessOf{fields, field}, field.kind);
 }
 
-double needed_damping(const Steepness& field, double rate) noexcept {
+double needed_damping(const StiffnessBound& field, double rate) noexcept {
   return 0.5 * field.stiffness / rate + field.damping;
 }
 
-double needed_damping_below(double frequency, const Steepness& field, double rate) noexcept {
+double needed_damping_below(double frequency, const StiffnessBound& field, double rate) noexcept {
   return 0.5 * field.stiffness / rate -
          field.damping * std::cos(2.0 * std::numbers::pi * frequency / rate);
 }

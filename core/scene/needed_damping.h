@@ -8,7 +8,7 @@
 namespace haptrial::scene {
 
 /// How steeply a field's force may change, and whether it takes energy from every hand.
-struct Steepness {
+struct StiffnessBound {
   bool passive{false};    // in continuous time, once it is faded in
   double stiffness{0.0};  // K: bound of how fast the force over the place turns against it [N/m]
   double damping{0.0};    // B: bound of the force over the velocity [N·s/m]
@@ -17,7 +17,7 @@ struct Steepness {
 /// Of the field at `which` in a scene; reliefs steepen the surface that they lie on and are counted
 /// there. For a field that is not passive K and B hold for what it makes of place and velocity;
 /// what it gives over time is its purpose.
-Steepness steepness(const std::vector<Field>& fields, std::size_t which);
+StiffnessBound steepness(const std::vector<Field>& fields, std::size_t which);
 
 /// The damping of device and hand with which a sampled passive field never gives out energy,
 /// whatever the hand does between two ticks (Colgate and Schenkel 1997):
@@ -28,7 +28,7 @@ Steepness steepness(const std::vector<Field>& fields, std::size_t which);
 /// Σ K |Δx|² / 2 + B |Δx_k-1| |Δx_k| / T, and Σ |Δx|² / T is at most the integral of |v|².
 /// Velocities may be any mean of past differences (a slope over readings, a low-pass).
 /// @param rate  > 0 [Hz]
-double needed_damping(const Steepness& field, double rate) noexcept;
+double needed_damping(const StiffnessBound& field, double rate) noexcept;
 
 /// The same for hands that do not move faster than `frequency` [Hz], 0 to rate / 2: there the
 /// field's own damper helps against its spring,
@@ -38,6 +38,6 @@ double needed_damping(const Steepness& field, double rate) noexcept;
 /// with the velocity as the last difference and B in every direction in which K acts. At 0 Hz this
 /// is the bound of the virtual coupling, K T / 2 < b + B: what `validate` warns about. Negative:
 /// nothing is needed.
-double needed_damping_below(double frequency, const Steepness& field, double rate) noexcept;
+double needed_damping_below(double frequency, const StiffnessBound& field, double rate) noexcept;
 
 }  // namespace haptrial::scene

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 using Law = std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia,
                          Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover,
-                         PathGuide, Solid, Yielding, Own>;
+                         PathGuide, RigidObject, DeformableObject, RegisteredField>;
 
 template <class Parameters>
 struct LawOf;
@@ -47,9 +47,9 @@ HAPTRIAL_LAW(DetentParameters, Detent);
 HAPTRIAL_LAW(ClickParameters, Click);
 HAPTRIAL_LAW(MoverParameters, Mover);
 HAPTRIAL_LAW(PathParameters, PathGuide);
-HAPTRIAL_LAW(SolidParameters, Solid);
-HAPTRIAL_LAW(YieldingParameters, Yielding);
-HAPTRIAL_LAW(OwnParameters, Own);
+HAPTRIAL_LAW(RigidObjectParameters, RigidObject);
+HAPTRIAL_LAW(DeformableObjectParameters, DeformableObject);
+HAPTRIAL_LAW(RegisteredParameters, RegisteredField);
 #undef HAPTRIAL_LAW
 
 template <class Each>
@@ -262,7 +262,8 @@ void Scene::feel(Part& part, const PointState& hand, const control::GainShares& 
       part.law);
   const double size = force.norm();
   state.limited = state.limited || size > part.limit;
-  if (!std::holds_alternative<Surface>(part.law) && !std::holds_alternative<Solid>(part.law)) {
+  if (!std::holds_alternative<Surface>(part.law) &&
+      !std::holds_alternative<RigidObject>(part.law)) {
     state.contact = size > 0.0;
   }
   const double passed = part.fade.weight() * (size > part.limit ? part.limit / size : 1.0);
@@ -345,7 +346,7 @@ std::uint64_t Scene::mask() const noexcept {
 const FieldState& Scene::state(std::size_t field) const noexcept { return parts_[field].state; }
 
 const deformable::BodyTouch* Scene::touch(std::size_t field) const noexcept {
-  const auto* body = std::get_if<Yielding>(&parts_[field].law);
+  const auto* body = std::get_if<DeformableObject>(&parts_[field].law);
   return body != nullptr ? body->touch() : nullptr;
 }
 

@@ -154,7 +154,7 @@ RequestHead head_of(const httplib::Request& request) {
   return head;
 }
 
-std::vector<std::string> names_of(const protocols::SidePages& sides) {
+std::vector<std::string> names_of(const protocols::AuxiliaryPages& sides) {
   const std::set<std::string, std::less<>> own{"events", "picture", "ask", "note", "answer"};
   std::vector<std::string> names;
   for (const auto& side : sides) {
@@ -205,14 +205,15 @@ class Console::Implementation {
     set_up_server();
     port_ = bind();
     names_ = console_hosts(options_.address, loopback, port_);
-    gate_.emplace(Gate::Rules{token_, names_, kMaxBody, names_of(options_.sides)});
+    gate_.emplace(RequestFilter::Rules{token_, names_, kMaxBody, names_of(options_.sides)});
     constexpr int kForRequests = 4;  // beside the event streams
     ours_.emplace(options_.event_streams + kForRequests, options_.waiting);
     others_.emplace(options_.workers, options_.waiting);
-    door_.emplace(server_.listening(), stop_,
-                  FrontDoor::Rules{token_, kSilent, Seconds(options_.request_time)},
-                  FrontDoor::Ways{[this](int socket, bool trusted) { admit(socket, trusted); },
-                                  [this](int socket) { turn_away(socket); }});
+    door_.emplace(
+        server_.listening(), stop_,
+        HttpListener::Rules{token_, kSilent, Seconds(options_.request_time)},
+        HttpListener::Handlers{[this](int socket, bool trusted) { admit(socket, trusted); },
+                               [this](int socket) { turn_away(socket); }});
   }
 
   ~Implementation() {
@@ -267,7 +268,7 @@ class Console::Implementation {
   using MakeEvent = std::function<std::string()>;
   void send_events(httplib::Response& response, MakeEvent make);
   MakeEvent status_events();
-  void serve(const std::shared_ptr<protocols::SidePage>& side);
+  void serve(const std::shared_ptr<protocols::AuxiliaryPage>& side);
   static void take(httplib::Response& response, const std::function<void()>& action);
   void send_picture(httplib::Response& response);
   static void refuse(httplib::Response& response, int status, const std::string& reason);
@@ -280,11 +281,11 @@ class Console::Implementation {
   std::atomic<int> streams_{0};
   int port_{0};
   std::vector<std::string> names_;
-  std::optional<Gate> gate_;
+  std::optional<RequestFilter> gate_;
   BoundedServer server_;
   std::optional<Workers> ours_;    // who has shown the token
   std::optional<Workers> others_;  // everybody else
-  std::optional<FrontDoor> door_;
+  std::optional<HttpListener> door_;
 };
 
 void Console::Implementation::refuse(httplib::Response& response, int status,
@@ -322,7 +323,7 @@ void Console::Implementation::set_up_server() {
   };
   server_.Get("/", handler).Get("/events", handler).Post("/ask", handler).Post("/note", handler);
   server_.Get("/picture", handler).Post("/answer", handler);
-  for (const std::shared_ptr<protocols::SidePage>& side : options_.sides) {
+  for (const std::shared_ptr<protocols::AuxiliaryPage>& side : options_.sides) {
     serve(side);
   }
   server_.set_error_handler(httplib::Server::Handler([this](const auto& request, auto& response) {
@@ -374,7 +375,7 @@ void Console::Implementation::take(httplib::Response& response,
   }
 }
 
-void Console::Implementation::serve(const std::shared_ptr<protocols::SidePage>& side) {
+void Console::Implementation::serve(const std::shared_ptr<protocols::AuxiliaryPage>& side) {
   using httplib::Request;
   using httplib::Response;
   const std::string at = fmt::format("/{}", side->name());

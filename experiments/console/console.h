@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/control/session_control.h"
-#include "protocols/interface/side_page.h"
+#include "protocols/interface/auxiliary_page.h"
 
 namespace haptrial::experiments {
 
@@ -18,10 +18,10 @@ struct ConsoleOptions {
   bool allow_remote{false};          // other addresses than loopback
   double events_per_second{15.0};    // to each page, 1 to 60
   double request_time{2.0};          // a request that takes longer is refused > 0 [s]
-  int workers{8};                // requests at a time of those who have not shown the token, >= 1
-  int event_streams{4};          // pages at a time, >= 1
-  int waiting{32};               // connections that may wait for a worker
-  protocols::SidePages sides{};  // pages beside the console's
+  int workers{8};        // requests at a time of those who have not shown the token, >= 1
+  int event_streams{4};  // pages at a time, >= 1
+  int waiting{32};       // connections that may wait for a worker
+  protocols::AuxiliaryPages sides{};  // pages beside the console's
   /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
   std::function<void(const std::string&)> on_refusal;
 };
@@ -37,7 +37,7 @@ struct ConsoleOptions {
 ///     POST /ask            {"request": "pause"}, with the header X-Haptrial-Token
 ///     POST /note           {"text": "..."}, likewise
 ///
-/// For each page beside it (protocols/interface/side_page.h), by its name:
+/// For each page beside it (protocols/interface/auxiliary_page.h), by its name:
 ///
 ///     GET /NAME?token=T         the page
 ///     GET /NAME/events?token=T  server-sent events, as the page has them

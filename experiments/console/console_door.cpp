@@ -74,7 +74,7 @@ bool shows_token(const std::string& text, const std::string& token) {
   return false;
 }
 
-FrontDoor::FrontDoor(int listening, const StopEvent& stop, Rules rules, Ways ways)
+HttpListener::HttpListener(int listening, const StopEvent& stop, Rules rules, Handlers ways)
     : listening_(listening),
       stop_(stop.descriptor()),
       rules_(std::move(rules)),
@@ -83,20 +83,20 @@ FrontDoor::FrontDoor(int listening, const StopEvent& stop, Rules rules, Ways way
   thread_ = std::thread([this] { run(); });
 }
 
-FrontDoor::~FrontDoor() {
+HttpListener::~HttpListener() {
   thread_.join();
-  for (const Guest& guest : guests_) {
+  for (const Client& guest : guests_) {
     ::close(guest.socket);
   }
 }
 
-void FrontDoor::run() {
+void HttpListener::run() {
   constexpr int kSlice = 25;  // between two looks at the time [ms]
   std::vector<pollfd> watched;
   std::vector<bool> spoke;
   for (;;) {
     watched = {{stop_, POLLIN, 0}, {listening_, POLLIN, 0}};
-    for (const Guest& guest : guests_) {
+    for (const Client& guest : guests_) {
       watched.push_back({guest.socket, POLLIN, 0});
     }
     ::poll(watched.data(), watched.size(), guests_.empty() ? -1 : kSlice);
@@ -114,12 +114,12 @@ void FrontDoor::run() {
   }
 }
 
-void FrontDoor::sort_out(const std::vector<bool>& spoke) {
+void HttpListener::sort_out(const std::vector<bool>& spoke) {
   const auto patience = std::chrono::duration_cast<Clock::duration>(rules_.patience);
   const auto now = Clock::now();
-  std::vector<Guest> stay;
+  std::vector<Client> stay;
   for (std::size_t i = 0; i < guests_.size(); ++i) {
-    const Guest& guest = guests_[i];
+    const Client& guest = guests_[i];
     if (spoke[i] && see_to(guest)) {
       continue;
     }
@@ -132,7 +132,7 @@ void FrontDoor::sort_out(const std::vector<bool>& spoke) {
   guests_ = std::move(stay);
 }
 
-bool FrontDoor::see_to(const Guest& guest) {
+bool HttpListener::see_to(const Client& guest) {
   std::array<char, 2048> first;
   const ssize_t count = ::recv(guest.socket, first.data(), first.size(), MSG_PEEK | MSG_DONTWAIT);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) {
@@ -147,7 +147,7 @@ bool FrontDoor::see_to(const Guest& guest) {
   return true;
 }
 
-void FrontDoor::take_in() {
+void HttpListener::take_in() {
   constexpr int kAtOnce = 64;  // before it looks again who has spoken
   for (int i = 0; i < kAtOnce; ++i) {
     const int socket = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
@@ -158,7 +158,7 @@ void FrontDoor::take_in() {
       }
       return;
     }
-    Guest guest{socket, address_of(socket), Clock::now()};
+    Client guest{socket, address_of(socket), Clock::now()};
     if (see_to(guest)) {
       continue;
     }
@@ -169,15 +169,15 @@ void FrontDoor::take_in() {
   }
 }
 
-void FrontDoor::make_room() {
+void HttpListener::make_room() {
   std::map<std::string, int> of_address;
-  for (const Guest& guest : guests_) {
+  for (const Client& guest : guests_) {
     ++of_address[guest.address];
   }
   const auto most =
       std::max_element(of_address.begin(), of_address.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
-  const auto oldest = std::find_if(guests_.begin(), guests_.end(), [&](const Guest& guest) {
+  const auto oldest = std::find_if(guests_.begin(), guests_.end(), [&](const Client& guest) {
     return guest.address == most->first;
   });
   ways_.refuse(oldest->socket);

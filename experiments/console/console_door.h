@@ -46,7 +46,7 @@ bool shows_token(const std::string& text, const std::string& token);
 /// queue to fill, and sorts them by their first bytes: who shows the token is let in ahead of
 /// everybody else. Who says nothing costs a descriptor and no thread. When too many say nothing,
 /// the oldest of the address that has most of them goes.
-class FrontDoor {
+class HttpListener {
  public:
   struct Rules {
     std::string token;
@@ -54,19 +54,19 @@ class FrontDoor {
     Connection::Duration patience{2.0};  // with one that says nothing [s]
   };
   /// Called on the door's thread; `admit` takes the socket over, `refuse` leaves it.
-  struct Ways {
+  struct Handlers {
     std::function<void(int socket, bool trusted)> admit;
     std::function<void(int socket)> refuse;
   };
 
   /// @param listening  a socket; it and `stop` outlive the door.
-  FrontDoor(int listening, const StopEvent& stop, Rules rules, Ways ways);
-  ~FrontDoor();  // once `stop` is set
-  FrontDoor(const FrontDoor&) = delete;
-  FrontDoor& operator=(const FrontDoor&) = delete;
+  HttpListener(int listening, const StopEvent& stop, Rules rules, Handlers ways);
+  ~HttpListener();  // once `stop` is set
+  HttpListener(const HttpListener&) = delete;
+  HttpListener& operator=(const HttpListener&) = delete;
 
  private:
-  struct Guest {
+  struct Client {
     int socket;
     std::string address;
     std::chrono::steady_clock::time_point came;
@@ -76,13 +76,13 @@ class FrontDoor {
   void sort_out(const std::vector<bool>& spoke);
   void make_room();
   /// @returns whether it has gone, to a worker or for good.
-  bool see_to(const Guest& guest);
+  bool see_to(const Client& guest);
 
   int listening_;
   int stop_;
   Rules rules_;
-  Ways ways_;
-  std::vector<Guest> guests_;  // in the order in which they came
+  Handlers ways_;
+  std::vector<Client> guests_;  // in the order in which they came
   std::thread thread_;
 };
 

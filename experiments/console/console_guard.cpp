@@ -50,7 +50,7 @@ std::string make_token() {
   return token;
 }
 
-std::optional<Refusal> Gate::judge(const RequestHead& head) const {
+std::optional<Refusal> RequestFilter::judge(const RequestHead& head) const {
   if (auto refusal = judge_sender(head)) {
     return refusal;
   }
@@ -64,7 +64,7 @@ std::optional<Refusal> Gate::judge(const RequestHead& head) const {
   return judge_body(head);
 }
 
-std::optional<Gate::Place> Gate::place_of(const std::string& path) const {
+std::optional<RequestFilter::Place> RequestFilter::place_of(const std::string& path) const {
   if (path == "/") {
     return Place{true, true};
   }
@@ -85,7 +85,7 @@ std::optional<Gate::Place> Gate::place_of(const std::string& path) const {
   return std::nullopt;
 }
 
-std::string Gate::places() const {
+std::string RequestFilter::places() const {
   std::string all = "/, /events, /picture, /ask, /note and /answer";
   for (const std::string& side : rules_.sides) {
     all += fmt::format(", and /{0}, /{0}/events and /{0}/ask", side);
@@ -93,7 +93,7 @@ std::string Gate::places() const {
   return all;
 }
 
-std::optional<Refusal> Gate::judge_sender(const RequestHead& head) const {
+std::optional<Refusal> RequestFilter::judge_sender(const RequestHead& head) const {
   const auto is_ours = [this](const std::string& host) {
     return std::find(rules_.hosts.begin(), rules_.hosts.end(), host) != rules_.hosts.end();
   };
@@ -120,7 +120,7 @@ std::optional<Refusal> Gate::judge_sender(const RequestHead& head) const {
   return std::nullopt;
 }
 
-std::optional<Refusal> Gate::judge_body(const RequestHead& head) const {
+std::optional<Refusal> RequestFilter::judge_body(const RequestHead& head) const {
   if (!head.range.empty()) {  // thousands of ranges make a long answer of a short request
     return Refusal{416, "ranges are not served"};
   }

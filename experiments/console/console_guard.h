@@ -45,7 +45,7 @@ struct Refusal {
 ///  - a foreign page that posts here is stopped by its Origin, and lacks the token's header;
 ///  - a name that is rebound to this address is stopped by its Host;
 ///  - there is no cookie that a browser would add by itself.
-class Gate {
+class RequestFilter {
  public:
   struct Rules {
     std::string token;
@@ -53,7 +53,7 @@ class Gate {
     std::size_t max_body{4096};      // [bytes]
     std::vector<std::string> sides;  // names of the pages beside the console's
   };
-  explicit Gate(Rules rules) : rules_(std::move(rules)) {}
+  explicit RequestFilter(Rules rules) : rules_(std::move(rules)) {}
 
   /// @returns why the request is refused, or nothing. Any thread.
   std::optional<Refusal> judge(const RequestHead& head) const;

@@ -213,7 +213,7 @@ class Keyboard::Implementation {
         keys = after_sequence(keys);
       } else if (key == kEscape) {
         escaped_ = std::chrono::steady_clock::now();
-        control_.ask(Request::kEmergencyStop, Asker::kTerminal);
+        control_.ask(Request::kEmergencyStop, RequestSource::kTerminal);
         leave_mode();
         show("emergency stop\n");
       } else {
@@ -270,7 +270,7 @@ class Keyboard::Implementation {
       return;
     }
     if (asked.kind == "read") {
-      control_.answer(asked.number, "", Asker::kTerminal);
+      control_.answer(asked.number, "", RequestSource::kTerminal);
       return;
     }
     answered_ = asked.number;
@@ -332,7 +332,7 @@ class Keyboard::Implementation {
     constexpr std::size_t kLongest = 500;
     if (key == '\n' || key == '\r') {
       if (mode_ == Mode::kAnswer) {
-        control_.answer(answered_, note_, Asker::kTerminal);
+        control_.answer(answered_, note_, RequestSource::kTerminal);
       } else if (!note_.empty()) {
         control_.note(note_, mode_ == Mode::kBadTrial);
       }
@@ -364,7 +364,7 @@ class Keyboard::Implementation {
   }
 
   void ask(Request request, std::string_view what) {
-    control_.ask(request, Asker::kTerminal);
+    control_.ask(request, RequestSource::kTerminal);
     show(what);
   }
 

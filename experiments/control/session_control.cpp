@@ -9,19 +9,19 @@ void SessionControl::on_emergency(std::function<void()> stop) {
   stop_ = std::move(stop);
 }
 
-const char* name_of(Asker by) noexcept {
+const char* name_of(RequestSource by) noexcept {
   switch (by) {
-    case Asker::kConsole:
+    case RequestSource::kConsole:
       return "console";
-    case Asker::kTerminal:
+    case RequestSource::kTerminal:
       return "terminal";
-    case Asker::kWindow:
+    case RequestSource::kWindow:
       return "window";
   }
   return "";
 }
 
-void SessionControl::ask(Request request, Asker by) {
+void SessionControl::ask(Request request, RequestSource by) {
   if (request == Request::kEmergencyStop) {
     const std::lock_guard lock(stop_mutex_);
     if (stop_) {
@@ -38,10 +38,11 @@ void SessionControl::note(std::string text, bool bad_trial) {
     text.resize(kLongest);
   }
   const std::lock_guard lock(mutex_);
-  messages_.push_back({true, Request::kStart, std::move(text), Asker::kConsole, 0, bad_trial});
+  messages_.push_back(
+      {true, Request::kStart, std::move(text), RequestSource::kConsole, 0, bad_trial});
 }
 
-void SessionControl::answer(int number, std::string text, Asker by) {
+void SessionControl::answer(int number, std::string text, RequestSource by) {
   const std::lock_guard lock(mutex_);
   messages_.push_back({false, Request::kStart, std::move(text), by, number});
 }

@@ -15,8 +15,8 @@
 namespace haptrial::experiments {
 
 /// Who asks for something: what stands in the events of the session file.
-enum class Asker : std::uint8_t { kConsole, kTerminal, kWindow };
-const char* name_of(Asker by) noexcept;  // "console", "terminal", "window"
+enum class RequestSource : std::uint8_t { kConsole, kTerminal, kWindow };
+const char* name_of(RequestSource by) noexcept;  // "console", "terminal", "window"
 
 /// What an experimenter asks of a running session, from the console or the keyboard.
 enum class Request : std::uint8_t {
@@ -83,20 +83,20 @@ class SessionControl {
   /// What an emergency stop does at once, before the session's thread takes the message.
   void on_emergency(std::function<void()> stop);
 
-  void ask(Request request, Asker by = Asker::kConsole);
+  void ask(Request request, RequestSource by = RequestSource::kConsole);
   /// @param text  kept as an event with the present trial, at most 2000 bytes; longer ones are cut
   /// @param bad_trial  the text says why the present trial, or the last one, is bad
   void note(std::string text, bool bad_trial = false);
 
   /// An answer to what a page asks. @param number  of AskedItem  @param text  PageInput::give()
-  void answer(int number, std::string text, Asker by = Asker::kConsole);
+  void answer(int number, std::string text, RequestSource by = RequestSource::kConsole);
 
   /// Session's thread: what came since the last call, in order.
   struct Message {
     bool is_note{false};
     Request request{Request::kStart};
     std::string text;
-    Asker by{Asker::kConsole};
+    RequestSource by{RequestSource::kConsole};
     int answers{0};         // number of the question; 0: it is no answer
     bool bad_trial{false};  // a note that marks the trial
   };

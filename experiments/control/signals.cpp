@@ -6,9 +6,9 @@
 #include <ctime>
 #include <initializer_list>
 
+#include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/keyboard.h"
-#include "experiments/control/last_stop.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -136,7 +136,7 @@ std::unique_ptr<protocols::Rig> open_rig(
   if (const auto file = replayed_file(choice.name)) {
     return with(replayed(*file, d.rate));
   }
-  if (const device::OwnDevice* own = device::own_device(choice.name)) {
+  if (const device::RegisteredDevice* own = device::own_device(choice.name)) {
     return with(own->open(device::setting_of(choice.name), choice.number, d.rate));
   }
   check_device_name(choice.name);

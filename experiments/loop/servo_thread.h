@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/realtime/servo_loop.h"
-#include "experiments/control/last_stop.h"
+#include "experiments/control/fatal_stop_handler.h"
 #include "protocols/interface/session_task.h"
 
 namespace haptrial::experiments {
@@ -70,7 +70,7 @@ class ServoThread {
 };
 
 /// Takes the force of a session away. All three outlive it.
-class SessionStop final : public LastStop {
+class SessionStop final : public FatalStopHandler {
  public:
   SessionStop(protocols::SessionTask& task, const ServoThread& servo, device::Device& device)
       : task_(task), servo_(servo), device_(device) {}

@@ -15,9 +15,9 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   if (result.fault == device::Fault::kStopButton) {
     p_.record.event("emergency_stop", "by the handle");
   }
-  if ((fault || overloaded) && p_.desk.attended()) {
-    p_.desk.status().fault = all;
-    p_.desk.wishes().stopped = true;  // a person sees to the cause
+  if ((fault || overloaded) && p_.controller.attended()) {
+    p_.controller.status().fault = all;
+    p_.controller.requests().stopped = true;  // a person sees to the cause
   } else if (result.fault == device::Fault::kEmergencyStop && p_.real && partner_stops()) {
     p_.pace.recover_when([this] { return !partner_stops(); });  // who stopped sees to the cause
   } else if ((fault || overloaded) && p_.real) {
@@ -33,7 +33,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
 /// For the console, which shows the last ones.
 void AbortedPass::note_abort(const std::string& why) {
   constexpr std::size_t kShown = 4;
-  std::vector<std::string>& aborts = p_.desk.status().aborts;
+  std::vector<std::string>& aborts = p_.controller.status().aborts;
   aborts.push_back(fmt::format("trial {}: {}", p_.record.pass().trial, why));
   if (aborts.size() > kShown) {
     aborts.erase(aborts.begin());
@@ -54,8 +54,8 @@ void AbortedPass::pause_after_several(const std::string& why) {
 
 /// By this experimenter, or by the partner's.
 bool AbortedPass::asked_for() const {
-  const Wishes& wishes = p_.desk.wishes();
-  return wishes.repeat || wishes.skip || wishes.abort || wishes.pause ||
+  const PendingRequests& requests = p_.controller.requests();
+  return requests.repeat || requests.skip || requests.abort || requests.pause ||
          p_.trials.after_abort() != protocols::AfterAbort::kAsAsked;
 }
 
@@ -71,18 +71,18 @@ std::string AbortedPass::cause(const protocols::PassResult& result) const {
 }
 
 std::string AbortedPass::why_broken_off() const {
-  const Wishes& wishes = p_.desk.wishes();
+  const PendingRequests& requests = p_.controller.requests();
   if (!p_.pace.overload().empty()) {
     return p_.pace.overload();
   }
-  if (wishes.repeat) {
+  if (requests.repeat) {
     return "to be repeated";
   }
-  if (wishes.skip) {
+  if (requests.skip) {
     return "skipped";
   }
-  if (wishes.abort) {
-    return wishes.for_good ? "the session was ended for good" : "the session was stopped";
+  if (requests.abort) {
+    return requests.for_good ? "the session was ended for good" : "the session was stopped";
   }
   return p_.trials.why_aborted();
 }

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "experiments/control/session_desk.h"
+#include "experiments/control/session_controller.h"
+#include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/session_notices.h"
-#include "experiments/runner/session_pace.h"
 #include "experiments/runner/session_record.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
@@ -21,7 +21,7 @@ class AbortedPass {
     const protocols::Definition& definition;
     protocols::Trials& trials;
     SessionRecord& record;
-    SessionDesk& desk;
+    SessionController& controller;
     SessionPace& pace;
     SessionNotices& notices;
     bool real{false};  // on a real clock

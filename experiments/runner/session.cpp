@@ -9,19 +9,19 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/interrupt.h"
-#include "experiments/control/last_stop.h"
 #include "experiments/control/progress.h"
-#include "experiments/control/session_desk.h"
+#include "experiments/control/session_controller.h"
 #include "experiments/devices/devices.h"
 #include "experiments/devices/session_pedal.h"
 #include "experiments/loop/servo_thread.h"
 #include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/earlier_run.h"
+#include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/next_trial.h"
 #include "experiments/runner/session_notices.h"
 #include "experiments/runner/session_opening.h"
-#include "experiments/runner/session_pace.h"
 #include "experiments/runner/session_pages.h"
 #include "experiments/runner/session_record.h"
 #include "protocols/definition/handle_loop.h"
@@ -47,7 +47,7 @@ class Session {
 
  private:
   std::vector<stimulus::Observer*> observers();
-  SessionDesk::Actions desk_actions();
+  SessionController::Actions desk_actions();
 
   void watch_flashes();
   void hear_inputs();
@@ -91,7 +91,7 @@ class Session {
   std::unique_ptr<Screen> screen_;
   std::unique_ptr<record::LiveFigures> live_;
   SessionRecord record_;  // opened when everything else is there
-  SessionDesk desk_;
+  SessionController controller_;
   protocols::SessionTask task_;
   SessionPace pace_;
   SessionPages pages_;
@@ -124,7 +124,7 @@ protocols::SessionPlace Session::place() {
   give_seeds(place, teaches ? "who teaches" : "");
   place.real = real_;
   place.window = request_.window;
-  place.side_pages = request_.side_pages;
+  place.auxiliary_pages = request_.auxiliary_pages;
   place.frames_per_pass = request_.frames_per_pass;
   place.frames_folder = request_.frames_folder;
   place.resumed = resumed_file(request_);
@@ -152,7 +152,7 @@ Session::Session(const SessionRequest& request)
       screen_(open_screen(request, *rig_, &held_keys_, &begin_pressed_, &page_keys_)),
       live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
-      desk_(request.control, desk_actions()),
+      controller_(request.control, desk_actions()),
       task_({.devices = rig_->arms(d_.envelope),
              .loop = protocols::handle_loop(d_),
              .log = record_.log(),
@@ -165,24 +165,25 @@ Session::Session(const SessionRequest& request)
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin()),
-      pace_({request, loop_, record_, desk_, task_, rig_->felt(), screen_.get(), &begin_pressed_,
-             live_.get(),
+      pace_({request, loop_, record_, controller_, task_, rig_->felt(), screen_.get(),
+             &begin_pressed_, live_.get(),
              [this] {
                hear_inputs();
                note_warnings();
-               desk_.status().partner = trials_->partner();
+               controller_.status().partner = trials_->partner();
                if (live_ == nullptr) {
-                 desk_.status().figures = trials_->live();
+                 controller_.status().figures = trials_->live();
                }
              },
              rig_.get()}),
-      pages_({request, record_, desk_, pace_, page_keys_, screen_.get(), place_.session_seed}),
+      pages_(
+          {request, record_, controller_, pace_, page_keys_, screen_.get(), place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
-      notices_({request, loop_, record_, desk_, summary_}),
-      aborted_({d_, *trials_, record_, desk_, pace_, notices_, real_}),
+      notices_({request, loop_, record_, controller_, summary_}),
+      aborted_({d_, *trials_, record_, controller_, pace_, notices_, real_}),
       servo_(loop_, task_, longest_fade(d_.envelope)),
       stop_(task_, servo_, rig_->device()) {
-  SessionStatus& status = desk_.status();
+  SessionStatus& status = controller_.status();
   status.subject = request.subject;
   status.device = request.device.name;
   status.pilot = request.pilot;
@@ -238,7 +239,7 @@ Session::~Session() {
   }
 }
 
-SessionDesk::Actions Session::desk_actions() {
+SessionController::Actions Session::desk_actions() {
   return {[this] { task_.break_off(); }, [this] { task_.clear_fault(); },
           [this](const std::string& kind, const std::string& text) { record_.event(kind, text); },
           request_.link ? [this](bool take) { trials_->take_lead(take); }
@@ -305,7 +306,7 @@ void Session::run_trials() {
   bool practised = false;
   std::optional<PlannedTrial> trial = next_.after(nullptr);
   while (trial) {
-    if (desk_.wishes().abort) {
+    if (controller_.requests().abort) {
       left_ = true;
       break;
     }
@@ -314,8 +315,8 @@ void Session::run_trials() {
       practised = trial->practice;
     }
     const Outcome outcome = present(*trial);
-    left_ = left_ || (outcome.end == TrialEnd::kAborted && desk_.wishes().abort);
-    const bool stopped = desk_.wishes().abort;
+    left_ = left_ || (outcome.end == TrialEnd::kAborted && controller_.requests().abort);
+    const bool stopped = controller_.requests().abort;
     const bool rests = has_break_after(*trial) && !stopped;
     if (stopped) {
       left_ = left_ || next_.after(&outcome).has_value();
@@ -365,11 +366,11 @@ Outcome Session::present(const PlannedTrial& trial) {
   trials_->prepare(trial, record_);
   note_warnings();
   progress_.reset();
-  Wishes& wishes = desk_.wishes();
+  PendingRequests& requests = controller_.requests();
   Outcome outcome{trial, TrialEnd::kAborted, {}};
-  for (int attempt = attempts_of(record_.earlier(), trial) + 1; !wishes.abort; ++attempt) {
-    const bool anew = std::exchange(wishes.repeat, false);
-    wishes.skip = false;
+  for (int attempt = attempts_of(record_.earlier(), trial) + 1; !requests.abort; ++attempt) {
+    const bool anew = std::exchange(requests.repeat, false);
+    requests.skip = false;
     responses_.clear();
     trials_->begin_attempt(trial, anew);
     show_trial();
@@ -377,7 +378,7 @@ Outcome Session::present(const PlannedTrial& trial) {
     const bool done = run_trial(trial, attempt);
     pace_.pause_where_asked();
     const AfterAbort after = done ? AfterAbort::kAsAsked : trials_->after_abort();
-    const bool skipped = (wishes.skip || after == AfterAbort::kSkip) && !done;
+    const bool skipped = (requests.skip || after == AfterAbort::kSkip) && !done;
     const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
     record_.mark_trial("trial_end", trial, attempt, how);
     notices_.say_trial(trial, how);
@@ -386,8 +387,8 @@ Outcome Session::present(const PlannedTrial& trial) {
     if (skipped) {
       record_.skip(trial);
     }
-    const bool again = desk_.attended() || after == AfterAbort::kAgain;
-    if ((done && !wishes.repeat) || wishes.skip || skipped || !again) {
+    const bool again = controller_.attended() || after == AfterAbort::kAgain;
+    if ((done && !requests.repeat) || requests.skip || skipped || !again) {
       break;
     }
   }
@@ -401,7 +402,7 @@ Outcome Session::present(const PlannedTrial& trial) {
 void Session::note_time_left(double trial_seconds) {
   trial_seconds_ += trial_seconds;
   ++trials_timed_;
-  SessionStatus& status = desk_.status();
+  SessionStatus& status = controller_.status();
   const int trials = std::max(0, status.trials - status.trial);
   const int breaks = d_.design.break_after > 0 ? trials / d_.design.break_after : 0;
   status.left = trials * trial_seconds_ / trials_timed_ + breaks * d_.design.break_duration;
@@ -420,13 +421,13 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
   for (std::size_t i = 0; i < phases.size(); ++i) {
     if (i > 0) {
       pace_.pause_where_asked();
-      const Wishes& wishes = desk_.wishes();
-      if (wishes.repeat || wishes.skip || wishes.abort) {
+      const PendingRequests& requests = controller_.requests();
+      if (requests.repeat || requests.skip || requests.abort) {
         return false;
       }
     }
     const bool completed = run_pass(trial, phases[i], attempt);
-    if (!completed && (desk_.attended() || trials_->after_abort() != AfterAbort::kAsAsked)) {
+    if (!completed && (controller_.attended() || trials_->after_abort() != AfterAbort::kAsAsked)) {
       return false;  // the trial is presented again, from its first pass on
     }
     done = done && completed;
@@ -452,7 +453,7 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   record_.end_pass(result);
   notices_.note_pass(result);
   if (aborted) {
-    desk_.status().aborted_passes = ++summary_.aborted_passes;
+    controller_.status().aborted_passes = ++summary_.aborted_passes;
     aborted_.see_to(result);
   } else {
     aborted_.note_completed();
@@ -483,12 +484,12 @@ void Session::finish() {
   for (const std::string& notice : trials_->notices()) {  // what came up meanwhile
     notices_.note(notice);
   }
-  const Wishes& wishes = desk_.wishes();
-  summary_.stopped = left_ && wishes.abort && !wishes.for_good;
+  const PendingRequests& requests = controller_.requests();
+  summary_.stopped = left_ && requests.abort && !requests.for_good;
   if (summary_.stopped) {
     record_.stop("by the experimenter; --resume continues at the first unfinished trial");
   } else {
-    if (left_ && wishes.for_good) {
+    if (left_ && requests.for_good) {
       record_.event(record::kEndedForGood, "by the experimenter, with trials left");
     }
     if (const std::string why = trials_->why_given_up(); !why.empty()) {
@@ -496,7 +497,7 @@ void Session::finish() {
       notices_.note(why);
       summary_.given_up = true;
     }
-    record_.close(wishes.abort ? "ended by the experimenter" : "");
+    record_.close(requests.abort ? "ended by the experimenter" : "");
   }
   if (live_) {
     live_->finish();

@@ -56,7 +56,7 @@ void SessionMarkers::open_ways(const SessionRequest& request, stream::LslOutlet*
   if (definition_.sounds() != nullptr) {
     open_sound(request);
   }
-  markers::MarkerThread::Ways ways;
+  markers::MarkerThread::MarkerOutputs ways;
   ways.serial = line_.get();
   ways.other = [this](const TimedOnset& onset) { hear(onset); };
   streams_ = outlet != nullptr;

@@ -31,7 +31,7 @@ void SessionNotices::note(const std::string& notice) {
     return;
   }
   noted.push_back(notice);
-  p_.desk.status().notices = noted;
+  p_.controller.status().notices = noted;
   p_.record.event("notice", notice);
   tell("notice: " + notice);
 }
@@ -96,7 +96,7 @@ void SessionNotices::note_troubles(const record::LiveFigures* live, const Screen
 }
 
 void SessionNotices::say_plan(const protocols::Extent& extent, int defined, int over) {
-  SessionStatus& status = p_.desk.status();
+  SessionStatus& status = p_.controller.status();
   status.trials = extent.trials;
   status.blocks = extent.blocks;
   status.trials_defined = defined;
@@ -109,7 +109,7 @@ void SessionNotices::say_trial(const PlannedTrial& trial, const char* how) const
   const double minutes = 1e-9 / 60.0 * static_cast<double>(p_.loop.elapsed_ns());
   const std::string which =
       trial.practice ? fmt::format("practice {}", trial.trial)
-                     : fmt::format("trial {} of {}", trial.trial, p_.desk.status().trials);
+                     : fmt::format("trial {} of {}", trial.trial, p_.controller.status().trials);
   tell(fmt::format("{}, {}: {}, {:.1f} min after the start", which, short_numbers(trial.condition),
                    how, minutes));
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/realtime/servo_loop.h"
-#include "experiments/control/session_desk.h"
+#include "experiments/control/session_controller.h"
 #include "experiments/loop/loop_watch.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/runner/session_request.h"
@@ -26,7 +26,7 @@ class SessionNotices {
     const SessionRequest& request;
     const realtime::ServoLoop& loop;
     SessionRecord& record;
-    SessionDesk& desk;
+    SessionController& controller;
     SessionSummary& summary;
   };
   explicit SessionNotices(const Parts& parts) : p_(parts) {}

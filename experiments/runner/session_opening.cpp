@@ -217,11 +217,11 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
       const bool of_trial = request.definition->bits_of({press.key}) != 0;
       const bool may = asked == Request::kEmergencyStop || steers;
       if (asked && may && !of_trial) {
-        control->ask(*asked, Asker::kWindow);
+        control->ask(*asked, RequestSource::kWindow);
       }
     };
     callbacks.closed = [control, steers] {
-      control->ask(steers ? Request::kAbort : Request::kEmergencyStop, Asker::kWindow);
+      control->ask(steers ? Request::kAbort : Request::kEmergencyStop, RequestSource::kWindow);
     };
   } else {  // nobody is there who could clear a stop or say that it goes on
     callbacks.key = [begin, pages](const render::KeyPress& press) {

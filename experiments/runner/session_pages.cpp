@@ -20,8 +20,8 @@ using pages::ItemKind;
 using record::AnsweredAt;
 using record::PageTime;
 
-AnsweredAt source_of(Asker by) {
-  return by == Asker::kConsole ? AnsweredAt::kConsole : AnsweredAt::kTerminal;
+AnsweredAt source_of(RequestSource by) {
+  return by == RequestSource::kConsole ? AnsweredAt::kConsole : AnsweredAt::kTerminal;
 }
 
 std::string occasion_of(PageTime when, int block) {
@@ -103,7 +103,9 @@ bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, P
   return !declined_;
 }
 
-bool SessionPages::person_answers() const { return p_.desk.attended() || p_.screen != nullptr; }
+bool SessionPages::person_answers() const {
+  return p_.controller.attended() || p_.screen != nullptr;
+}
 
 /// Shows the item until it is answered. @returns false if the session is ended meanwhile
 bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAnswer& answer,
@@ -124,11 +126,11 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
                       item.title.empty() ? item.text : item.title + "\n" + item.text);
   };
   p_.keys.set_open(true);
-  p_.desk.status().asked = std::move(asked);
+  p_.controller.status().asked = std::move(asked);
   draw();
-  const Wishes& wishes = p_.desk.wishes();
-  while (!input.answer() && !wishes.abort) {
-    if (wishes.stopped || wishes.pause) {
+  const PendingRequests& requests = p_.controller.requests();
+  while (!input.answer() && !requests.abort) {
+    if (requests.stopped || requests.pause) {
       p_.pace.pause_where_asked();
       draw();
     }
@@ -140,12 +142,12 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
       }
     }
     take_answers(input, source);
-    if (item.kind == ItemKind::kRead && wishes.start && !input.answer()) {
+    if (item.kind == ItemKind::kRead && requests.start && !input.answer()) {
       input.give("");  // the experimenter goes on
       source = AnsweredAt::kConsole;
     }
   }
-  p_.desk.status().asked = {};
+  p_.controller.status().asked = {};
   p_.keys.set_open(false);
   p_.pace.clear_text();
   if (input.answer()) {
@@ -156,13 +158,13 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
 
 /// From elsewhere than the window. An answer that is not allowed is refused with a notice.
 void SessionPages::take_answers(PageInput& input, AnsweredAt& source) {
-  for (const SessionControl::Message& message : p_.desk.take_answers()) {
+  for (const SessionControl::Message& message : p_.controller.take_answers()) {
     if (message.answers != asked_ || input.answer()) {
       continue;  // to what was asked before
     }
     const std::string problem = input.give(message.text);
     source = source_of(message.by);
-    p_.desk.status().asked.hint = problem;
+    p_.controller.status().asked.hint = problem;
   }
 }
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <string>
 
-#include "experiments/control/session_desk.h"
+#include "experiments/control/session_controller.h"
 #include "experiments/pages/page_input.h"
 #include "experiments/pages/page_keys.h"
-#include "experiments/runner/session_pace.h"
+#include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/runner/session_request.h"
 
@@ -23,7 +23,7 @@ class SessionPages {
   struct Parts {
     const SessionRequest& request;
     SessionRecord& record;
-    SessionDesk& desk;
+    SessionController& controller;
     SessionPace& pace;
     PageKeys& keys;
     Screen* screen{nullptr};

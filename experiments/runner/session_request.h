@@ -44,14 +44,14 @@ struct SessionRequest {
 
   // Sessions on the real clock.
   DeviceChoice device;
-  std::vector<DeviceChoice> more_devices;  // after the first; empty: as the first
-  SessionControl* control{nullptr};        // of an experimenter at a console or keyboard
-  protocols::SidePages side_pages{};       // of the protocol's, those that are served
-  bool window{false};                      // the participant's screen
-  bool stream{false};                      // to the Lab Streaming Layer
-  bool stream_optional{false};             // go on without where the layer is absent
-  bool resume{false};                      // go on with FILE.partial where there is one
-  bool pilot{false};                       // no part of the study
+  std::vector<DeviceChoice> more_devices;       // after the first; empty: as the first
+  SessionControl* control{nullptr};             // of an experimenter at a console or keyboard
+  protocols::AuxiliaryPages auxiliary_pages{};  // of the protocol's, those that are served
+  bool window{false};                           // the participant's screen
+  bool stream{false};                           // to the Lab Streaming Layer
+  bool stream_optional{false};                  // go on without where the layer is absent
+  bool resume{false};                           // go on with FILE.partial where there is one
+  bool pilot{false};                            // no part of the study
   /// Lines for whoever watches the terminal, while the session runs; from the session's thread.
   std::function<void(const std::string&)> tell;
   record::Participant person;

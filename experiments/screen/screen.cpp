@@ -15,8 +15,8 @@
 #include "core/base/text/exception_words.h"
 #include "core/realtime/histogram.h"
 #include "core/realtime/latest_value.h"
-#include "experiments/screen/easel.h"
-#include "experiments/screen/pace.h"
+#include "experiments/screen/canvas.h"
+#include "experiments/screen/frame_pacing.h"
 #include "experiments/screen/pad_pointer.h"
 
 namespace haptrial::experiments {
@@ -89,8 +89,8 @@ struct Screen::Impl {
   std::condition_variable picture_taken;
 
   void run();
-  void show_pictures(render::Window& window, Easel& easel, const AgreedPace& agreed);
-  bool take_scene(Easel& easel);
+  void show_pictures(render::Window& window, ParticipantCanvas& canvas, const AgreedPace& agreed);
+  bool take_scene(ParticipantCanvas& canvas);
   void give_picture(render::Window& window);
   void count(const record::FrameRow& frame, std::uint64_t flashed);
   std::uint64_t onsets_so_far() const;
@@ -99,17 +99,17 @@ struct Screen::Impl {
 namespace {
 
 /// What happens at a window, told once: keys, held keys, the pointer, the close button.
-class Happenings {
+class WindowEvents {
  public:
-  Happenings(render::Window& window, const ScreenCallbacks& callbacks)
+  WindowEvents(render::Window& window, const ScreenCallbacks& callbacks)
       : window_(window),
         callbacks_(callbacks),
         pointer_(window.pointer()),
         pad_(window.width(), window.height()) {}
 
   /// @param other_view  the view moved under the pointer
-  void tell(Easel& easel, bool other_view) {
-    tell_keys(easel);
+  void tell(ParticipantCanvas& canvas, bool other_view) {
+    tell_keys(canvas);
     const std::int64_t now = screen_ns();
     const double dt = told_ns_ != 0 ? 1e-9 * static_cast<double>(now - told_ns_) : 0.0;
     told_ns_ = now;
@@ -118,7 +118,7 @@ class Happenings {
     const bool moved = std::exchange(pointer_, at) != pointer_;
     if (callbacks_.pointer) {
       const ScreenPointer pointer =
-          easel.pointer({at.position, at.wheel, at.buttons, held_, dt, pad.turn});
+          canvas.pointer({at.position, at.wheel, at.buttons, held_, dt, pad.turn});
       if (moved || other_view || pointer.hand) {
         callbacks_.pointer(pointer);
       }
@@ -129,7 +129,7 @@ class Happenings {
   }
 
  private:
-  void tell_keys(Easel& easel) {
+  void tell_keys(ParticipantCanvas& canvas) {
     std::vector<int> held = window_.held_keys();
     for (const render::KeyPress& press : window_.take_keys()) {
       if (callbacks_.key) {
@@ -137,7 +137,7 @@ class Happenings {
       }
       const bool typed = press.character != 0;
       if (!typed) {
-        easel.pressed(press.key);
+        canvas.pressed(press.key);
       }
       if (!typed && std::find(held.begin(), held.end(), press.key) == held.end()) {
         held.push_back(press.key);  // let go again already: held for a picture all the same
@@ -163,9 +163,9 @@ void Screen::Impl::run() {
   bool open = false;
   try {
     render::Window window(window_options(options, style));
-    Easel easel(window, fitted(style, window), options, mark);
+    ParticipantCanvas canvas(window, fitted(style, window), options, mark);
     const AgreedPace agreed =
-        agreed_pace(options.refresh_lock, window.refresh_rate(), easel.probe(), kTimerRate);
+        agreed_pace(options.refresh_lock, window.refresh_rate(), canvas.probe(), kTimerRate);
     {
       const std::lock_guard lock(mutex);
       summary.rate = agreed.rate;
@@ -174,7 +174,7 @@ void Screen::Impl::run() {
     }
     open = true;
     opened.set_value();
-    show_pictures(window, easel, agreed);
+    show_pictures(window, canvas, agreed);
   } catch (const std::exception& error) {
     if (!open) {
       opened.set_exception(std::current_exception());
@@ -185,30 +185,31 @@ void Screen::Impl::run() {
   }
 }
 
-void Screen::Impl::show_pictures(render::Window& window, Easel& easel, const AgreedPace& agreed) {
+void Screen::Impl::show_pictures(render::Window& window, ParticipantCanvas& canvas,
+                                 const AgreedPace& agreed) {
   Pace pace(agreed);
-  Happenings happenings(window, callbacks);
+  WindowEvents happenings(window, callbacks);
   stimulus::Shown seen;
   while (!stop.load(std::memory_order_relaxed)) {
     pace.wait();
     const std::int64_t start = screen_ns();
-    const bool other_view = take_scene(easel);
+    const bool other_view = take_scene(canvas);
     shown.read(seen);
-    const std::uint64_t flashed = easel.flash(onsets_so_far());  // after what they belong to
-    easel.draw(seen);
+    const std::uint64_t flashed = canvas.flash(onsets_so_far());  // after what they belong to
+    canvas.draw(seen);
     give_picture(window);
     const std::int64_t drawn = screen_ns();
     window.swap();
-    version_shown.store(easel.version(), std::memory_order_release);
+    version_shown.store(canvas.version(), std::memory_order_release);
     count(pace.shown(drawn - start), flashed);
     window.poll();
-    happenings.tell(easel, other_view);
+    happenings.tell(canvas, other_view);
   }
 }
 
-bool Screen::Impl::take_scene(Easel& easel) {
+bool Screen::Impl::take_scene(ParticipantCanvas& canvas) {
   const std::lock_guard lock(mutex);
-  return easel.take(scene);
+  return canvas.take(scene);
 }
 
 void Screen::Impl::give_picture(render::Window& window) {

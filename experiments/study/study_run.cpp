@@ -60,12 +60,12 @@ class OutputFolder {
 };
 
 /// Shares the participants out over threads and gathers what came of them.
-class Crew {
+class SessionWorkers {
  public:
   /// @param first  with the definition, to be completed for each participant
   /// @param parts  null: every session is run
-  Crew(const SessionRequest& first, double ticks_each, const DryRun& dry_run,
-       DryParts* parts = nullptr)
+  SessionWorkers(const SessionRequest& first, double ticks_each, const DryRun& dry_run,
+                 DryParts* parts = nullptr)
       : first_(first),
         setup_(*first.definition),
         ticks_each_(ticks_each),
@@ -207,7 +207,7 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   const double ticks_each = definition.rate * definition.longest(trials);
   if (dry_run.parts) {
     DryParts parts(dry_run.folder, facts_of(definition, dry_run));
-    return Crew(first, ticks_each, dry_run, &parts).run();
+    return SessionWorkers(first, ticks_each, dry_run, &parts).run();
   }
   OutputFolder folder(dry_run.folder);
   if (dry_run.taught) {
@@ -216,7 +216,7 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   if (dry_run.frames_per_pass > 0) {
     fs::create_directory(dry_run.folder / "frames");
   }
-  const DryRunSummary summary = Crew(first, ticks_each, dry_run).run();
+  const DryRunSummary summary = SessionWorkers(first, ticks_each, dry_run).run();
   folder.keep();
   return summary;
 }

@@ -162,9 +162,9 @@ class BoneDrilling final : public Protocol {
     tables.push_back(&record::table_of<record::FieldRow>());
     return tables;
   }
-  SidePages side_pages(const Definition& definition) const override {
+  AuxiliaryPages auxiliary_pages(const Definition& definition) const override {
     const bool watched = dynamic_cast<const BoneDefinition&>(definition).nerves.has_value();
-    return watched ? SidePages{std::make_shared<NervePage>()} : SidePages{};
+    return watched ? AuxiliaryPages{std::make_shared<NervePage>()} : AuxiliaryPages{};
   }
   std::unique_ptr<Trials> trials(const Definition& definition,
                                  const SessionPlace& place) const override {

@@ -247,7 +247,7 @@ void BoneTrials::tell_hints(SessionFile& file) {
   file.add(std::span(rows));
 }
 
-SharedWorld* BoneTrials::share_world(bool leads) {
+SharedSimulation* BoneTrials::share_world(bool leads) {
   if (d_.hints) {
     throw InputError(fmt::format(
         "{}: has hints, which are given to somebody who drills alone; leave [hints] out of a "
@@ -266,8 +266,8 @@ SharedWorld* BoneTrials::share_world(bool leads) {
 
 /// Whether the bones of both sides are the same.
 void BoneTrials::tell_shared(SessionFile& file) {
-  const auto told =
-      shared_ && stage_ ? shared_->attend(*stage_->simulator) : std::optional<SharedBone::Told>{};
+  const auto told = shared_ && stage_ ? shared_->attend(*stage_->simulator)
+                                      : std::optional<SharedBone::BoneComparison>{};
   if (told) {
     file.event(told->differs ? "bone_differs" : "bone_checked", told->text);
   }

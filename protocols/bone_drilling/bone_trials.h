@@ -49,7 +49,7 @@ class BoneTrials final : public Trials {
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   void close_pass(SessionFile& file, std::int32_t row) override;
   void draw_pictures(const PlannedTrial& trial, const record::Phase& phase) override;
-  SharedWorld* share_world(bool leads) override;
+  SharedSimulation* share_world(bool leads) override;
   std::vector<std::string> notices() const override;
   std::string why_aborted() const override { return "the procedure was broken off"; }
 

@@ -165,11 +165,11 @@ bool SharedBone::wants_attention() const noexcept {
 }
 
 /// The first one is said, once for a bone.
-std::optional<SharedBone::Told> SharedBone::difference() noexcept {
+std::optional<SharedBone::BoneComparison> SharedBone::difference() noexcept {
   if (difference_told_) {
     return std::nullopt;
   }
-  Told told{true, {}};
+  BoneComparison told{true, {}};
   if (no_room_.load(std::memory_order_relaxed)) {
     told.text =
         "the bones of the two sides differ: the other side was silent for so long that "
@@ -190,8 +190,8 @@ std::optional<SharedBone::Told> SharedBone::difference() noexcept {
   return told;
 }
 
-std::optional<SharedBone::Told> SharedBone::attend(const bone::Simulator& simulator) {
-  if (std::optional<Told> found = difference()) {
+std::optional<SharedBone::BoneComparison> SharedBone::attend(const bone::Simulator& simulator) {
+  if (std::optional<BoneComparison> found = difference()) {
     return found;
   }
   if (!completed_.load(std::memory_order_acquire) || settled()) {
@@ -209,12 +209,14 @@ std::optional<SharedBone::Told> SharedBone::attend(const bone::Simulator& simula
   const std::uint64_t steps = steps_.load(std::memory_order_relaxed);
   told_.store(true, std::memory_order_release);
   return own == their
-             ? Told{false, fmt::format("the bones of both sides are the same after {} ticks of "
-                                       "drilling: checksum {:016x}",
-                                       steps, own)}
-             : Told{true, fmt::format("the bones of the two sides differ after {} ticks of "
-                                      "drilling: the checksum is {:016x} here and {:016x} there",
-                                      steps, own, their)};
+             ? BoneComparison{false,
+                              fmt::format("the bones of both sides are the same after {} ticks of "
+                                          "drilling: checksum {:016x}",
+                                          steps, own)}
+             : BoneComparison{
+                   true, fmt::format("the bones of the two sides differ after {} ticks of "
+                                     "drilling: the checksum is {:016x} here and {:016x} there",
+                                     steps, own, their)};
 }
 
 }  // namespace haptrial::protocols

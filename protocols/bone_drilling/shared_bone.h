@@ -7,7 +7,7 @@
 
 #include "core/bone/simulator/simulator.h"
 #include "protocols/bone_drilling/bone_parcels.h"
-#include "protocols/interface/shared_world.h"
+#include "protocols/interface/shared_simulation.h"
 
 namespace haptrial::protocols {
 
@@ -15,7 +15,7 @@ namespace haptrial::protocols {
 /// follows it tick by tick, bit for bit. With each tick goes a witness of all that was done to the
 /// bone, and at the end of a pass both sides compare checksums.
 /// docs/decisions/0013-led-bone-by-ticks.md.
-class SharedBone final : public SharedWorld {
+class SharedBone final : public SharedSimulation {
  public:
   explicit SharedBone(bool leads);
   bool leads() const noexcept { return leads_; }
@@ -29,11 +29,11 @@ class SharedBone final : public SharedWorld {
   void prepare_pass(std::int32_t trial) noexcept;
   /// Once the pass is completed and until it is settled: the checksum, which takes a while.
   /// @returns a sentence where there is something to say, and whether it is of a difference
-  struct Told {
+  struct BoneComparison {
     bool differs{false};
     std::string text;
   };
-  std::optional<Told> attend(const bone::Simulator& simulator);
+  std::optional<BoneComparison> attend(const bone::Simulator& simulator);
 
   // Servo thread: no allocation, lock, I/O or throw. ----------------------------------------------
 
@@ -67,7 +67,7 @@ class SharedBone final : public SharedWorld {
  private:
   void put(const BoneParcel& parcel) noexcept;
   void accept(const BoneParcel& parcel) noexcept;
-  std::optional<Told> difference() noexcept;
+  std::optional<BoneComparison> difference() noexcept;
 
   bool leads_;
   BoneParcels outbox_;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "protocols/definition/definition.h"
+#include "protocols/interface/auxiliary_page.h"
 #include "protocols/interface/replay.h"
-#include "protocols/interface/side_page.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {
@@ -39,7 +39,7 @@ class Protocol {
   virtual record::TableList tables() const { return {}; }
   /// The pages beside the console that a session of the definition has to offer, new ones.
   /// @param definition  of this protocol
-  virtual SidePages side_pages(const Definition& definition) const {
+  virtual AuxiliaryPages auxiliary_pages(const Definition& definition) const {
     static_cast<void>(definition);
     return {};
   }

@@ -18,10 +18,10 @@
 #include "core/record/rows/session_types.h"
 #include "core/stimulus/observer.h"
 #include "protocols/definition/schedule.h"
+#include "protocols/interface/auxiliary_page.h"
 #include "protocols/interface/drawing.h"
 #include "protocols/interface/pass.h"
 #include "protocols/interface/rig.h"
-#include "protocols/interface/side_page.h"
 
 namespace haptrial::record {
 class SessionReader;
@@ -30,7 +30,7 @@ class SessionReader;
 namespace haptrial::protocols {
 
 class SessionFile;
-class SharedWorld;
+class SharedSimulation;
 
 /// Where the trials of one session take place: what the runner tells a protocol.
 struct SessionPlace {
@@ -47,8 +47,8 @@ struct SessionPlace {
   bool window{false};      // the participant has a screen
   int frames_per_pass{0};  // pictures of what was shown, into frames_folder
   std::filesystem::path frames_folder;
-  SidePages side_pages;           // those of the protocol's that are served
-  std::filesystem::path resumed;  // the file of the earlier run; empty: none
+  AuxiliaryPages auxiliary_pages;  // those of the protocol's that are served
+  std::filesystem::path resumed;   // the file of the earlier run; empty: none
   /// To be called now and then while something takes seconds: what, and the share that is done.
   /// @throws RunError on an interrupt
   std::function<void(const char* what, double share)> pulse;
@@ -161,7 +161,7 @@ class Trials {
   virtual void take_lead(bool take) { static_cast<void>(take); }
   /// Before the first trial of a session that is linked to another: what of it must not be lost on
   /// the way, if there is a world that both work on. @param leads  this side's is the world
-  virtual SharedWorld* share_world(bool leads) {
+  virtual SharedSimulation* share_world(bool leads) {
     static_cast<void>(leads);
     return nullptr;
   }

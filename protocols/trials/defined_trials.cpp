@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Fields whose force is to work on the hand, a bit each: all but those that only give way.
-std::uint64_t pushing(const std::vector<scene::Field>& fields) {
+std::uint64_t active_fields(const std::vector<scene::Field>& fields) {
   std::uint64_t mask = 0;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto& kind = fields[i].kind;
@@ -60,7 +60,7 @@ std::vector<RecordedObject> recorded_of(const TrialsDefinition& d, std::size_t f
 }  // namespace
 
 std::vector<std::string> blocks_of(const TrialsDefinition& definition, const SessionPlace& place) {
-  const TrialSequence sequence(definition, taker_of(definition, place));
+  const TrialSequence sequence(definition, identity_of(definition, place));
   std::vector<std::string> names;
   for (const std::size_t block : sequence.blocks()) {
     names.push_back(definition.order.blocks[block].name);
@@ -73,7 +73,7 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       place_(place),
       root_(parsed_trials(definition)),
       names_(read_names(root_, definition)),
-      sequence_(definition, taker_of(definition, place)),
+      sequence_(definition, identity_of(definition, place)),
       object_files_(object_files(definition.objects)),
       touched_bodies_(definition.objects) {
   if (records_contacts(d_)) {
@@ -197,10 +197,10 @@ void DefinedTrials::check_resumed(const record::SessionReader& file) const {
 }
 
 std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
-  said_ = std::make_unique<SaidAnswer>();
+  said_ = std::make_unique<SimulatedAnswer>();
   TrialsRig::Briefing briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()};
   if (decisions_ != nullptr) {
-    briefing.decide = [this](const LeftDecision::Asked& asked) {
+    briefing.decide = [this](const LeftDecision::DecisionRequest& asked) {
       const PlannedTrial& plan = current_.plan;
       return decisions_->decide({plan.trial, plan.practice, variables_},
                                 d_.questions[asked.question], asked);
@@ -298,7 +298,7 @@ void DefinedTrials::number_bodies(const std::vector<scene::Field>& fields,
     for (SeenObject& seen : sight.objects) {
       const auto object = static_cast<std::size_t>(seen.object);
       const scene::Field& field = fields[fields.size() - d_.objects.size() + object];
-      const auto* body = std::get_if<scene::YieldingParameters>(&field.kind);
+      const auto* body = std::get_if<scene::DeformableObjectParameters>(&field.kind);
       if (body != nullptr && body->prepared() && d_.objects[object].seen_yielding) {
         seen.body = bodies_->number_of({body->body, body->moving, body->shape});
       }
@@ -309,7 +309,7 @@ void DefinedTrials::number_bodies(const std::vector<scene::Field>& fields,
 /// Bodies of their own rate come as late as they did.
 void DefinedTrials::be_late_again(std::size_t interval, std::vector<scene::Field>& fields) const {
   for (scene::Field& field : fields) {
-    if (auto* body = std::get_if<scene::YieldingParameters>(&field.kind)) {
+    if (auto* body = std::get_if<scene::DeformableObjectParameters>(&field.kind)) {
       for (const record::LateWindowRow& row : late_again_) {
         if (std::cmp_equal(row.interval, interval + 1) && row.object == field.name) {
           body->rates.late.push_back({row.tick, row.ticks});
@@ -354,18 +354,18 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
       std::move(scenes),
       StageMachine(std::move(stages), std::move(regions), presented.fields.size(), presented.felt),
       std::move(sights),
-      pushing(presented.fields),
+      active_fields(presented.fields),
       d_.intervals.size() > 1 ? static_cast<int>(current_.values.intervals[place]) : -1,
       recorded_of(d_, presented.fields.size()),
       presented.fields.size() - d_.objects.size()};
 }
 
-std::vector<Asked> DefinedTrials::make_questions() {
-  std::vector<Asked> asked;
+std::vector<PresentedQuestion> DefinedTrials::make_questions() {
+  std::vector<PresentedQuestion> asked;
   right_.clear();
   int marker = 0;
   for (const Question& question : d_.questions) {
-    Asked each{&question};
+    PresentedQuestion each{&question};
     each.marker = marker;
     marker += static_cast<int>(question.answers().size());
     if (!question.correct.empty()) {

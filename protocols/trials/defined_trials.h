@@ -67,7 +67,7 @@ class DefinedTrials final : public Trials {
   void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
   void be_late_again(std::size_t interval, std::vector<scene::Field>& fields) const;
   IntervalRun make_interval(std::size_t place, RandomStream& random);
-  std::vector<Asked> make_questions();
+  std::vector<PresentedQuestion> make_questions();
   void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
   double outcome_of(const std::vector<record::ResponseRow>& responses);
   bool comes_again(const std::vector<record::ResponseRow>& responses) const;
@@ -88,7 +88,7 @@ class DefinedTrials final : public Trials {
   TrialSequence sequence_;
   NextTrial current_;
   LiveTrials live_;
-  mutable std::unique_ptr<SaidAnswer> said_;                            // of a virtual participant
+  mutable std::unique_ptr<SimulatedAnswer> said_;                       // of a virtual participant
   mutable TrialsRig* rig_{nullptr};                                     // likewise; the runner's
   std::unique_ptr<ContactLog> contacts_;                                // null: none are recorded
   std::shared_ptr<SeenBodies> bodies_{std::make_shared<SeenBodies>()};  // for the screen

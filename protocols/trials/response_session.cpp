@@ -54,13 +54,13 @@ double press_of(const ObserverPlan& plan, double otherwise) {
 }  // namespace
 
 /// One participant in one session.
-class ResponseSession::Sitting {
+class ResponseSession::SimulatedSession {
  public:
-  Sitting(const ResponseSession& s, const SessionPlace& place)
+  SimulatedSession(const ResponseSession& s, const SessionPlace& place)
       : s_(s),
         owned_(s.names_->take()),
         names_(*owned_),
-        sequence_(s.d_, taker_of(s.d_, place)),
+        sequence_(s.d_, identity_of(s.d_, place)),
         person_(derived_seed(place.hand_person_seed, "subject")),
         seed_(derived_seed(place.hand_session_seed, "subject")),
         senses_(s.d_.observer.people->draw_senses(person_)),
@@ -68,9 +68,9 @@ class ResponseSession::Sitting {
         levels_(senses_, s.d_.observer.senses, {s.press_}, judgement_, seed_),
         decider_(s.d_.observer, judgement_, seed_) {}
 
-  ~Sitting() { s_.names_->give_back(std::move(owned_)); }
-  Sitting(const Sitting&) = delete;
-  Sitting& operator=(const Sitting&) = delete;
+  ~SimulatedSession() { s_.names_->give_back(std::move(owned_)); }
+  SimulatedSession(const SimulatedSession&) = delete;
+  SimulatedSession& operator=(const SimulatedSession&) = delete;
 
   std::vector<AnsweredTrial> run() {
     std::vector<AnsweredTrial> trials;
@@ -178,7 +178,7 @@ void ResponseSession::check_met() const {
   SessionPlace place;
   place.subject = "S01";
   give_seeds(place);
-  TrialSequence sequence(d_, taker_of(d_, place));
+  TrialSequence sequence(d_, identity_of(d_, place));
   if (const auto next = sequence.next()) {
     std::unique_ptr<Names> owned = names_->take();
     Names& names = *owned;
@@ -189,7 +189,7 @@ void ResponseSession::check_met() const {
 }
 
 std::vector<AnsweredTrial> ResponseSession::answered(const SessionPlace& place) const {
-  return Sitting(*this, place).run();
+  return SimulatedSession(*this, place).run();
 }
 
 }  // namespace haptrial::protocols

@@ -42,7 +42,7 @@ class ResponseSession {
   std::vector<AnsweredTrial> answered(const SessionPlace& place) const;
 
  private:
-  class Sitting;
+  class SimulatedSession;
 
   const StudiedDefinition& d_;
   std::string met_;

@@ -47,7 +47,7 @@ class TrialsProtocol final : public Protocol {
     }
     HandleWords words = check_every_value(d);
     d.felt = std::move(words.lines);
-    d.restless = std::move(words.warnings);
+    d.underdamped = std::move(words.warnings);
     for (const sound::Cue& cue : d.cues.cues) {
       sound::rendered(cue, 0);  // a file that cannot be played is a mistake of the definition
     }

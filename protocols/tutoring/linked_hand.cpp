@@ -7,10 +7,10 @@
 
 namespace haptrial::protocols {
 
+using network::PassBarrier;
 using network::TickFlag;
 using network::TickMessage;
 using network::TurnPhase;
-using network::Turns;
 
 LinkedHand::LinkedHand(const Parts& parts)
     : p_(parts),
@@ -64,7 +64,7 @@ bool LinkedHand::decided() const noexcept {
   return !turns_.open() || turns_.own().phase != TurnPhase::kReady;
 }
 
-Turns::Step LinkedHand::begin_tick(bool own_done, bool holds) noexcept {
+PassBarrier::Step LinkedHand::begin_tick(bool own_done, bool holds) noexcept {
   listen();
   if (turns_.open()) {  // else it was aborted before it began
     step_ = turns_.step(side_.newest().turn, own_done, alone() || (own_done && !holds));
@@ -124,7 +124,8 @@ void LinkedHand::step(const PointState& tool, const Eigen::Vector3d& own_force,
 }
 
 void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, double dt) noexcept {
-  const bool first_phase = turns_.own().item % Turns::kPhases == 0;  // what follows may be a test
+  const bool first_phase =
+      turns_.own().item % PassBarrier::kPhases == 0;  // what follows may be a test
   runs_ = first_phase && out.stage == record::Stage::kRun;
   const bool partner_runs = (side_.newest().flags & TickFlag::kEngaged) != 0;
   share_lead(runs_ && partner_runs && turns_.together() && side_.linked(), dt);

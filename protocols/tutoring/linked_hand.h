@@ -9,7 +9,7 @@
 #include "core/network/channel/reliable_stream.h"
 #include "core/network/channel/wire.h"
 #include "core/network/side/coupled_side.h"
-#include "core/network/side/turns.h"
+#include "core/network/side/pass_barrier.h"
 #include "core/realtime/block_log.h"
 #include "core/realtime/latest_value.h"
 #include "core/record/link/link_row.h"
@@ -33,21 +33,21 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
     const TutoringOptions& options;
     LinkRole role{LinkRole::kLearns};
     network::Wire& wire;
-    TickLog* inner{nullptr};             // the protocol's own; null: none
-    std::function<void()> stop;          // an emergency stop of the own session
-    network::Freight* freight{nullptr};  // that must not be lost; null: there is none
+    TickLog* inner{nullptr};                     // the protocol's own; null: none
+    std::function<void()> stop;                  // an emergency stop of the own session
+    network::ReliablePayload* freight{nullptr};  // that must not be lost; null: there is none
   };
   /// All parts outlive it.
   explicit LinkedHand(const Parts& parts);
 
   // One pass, in this order.
-  /// @param item  as Turns has it
+  /// @param item  as PassBarrier has it
   void await(std::uint32_t item) noexcept;
   bool decided() const noexcept;  // whether the pass may begin, or is to be aborted
   void begin_pass() noexcept { begun_ = true; }
   /// A tick of the pass, first of all. @param own_done  whether the own part is completed
   /// @param holds  whether the pass then lasts until the other side has completed it too
-  network::Turns::Step begin_tick(bool own_done, bool holds) noexcept;
+  network::PassBarrier::Step begin_tick(bool own_done, bool holds) noexcept;
   /// The same tick: what the hand feels of both worlds. @param out  of the own world; changed
   void couple(PassOutput& out, const device::DeviceReading& reading, double dt) noexcept;
   /// Whether nothing is to be expected of the partner any more.
@@ -95,8 +95,8 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   Parts p_;
   network::CoupledSide side_;
   std::unique_ptr<network::ReliableStream> stream_;  // where there is freight
-  network::Turns turns_;
-  network::Turns::Step step_{network::Turns::Step::kWait};  // the last one
+  network::PassBarrier turns_;
+  network::PassBarrier::Step step_{network::PassBarrier::Step::kWait};  // the last one
   LinkQuality quality_;
   control::Handover coupled_;  // how much of the coupling is on
   control::Handover claim_;    // of the lead, by this side

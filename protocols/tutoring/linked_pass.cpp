@@ -2,7 +2,7 @@
 
 namespace haptrial::protocols {
 
-using network::Turns;
+using network::PassBarrier;
 
 bool LinkedPass::may_begin() noexcept {
   if (!awaited_) {
@@ -36,16 +36,16 @@ bool LinkedPass::own_done() const noexcept {
 
 PassOutput LinkedPass::tick(const Readings& readings, double dt) noexcept {
   const bool done = inner_->state() == PassState::kCompleted;
-  const Turns::Step step = hand_->begin_tick(own_done(), holds_);
+  const PassBarrier::Step step = hand_->begin_tick(own_done(), holds_);
   ticked_ = !done && state_ == PassState::kRunning;
   if (ticked_) {  // also on the tick with which it is aborted: the file has that tick
     last_ = inner_->tick(readings, dt);
   }
   PassOutput out = ticked_ ? last_ : hold(readings);
-  if (step == Turns::Step::kComplete) {
+  if (step == PassBarrier::Step::kComplete) {
     state_ = PassState::kCompleted;
-  } else if (step == Turns::Step::kAgain || step == Turns::Step::kSkip ||
-             step == Turns::Step::kBreak) {
+  } else if (step == PassBarrier::Step::kAgain || step == PassBarrier::Step::kSkip ||
+             step == PassBarrier::Step::kBreak) {
     state_ = PassState::kAborted;
     why_ = step;
   } else if (inner_->state() == PassState::kAborted) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "protocols/interface/pass.h"
-#include "protocols/interface/shared_world.h"
+#include "protocols/interface/shared_simulation.h"
 #include "protocols/tutoring/linked_hand.h"
 
 namespace haptrial::protocols {
@@ -10,12 +10,12 @@ namespace haptrial::protocols {
 /// both run it.
 class LinkedPass final : public Pass {
  public:
-  /// @param item   as network::Turns has it
+  /// @param item   as network::PassBarrier has it
   /// @param holds  whether it lasts until the other side has completed it too
   /// @param world  that both work on; null: there is none
   /// Inner pass, hand and world outlive it.
   LinkedPass(Pass& inner, LinkedHand& hand, std::uint32_t item, bool holds,
-             const SharedWorld* world = nullptr) noexcept
+             const SharedSimulation* world = nullptr) noexcept
       : inner_(&inner), hand_(&hand), item_(item), holds_(holds), world_(world) {}
 
   bool may_begin() noexcept override;
@@ -27,7 +27,7 @@ class LinkedPass final : public Pass {
   bool wants_attention() noexcept override;
 
   /// Why it was aborted, if it was; kRun: for a reason of this side.
-  network::Turns::Step why() const noexcept { return why_; }
+  network::PassBarrier::Step why() const noexcept { return why_; }
 
  private:
   bool own_done() const noexcept;
@@ -37,11 +37,11 @@ class LinkedPass final : public Pass {
   LinkedHand* hand_;
   std::uint32_t item_;
   bool holds_;
-  const SharedWorld* world_;
+  const SharedSimulation* world_;
   bool awaited_{false};
   bool ticked_{false};  // the inner pass, in this tick
   PassState state_{PassState::kRunning};
-  network::Turns::Step why_{network::Turns::Step::kRun};
+  network::PassBarrier::Step why_{network::PassBarrier::Step::kRun};
   PassOutput last_;  // of the inner pass
 };
 

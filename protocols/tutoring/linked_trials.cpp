@@ -16,7 +16,7 @@
 namespace haptrial::protocols {
 namespace {
 
-using network::Turns;
+using network::PassBarrier;
 
 /// What an aborted trial may cost on a real clock before it is left.
 constexpr int kMostAgain = 3;
@@ -96,7 +96,7 @@ class LinkedTrials final : public Trials {
   bool real_;
   std::uint64_t seed_;                       // of the session
   const TutoringNetwork* network_{nullptr};  // of the present trial; null: of all alike
-  SharedWorld* world_;                       // of the inner trials; null: there is none
+  SharedSimulation* world_;                  // of the inner trials; null: there is none
   LinkedHand hand_;
   std::optional<LinkedPass> pass_;
   std::uint32_t walked_{0};    // trials in the order of the plan, to the present one
@@ -133,7 +133,7 @@ Pass& LinkedTrials::make_pass(PlannedTrial& trial, const record::Phase& phase) {
   // What is simulated again from the file needs every tick of its pass, and a world that both work
   // on is the same only when both are through.
   const bool holds = inner_->tick_log() == nullptr || world_ != nullptr;
-  pass_.emplace(inner_->make_pass(trial, phase), hand_, walked_ * Turns::kPhases + at, holds,
+  pass_.emplace(inner_->make_pass(trial, phase), hand_, walked_ * PassBarrier::kPhases + at, holds,
                 world_);
   return *pass_;
 }
@@ -182,12 +182,12 @@ void LinkedTrials::close_pass(SessionFile& file, std::int32_t row) {
 }
 
 std::string LinkedTrials::why_aborted() const {
-  switch (pass_ ? pass_->why() : Turns::Step::kRun) {
-    case Turns::Step::kBreak:
+  switch (pass_ ? pass_->why() : PassBarrier::Step::kRun) {
+    case PassBarrier::Step::kBreak:
       return "the other side aborted it";
-    case Turns::Step::kAgain:
+    case PassBarrier::Step::kAgain:
       return "the other side presents the trial again";
-    case Turns::Step::kSkip:
+    case PassBarrier::Step::kSkip:
       return "the other side has left the trial";
     default:
       return inner_->why_aborted();
@@ -196,13 +196,13 @@ std::string LinkedTrials::why_aborted() const {
 
 /// On a simulated clock nobody attends to either side, and both do the same by themselves.
 AfterAbort LinkedTrials::after_abort() const {
-  switch (pass_ ? pass_->why() : Turns::Step::kRun) {
-    case Turns::Step::kBreak:
+  switch (pass_ ? pass_->why() : PassBarrier::Step::kRun) {
+    case PassBarrier::Step::kBreak:
       return !real_ ? AfterAbort::kAsAsked
                     : (attempts_ <= kMostAgain ? AfterAbort::kAgain : AfterAbort::kSkip);
-    case Turns::Step::kAgain:
+    case PassBarrier::Step::kAgain:
       return attempts_ <= kMostAgain ? AfterAbort::kAgain : AfterAbort::kSkip;
-    case Turns::Step::kSkip:
+    case PassBarrier::Step::kSkip:
       return AfterAbort::kSkip;
     default:
       return real_ && hand_.stopped_by_partner() ? AfterAbort::kAgain : AfterAbort::kAsAsked;

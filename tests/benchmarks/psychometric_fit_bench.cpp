@@ -152,7 +152,7 @@ void cover_by_profile(const Observer& observer, std::size_t observers) {
 
 void cover_by_bootstrap(const Observer& observer, std::size_t observers, std::size_t resamples,
                         bool parametric) {
-  const std::vector<Asked> asked{{Reading::kThreshold}, {Reading::kWidth}};
+  const std::vector<BootstrapTarget> asked{{Reading::kThreshold}, {Reading::kWidth}};
   std::vector<BootstrappedFit> fits(observers);
   const double start = seconds();
   haptrial::parallel_for(observers, 1, [&](std::size_t i) {

@@ -34,7 +34,8 @@ constexpr double kTick = 0.001;  // [s]
 SharedFeltMesh block(int cells) {
   FeltSides sides;
   sides.felt = {BodySide::kTop};
-  return std::make_shared<const FeltMesh>(felt_block({0.048, 0.024, 0.048}, cells, sides, "block"));
+  return std::make_shared<const HapticMesh>(
+      felt_block({0.048, 0.024, 0.048}, cells, sides, "block"));
 }
 
 Tissue tissue_with(double depth) {
@@ -95,7 +96,7 @@ SharedFeltMesh ellipsoid() {
   for (Vector3d& vertex : surface.vertices) {
     vertex = vertex.cwiseProduct(kHalfAxes);
   }
-  return std::make_shared<const FeltMesh>(felt_solid(surface, 22, {}, "ellipsoid"));
+  return std::make_shared<const HapticMesh>(felt_solid(surface, 22, {}, "ellipsoid"));
 }
 
 /// The ball's way round the upper half of the ellipsoid, 0 to 2 mm deep.

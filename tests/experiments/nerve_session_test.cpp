@@ -261,12 +261,12 @@ TEST(LiveNerveTest, ATechnicianSeesASessionOnTheRealClock) {
   SessionRequest request = request_of(definition, folder / "S01.h5");
   request.clock = realtime::ClockKind::kReal;
   request.device.name = "virtual";
-  request.side_pages = request.protocol->side_pages(definition);
-  const auto page = protocols::page_of<protocols::NervePage>(request.side_pages);
+  request.auxiliary_pages = request.protocol->auxiliary_pages(definition);
+  const auto page = protocols::page_of<protocols::NervePage>(request.auxiliary_pages);
   ASSERT_NE(page, nullptr);
   const SessionSummary done = run_session(request);
   EXPECT_EQ(done.dropped, 0u);
-  const nerve::MonitorDesk::View view = page->desk()->since(0, 0);
+  const nerve::MonitorDesk::View view = page->controller()->since(0, 0);
   EXPECT_EQ(view.channels.size(), 3u);
   EXPECT_GT(view.next_column, 400u);
   const record::SessionReader reader(folder / "S01.h5");

@@ -299,9 +299,9 @@ TEST(OwnProtocolTest, AnAssistantsPageStandsBesideTheConsole) {
   const test::TemporaryFolder folder;
   SessionControl control;
   SessionRequest request = request_for(folder / "S01.h5");
-  request.side_pages = request.protocol->side_pages(*request.definition);
+  request.auxiliary_pages = request.protocol->auxiliary_pages(*request.definition);
   ConsoleOptions options;
-  options.sides = request.side_pages;
+  options.sides = request.auxiliary_pages;
   const Console console(control, options);
   EXPECT_THAT(console.side_url("springs"), testing::HasSubstr("/springs?token=" + console.token()));
   const std::string page = answer_of(console, "GET", "/springs");
@@ -324,7 +324,7 @@ TEST(OwnProtocolTest, AnAssistantsPageStandsBesideTheConsole) {
   EXPECT_THAT(events, testing::HasSubstr("\"trial\":3"));
 }
 
-class ReservedPage final : public protocols::SidePage {
+class ReservedPage final : public protocols::AuxiliaryPage {
  public:
   explicit ReservedPage(std::string name) : name_(std::move(name)) {}
   std::string_view name() const override { return name_; }

@@ -21,7 +21,7 @@ std::vector<std::uint8_t> labels_left(const Procedure& procedure) {
     StandingBone bone;
     void view(const View&) {}
     void tick(const ToolTick&) {}
-    void crumb(const Crumb& crumb) { bone.take_part(crumb.voxel); }
+    void crumb(const Debris& crumb) { bone.take_part(crumb.voxel); }
     void removal(const Removal& removal) { bone.take(removal.voxel); }
     void cut(const Removal& cut) { bone.take(cut.voxel); }
   };

@@ -23,7 +23,7 @@ void DrillingMeter::view(const View& view) {
   visibility_.look_from(view.eye);
 }
 
-void DrillingMeter::crumb(const Crumb& crumb) {
+void DrillingMeter::crumb(const Debris& crumb) {
   taken_.clear();
   visibility_.crumble(crumb.voxel, &taken_);
   injuries_.crumble(taken_);

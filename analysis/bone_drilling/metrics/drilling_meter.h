@@ -18,7 +18,7 @@ class DrillingMeter {
                 const std::vector<ProcedureTool>& tools, double rate, StudyBones& bones);
 
   void view(const View& view);
-  void crumb(const Crumb& crumb);
+  void crumb(const Debris& crumb);
   void tick(const ToolTick& tick);
   void removal(const Removal& removal);
   void cut(const Removal& cut);

@@ -160,7 +160,7 @@ std::vector<Injury> injuries(const Procedure& procedure, StudyBones& bones) {
     std::vector<bone::Voxel> taken{};
     double time() const { return static_cast<double>(ticks) / procedure.rate; }
     void view(const View&) {}
-    void crumb(const Crumb& crumb) {
+    void crumb(const Debris& crumb) {
       taken.clear();
       bone.take_part(crumb.voxel, &taken);
       meter.crumble(taken);

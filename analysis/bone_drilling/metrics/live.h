@@ -51,7 +51,7 @@ class LiveMetrics {
     std::vector<Removal> removals;
     std::vector<Removal> cuts;
     std::vector<View> views;
-    std::vector<Crumb> crumbs;
+    std::vector<Debris> crumbs;
   } waiting_;
 };
 

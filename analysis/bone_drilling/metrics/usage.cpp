@@ -103,7 +103,7 @@ Usage usage(const Procedure& procedure) {
   struct Visitor {
     UsageMeter meter;
     void view(const View& view) { meter.view(view); }
-    void crumb(const Crumb&) {}
+    void crumb(const Debris&) {}
     void tick(const ToolTick& tick) { meter.tick(tick); }
     void removal(const Removal& removal) { meter.remove(removal); }
     void cut(const Removal& cut) { meter.remove(cut); }

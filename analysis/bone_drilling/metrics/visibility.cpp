@@ -11,7 +11,7 @@ Visibility visibility(const Procedure& procedure) {
     ToolTick last{};
     bool any{false};
     void view(const View& view) { meter.look_from(view.eye); }
-    void crumb(const Crumb& crumb) { meter.crumble(crumb.voxel); }
+    void crumb(const Debris& crumb) { meter.crumble(crumb.voxel); }
     void tick(const ToolTick& tick) {
       last = tick;
       any = true;

@@ -12,7 +12,7 @@ namespace haptrial::analysis::drilling {
 
 /// Shows a procedure's rows to a visitor in the order in which they happened; of one tick first the
 /// view, then crumbs, the tick itself, removals, cuts.
-/// @param visitor  has view(View), crumb(Crumb), tick(ToolTick), removal(Removal), cut(Removal)
+/// @param visitor  has view(View), crumb(Debris), tick(ToolTick), removal(Removal), cut(Removal)
 /// @param through  only rows up to this sequence number; `from` is where each list goes on, and is
 ///                 brought up to date
 template <class Rows, class Visitor>

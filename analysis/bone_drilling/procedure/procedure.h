@@ -74,7 +74,7 @@ struct View {
 };
 
 /// A voxel of a part that turned to dust, with all that hung together with it.
-struct Crumb {
+struct Debris {
   std::uint64_t sequence{0};
   bone::Voxel voxel{bone::Voxel::Zero()};
 };
@@ -108,7 +108,7 @@ struct Procedure {
   std::vector<Removal> removals;  // by burrs
   std::vector<Removal> cuts;      // by the cut plane, which has no force
   std::vector<View> views;
-  std::vector<Crumb> crumbs;
+  std::vector<Debris> crumbs;
   std::vector<Torn> tears;
   /// Heat and blood since the bone was new; none where the definition has neither.
   std::optional<record::FieldRow> field;

@@ -30,8 +30,8 @@ std::vector<double> shares_of(std::span<const TrialBlock> blocks) {
   return shares;
 }
 
-void check_asked(std::span<const Asked> asked) {
-  for (const Asked& a : asked) {
+void check_asked(std::span<const BootstrapTarget> asked) {
+  for (const BootstrapTarget& a : asked) {
     if (!(a.at > 0.0 && a.at < 1.0)) {
       throw std::invalid_argument("at of a reading must lie inside (0, 1)");
     }
@@ -42,9 +42,9 @@ void check_asked(std::span<const Asked> asked) {
 }
 
 /// For each asked, the reading without each trial of each block.
-std::vector<std::vector<std::vector<double>>> without_trials(const LikelihoodFitter& fitter,
-                                                             std::span<const TrialBlock> blocks,
-                                                             std::span<const Asked> asked) {
+std::vector<std::vector<std::vector<double>>> without_trials(
+    const LikelihoodFitter& fitter, std::span<const TrialBlock> blocks,
+    std::span<const BootstrapTarget> asked) {
   const std::vector<int> correct = answers_of(blocks);
   std::vector<std::vector<std::vector<double>>> result(
       asked.size(), std::vector<std::vector<double>>(blocks.size()));
@@ -73,7 +73,7 @@ struct Drawn {
 };
 
 Drawn drawn_fits(const LikelihoodFitter& fitter, std::span<const TrialBlock> blocks,
-                 std::span<const Asked> asked, const AnswerDraws& draws,
+                 std::span<const BootstrapTarget> asked, const AnswerDraws& draws,
                  const Resampling& resampling) {
   Drawn drawn{std::vector(asked.size(), std::vector<double>(resampling.count)),
               std::vector<char>(resampling.count), std::vector<double>(resampling.count)};
@@ -99,7 +99,7 @@ Drawn drawn_fits(const LikelihoodFitter& fitter, std::span<const TrialBlock> blo
 
 }  // namespace
 
-double read_off(const PsychometricFunction& function, const Asked& asked) {
+double read_off(const PsychometricFunction& function, const BootstrapTarget& asked) {
   const psychometric::PsychometricParameters& p = function.parameters();
   switch (asked.reading) {
     case Reading::kThreshold:
@@ -126,7 +126,7 @@ double read_off(const PsychometricFunction& function, const Asked& asked) {
 }
 
 BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
-                              std::span<const Asked> asked, const FitBootstrap& how) {
+                              std::span<const BootstrapTarget> asked, const FitBootstrap& how) {
   check_asked(asked);
   const LikelihoodFitter fitter(options, blocks);
   BootstrappedFit result;

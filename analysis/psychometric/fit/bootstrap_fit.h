@@ -24,14 +24,14 @@ enum class Reading {
   kWeberQuartiles,      // (level of S = 3/4 - that of 1/4) / 2 / standard: "larger" or "smaller"
 };
 
-struct Asked {
+struct BootstrapTarget {
   Reading reading{Reading::kThreshold};
   double at{0.5};        // where the reading takes a share or a probability, inside (0, 1)
   double standard{1.0};  // of a Weber fraction, > 0 [unit of the level]
 };
 
 /// The number; NaN where the function does not have it.
-double read_off(const psychometric::PsychometricFunction& function, const Asked& asked);
+double read_off(const psychometric::PsychometricFunction& function, const BootstrapTarget& asked);
 
 struct FitBootstrap {
   Resampling resampling{.stream = "psychometric bootstrap"};
@@ -59,7 +59,7 @@ struct BootstrappedFit {
 /// @throws std::invalid_argument as LikelihoodFitter, and naming what of `asked` breaks its bound.
 /// Source: Wichmann and Hill 2001, Perception & Psychophysics 63, 1293 and 1314.
 BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
-                              std::span<const Asked> asked, const FitBootstrap& how);
+                              std::span<const BootstrapTarget> asked, const FitBootstrap& how);
 
 /// What changes when a block is left out.
 struct BlockInfluence {

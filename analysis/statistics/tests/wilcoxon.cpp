@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kExactBelow = 50;
 
-using Ways = std::vector<double>;  // in which a sum of ranks of 0, 1, ... units can arise
+using RankSumCounts = std::vector<double>;  // in which a sum of ranks of 0, 1, ... units can arise
 
 /// Ranks as whole numbers of units: of halves where values tie.
 struct WholeRanks {
@@ -32,9 +32,9 @@ WholeRanks whole(const Ranks& ranks) {
 }
 
 /// Sums of the positive ranks: each rank is positive or not.
-Ways signed_rank_ways(const WholeRanks& ranks) {
+RankSumCounts signed_rank_ways(const WholeRanks& ranks) {
   const auto total = std::accumulate(ranks.ranks.begin(), ranks.ranks.end(), 0L);
-  Ways ways(static_cast<std::size_t>(total) + 1, 0.0);
+  RankSumCounts ways(static_cast<std::size_t>(total) + 1, 0.0);
   ways[0] = 1.0;
   for (const long rank : ranks.ranks) {
     for (long sum = total; sum >= rank; --sum) {
@@ -45,9 +45,10 @@ Ways signed_rank_ways(const WholeRanks& ranks) {
 }
 
 /// Sums of the ranks of a sample: every choice of `count` ranks.
-Ways chosen_rank_ways(const WholeRanks& ranks, std::size_t count) {
+RankSumCounts chosen_rank_ways(const WholeRanks& ranks, std::size_t count) {
   const auto total = std::accumulate(ranks.ranks.begin(), ranks.ranks.end(), 0L);
-  std::vector<Ways> ways(count + 1, Ways(static_cast<std::size_t>(total) + 1, 0.0));
+  std::vector<RankSumCounts> ways(count + 1,
+                                  RankSumCounts(static_cast<std::size_t>(total) + 1, 0.0));
   ways[0][0] = 1.0;
   long most = 0;  // sum of the ranks so far
   for (const long rank : ranks.ranks) {
@@ -64,7 +65,7 @@ Ways chosen_rank_ways(const WholeRanks& ranks, std::size_t count) {
 
 /// The share of the ways whose sum is as far out as the one found.
 /// @param twice_middle  twice the expected sum
-double exact_p(const Ways& ways, long found, long twice_middle, Tail tail) {
+double exact_p(const RankSumCounts& ways, long found, long twice_middle, Tail tail) {
   double beyond = 0.0, all = 0.0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const auto sum = static_cast<long>(i);
@@ -123,7 +124,7 @@ Defined<RankTest> wilcoxon_signed_rank(std::span<const double> a, std::span<cons
   const auto n = static_cast<double>(result.count);
   if (result.exact) {
     const WholeRanks units = whole(ranks);
-    const Ways ways = signed_rank_ways(units);
+    const RankSumCounts ways = signed_rank_ways(units);
     result.p = exact_p(ways, std::lround(static_cast<double>(units.unit) * result.statistic),
                        static_cast<long>(ways.size()) - 1, tail);
   } else {

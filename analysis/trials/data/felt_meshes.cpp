@@ -10,14 +10,14 @@ namespace haptrial::analysis::trials {
 namespace {
 
 /// A mesh file as it was, and the sessions in which it was felt.
-struct FeltMesh {
+struct HapticMesh {
   record::ObjectFileRow file;
   std::vector<std::string> sessions;
 };
 
 void add_mesh(const record::ObjectFileRow& file, const std::string& session,
-              std::vector<FeltMesh>& felt) {
-  const auto same = std::ranges::find_if(felt, [&](const FeltMesh& mesh) {
+              std::vector<HapticMesh>& felt) {
+  const auto same = std::ranges::find_if(felt, [&](const HapticMesh& mesh) {
     return mesh.file.bytes == file.bytes && mesh.file.checksum == file.checksum;
   });
   if (same == felt.end()) {
@@ -30,7 +30,7 @@ void add_mesh(const record::ObjectFileRow& file, const std::string& session,
 }  // namespace
 
 std::vector<std::string> unlike_meshes(const std::vector<StudySession>& sessions) {
-  std::map<std::string, std::vector<FeltMesh>> by_object;
+  std::map<std::string, std::vector<HapticMesh>> by_object;
   for (const StudySession& session : sessions) {
     for (const record::ObjectFileRow& file : session.meshes) {
       add_mesh(file, session.file, by_object[file.name]);
@@ -42,7 +42,7 @@ std::vector<std::string> unlike_meshes(const std::vector<StudySession>& sessions
       continue;
     }
     std::vector<std::string> parts;
-    for (const FeltMesh& mesh : felt) {
+    for (const HapticMesh& mesh : felt) {
       parts.push_back(fmt::format("'{}' with the checksum {:016x} in {}", mesh.file.file,
                                   mesh.file.checksum, fmt::join(mesh.sessions, ", ")));
     }

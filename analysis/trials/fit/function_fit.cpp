@@ -23,13 +23,13 @@ Reading weber_reading(const TrialsPlan& plan) {
   return guess == 0.0 ? Reading::kWeberQuartiles : Reading::kWeberThreshold;
 }
 
-std::vector<Asked> asked_of(const TrialsPlan& plan) {
+std::vector<BootstrapTarget> asked_of(const TrialsPlan& plan) {
   const double share = plan.function.share;
-  std::vector<Asked> asked{{Reading::kLevelOfShare, share},
-                           {Reading::kWidth},
-                           {Reading::kSlope, share},
-                           {Reading::kLapse},
-                           {Reading::kGuess}};
+  std::vector<BootstrapTarget> asked{{Reading::kLevelOfShare, share},
+                                     {Reading::kWidth},
+                                     {Reading::kSlope, share},
+                                     {Reading::kLapse},
+                                     {Reading::kGuess}};
   if (plan.reference) {
     asked.push_back({weber_reading(plan), share, *plan.reference});
   }
@@ -91,7 +91,7 @@ void take_stated(FunctionReadings& r, const StatedFit& fit, const TrialsPlan& pl
 }
 
 /// The median of the draws of a number that is read off a function, with its central interval.
-Estimated drawn(const StatedFit& fit, const TrialsPlan& plan, const Asked& asked) {
+Estimated drawn(const StatedFit& fit, const TrialsPlan& plan, const BootstrapTarget& asked) {
   const auto curve = psychometric::curve_of(plan.function);
   std::vector<double> numbers;
   for (const FittedParameters& draw : fit.draws) {
@@ -171,12 +171,12 @@ FunctionReadings readings_of(const BootstrappedFit& fit, const TrialsPlan& plan)
 
 /// Without a bootstrap: readings alone.
 BootstrappedFit bare_fit(const std::vector<TrialBlock>& blocks, const LikelihoodOptions& options,
-                         const std::vector<Asked>& asked) {
+                         const std::vector<BootstrapTarget>& asked) {
   BootstrappedFit result;
   result.fit = likelihood_fit(blocks, options);
   const auto function = fitted_function(options.function, result.fit.parameters);
   result.deviance = deviance_of(function, blocks);
-  for (const Asked& each : asked) {
+  for (const BootstrapTarget& each : asked) {
     result.estimates.push_back(read_off(function, each));
   }
   return result;
@@ -239,7 +239,7 @@ std::string untold_because(const FunctionFit& result, const StatedFit& fit,
 
 void fit_stated(FunctionFit& result, const LikelihoodOptions& options, const TrialsPlan& plan,
                 int threads) {
-  std::vector<Asked> asked = asked_of(plan);
+  std::vector<BootstrapTarget> asked = asked_of(plan);
   const std::size_t band = asked.size();
   for (const double share : kBandShares) {
     asked.push_back({Reading::kLevelOfShare, share});

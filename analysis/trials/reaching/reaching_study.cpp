@@ -14,11 +14,11 @@ constexpr double kSamePerturbation = 0.25;  // blocks that differ by less are al
 constexpr double kLeastUnit = 1e-5;         // error below which a field disturbs nobody [m]
 
 /// Where reaches stand: number of the participant, of the block, and of the trial in the block.
-struct Standing {
+struct ReachIndex {
   std::size_t participant{0}, block{0}, place{0};
 };
 
-std::vector<Standing> standings(const TrialsData& data, ReachingResult& result) {
+std::vector<ReachIndex> standings(const TrialsData& data, ReachingResult& result) {
   std::map<std::string, std::size_t> blocks;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> places;
   for (const StudySession& session : data.sessions) {
@@ -27,14 +27,14 @@ std::vector<Standing> standings(const TrialsData& data, ReachingResult& result) 
   std::sort(result.participants.begin(), result.participants.end());
   result.participants.erase(std::unique(result.participants.begin(), result.participants.end()),
                             result.participants.end());
-  std::vector<Standing> all;
+  std::vector<ReachIndex> all;
   for (const StudyReach& reach : result.reaches) {
     const std::string& name = data.session_of(data.trials[reach.trial]).participant;
     const auto [block, fresh] = blocks.emplace(reach.block, result.blocks.size());
     if (fresh) {
       result.blocks.emplace_back().name = reach.block;
     }
-    Standing own;
+    ReachIndex own;
     own.participant = static_cast<std::size_t>(
         std::lower_bound(result.participants.begin(), result.participants.end(), name) -
         result.participants.begin());
@@ -48,7 +48,7 @@ std::vector<Standing> standings(const TrialsData& data, ReachingResult& result) 
   return all;
 }
 
-void lay_out(const std::vector<Standing>& standings, ReachingResult& result) {
+void lay_out(const std::vector<ReachIndex>& standings, ReachingResult& result) {
   std::vector<double> sums(result.blocks.size()), counts(result.blocks.size());
   for (std::size_t i = 0; i < standings.size(); ++i) {
     if (result.reaches[i].kind == ReachKind::kPlain) {
@@ -71,12 +71,12 @@ void lay_out(const std::vector<Standing>& standings, ReachingResult& result) {
 
 /// The curve of what `value` gives; participants and cycles are those of the study.
 template <class Value>
-ReachCurve curve_of(const std::vector<Standing>& standings, const ReachingResult& result,
+ReachCurve curve_of(const std::vector<ReachIndex>& standings, const ReachingResult& result,
                     Value&& value) {
   ReachCurve curve;
   std::vector<TrialValue> values;
   for (std::size_t i = 0; i < standings.size(); ++i) {
-    const Standing& own = standings[i];
+    const ReachIndex& own = standings[i];
     const ReachBlock& block = result.blocks[own.block];
     const std::optional<double> one = value(result.reaches[i]);
     values.push_back({own.participant, block.first_cycle * result.plan.cycle + own.place, one});
@@ -195,7 +195,7 @@ double disturbance(const ReachingResult& result, const ReachCurve& early) {
 }
 
 /// Errors in units of the disturbance, so that they weigh like the force compensation of clamps.
-Defined<TwoRateLearning> two_rate_of(const std::vector<Standing>& standings,
+Defined<TwoRateLearning> two_rate_of(const std::vector<ReachIndex>& standings,
                                      const ReachingResult& result, int threads) {
   if (std::abs(result.two_rate_unit) < kLeastUnit) {
     return Undefined{"no block has a field that disturbs the reaches"};
@@ -223,8 +223,9 @@ Defined<TwoRateLearning> two_rate_of(const std::vector<Standing>& standings,
 }
 
 template <class Value>
-Defined<MeanInterval> mean_of(const std::vector<Standing>& standings, const ReachingResult& result,
-                              std::size_t block, ReachKind kind, Value&& value) {
+Defined<MeanInterval> mean_of(const std::vector<ReachIndex>& standings,
+                              const ReachingResult& result, std::size_t block, ReachKind kind,
+                              Value&& value) {
   std::map<std::size_t, std::pair<double, double>> people;
   for (std::size_t i = 0; i < standings.size(); ++i) {
     if (standings[i].block != block || result.reaches[i].kind != kind) {
@@ -242,7 +243,7 @@ Defined<MeanInterval> mean_of(const std::vector<Standing>& standings, const Reac
   return mean_interval(means);
 }
 
-BlockMeans means_of(const std::vector<Standing>& standings, const ReachingResult& result,
+BlockMeans means_of(const std::vector<ReachIndex>& standings, const ReachingResult& result,
                     std::size_t block) {
   using Reach = const StudyReach&;
   const auto plain = [&](auto value) {
@@ -261,7 +262,7 @@ BlockMeans means_of(const std::vector<Standing>& standings, const ReachingResult
   return means;
 }
 
-std::vector<ReachQuality> quality_of(const std::vector<Standing>& standings,
+std::vector<ReachQuality> quality_of(const std::vector<ReachIndex>& standings,
                                      const ReachingResult& result) {
   std::vector<ReachQuality> all(result.participants.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -303,7 +304,7 @@ ReachingResult reaching_study(const TrialsData& data, std::vector<StudyReach> re
     throw InputError("no counted trial has the stage \"" + plan.stage +
                      "\", so no reach can be analysed");
   }
-  const std::vector<Standing> all = standings(data, result);
+  const std::vector<ReachIndex> all = standings(data, result);
   lay_out(all, result);
   const auto error_of = [&](ReachKind kind) {
     return [&result, kind](const StudyReach& reach) {

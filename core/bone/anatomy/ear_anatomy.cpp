@@ -17,7 +17,7 @@ const Point kAntrum{22.6, 28.6, 27.2};
 const Point kMeatus{3.5, 27.3, 15.2};  // beyond where the ear canal opens
 constexpr double kBony = 6.2;          // x where the bony canal begins
 
-using Beads = std::vector<Worm::Bead>;
+using Beads = std::vector<Tube::TubeNode>;
 
 Beads joined(std::initializer_list<Beads> parts) {
   Beads all;
@@ -57,7 +57,7 @@ void EarAnatomy::add_nerves(double least) {
   const double back = v_.nerve;
   const Point genu(25.7, 27.3 + back, 24.6);
   const Point foramen(25.1, 29.2 + back, 12.0);  // stylomastoid
-  facial_ = Worm(smooth({{{44.0, 22.6, 29.2}, 0.7},
+  facial_ = Tube(smooth({{{44.0, 22.6, 29.2}, 0.7},
                          {{33.6, 21.6, 29.0}, 0.6},
                          {{30.9, 18.7, 28.1}, 0.8},  // geniculate ganglion
                          {{28.3, 22.9, 26.5}, 0.7},
@@ -68,7 +68,7 @@ void EarAnatomy::add_nerves(double least) {
                         8),
                  least);
   parts_.push_back({Anatomy::kFacialNerve, facial_, 1.0});
-  const Worm chorda(smooth({{{25.2, 28.6 + back, 16.6}, 0.35},
+  const Tube chorda(smooth({{{25.2, 28.6 + back, 16.6}, 0.35},
                             {{24.5, 25.4, 22.6}, 0.35},
                             {{25.5, 21.0, 24.9}, 0.35},
                             {{26.8, 17.5, 23.9}, 0.35},
@@ -77,7 +77,7 @@ void EarAnatomy::add_nerves(double least) {
                     least);
   parts_.push_back({Anatomy::kChordaTympani, chorda, 0.6});
   const auto straight = [&](Anatomy label, const Point& from, const Point& to, double radius) {
-    parts_.push_back({label, Worm({{from, radius}, {to, radius}}, least), 0.6});
+    parts_.push_back({label, Tube({{from, radius}, {to, radius}}, least), 0.6});
   };
   straight(Anatomy::kSuperiorVestibularNerve, {32.2, 23.6, 28.2}, {38.5, 23.9, 29.2}, 0.6);
   straight(Anatomy::kInferiorVestibularNerve, {33.0, 24.2, 26.9}, {38.5, 24.0, 27.4}, 0.6);
@@ -88,7 +88,7 @@ void EarAnatomy::add_ossicles(double least) {
   // Thinner than nerves may be: a few voxels at half a millimetre are all that they are.
   const double thin = 0.7 * least;
   const auto add = [&](Anatomy label, Beads beads) {
-    parts_.push_back({label, Worm(std::move(beads), thin), 0.6});
+    parts_.push_back({label, Tube(std::move(beads), thin), 0.6});
   };
   add(Anatomy::kMalleus, {{{24.8, 19.6, 27.0}, 1.15},
                           {{24.8, 19.6, 25.4}, 0.6},
@@ -117,7 +117,7 @@ void EarAnatomy::add_labyrinth(double least) {
   const Beads centre{{v, tube}};
   const Point crus = v + Point(0.9, 1.7, 1.9);
   const auto add = [&](Beads beads) {
-    parts_.push_back({Anatomy::kLabyrinth, Worm(std::move(beads), 0.8 * least), 1.4});
+    parts_.push_back({Anatomy::kLabyrinth, Tube(std::move(beads), 0.8 * least), 1.4});
   };
   add({{v + Point(0.3, -1.0, -0.3), 1.7}, {v + Point(-0.3, 0.9, 0.3), 1.8}});
   // Superior canal: its plane is square to the petrous axis; radius 3.2 mm.
@@ -142,7 +142,7 @@ void EarAnatomy::add_labyrinth(double least) {
   constexpr int kSteps = 45;
   for (int step = 0; step <= kSteps; ++step) {
     const double share = static_cast<double>(step) / kSteps;
-    const Turn turn =
+    const Rotation turn =
         turn_by((205.0 - 900.0 * share + (share > 0.6 ? 720.0 : 0.0)) * 0.017453292519943295);
     const double radius = 3.3 - 2.5 * share;
     spiral.push_back(
@@ -151,7 +151,7 @@ void EarAnatomy::add_labyrinth(double least) {
   }
   add(std::move(spiral));
   parts_.push_back({Anatomy::kVestibularAqueduct,
-                    Worm(smooth({{v + Point(-0.2, 1.2, 0.2), 0.35},
+                    Tube(smooth({{v + Point(-0.2, 1.2, 0.2), 0.35},
                                  {{30.9, 28.4, 29.0}, 0.4},
                                  {{29.6, 31.4, 27.6}, 0.6},
                                  {{28.9, 33.4, 26.0}, 1.0}},
@@ -162,7 +162,7 @@ void EarAnatomy::add_labyrinth(double least) {
 
 void EarAnatomy::add_vessels(double least) {
   parts_.push_back({Anatomy::kCarotid,
-                    Worm(smooth({{{35.2, 22.3, -3.0}, 2.5},
+                    Tube(smooth({{{35.2, 22.3, -3.0}, 2.5},
                                  {{35.6, 21.6, 9.0}, 2.5},
                                  {{36.6, 20.2, 15.2}, 2.5},
                                  {{40.5, 18.2, 18.3}, 2.4},
@@ -171,9 +171,9 @@ void EarAnatomy::add_vessels(double least) {
                                 5),
                          least),
                     1.2});
-  internal_canal_ = Worm({{{34.0, 22.6, 28.2}, 2.0}, {{45.5, 23.0, 28.6}, 3.0}});
+  internal_canal_ = Tube({{{34.0, 22.6, 28.2}, 2.0}, {{45.5, 23.0, 28.6}, 3.0}});
   const double y = 46.2 - v_.sinus;
-  sinus_ = Worm(smooth({{{4.0, 56.0, 33.0}, 5.0},
+  sinus_ = Tube(smooth({{{4.0, 56.0, 33.0}, 5.0},
                         {{9.0, 50.0, 32.0}, 5.0},
                         {{13.4, y, 25.5}, 4.9},
                         {{14.6, y - 2.3, 19.0}, 4.7},
@@ -183,7 +183,7 @@ void EarAnatomy::add_vessels(double least) {
                         {{32.5, 30.0, 6.0}, 4.2},
                         {{33.0, 29.0, -4.0}, 4.4}},
                        5));
-  tube_ = Worm(
+  tube_ = Tube(
       smooth({{{27.2, 17.0, 19.8}, 1.8}, {{32.5, 11.5, 16.6}, 1.1}, {{40.0, 4.0, 12.5}, 1.3}}, 4));
 }
 

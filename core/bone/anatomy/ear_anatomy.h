@@ -38,12 +38,12 @@ class EarAnatomy {
   };
   Material at(const Point& p) const;
 
-  const Worm& facial_nerve() const { return facial_; }
+  const Tube& facial_nerve() const { return facial_; }
 
  private:
   struct Part {
     Anatomy label;
-    Worm worm;
+    Tube worm;
     double wall;  // bone around it that cells leave alone
   };
   void add_nerves(double least);
@@ -66,10 +66,10 @@ class EarAnatomy {
 
   EarVariation v_;
   std::vector<Part> parts_;  // the first that holds a place has it
-  Worm facial_;
-  Worm sinus_;
-  Worm tube_;  // of Eustachius
-  Worm internal_canal_;
+  Tube facial_;
+  Tube sinus_;
+  Tube tube_;  // of Eustachius
+  Tube internal_canal_;
   Cells cells_;
 };
 

@@ -83,7 +83,7 @@ JawAnatomy::JawAnatomy(const JawVariation& variation, double least) : v_(variati
               {49.0, 30.0}, {53.0, 22.0}};
   const double up = v_.canal;
   const double back = v_.mental;
-  nerve_ = Worm(smooth({{{38.5 + s, 67.5, 45.0}, 1.3},
+  nerve_ = Tube(smooth({{{38.5 + s, 67.5, 45.0}, 1.3},
                         {{43.2 + s, 68.0, 39.0}, 1.3},  // mandibular foramen
                         {{45.6 + s, 66.5, 31.0}, 1.3},
                         {{44.2 + s, 60.5, 19.5 + 0.5 * up}, 1.3},
@@ -122,16 +122,16 @@ void JawAnatomy::add_teeth() {
     Tooth tooth;
     if (size.roots == 2) {
       const double shift = half - 3.9 > 0.0 ? half - 3.9 : 0.2;
-      tooth.crown = Worm({{crown - shift * forward, 3.7}, {crown + shift * forward, 3.7}});
+      tooth.crown = Tube({{crown - shift * forward, 3.7}, {crown + shift * forward, 3.7}});
     } else {
-      tooth.crown = Worm({{base + 0.5 * Point::UnitZ(), half - 0.2}, {crown, std::max(top, 1.0)}});
+      tooth.crown = Tube({{base + 0.5 * Point::UnitZ(), half - 0.2}, {crown, std::max(top, 1.0)}});
     }
     for (int root = 0; root < size.roots; ++root) {
       const double side = size.roots == 1 ? 0.0 : (root == 0 ? -1.0 : 1.0) * size.width / 4.2;
       const double thick = size.roots == 1 ? 0.42 * size.width : 2.2;
       const Point neck = base + side * forward + 1.5 * Point::UnitZ();
       const Point apex = base + (side + 0.8) * forward + (0.8 - size.root) * Point::UnitZ();
-      tooth.roots.push_back(Worm({{neck, thick}, {apex, 0.8}}));
+      tooth.roots.push_back(Tube({{neck, thick}, {apex, 0.8}}));
     }
     teeth_.push_back(std::move(tooth));
   }
@@ -141,7 +141,7 @@ double JawAnatomy::tooth(const Point& p) const {
   double best = 1e9;
   for (const Tooth& tooth : teeth_) {
     best = std::min(best, tooth.crown.distance(p, 2.0));
-    for (const Worm& root : tooth.roots) {
+    for (const Tube& root : tooth.roots) {
       best = std::min(best, root.distance(p, 2.0));
     }
   }

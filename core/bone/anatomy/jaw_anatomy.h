@@ -34,12 +34,12 @@ class JawAnatomy {
   /// Right and left are the same: it only looks at |x|.
   EarAnatomy::Material at(Point p) const;
 
-  const Worm& nerve() const { return nerve_; }
+  const Tube& nerve() const { return nerve_; }
 
  private:
   struct Tooth {
-    Worm crown;
-    std::vector<Worm> roots;
+    Tube crown;
+    std::vector<Tube> roots;
   };
   void add_teeth();
   double body(const Point& p) const;
@@ -47,9 +47,10 @@ class JawAnatomy {
   double tooth(const Point& p) const;
 
   JawVariation v_;
-  std::vector<Worm::Bead> arch_;  // middle of the body, from the chin to the angle; radius unused
+  std::vector<Tube::TubeNode>
+      arch_;  // middle of the body, from the chin to the angle; radius unused
   std::vector<Eigen::Vector2d> outline_;  // of the ramus, (y, z)
-  Worm nerve_;
+  Tube nerve_;
   std::vector<Tooth> teeth_;
 };
 

@@ -26,7 +26,7 @@ double fade(double t) { return t * t * (3.0 - 2.0 * t); }
 
 }  // namespace
 
-Turn turn_by(double angle) {
+Rotation turn_by(double angle) {
   // A quarter of the angle by series, then doubled twice.
   const double x = angle / 4.0;
   double cosine = 1.0;
@@ -66,16 +66,16 @@ double smooth_union(double a, double b, double width) {
   return std::min(a, b) - h * h * width / 4.0;
 }
 
-Worm::Worm(std::vector<Bead> beads, double least) : beads_(std::move(beads)) {
+Tube::Tube(std::vector<TubeNode> beads, double least) : beads_(std::move(beads)) {
   low_ = high_ = beads_.front().at;
-  for (Bead& bead : beads_) {
+  for (TubeNode& bead : beads_) {
     bead.radius = std::max(bead.radius, least);
     low_ = low_.cwiseMin((bead.at.array() - bead.radius).matrix());
     high_ = high_.cwiseMax((bead.at.array() + bead.radius).matrix());
   }
 }
 
-double Worm::distance(const Point& p, double care) const {
+double Tube::distance(const Point& p, double care) const {
   const Point beyond = (low_ - p).cwiseMax(p - high_).cwiseMax(0.0);
   const double outside = beyond.norm();
   if (outside > care) {
@@ -89,7 +89,7 @@ double Worm::distance(const Point& p, double care) const {
   return best;
 }
 
-double Worm::length() const {
+double Tube::length() const {
   double sum = 0.0;
   for (std::size_t i = 1; i < beads_.size(); ++i) {
     sum += (beads_[i].at - beads_[i - 1].at).norm();
@@ -97,10 +97,10 @@ double Worm::length() const {
   return sum;
 }
 
-std::vector<Worm::Bead> smooth(const std::vector<Worm::Bead>& through, int steps) {
-  std::vector<Worm::Bead> beads;
+std::vector<Tube::TubeNode> smooth(const std::vector<Tube::TubeNode>& through, int steps) {
+  std::vector<Tube::TubeNode> beads;
   const auto last = static_cast<std::ptrdiff_t>(through.size()) - 1;
-  const auto at = [&](std::ptrdiff_t i) -> const Worm::Bead& {
+  const auto at = [&](std::ptrdiff_t i) -> const Tube::TubeNode& {
     return through[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, last))];
   };
   for (std::ptrdiff_t i = 0; i < last; ++i) {
@@ -119,12 +119,12 @@ std::vector<Worm::Bead> smooth(const std::vector<Worm::Bead>& through, int steps
   return beads;
 }
 
-std::vector<Worm::Bead> arc(const Point& centre, const Point& u, const Point& v, double radius,
-                            double from_degrees, double to_degrees, double tube, int steps) {
-  std::vector<Worm::Bead> beads;
+std::vector<Tube::TubeNode> arc(const Point& centre, const Point& u, const Point& v, double radius,
+                                double from_degrees, double to_degrees, double tube, int steps) {
+  std::vector<Tube::TubeNode> beads;
   for (int step = 0; step <= steps; ++step) {
     const double degrees = from_degrees + (to_degrees - from_degrees) * step / steps;
-    const Turn turn = turn_by(degrees * std::numbers::pi / 180.0);
+    const Rotation turn = turn_by(degrees * std::numbers::pi / 180.0);
     beads.push_back({centre + radius * (turn.cosine * u + turn.sine * v), tube});
   }
   return beads;

@@ -11,11 +11,11 @@ namespace haptrial::bone {
 using Point = Eigen::Vector3d;
 
 /// Cosine and sine of an angle within [-2 pi, 2 pi] to 1e-12, by series.
-struct Turn {
+struct Rotation {
   double cosine;
   double sine;
 };
-Turn turn_by(double angle);
+Rotation turn_by(double angle);
 
 /// A cone with round ends: the balls of radius ra at a and rb at b, and what lies between them; a
 /// bound of the distance, exact for equal radii.
@@ -26,32 +26,32 @@ double ellipsoid(const Point& p, const Point& centre, const Point& radii);
 double smooth_union(double a, double b, double width);
 
 /// A tube along a line through points, with a radius at each of them.
-class Worm {
+class Tube {
  public:
-  struct Bead {
+  struct TubeNode {
     Point at;
     double radius;
   };
-  Worm() = default;
+  Tube() = default;
   /// @param beads  at least two.  @param least  no radius is smaller than this
-  explicit Worm(std::vector<Bead> beads, double least = 0.0);
+  explicit Tube(std::vector<TubeNode> beads, double least = 0.0);
 
   /// Signed distance; where that is above `care`, maybe less, but above `care`.
   double distance(const Point& p, double care = 4.0) const;
   double length() const;
-  const std::vector<Bead>& beads() const { return beads_; }
+  const std::vector<TubeNode>& beads() const { return beads_; }
 
  private:
-  std::vector<Bead> beads_;
+  std::vector<TubeNode> beads_;
   Point low_;
   Point high_;
 };
 
 /// Beads on a smooth curve through some points (Catmull-Rom), `steps` for each part.
-std::vector<Worm::Bead> smooth(const std::vector<Worm::Bead>& through, int steps);
+std::vector<Tube::TubeNode> smooth(const std::vector<Tube::TubeNode>& through, int steps);
 /// Beads on an arc: centre + radius (cos u + sin v), u and v unit and square to each other.
-std::vector<Worm::Bead> arc(const Point& centre, const Point& u, const Point& v, double radius,
-                            double from_degrees, double to_degrees, double tube, int steps);
+std::vector<Tube::TubeNode> arc(const Point& centre, const Point& u, const Point& v, double radius,
+                                double from_degrees, double to_degrees, double tube, int steps);
 
 /// Bubbles with thin walls, one about each node of a shaken lattice.
 class Cells {

@@ -13,8 +13,9 @@ constexpr int kBits = 4;
 int share_left(const BoneVolume& volume, std::int32_t address) {
   const float whole = volume.original(address);
   const float left = volume.density(address);
-  return whole > left ? std::max(1, static_cast<int>(std::lround(Remains::kWhole * left / whole)))
-                      : Remains::kWhole;
+  return whole > left
+             ? std::max(1, static_cast<int>(std::lround(RemainingFraction::kWhole * left / whole)))
+             : RemainingFraction::kWhole;
 }
 
 /// The shares of eight voxels, packed as row() has them. @param holding  bit x: x holds bone
@@ -22,7 +23,7 @@ std::uint32_t row_of(const BoneVolume& volume, std::int32_t first, unsigned hold
   std::uint32_t row = 0;
   for (int x = 0; x < kEdge; ++x) {
     const bool holds = (holding >> x & 1U) != 0;
-    const int share = holds ? share_left(volume, first + x) : Remains::kWhole;
+    const int share = holds ? share_left(volume, first + x) : RemainingFraction::kWhole;
     row |= static_cast<std::uint32_t>(share - 1) << (kBits * x);
   }
   return row;
@@ -30,8 +31,8 @@ std::uint32_t row_of(const BoneVolume& volume, std::int32_t first, unsigned hold
 
 }  // namespace
 
-void Remains::follow(const BoneVolume& volume, const Occupancy& occupancy,
-                     std::span<const std::int32_t> bricks, std::vector<Voxel>* changed) {
+void RemainingFraction::follow(const BoneVolume& volume, const Occupancy& occupancy,
+                               std::span<const std::int32_t> bricks, std::vector<Voxel>* changed) {
   bricks_.resize(static_cast<std::size_t>(volume.bricks()));
   for (const std::int32_t brick : bricks) {
     std::unique_ptr<Brick>& known = bricks_[static_cast<std::size_t>(brick)];

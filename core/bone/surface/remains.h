@@ -14,7 +14,7 @@ namespace haptrial::bone {
 /// How much of each voxel is left in a volume that is being removed, as one reader knows it.
 /// Counted in sixteenths of what the voxel had at first, so that sums do not depend on their order.
 /// One thread.
-class Remains {
+class RemainingFraction {
  public:
   static constexpr int kWhole = 16;
 

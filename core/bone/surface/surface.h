@@ -144,7 +144,7 @@ class Surface {
 
   NearStructures near_;
   Occupancy occupancy_;
-  Remains remains_;
+  RemainingFraction remains_;
   geometry::VoxelGrid grid_;
   std::array<std::int32_t, 3> table_size_{0, 0, 0};  // in bricks of cells
   std::vector<std::unique_ptr<CellBrick>> bricks_;   // by place; null: no vertex there

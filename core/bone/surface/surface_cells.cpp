@@ -82,7 +82,7 @@ constexpr float kFar = 1.4F;        // less than the 1.5 of a sheet of one voxel
 Eigen::Vector3f nearer_slopes(const Eigen::Vector3f& wide, const Eigen::Vector3f& slope,
                               const Eigen::Vector3f& step) {
   constexpr float kAgrees = 0.5F;  // cosine from which on the wide slope is enough
-  constexpr float kStep = 200.0F * Remains::kWhole;  // as long as a slope of the sums
+  constexpr float kStep = 200.0F * RemainingFraction::kWhole;  // as long as a slope of the sums
   const float lengths = wide.norm() * step.norm();
   const float cosine = lengths > 0.0F ? wide.dot(step) / lengths : 0.0F;
   const float doubt = 1.0F - std::clamp(cosine / kAgrees, 0.0F, 1.0F);
@@ -104,12 +104,13 @@ void CellField::for_each_row(const Visit& visit) {
 }
 
 /// Takes those voxels of which half or less is left out of filled_ that lie beside one with more.
-void CellField::leave_out_rests(const Remains& remains) noexcept {
+void CellField::leave_out_rests(const RemainingFraction& remains) noexcept {
   Rows solid;
   for_each_row([&](std::size_t row, std::size_t first, int y, int z) {
     std::uint32_t bits = 0;
     for (std::size_t b = 0; b < 3; ++b) {
-      bits |= Remains::more_than_half(remains.row(bricks_[first + b], y, z)) << (kEdge * b);
+      bits |= RemainingFraction::more_than_half(remains.row(bricks_[first + b], y, z))
+              << (kEdge * b);
     }
     solid[row] = holds_[row] & bits >> (kEdge - kReach);
   });
@@ -129,8 +130,8 @@ void CellField::leave_out_rests(const Remains& remains) noexcept {
   }
 }
 
-bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy, const Remains& remains,
-                     const Voxel& origin) noexcept {
+bool CellField::read(const BoneVolume& volume, const Occupancy& occupancy,
+                     const RemainingFraction& remains, const Voxel& origin) noexcept {
   bool whole = true;
   for (int b = 0; b < 27; ++b) {
     const Voxel brick = origin + kEdge * (Voxel(b % 3, b / 3 % 3, b / 9) - Voxel::Ones());
@@ -190,7 +191,7 @@ unsigned CellField::corners(int i, int j, int k) const noexcept {
   return two(0) | two(1) << 2 | two(kWide) << 4 | two(kWide + 1) << 6;
 }
 
-void CellField::smooth(const Remains& remains) noexcept {
+void CellField::smooth(const RemainingFraction& remains) noexcept {
   std::array<std::uint16_t, kWide * kWide * kWide> left;
   for_each_row([&](std::size_t row, std::size_t first, int y, int z) {
     std::array<std::uint32_t, 3> shares;
@@ -223,7 +224,8 @@ Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
     }
   }
   const Eigen::Vector3f slope = slope_of<kSums>(sums) / 4.0F;
-  constexpr float kWeights = kFull / Remains::kWhole;  // of a sum: a slope of the sums is as long
+  constexpr float kWeights =
+      kFull / RemainingFraction::kWhole;  // of a sum: a slope of the sums is as long
   const Eigen::Vector3f wide =
       slope_of<kCorner>(wide_sums_.data() + i + kCorner * (j + kCorner * k)) / (4.0F * kWeights);
   const Eigen::Vector3f inwards = wide + nearer_slopes(wide, slope, step);

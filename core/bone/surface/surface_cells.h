@@ -38,13 +38,13 @@ using SurfaceTriangle = std::array<std::uint32_t, 3>;
 class CellField {
  public:
   static constexpr int kEdge = BoneVolume::kEdge;
-  static constexpr int kReach = 4;                              // voxels around a cell that count
-  static constexpr int kFull = Remains::kWhole * 16 * 16 * 16;  // the sum deep inside
+  static constexpr int kReach = 4;  // voxels around a cell that count
+  static constexpr int kFull = RemainingFraction::kWhole * 16 * 16 * 16;  // the sum deep inside
 
   /// Reads the voxels around the cells from `origin`, a multiple of 8 along each axis.
   /// @param occupancy, remains  of the volume
   /// @returns whether the cells have both filled and empty corners; else there are no vertices.
-  bool read(const BoneVolume& volume, const Occupancy& occupancy, const Remains& remains,
+  bool read(const BoneVolume& volume, const Occupancy& occupancy, const RemainingFraction& remains,
             const Voxel& origin) noexcept;
 
   struct Count {
@@ -56,7 +56,7 @@ class CellField {
   /// Bit b is the cell's corner (b & 1, b >> 1 & 1, b >> 2): whether it is filled.
   unsigned corners(int i, int j, int k) const noexcept;
   /// Works out the sums; needed before place(). @param remains  as it was read
-  void smooth(const Remains& remains) noexcept;
+  void smooth(const RemainingFraction& remains) noexcept;
   /// Where the smoothed field of a cell is half full, and its direction there.
   /// @param normal  outwards, of unit length
   /// @returns the place from the cell's middle, each coordinate from -0.5 to 0.5 [voxels]
@@ -69,7 +69,7 @@ class CellField {
   static constexpr int kWide = kCorner + 2 * kReach;  // voxels -4 .. 12
   using Rows = std::array<std::uint32_t, kWide * kWide>;
 
-  void leave_out_rests(const Remains& remains) noexcept;
+  void leave_out_rests(const RemainingFraction& remains) noexcept;
   template <class Visit>
   static void for_each_row(const Visit& visit);
 

@@ -140,7 +140,7 @@ SurfaceDepth::SurfaceDepth(const BoneModel& model, std::uint8_t label, double re
   }
 }
 
-bool SurfaceDepth::at(const Vector3d& p_B, Here& here) const noexcept {
+bool SurfaceDepth::at(const Vector3d& p_B, LocalTissue& here) const noexcept {
   const Eigen::Array3d place = (p_B - low_).array() / spacing_;
   const Eigen::Array3d cell = place.floor();
   for (int axis = 0; axis < 3; ++axis) {
@@ -236,7 +236,7 @@ Vector3d SoftTissue::feel(Touch& touch, const Vector3d& c_B, double radius,
 
 SoftTissue::Pressed SoftTissue::press(const Part& part, TouchedPart& touched, const Vector3d& c_B,
                                       double radius, bool sucks) const noexcept {
-  SurfaceDepth::Here here{};
+  SurfaceDepth::LocalTissue here{};
   touched.dent = {};
   const bool near = part.depth.at(c_B, here);
   const double depth = near ? radius - here.distance : 0.0;
@@ -299,7 +299,7 @@ void SoftTissue::tear(const Tear& tear, double radius) noexcept {
 double SoftTissue::distance(const Vector3d& p_B) const noexcept {
   double least = std::numeric_limits<double>::infinity();
   for (const Part& part : parts_) {
-    SurfaceDepth::Here here{};
+    SurfaceDepth::LocalTissue here{};
     if (part.depth.at(p_B, here)) {
       least = std::min(least, here.distance);
     }

@@ -48,13 +48,13 @@ class SurfaceDepth {
   /// @param reach  how far outside it is known [m]
   SurfaceDepth(const BoneModel& model, std::uint8_t label, double reach);
 
-  struct Here {
+  struct LocalTissue {
     double distance;           // [m]
     Eigen::Vector3d gradient;  // of it
   };
   double spacing() const noexcept { return spacing_; }  // of voxels [m]
   /// @returns false where it is farther than known, or not finite
-  bool at(const Eigen::Vector3d& p_B, Here& here) const noexcept;
+  bool at(const Eigen::Vector3d& p_B, LocalTissue& here) const noexcept;
 
  private:
   Eigen::Vector3d low_{Eigen::Vector3d::Zero()};  // centre of the first voxel [m]

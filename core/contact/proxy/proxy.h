@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <span>
 
-#include "core/contact/proxy/held_corner.h"
 #include "core/contact/proxy/near_triangles.h"
 #include "core/contact/proxy/plane_set.h"
 #include "core/contact/proxy/sweep.h"
+#include "core/contact/proxy/vertex_contact.h"
 #include "core/contact/surface/contact_surface.h"
 
 namespace haptrial::contact {
@@ -117,7 +117,7 @@ class Proxy {
   NearTriangles near_;
   PlaneSet planes_;
   PlaneSet before_;  // what was met before the planes were forgotten
-  HeldCorner corner_;
+  VertexContact corner_;
   ProxyState state_;
   bool slipping_{false};
   std::array<Eigen::Vector3d, 2 * 48 + 3> way_;

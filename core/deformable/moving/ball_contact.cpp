@@ -19,7 +19,7 @@ constexpr double kOwnCompliance = 1e-6;  // added to each place's: two places ma
 constexpr int kRounds = 2;               // of pressures and friction on a step
 constexpr double kGrowth = 0.02;         // of a ball that had shrunk [m/s]
 
-int places_along_a_cell(const FeltMesh& mesh, double radius) {
+int places_along_a_cell(const HapticMesh& mesh, double radius) {
   return static_cast<int>(std::ceil(mesh.spacing / (kSampled * radius)));
 }
 
@@ -29,7 +29,7 @@ Vector3d across(const Vector3d& v, const Vector3d& n) { return v - v.dot(n) * n;
 
 }  // namespace
 
-BallContact::BallContact(const FeltMesh& mesh, const TouchOptions& options, double period)
+BallContact::BallContact(const HapticMesh& mesh, const TouchOptions& options, double period)
     : mesh_(&mesh),
       options_(options),
       samples_(mesh.felt, mesh.tets.vertices, places_along_a_cell(mesh, options.radius)),

@@ -8,7 +8,7 @@
 
 #include "core/deformable/springs/spring_motion.h"
 #include "core/deformable/touch/body_touch.h"
-#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/haptic_mesh.h"
 #include "core/deformable/touch/normal_forces.h"
 #include "core/deformable/touch/surface_samples.h"
 
@@ -39,7 +39,7 @@ class BallContact {
   };
 
   /// @param options  of a radius that the body's cells can show  @param period  of a tick [s]
-  BallContact(const FeltMesh& mesh, const TouchOptions& options, double period);
+  BallContact(const HapticMesh& mesh, const TouchOptions& options, double period);
 
   // Servo thread, all of the following: no allocation, lock or throw.
 
@@ -91,7 +91,7 @@ class BallContact {
   double together(const SpringMotion& motion, const Place& a, const Place& b) const noexcept;
   void apply(SpringMotion& motion, Place& place, const Eigen::Vector3d& force) noexcept;
 
-  const FeltMesh* mesh_;
+  const HapticMesh* mesh_;
   TouchOptions options_;
   SurfaceSamples samples_;
   double growth_;                         // on a tick [m]

@@ -6,7 +6,7 @@
 
 #include "core/deformable/springs/law/spring_body.h"
 #include "core/deformable/springs/spring_motion.h"
-#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/haptic_mesh.h"
 
 namespace haptrial::deformable {
 

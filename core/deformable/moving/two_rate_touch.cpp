@@ -26,7 +26,7 @@ TouchOptions felt_as_ball(const MovingBody& body, TouchOptions options) {
 
 }  // namespace
 
-int ticks_of_window(const FeltMesh& body, double loop_rate, double body_rate) {
+int ticks_of_window(const HapticMesh& body, double loop_rate, double body_rate) {
   if (!body.grasped.empty()) {
     throw InputError(fmt::format(
         "{}: a body that the hand grasps has no rate of its own; keep `grasped` or `rate`",

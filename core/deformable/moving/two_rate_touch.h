@@ -15,7 +15,7 @@ namespace haptrial::deformable {
 /// The ticks of a loop that a body of its own rate takes together.
 /// @throws InputError naming the body, for rates whose ratio is no whole number up to kMostWindow,
 /// and for a body that the hand grasps
-int ticks_of_window(const FeltMesh& body, double loop_rate, double body_rate);
+int ticks_of_window(const HapticMesh& body, double loop_rate, double body_rate);
 
 /// A window that the body did not end in time: the one before was felt for longer.
 struct LateWindow {

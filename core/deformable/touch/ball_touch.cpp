@@ -494,6 +494,6 @@ bool BallTouch::inverts() noexcept {
   return false;
 }
 
-double smallest_ball(const FeltMesh& mesh) { return 0.5 * mesh.spacing; }
+double smallest_ball(const HapticMesh& mesh) { return 0.5 * mesh.spacing; }
 
 }  // namespace haptrial::deformable

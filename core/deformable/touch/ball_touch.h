@@ -14,7 +14,7 @@
 namespace haptrial::deformable {
 
 /// The radius below which a ball is felt as one of this radius: half a cell [m].
-double smallest_ball(const FeltMesh& mesh);
+double smallest_ball(const HapticMesh& mesh);
 
 using SharedCompliance = std::shared_ptr<const Compliance>;
 

@@ -21,7 +21,7 @@ void check(const TouchOptions& options);
 
 /// A force on one vertex of a body.
 struct VertexForce {
-  std::int32_t vertex{};                           // of the FeltMesh
+  std::int32_t vertex{};                           // of the HapticMesh
   Eigen::Vector3f force{Eigen::Vector3f::Zero()};  // [N]
 };
 

@@ -28,7 +28,8 @@ struct Numbers {
   std::vector<std::int32_t> vertices;  // by place
   std::size_t touched{0};
 
-  Numbers(const FeltMesh& mesh, const PatchLayout& layout) : place(mesh.tets.vertices.size(), -1) {
+  Numbers(const HapticMesh& mesh, const PatchLayout& layout)
+      : place(mesh.tets.vertices.size(), -1) {
     for (const Face& face : mesh.felt) {
       std::ranges::for_each(face, [&](std::int32_t v) { take(v); });
     }
@@ -175,7 +176,7 @@ double Compliance::stiffest(double radius) const {
   return most;
 }
 
-ComplianceMemory compliance_memory(const FeltMesh& mesh) {
+ComplianceMemory compliance_memory(const HapticMesh& mesh) {
   const Numbers numbers(
       mesh, patch_layout(mesh.tets.tetrahedra,
                          volume_patches(mesh.tets.tetrahedra, {}, VolumeForm::kPatches)));

@@ -26,7 +26,7 @@ class Compliance {
   /// Takes some seconds. @throws InputError as check_tissue() and ElasticBody
   Compliance(SharedFeltMesh mesh, const Tissue& tissue);
 
-  const FeltMesh& mesh() const noexcept { return *mesh_; }
+  const HapticMesh& mesh() const noexcept { return *mesh_; }
   std::size_t touched() const noexcept { return touched_; }         // columns
   std::size_t places() const noexcept { return vertices_.size(); }  // rows
   std::int32_t vertex(std::int32_t place) const noexcept {
@@ -88,6 +88,6 @@ struct ComplianceMemory {
   double kept{};
   double most{};
 };
-ComplianceMemory compliance_memory(const FeltMesh& mesh);
+ComplianceMemory compliance_memory(const HapticMesh& mesh);
 
 }  // namespace haptrial::deformable

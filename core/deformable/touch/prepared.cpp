@@ -29,7 +29,7 @@ double free_memory() {
 
 }  // namespace
 
-void check_memory(const FeltMesh& mesh) {
+void check_memory(const HapticMesh& mesh) {
   const double needed = compliance_memory(mesh).most;
   const double free = free_memory();
   if (needed > free) {

@@ -14,7 +14,7 @@ namespace haptrial::deformable {
 std::shared_ptr<const Compliance> prepared(const SharedFeltMesh& mesh, const Tissue& tissue);
 
 /// @throws InputError naming the body if the machine has not the memory that it takes.
-void check_memory(const FeltMesh& mesh);
+void check_memory(const HapticMesh& mesh);
 
 /// A bound on how stiff a ball of this radius can be on the body, wherever it is: as
 /// Compliance::stiffest(), with the corners of all faces that it could press [N/m].

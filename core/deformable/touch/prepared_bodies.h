@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/haptic_mesh.h"
 
 namespace haptrial::deformable {
 

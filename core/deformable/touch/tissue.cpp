@@ -19,14 +19,14 @@ constexpr int kPointsAlong = 8;  // an edge of a tetrahedron, in which a ball's 
 constexpr int kShareSteps = 16;
 constexpr std::size_t kTetsOfVoxel = 5;  // one after the other (tetrahedralize.h)
 
-void require_in(const FeltMesh& mesh, double value, bool good, const char* what,
+void require_in(const HapticMesh& mesh, double value, bool good, const char* what,
                 const char* allowed) {
   if (!good) {
     throw InputError(fmt::format("{}: {} is {:g}; allowed: {}", mesh.name, what, value, allowed));
   }
 }
 
-void check_inclusion(const FeltMesh& mesh, const Inclusion& ball) {
+void check_inclusion(const HapticMesh& mesh, const Inclusion& ball) {
   const std::string name = "inclusion " + ball.name;
   require_in(mesh, ball.radius, std::isfinite(ball.radius) && ball.radius >= 0.0,
              (name + ": radius").c_str(), "at least 0 [m]");
@@ -74,7 +74,7 @@ double volume_of(const geometry::TetMesh& tets, std::size_t t) {
 
 }  // namespace
 
-void check_tissue(const FeltMesh& mesh, const Tissue& tissue) {
+void check_tissue(const HapticMesh& mesh, const Tissue& tissue) {
   require_in(mesh, tissue.young, std::isfinite(tissue.young) && tissue.young > 0.0, "young",
              "above 0 [Pa]");
   require_in(mesh, tissue.poisson, tissue.poisson >= 0.0 && tissue.poisson <= kMostPoisson,
@@ -88,7 +88,7 @@ void check_tissue(const FeltMesh& mesh, const Tissue& tissue) {
   }
 }
 
-std::vector<double> shares_in_ball(const FeltMesh& mesh, const Vector3d& centre, double radius) {
+std::vector<double> shares_in_ball(const HapticMesh& mesh, const Vector3d& centre, double radius) {
   std::vector<double> shares(mesh.tets.tetrahedra.size(), 0.0);
   for (std::size_t t = 0; t < shares.size(); ++t) {
     std::array<Vector3d, 4> corners;
@@ -116,7 +116,7 @@ std::vector<double> shares_in_ball(const FeltMesh& mesh, const Vector3d& centre,
   return shares;
 }
 
-Elasticity elasticity_of(const FeltMesh& mesh, const Tissue& tissue) {
+Elasticity elasticity_of(const HapticMesh& mesh, const Tissue& tissue) {
   check_tissue(mesh, tissue);
   std::vector<double> log_young(mesh.tets.tetrahedra.size(), std::log(tissue.young));
   for (const Inclusion& ball : tissue.inclusions) {

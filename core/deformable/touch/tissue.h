@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/deformable/elements/elastic_body.h"
-#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/haptic_mesh.h"
 
 namespace haptrial::deformable {
 
@@ -35,16 +35,16 @@ inline constexpr std::size_t kMostInclusions = 8;
 
 /// @throws InputError naming the body and the value that breaks its bound, or an inclusion that
 /// does not lie within the body's box.
-void check_tissue(const FeltMesh& mesh, const Tissue& tissue);
+void check_tissue(const HapticMesh& mesh, const Tissue& tissue);
 
 /// The share of each voxel that lies in a ball, by equally spaced points, for its five tetrahedra:
 /// (tetrahedra).
-std::vector<double> shares_in_ball(const FeltMesh& mesh, const Eigen::Vector3d& centre,
+std::vector<double> shares_in_ball(const HapticMesh& mesh, const Eigen::Vector3d& centre,
                                    double radius);
 
 /// The materials of the elements. In a voxel that a ball cuts, the logarithm of E lies
 /// between those of both by the ball's share, in steps of 1/16: so what is felt changes smoothly
 /// with centre and radius.
-Elasticity elasticity_of(const FeltMesh& mesh, const Tissue& tissue);
+Elasticity elasticity_of(const HapticMesh& mesh, const Tissue& tissue);
 
 }  // namespace haptrial::deformable

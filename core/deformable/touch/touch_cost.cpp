@@ -29,8 +29,8 @@ double seconds_of_tick(BodyTouch& touch, const Vector3d& tool, double period) {
 
 /// In and out again over one face. @param times  (kTicks) of each tick the least so far [s]
 /// @returns how long all of it took [s]
-double press(BodyTouch& touch, const FeltMesh& mesh, std::size_t face, double radius, double period,
-             std::span<double> times) {
+double press(BodyTouch& touch, const HapticMesh& mesh, std::size_t face, double radius,
+             double period, std::span<double> times) {
   std::array<Vector3d, 3> p;
   for (std::size_t k = 0; k < 3; ++k) {
     p[k] = mesh.tets.vertices[static_cast<std::size_t>(mesh.felt[face][k])];
@@ -53,7 +53,7 @@ double press(BodyTouch& touch, const FeltMesh& mesh, std::size_t face, double ra
 
 }  // namespace
 
-TouchCost measured_cost(BodyTouch& touch, const FeltMesh& mesh, double radius, double period) {
+TouchCost measured_cost(BodyTouch& touch, const HapticMesh& mesh, double radius, double period) {
   const double felt = std::max(radius, smallest_ball(mesh));
   const std::size_t places = std::min(kPlaces, mesh.felt.size());
   std::vector<double> times(places * kTicks, std::numeric_limits<double>::infinity());

@@ -14,7 +14,7 @@ struct TouchCost {
 /// Cost of a touch that is put to rest: presses at up to 12 places, 0.4 of the ball's radius deep
 /// and back; takes some 0.1 s.
 /// @param radius  of the ball [m]  @param period  of a tick [s]
-TouchCost measured_cost(BodyTouch& touch, const FeltMesh& mesh, double radius, double period);
+TouchCost measured_cost(BodyTouch& touch, const HapticMesh& mesh, double radius, double period);
 /// The same of a body at rest on every tick. @throws std::invalid_argument as BallTouch does.
 TouchCost measured_cost(const SharedCompliance& body, const TouchOptions& options);
 

@@ -60,7 +60,7 @@ std::vector<DeviceListing> list_devices(const VendorLibraries& libraries) {
       gamepad(),
       force_dimension(libraries.force_dimension),
       open_haptics(libraries.open_haptics)};
-  for (const OwnDevice& device : own_devices()) {
+  for (const RegisteredDevice& device : own_devices()) {
     list.push_back({device.name, true, device.what});
   }
   return list;

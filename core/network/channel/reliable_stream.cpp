@@ -16,7 +16,7 @@ ReliableStream::ReliableStream() : out_(kSpan), in_(kSpan) {}
 
 void ReliableStream::note_heard(std::uint64_t number) noexcept {
   if (number > heard_ && number <= given_) {
-    Given& given = out_[slot(number)];
+    SentChunk& given = out_[slot(number)];
     newest_heard_ = given.heard ? newest_heard_ : std::max(newest_heard_, given.sent_ns);
     given.heard = true;
   }
@@ -39,15 +39,15 @@ void ReliableStream::hear(const StreamPart& part) noexcept {
   }
   answer_due_ = true;  // also where it came before: the answer was lost
   if (part.number > taken_ && part.number <= taken_ + kSpan) {
-    Come& come = in_[slot(part.number)];
+    ReceivedChunk& come = in_[slot(part.number)];
     come.chunk.size = part.size;
     std::copy_n(part.bytes.begin(), part.size, come.chunk.bytes.begin());
     come.here = true;
   }
 }
 
-void ReliableStream::deliver(Freight& freight) noexcept {
-  for (Come* come = &in_[slot(taken_ + 1)]; come->here; come = &in_[slot(taken_ + 1)]) {
+void ReliableStream::deliver(ReliablePayload& freight) noexcept {
+  for (ReceivedChunk* come = &in_[slot(taken_ + 1)]; come->here; come = &in_[slot(taken_ + 1)]) {
     come->here = false;
     ++taken_;
     freight.take({come->chunk.bytes.data(), come->chunk.size});
@@ -59,7 +59,7 @@ std::uint64_t ReliableStream::missing(std::int64_t now_ns,
                                       std::int64_t round_trip_ns) const noexcept {
   const std::int64_t overdue = round_trip_ns < 0 ? kPatience : 2 * round_trip_ns + kReordering;
   for (std::uint64_t number = heard_ + 1; number <= given_; ++number) {
-    const Given& given = out_[slot(number)];
+    const SentChunk& given = out_[slot(number)];
     if (!given.heard &&
         (now_ns - given.sent_ns > overdue || newest_heard_ - given.sent_ns > kReordering)) {
       return number;
@@ -68,11 +68,11 @@ std::uint64_t ReliableStream::missing(std::int64_t now_ns,
   return 0;
 }
 
-std::uint64_t ReliableStream::next(Freight& freight) noexcept {
+std::uint64_t ReliableStream::next(ReliablePayload& freight) noexcept {
   if (given_ - heard_ >= kSpan) {
     return 0;
   }
-  Given& given = out_[slot(given_ + 1)];
+  SentChunk& given = out_[slot(given_ + 1)];
   const std::size_t size = freight.give(given.chunk.bytes);
   if (size == 0) {
     return 0;
@@ -82,7 +82,7 @@ std::uint64_t ReliableStream::next(Freight& freight) noexcept {
   return ++given_;
 }
 
-bool ReliableStream::wants(Freight& freight, std::int64_t now_ns,
+bool ReliableStream::wants(ReliablePayload& freight, std::int64_t now_ns,
                            std::int64_t round_trip_ns) noexcept {
   chosen_ = missing(now_ns, round_trip_ns);
   again_ += chosen_ != 0 ? 1 : 0;
@@ -100,7 +100,7 @@ void ReliableStream::fill(StreamPart& part, std::int64_t now_ns) noexcept {
   part.number = chosen_;
   part.size = 0;
   if (chosen_ != 0) {
-    Given& given = out_[slot(chosen_)];
+    SentChunk& given = out_[slot(chosen_)];
     given.sent_ns = now_ns;
     part.size = given.chunk.size;
     std::copy_n(given.chunk.bytes.begin(), part.size, part.bytes.begin());

@@ -11,9 +11,9 @@
 namespace haptrial::network {
 
 /// Who has something for the other side that must not be lost, and who takes it. Servo thread.
-class Freight {
+class ReliablePayload {
  public:
-  virtual ~Freight() = default;
+  virtual ~ReliablePayload() = default;
   /// @param room  for what comes next
   /// @returns how many of its bytes were used; 0: there is nothing, or it does not fit
   virtual std::size_t give(std::span<std::byte> room) noexcept = 0;
@@ -32,10 +32,10 @@ class ReliableStream {
   /// What came with a message.
   void hear(const StreamPart& part) noexcept;
   /// Hands over what has come, as far as nothing is missing before it.
-  void deliver(Freight& freight) noexcept;
+  void deliver(ReliablePayload& freight) noexcept;
 
   /// Looks whether a message is needed now. @param round_trip_ns  negative: not known
-  bool wants(Freight& freight, std::int64_t now_ns, std::int64_t round_trip_ns) noexcept;
+  bool wants(ReliablePayload& freight, std::int64_t now_ns, std::int64_t round_trip_ns) noexcept;
   /// For a message that leaves in the same tick.
   void fill(StreamPart& part, std::int64_t now_ns) noexcept;
 
@@ -50,12 +50,12 @@ class ReliableStream {
     std::uint16_t size{0};
     std::array<std::byte, StreamPart::kMost> bytes{};
   };
-  struct Given {
+  struct SentChunk {
     Chunk chunk;
     std::int64_t sent_ns{0};
     bool heard{false};
   };
-  struct Come {
+  struct ReceivedChunk {
     Chunk chunk;
     bool here{false};
   };
@@ -64,16 +64,16 @@ class ReliableStream {
   }
   void note_heard(std::uint64_t number) noexcept;
   std::uint64_t missing(std::int64_t now_ns, std::int64_t round_trip_ns) const noexcept;
-  std::uint64_t next(Freight& freight) noexcept;
+  std::uint64_t next(ReliablePayload& freight) noexcept;
 
-  std::vector<Given> out_;        // at number % kSpan
+  std::vector<SentChunk> out_;    // at number % kSpan
   std::uint64_t given_{0};        // chunks so far
   std::uint64_t heard_{0};        // all up to here have come there
   std::int64_t newest_heard_{0};  // when the latest of those that have come was sent [ns]
   std::uint64_t chosen_{0};       // for this tick's message; 0: none
   std::uint64_t again_{0};
 
-  std::vector<Come> in_;
+  std::vector<ReceivedChunk> in_;
   std::uint64_t taken_{0};  // all up to here were handed over
   bool answer_due_{false};  // something has come that the other side does not know of
 };

@@ -20,7 +20,7 @@ enum class TurnPhase : std::uint8_t {
   kBroken,  // aborted
 };
 
-/// Which pass the sender is at (network::Turns).
+/// Which pass the sender is at (network::PassBarrier).
 struct TurnState {
   std::uint32_t pass{0};  // number since the link began, from 1; 0: none yet
   std::uint32_t with{0};  // the other side's that goes with it; 0: not known yet

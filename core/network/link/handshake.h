@@ -66,11 +66,11 @@ class Handshake {
 
   /// Host. The same for every guest that tries.
   const Opening& opening() const noexcept { return opening_; }
-  /// Guest. @returns nothing where the opening is not one of this version.
+  /// PendingPeer. @returns nothing where the opening is not one of this version.
   std::optional<Answer> answer(const Opening& opening);
   /// Host. @returns nothing where the guest does not know the secret; the next may try.
   std::optional<Closing> closing(const Answer& answer);
-  /// Guest. @returns whether the host knows the secret.
+  /// PendingPeer. @returns whether the host knows the secret.
   bool finish(const Closing& closing);
 
   /// After closing() or finish(): the other side's.

@@ -24,7 +24,7 @@ WaitingGuests::WaitingGuests(const Socket& listener, const Handshake::Opening& o
     : listener_(listener), opening_(opening), notice_(std::move(notice)) {}
 
 WaitingGuests::~WaitingGuests() {
-  for (const Guest& guest : guests_) {
+  for (const PendingPeer& guest : guests_) {
     send_at_once(guest.said.socket, Handshake::busy<Handshake::Closing>());
   }
 }
@@ -33,7 +33,7 @@ std::optional<WaitingGuests::Answered> WaitingGuests::next(const Patience& patie
   while (Clock::now() < patience.until) {
     wait(patience);
     const auto whole = std::ranges::find_if(
-        guests_, [](const Guest& guest) { return guest.heard == Handshake::kAnswerBytes; });
+        guests_, [](const PendingPeer& guest) { return guest.heard == Handshake::kAnswerBytes; });
     if (whole != guests_.end()) {
       Answered answered = std::move(whole->said);
       guests_.erase(whole);
@@ -49,7 +49,7 @@ void WaitingGuests::wait(const Patience& patience) {
   using namespace std::chrono;
   constexpr milliseconds kPulse(100);
   std::vector<pollfd> watched{{listener_.get(), POLLIN, 0}};
-  for (const Guest& guest : guests_) {
+  for (const PendingPeer& guest : guests_) {
     watched.push_back({guest.said.socket.get(), POLLIN, 0});
   }
   const auto left = ceil<milliseconds>(patience.until - Clock::now());
@@ -72,7 +72,7 @@ void WaitingGuests::wait(const Patience& patience) {
 
 void WaitingGuests::let_in() {
   constexpr std::chrono::seconds kForAnswer(5);  // a guest makes a key first
-  Guest guest;
+  PendingPeer guest;
   const Patience patience{Clock::now() + std::chrono::milliseconds(100), {}};  // it is there
   guest.said.socket = accepted(listener_, patience, &guest.said.from);
   if (guest.said.socket.get() < 0) {
@@ -87,8 +87,8 @@ void WaitingGuests::let_in() {
 }
 
 void WaitingGuests::make_room() {
-  const auto from_there = [&](const Guest& guest) {
-    return std::ranges::count_if(guests_, [&](const Guest& other) {
+  const auto from_there = [&](const PendingPeer& guest) {
+    return std::ranges::count_if(guests_, [&](const PendingPeer& other) {
       return same_machine(guest.said.from, other.said.from);
     });
   };
@@ -98,7 +98,7 @@ void WaitingGuests::make_room() {
   say("a guest was told that this side is busy");
 }
 
-void WaitingGuests::hear(Guest& guest) {
+void WaitingGuests::hear(PendingPeer& guest) {
   const auto room = std::span(guest.said.answer).subspan(guest.heard);
   const ssize_t got = ::recv(guest.said.socket.get(), room.data(), room.size(), 0);
   if (got > 0) {
@@ -110,8 +110,8 @@ void WaitingGuests::hear(Guest& guest) {
 
 void WaitingGuests::leave_silent() {
   const auto now = Clock::now();
-  const auto left =
-      std::erase_if(guests_, [&](const Guest& guest) { return guest.gone || now >= guest.until; });
+  const auto left = std::erase_if(
+      guests_, [&](const PendingPeer& guest) { return guest.gone || now >= guest.until; });
   for (std::size_t i = 0; i < left; ++i) {
     say("a guest that did not speak was turned away");
   }

@@ -37,7 +37,7 @@ class WaitingGuests {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Guest {
+  struct PendingPeer {
     Answered said;
     std::size_t heard{0};  // bytes of the answer
     Clock::time_point until;
@@ -47,14 +47,14 @@ class WaitingGuests {
   void wait(const Patience& patience);
   void let_in();
   void make_room();
-  void hear(Guest& guest);
+  void hear(PendingPeer& guest);
   void leave_silent();
   void say(const char* notice) const;
 
   const Socket& listener_;
   const Handshake::Opening& opening_;
   Notice notice_;
-  std::vector<Guest> guests_;
+  std::vector<PendingPeer> guests_;
   Clock::time_point pulsed_{};
 };
 

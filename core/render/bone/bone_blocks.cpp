@@ -45,7 +45,7 @@ Eigen::AlignedBox3d BoneBlocks::box_of(const Voxel& low, const Voxel& high) cons
 void BoneBlocks::follow(const bone::Surface& surface, const geometry::VoxelGrid& grid) {
   changed_.setEmpty();
   if (surface.rebuilt()) {
-    for (Home& home : homes_) {
+    for (QuadSlot& home : homes_) {
       remove(home);
     }
     begin(grid);
@@ -79,14 +79,14 @@ void BoneBlocks::put(std::int32_t quad, const Voxel& cell) {
   changed_.extend(Voxel(cell + Voxel::Ones()));
 }
 
-Voxel BoneBlocks::cell_of(const Home& home) const {
+Voxel BoneBlocks::cell_of(const QuadSlot& home) const {
   const Voxel block(home.block % table_size_.x(), home.block / table_size_.x() % table_size_.y(),
                     home.block / (table_size_.x() * table_size_.y()));
   const Voxel within(home.cell % kEdge, home.cell / kEdge % kEdge, home.cell / (kEdge * kEdge));
   return kEdge * block + within - Voxel::Ones();
 }
 
-void BoneBlocks::remove(Home& home) {
+void BoneBlocks::remove(QuadSlot& home) {
   if (home.block < 0) {
     return;
   }

@@ -31,7 +31,7 @@ class BoneBlocks {
   Eigen::AlignedBox3d changed() const;
 
  private:
-  struct Home {
+  struct QuadSlot {
     std::int32_t block{-1};  // -1: it is dead
     std::uint16_t at{0};     // in the block
     std::uint16_t cell{0};   // of the quad: its place in the block, x fastest
@@ -40,14 +40,14 @@ class BoneBlocks {
   static_assert(2 * 3 * kEdge * kEdge * kEdge <= 65536);
   void begin(const geometry::VoxelGrid& grid);
   void put(std::int32_t quad, const bone::Voxel& cell);
-  void remove(Home& home);
-  bone::Voxel cell_of(const Home& home) const;
+  void remove(QuadSlot& home);
+  bone::Voxel cell_of(const QuadSlot& home) const;
   Eigen::AlignedBox3d box_of(const bone::Voxel& low, const bone::Voxel& high) const;
 
   geometry::VoxelGrid grid_;
   bone::Voxel table_size_{0, 0, 0};  // in blocks
   std::vector<Block> blocks_;        // by place, x fastest
-  std::vector<Home> homes_;          // by quad
+  std::vector<QuadSlot> homes_;      // by quad
   Eigen::AlignedBox3i changed_;      // corners in voxels
 };
 

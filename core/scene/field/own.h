@@ -11,9 +11,9 @@ namespace haptrial::scene {
 /// A law of force that is made outside of the program. Made before a trial, on any thread; all of
 /// its functions belong to the servo thread: no allocation, lock, I/O or throw, and done in a few
 /// microseconds, since nothing interrupts them and a late force is felt.
-class OwnLaw {
+class RegisteredLaw {
  public:
-  virtual ~OwnLaw() = default;
+  virtual ~RegisteredLaw() = default;
   /// The field is switched on: its filters and memories begin anew.
   virtual void start(const PointState& hand) noexcept { static_cast<void>(hand); }
   /// One tick. The scene limits, fades and records what comes back, and makes it weaker where the
@@ -22,34 +22,34 @@ class OwnLaw {
   /// @returns the force on the hand, in W [N]; one that is not finite counts as zero
   virtual Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept = 0;
   /// Goes on where the same field of the trial before stood. @param before  of the same type
-  virtual void adopt(const OwnLaw& before) noexcept { static_cast<void>(before); }
+  virtual void adopt(const RegisteredLaw& before) noexcept { static_cast<void>(before); }
 };
 
 /// The numbers of such a field, as its reader took them from the definition.
-class OwnNumbers {
+class RegisteredNumbers {
  public:
-  virtual ~OwnNumbers() = default;
+  virtual ~RegisteredNumbers() = default;
   /// @throws std::invalid_argument naming the number that breaks its bound
-  virtual std::unique_ptr<OwnLaw> law(const Setting& setting) const = 0;
+  virtual std::unique_ptr<RegisteredLaw> law(const Setting& setting) const = 0;
 };
 
-struct OwnParameters {
-  std::string type;                           // the word of the definition
-  std::shared_ptr<const OwnNumbers> numbers;  // not null
+struct RegisteredParameters {
+  std::string type;                                  // the word of the definition
+  std::shared_ptr<const RegisteredNumbers> numbers;  // not null
 };
 
 /// Such a law among those of a scene. Nothing is known of its steepness: it counts as active.
-class Own {
+class RegisteredField {
  public:
-  Own(const OwnParameters& parameters, const Setting& setting);
+  RegisteredField(const RegisteredParameters& parameters, const Setting& setting);
 
   void start(const PointState& hand) noexcept { law_->start(hand); }
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
-  void adopt(const Own& before) noexcept;
+  void adopt(const RegisteredField& before) noexcept;
 
  private:
   std::string type_;
-  std::unique_ptr<OwnLaw> law_;
+  std::unique_ptr<RegisteredLaw> law_;
 };
 
 }  // namespace haptrial::scene

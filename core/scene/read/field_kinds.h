@@ -18,7 +18,7 @@ struct KindOfField {
 /// Every kind that read_field() knows. Call before threads are started.
 const std::vector<KindOfField>& kinds_of_field();
 
-/// Adds a kind of a program's own; its read() gives OwnParameters.
+/// Adds a kind of a program's own; its read() gives RegisteredParameters.
 /// @throws std::invalid_argument for a word that is taken
 void add_kind_of_field(const KindOfField& kind);
 

@@ -20,7 +20,7 @@ contact::RendererKind read_renderer(const FieldReader& read) {
 }
 
 /// A kind that has no tool radius or needs one.
-void check_radius(const FieldReader& read, SolidParameters& p) {
+void check_radius(const FieldReader& read, RigidObjectParameters& p) {
   using contact::RendererKind;
   if (p.renderer == RendererKind::kRuspini && !(p.tool_radius > 0.0)) {
     read.table.reject("renderer", "is \"ruspini\", a sphere's; add tool_radius");
@@ -35,7 +35,7 @@ void check_radius(const FieldReader& read, SolidParameters& p) {
 }
 
 /// Keys of other renderers.
-void check_others(const FieldReader& read, SolidParameters& p) {
+void check_others(const FieldReader& read, RigidObjectParameters& p) {
   using contact::RendererKind;
   const bool cells =
       p.renderer == RendererKind::kVoxel || p.renderer == RendererKind::kDistanceField;
@@ -54,7 +54,7 @@ void check_others(const FieldReader& read, SolidParameters& p) {
 }
 
 /// Renderers without a proxy ask a mesh how deep the tool is inside.
-void check_inside(const FieldReader& read, SolidParameters& p) {
+void check_inside(const FieldReader& read, RigidObjectParameters& p) {
   using contact::RendererKind;
   if (p.renderer != RendererKind::kProxy && p.renderer != RendererKind::kRuspini && p.body &&
       !p.body->closed) {
@@ -74,7 +74,7 @@ Field read_solid(Table& table, std::string name, const contact::SharedBody& body
   Field field;
   field.name = std::move(name);
   read_limits(read, field);
-  SolidParameters p;
+  RigidObjectParameters p;
   p.body = body;
   p.pose = read_pose(read);
   p.scale = read.number_or(p.scale, "scale", {0.0, 1000.0, true}, "");

@@ -8,8 +8,8 @@
 
 namespace haptrial::scene {
 
-/// Reads how one table [objects.NAME] is felt, as a field (core/scene/surface/solid.h). Keys in
-/// brackets are optional; all numbers may be formulas. Problems are noted in the table.
+/// Reads how one table [objects.NAME] is felt, as a field (core/scene/surface/rigid_object.h). Keys
+/// in brackets are optional; all numbers may be formulas. Problems are noted in the table.
 ///
 ///     stiffness [N/m], damping [N·s/m]
 ///     [centre]       of the body's origin in W, 0 if left out [m]

@@ -62,7 +62,7 @@ Field read_yielding(Table& table, std::string name, const deformable::SharedFelt
   Field field;
   field.name = std::move(name);
   read_limits(read, field);
-  YieldingParameters p;
+  DeformableObjectParameters p;
   p.mesh = mesh;
   if (table.has("model") && table.choice("model", {"elements", "springs"}) == "springs") {
     p.springs = read_springs(read);

@@ -4,15 +4,15 @@
 #include <string>
 
 #include "core/deformable/springs/law/spring_body.h"
-#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/haptic_mesh.h"
 #include "core/scene/field.h"
 #include "core/scene/read/number_source.h"
 
 namespace haptrial::scene {
 
 /// Reads what a table [objects.NAME] of kind "deformable" is made of and how it is felt
-/// (core/scene/surface/yielding.h). Keys in brackets are optional; all numbers may be formulas.
-/// Problems are noted in the table.
+/// (core/scene/surface/deformable_object.h). Keys in brackets are optional; all numbers may be
+/// formulas. Problems are noted in the table.
 ///
 ///     [model]            "elements", at rest on every tick, if left out:
 ///         young [Pa], poisson

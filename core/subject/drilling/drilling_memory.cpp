@@ -146,7 +146,7 @@ int DrillingMemory::run(const Cell& from, double angle, float highest,
 }
 
 bool DrillingMemory::choose(const BoutChoice& choice, const Eigen::Vector2d& now,
-                            RandomStream& random, Bout& bout) noexcept {
+                            RandomStream& random, StrokeSeries& bout) noexcept {
   double best = 1e9;
   Cell at{-1, -1};
   for (int j = 0; j < chart_.size[1]; ++j) {
@@ -201,7 +201,7 @@ bool DrillingMemory::choose(const BoutChoice& choice, const Eigen::Vector2d& now
 
 /// From the deepest place nearby to beyond the edge that is next to it.
 void DrillingMemory::choose_under(const Cell& at, const BoutChoice& choice, RandomStream& random,
-                                  Bout& bout) noexcept {
+                                  StrokeSeries& bout) noexcept {
   const int reach = static_cast<int>(choice.length / chart_.cell);
   Cell deepest = at;
   float depth = -1.0F;
@@ -233,7 +233,7 @@ void DrillingMemory::choose_under(const Cell& at, const BoutChoice& choice, Rand
   }
 }
 
-void DrillingMemory::end_bout(const Bout& bout) noexcept {
+void DrillingMemory::end_bout(const StrokeSeries& bout) noexcept {
   if (bout.under) {
     return;
   }

@@ -10,7 +10,7 @@
 namespace haptrial::subject {
 
 /// A bout of strokes: to and fro between two places over the bone.
-struct Bout {
+struct StrokeSeries {
   Eigen::Vector2d from{Eigen::Vector2d::Zero()};  // (u, v) [m]
   Eigen::Vector2d to{Eigen::Vector2d::Zero()};
   bool under{false};  // goes under an edge: beyond the cavity, no deeper than it began
@@ -49,9 +49,9 @@ class DrillingMemory {
   double left() const noexcept;
   /// @returns false where nothing is left. @param now  where the hand is
   bool choose(const BoutChoice& choice, const Eigen::Vector2d& now, RandomStream& random,
-              Bout& bout) noexcept;
+              StrokeSeries& bout) noexcept;
   /// After a bout: what it did not get any deeper, after a third try, is taken as gone.
-  void end_bout(const Bout& bout) noexcept;
+  void end_bout(const StrokeSeries& bout) noexcept;
 
   /// The middle of all that is to go, (u, v, w) with w at the surface.
   const Eigen::Vector3d& opening() const noexcept { return opening_; }
@@ -67,7 +67,7 @@ class DrillingMemory {
   float to_go(std::size_t column) const noexcept;
   int run(const Cell& from, double angle, float highest, const BoutChoice& choice) const noexcept;
   void choose_under(const Cell& at, const BoutChoice& choice, RandomStream& random,
-                    Bout& bout) noexcept;
+                    StrokeSeries& bout) noexcept;
 
   const DrillingChart& chart_;
   std::vector<float> height_;  // (u x v) depth at which bone begins now

@@ -112,7 +112,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   double time_{0.0};  // in it [s]
   bool fine_{false};
   std::uint64_t bouts_{0};
-  Bout bout_;
+  StrokeSeries bout_;
   double bout_rate_{1.0};                           // of its strokes [1/s]
   double bout_depth_{0.0};                          // of the burr's centre where the bout began [m]
   double idle_{0.0};                                // of the bout, without bone under the burr [s]

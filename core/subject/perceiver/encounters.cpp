@@ -199,7 +199,7 @@ double Encounters::resistance() const noexcept {
   return line_.weight > 0.0 ? std::max(0.0, line_.y / line_.weight) : 0.0;
 }
 
-Encounter Encounters::met(Quantity quantity) const noexcept {
+ContactEpisode Encounters::met(Quantity quantity) const noexcept {
   switch (quantity) {
     case Quantity::kForce:
       return {force(), force()};

@@ -45,7 +45,7 @@ class Encounters {
   double unevenness() const noexcept;                      // [m]
   double contrast() const noexcept;                        // >= 1
   double resistance() const noexcept;                      // mean r while moving [N]
-  Encounter met(Quantity quantity) const noexcept;
+  ContactEpisode met(Quantity quantity) const noexcept;
 
  private:
   /// Weighted sums of a line y = a + b x.

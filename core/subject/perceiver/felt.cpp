@@ -39,7 +39,7 @@ FeltNoise draw_noise(RandomStream& random) noexcept {
   return n;
 }
 
-double felt(const SenseParameters& s, Quantity quantity, const Encounter& met,
+double felt(const SenseParameters& s, Quantity quantity, const ContactEpisode& met,
             const FeltNoise& n) noexcept {
   const double gain = std::exp(s.force_weber * n.force);
   if (quantity == Quantity::kForce || quantity == Quantity::kFriction ||

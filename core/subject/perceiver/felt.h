@@ -34,7 +34,7 @@ struct SenseParameters {
 void check(const SenseParameters& parameters);
 
 /// What the hand met in an interval, without noise.
-struct Encounter {
+struct ContactEpisode {
   double amount{0.0};  // of the quantity; of compliance its inverse, the stiffness [unit]
   double force{0.0};   // F that it was felt by >= 0 [N]
 };
@@ -58,7 +58,7 @@ FeltNoise draw_noise(RandomStream& random) noexcept;
 /// the senses by K^(1
 /// - beta), so that their Weber fraction is force_weber / (1 - beta); pushed to the same place, by
 /// K, and the fraction is force_weber. Servo thread: no allocation, lock, I/O or throw.
-double felt(const SenseParameters& senses, Quantity quantity, const Encounter& met,
+double felt(const SenseParameters& senses, Quantity quantity, const ContactEpisode& met,
             const FeltNoise& noise) noexcept;
 
 }  // namespace haptrial::subject

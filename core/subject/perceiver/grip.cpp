@@ -19,7 +19,7 @@ void Grip::feel(const Tip& a, const Tip& b, double dt) noexcept {
   }
 }
 
-Encounter Grip::met() const noexcept {
+ContactEpisode Grip::met() const noexcept {
   if (!held()) {
     return {};
   }

@@ -26,7 +26,7 @@ class Grip {
 
   bool held() const noexcept { return touching_ > 0.0; }  // both touched at once
   /// The way and the mean force of the two; 0 if nothing was held.
-  Encounter met() const noexcept;
+  ContactEpisode met() const noexcept;
 
  private:
   Grip(double contact_force, double moving_speed) noexcept

@@ -28,10 +28,10 @@ LevelObserver::LevelObserver(const SenseParameters& senses, Quantity quantity,
   }
 }
 
-Encounter LevelObserver::met(double level) const noexcept {
+ContactEpisode LevelObserver::met(double level) const noexcept {
   const auto spring = [this](double stiffness) {
     const bool fixed = exploration_.depth > 0.0;
-    return Encounter{stiffness, fixed ? stiffness * exploration_.depth : exploration_.press};
+    return ContactEpisode{stiffness, fixed ? stiffness * exploration_.depth : exploration_.press};
   };
   switch (quantity_) {
     case Quantity::kStiffness:

@@ -25,7 +25,7 @@ class LevelObserver {
                 const JudgementParameters& judgement, std::uint64_t session_seed);
 
   /// What the hand would meet.
-  Encounter met(double level) const noexcept;
+  ContactEpisode met(double level) const noexcept;
   /// How a level is felt in an interval with this noise.
   double percept(double level, const FeltNoise& noise) const noexcept;
 

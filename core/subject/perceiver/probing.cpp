@@ -91,7 +91,7 @@ constexpr double kLetGo = 0.1;  // after a reaction time people no longer resist
 
 void check(const Probe& probe) { std::visit(Checker{}, probe); }
 
-void Prober::begin(const Probe& probe, const PointState& hand) noexcept {
+void ExplorationController::begin(const Probe& probe, const PointState& hand) noexcept {
   probe_ = probe;
   start_ = hand.position;
   posture_ = hand.position;
@@ -104,15 +104,17 @@ void Prober::begin(const Probe& probe, const PointState& hand) noexcept {
   }
 }
 
-Prober::Aim Prober::aim(const Rest&, const Now&) noexcept { return {}; }
+ExplorationController::Aim ExplorationController::aim(const Rest&, const Now&) noexcept {
+  return {};
+}
 
-Prober::Aim Prober::aim(const Hold&, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Hold&, const Now&) noexcept {
   Aim aim;
   aim.keeps_place = true;
   return aim;
 }
 
-Prober::Aim Prober::aim(const Press& press, const Now& now) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Press& press, const Now& now) noexcept {
   Aim aim;
   aim.free = press.direction.normalized();
   const double beyond = (now.hand.position - start_).dot(aim.free) - press.travel;
@@ -121,7 +123,7 @@ Prober::Aim Prober::aim(const Press& press, const Now& now) noexcept {
   return aim;
 }
 
-Prober::Aim Prober::aim(const Stroke& stroke, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Stroke& stroke, const Now&) noexcept {
   Aim aim;
   Eigen::Vector3d u = stroke.direction.normalized();
   if (stroke.force > 0.0) {
@@ -144,7 +146,7 @@ Prober::Aim Prober::aim(const Stroke& stroke, const Now&) noexcept {
   return aim;
 }
 
-Prober::Aim Prober::aim(const Reach& reach, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Reach& reach, const Now&) noexcept {
   Aim aim;
   const Eigen::Vector3d way = reach.to - start_;
   const Smooth s = smooth_step(time_ / reach.duration);
@@ -156,7 +158,7 @@ Prober::Aim Prober::aim(const Reach& reach, const Now&) noexcept {
 }
 
 /// The hand goes on from wherever it is, but keeps to the plane of its loop.
-Prober::Aim Prober::aim(const Contour&, const Now& now) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Contour&, const Now& now) noexcept {
   Aim aim;
   const ContourFollower::Step step = follower_.step(time_, now.hand, now.felt, now.dt);
   desired_.position = now.hand.position + step.off_loop;
@@ -166,7 +168,7 @@ Prober::Aim Prober::aim(const Contour&, const Now& now) noexcept {
 }
 
 /// From place to place as in a reach; at a place it keeps to the line along which it presses.
-Prober::Aim Prober::aim(const Palpate& palpate, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Palpate& palpate, const Now&) noexcept {
   Aim aim;
   const PalpationStep step = palpation_at(palpate, time_);
   const Eigen::Vector3d& from = step.place == 0 ? start_ : palpate.places[step.place - 1];
@@ -182,7 +184,8 @@ Prober::Aim Prober::aim(const Palpate& palpate, const Now&) noexcept {
   return aim;
 }
 
-Eigen::Vector3d Prober::track(const Aim& aim, const PointState& hand, double dt) noexcept {
+Eigen::Vector3d ExplorationController::track(const Aim& aim, const PointState& hand,
+                                             double dt) noexcept {
   const Eigen::Vector3d error = desired_.position - hand.position;
   if (aim.keeps_place) {
     integral_ = control::saturate(integral_ + kIntegralGain * dt * error, kMostFeedback);
@@ -198,8 +201,8 @@ Eigen::Vector3d Prober::track(const Aim& aim, const PointState& hand, double dt)
   return force - force.dot(aim.free) * aim.free;
 }
 
-HandCommand Prober::command(const PointState& hand, double dt,
-                            const Eigen::Vector3d& felt) noexcept {
+HandCommand ExplorationController::command(const PointState& hand, double dt,
+                                           const Eigen::Vector3d& felt) noexcept {
   time_ += dt;
   const Now now{hand, felt, dt};
   const Aim wanted = std::visit([&](const auto& probe) { return aim(probe, now); }, probe_);

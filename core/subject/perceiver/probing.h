@@ -58,11 +58,11 @@ void check(const Probe& probe);
 /// and P without the direction along which it pushes. The feedback is at most 6 N; i sums the error
 /// while a place is kept, so that a steady load is carried. Minimum jerk: Flash and Hogan 1985.
 /// Servo thread: no allocation, lock, I/O or throw (ProberTest.DoesNotAllocate).
-class Prober {
+class ExplorationController {
  public:
-  explicit Prober(const HandParameters& hand) noexcept : hand_(hand) {}
+  explicit ExplorationController(const HandParameters& hand) noexcept : hand_(hand) {}
   /// The same with noise in proportion to the force, and tremor.
-  Prober(const HandParameters& hand, const MotorNoise& noise) noexcept
+  ExplorationController(const HandParameters& hand, const MotorNoise& noise) noexcept
       : hand_(hand), noise_(noise) {}
 
   /// Begins where the hand is. @param probe  passes check()

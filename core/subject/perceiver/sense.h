@@ -31,7 +31,7 @@ class Sense {
   /// What is felt so far [unit of the quantity]. A force near nothing can be felt below 0; free air
   /// has stiffness 0 and infinite compliance.
   double percept() const noexcept;
-  Encounter met() const noexcept { return encounters_.met(quantity_); }  // without noise
+  ContactEpisode met() const noexcept { return encounters_.met(quantity_); }  // without noise
   Quantity quantity() const noexcept { return quantity_; }
 
  private:

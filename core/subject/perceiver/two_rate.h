@@ -39,7 +39,8 @@ class TwoRate {
   double slow() const noexcept { return slow_; }           // x_s
 
   /// The force that compensates what was learnt of a field f = B v.
-  /// @param field  B in W [N·s/m]; @param velocity  that is meant (Prober::desired) in W [m/s]
+  /// @param field  B in W [N·s/m]; @param velocity  that is meant (ExplorationController::desired)
+  /// in W [m/s]
   /// @returns -x B v [N]
   Eigen::Vector3d compensation(const Eigen::Matrix3d& field,
                                const Eigen::Vector3d& velocity) const noexcept;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "protocols/interface/side_page.h"
+#include "protocols/interface/auxiliary_page.h"
 
 /// An assistant's page beside the console: shows the trial, and sets for how long each spring of
 /// the following ones is felt, {"interval": 1.5} [s].

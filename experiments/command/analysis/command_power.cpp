@@ -36,7 +36,7 @@ std::optional<double> effect_of(const PowerOptions& options) {
 }
 
 /// An option, whether it was given, and the tests that it belongs to.
-struct Belonging {
+struct OptionScope {
   const char* option;
   bool given;
   std::vector<std::string> tests;
@@ -50,15 +50,15 @@ void check_test(const PowerOptions& o) {
   if (std::ranges::find(tests, o.test) == tests.end()) {
     throw InputError(not_allowed("TEST", fmt::format("'{}'", o.test), tests));
   }
-  for (const Belonging& each : {Belonging{"--f", o.f.has_value(), {"anova", "repeated"}},
-                                {"--groups", o.groups.has_value(), {"anova", "repeated"}},
-                                {"--delta", o.delta.has_value(), {"t"}},
-                                {"--design", o.design.has_value(), {"t"}},
-                                {"--one-tailed", o.one_tailed, {"t"}},
-                                {"--effect", o.effect.has_value(), {"repeated"}},
-                                {"--measurements", o.measurements.has_value(), {"repeated"}},
-                                {"--correlation", o.correlation.has_value(), {"repeated"}},
-                                {"--epsilon", o.epsilon.has_value(), {"repeated"}}}) {
+  for (const OptionScope& each : {OptionScope{"--f", o.f.has_value(), {"anova", "repeated"}},
+                                  {"--groups", o.groups.has_value(), {"anova", "repeated"}},
+                                  {"--delta", o.delta.has_value(), {"t"}},
+                                  {"--design", o.design.has_value(), {"t"}},
+                                  {"--one-tailed", o.one_tailed, {"t"}},
+                                  {"--effect", o.effect.has_value(), {"repeated"}},
+                                  {"--measurements", o.measurements.has_value(), {"repeated"}},
+                                  {"--correlation", o.correlation.has_value(), {"repeated"}},
+                                  {"--epsilon", o.epsilon.has_value(), {"repeated"}}}) {
     if (each.given && std::ranges::find(each.tests, o.test) == each.tests.end()) {
       throw InputError(fmt::format("{} is given with {}; use it with {} only", each.option, o.test,
                                    fmt::join(each.tests, " or ")));

@@ -72,7 +72,7 @@ void add_run(CLI::App& app, int& status) {
   sub->add_flag("--window", o.window, "Show the participant's screen");
   sub->add_flag("--keyboard", o.keyboard, "Control the session with this terminal's keys");
   sub->add_flag("--console", o.console, "Serve the experimenter's page on the loopback address");
-  sub->add_option("--side-page", o.side_pages,
+  sub->add_option("--side-page", o.auxiliary_pages,
                   "Name of a page to serve beside the console; repeated for each page (haptrial "
                   "validate lists those of a definition)")
       ->allow_extra_args(false);

@@ -18,8 +18,8 @@
 #include "core/device/vendor/open_haptics.h"
 #include "experiments/command/sessions/device_check.h"
 #include "experiments/command/sessions/device_commands.h"
+#include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/interrupt.h"
-#include "experiments/control/last_stop.h"
 #include "experiments/control/signals.h"
 #include "experiments/devices/devices.h"
 #include "experiments/studies/experiment.h"
@@ -32,7 +32,7 @@ constexpr double kRate = 1000.0;     // [Hz]
 constexpr double kReachShare = 0.4;  // of the workspace's radius, to each side
 
 /// A device, and who moves it where there is no person.
-struct Bench {
+struct DeviceUnderTest {
   std::unique_ptr<device::CoupledMass> handle;  // of the virtual device
   std::unique_ptr<device::Device> device;
   DeviceCheck::Hand hand;
@@ -87,8 +87,8 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
   return setup;
 }
 
-Bench virtual_bench(const device::VirtualDeviceParameters& parameters) {
-  Bench bench;
+DeviceUnderTest virtual_bench(const device::VirtualDeviceParameters& parameters) {
+  DeviceUnderTest bench;
   bench.handle = std::make_unique<device::CoupledMass>(kFirmHand);
   bench.device = std::make_unique<device::VirtualDevice>(parameters, *bench.handle, kRate);
   bench.hand = [handle = bench.handle.get(), parameters](CheckPart part, double share) {
@@ -98,8 +98,8 @@ Bench virtual_bench(const device::VirtualDeviceParameters& parameters) {
   return bench;
 }
 
-Bench mouse_bench(device::MouseParameters parameters) {
-  Bench bench;
+DeviceUnderTest mouse_bench(device::MouseParameters parameters) {
+  DeviceUnderTest bench;
   parameters.coupling = kFirmHand;
   parameters.pointer_speed = 2.0;
   auto mouse = std::make_unique<device::MouseDevice>(parameters, kRate);
@@ -113,15 +113,15 @@ Bench mouse_bench(device::MouseParameters parameters) {
   return bench;
 }
 
-Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
-  Bench bench;
+DeviceUnderTest vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
+  DeviceUnderTest bench;
   if (options.name == "force-dimension") {
     bench.device = std::make_unique<device::ForceDimensionDevice>(setup.force_dimension, kRate,
                                                                   options.library);
   } else if (options.name == "open-haptics") {
     bench.device =
         std::make_unique<device::OpenHapticsDevice>(setup.open_haptics, kRate, options.library);
-  } else if (const device::OwnDevice* own = device::own_device(options.name)) {
+  } else if (const device::RegisteredDevice* own = device::own_device(options.name)) {
     bench.device = own->open(device::setting_of(options.name), 0, kRate);
   } else {
     throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name),
@@ -130,11 +130,11 @@ Bench vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   return bench;
 }
 
-Bench make_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
+DeviceUnderTest make_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   check_library(options.name, options.library);
-  Bench bench = options.name == "virtual" ? virtual_bench(setup.electronics)
-                : options.name == "mouse" ? mouse_bench(setup.mouse)
-                                          : vendor_bench(options, setup);
+  DeviceUnderTest bench = options.name == "virtual" ? virtual_bench(setup.electronics)
+                          : options.name == "mouse" ? mouse_bench(setup.mouse)
+                                                    : vendor_bench(options, setup);
   const double reach = kReachShare * bench.device->info().workspace_radius;
   bench.reach = {reach, options.name == "mouse" ? 0.0 : reach, reach};  // a pointer has no height
   return bench;
@@ -170,7 +170,7 @@ const char* prompt(CheckPart part) {
 }
 
 /// Takes the force away when the program is interrupted or dies.
-class CheckStop final : public LastStop {
+class CheckStop final : public FatalStopHandler {
  public:
   CheckStop(DeviceCheck& check, device::Device& device) : check_(check), device_(device) {}
   void set_servo_thread() { servo_ = ::gettid(); }
@@ -220,7 +220,7 @@ int device_test(const DeviceTestOptions& options) {
                                  options.seconds, kLeast, kMost));
   }
   const DeviceSetup setup = setup_of(options);
-  Bench bench = make_bench(options, setup);
+  DeviceUnderTest bench = make_bench(options, setup);
   const device::DeviceInfo& info = bench.device->info();
   fmt::print("{}{}: {:.1f} N, workspace radius {:.0f} mm\n", info.name,
              info.simulated ? " (simulated)" : "", info.max_force, 1e3 * info.workspace_radius);

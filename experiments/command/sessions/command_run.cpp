@@ -21,8 +21,8 @@
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/sessions/run_checks.h"
 #include "experiments/console/console.h"
+#include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/keyboard.h"
-#include "experiments/control/last_stop.h"
 #include "experiments/control/signals.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
@@ -84,10 +84,10 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
     console_options.on_refusal = [&control](const std::string& sentence) {
       control.note("console: " + sentence);
     };
-    console_options.sides = request.side_pages;
+    console_options.sides = request.auxiliary_pages;
     console = std::make_unique<Console>(control, console_options);
     fmt::print("console: {}\n", console->url());
-    for (const auto& side : request.side_pages) {
+    for (const auto& side : request.auxiliary_pages) {
       fmt::print("{}: {}\n", side->title(), console->side_url(side->name()));
     }
     std::fflush(stdout);
@@ -117,15 +117,17 @@ void check_pages(const RunOptions& options, const protocols::Definition& definit
 }
 
 /// Those of the definition's pages that are to be served.
-protocols::SidePages chosen_pages(const RunOptions& options, const protocols::Protocol& protocol,
-                                  const protocols::Definition& definition) {
-  const protocols::SidePages all = protocol.side_pages(definition);
+protocols::AuxiliaryPages chosen_pages(const RunOptions& options,
+                                       const protocols::Protocol& protocol,
+                                       const protocols::Definition& definition) {
+  const protocols::AuxiliaryPages all = protocol.auxiliary_pages(definition);
   std::vector<std::string> offered;
   for (const auto& side : all) {
     offered.emplace_back(side->name());
   }
-  protocols::SidePages chosen;
-  for (const std::string& name : std::set(options.side_pages.begin(), options.side_pages.end())) {
+  protocols::AuxiliaryPages chosen;
+  for (const std::string& name :
+       std::set(options.auxiliary_pages.begin(), options.auxiliary_pages.end())) {
     const auto found = std::find(offered.begin(), offered.end(), name);
     if (found == offered.end()) {
       throw InputError(fmt::format("--side-page: {} has no page '{}'; {}", options.definition, name,
@@ -162,7 +164,7 @@ int run(const RunOptions& asked) {
   }
   check_recording(options, experiment.study->protocol(), setup);
   check_pages(options, setup);
-  const protocols::SidePages side_pages =
+  const protocols::AuxiliaryPages auxiliary_pages =
       chosen_pages(options, experiment.study->protocol(), setup);
   if (!experiment.untranslated.empty()) {
     fmt::print(
@@ -214,7 +216,7 @@ int run(const RunOptions& asked) {
         fmt::format("{}: the folder cannot be created ({})", options.out, error.message()));
   }
   choose_devices(options, request);
-  request.side_pages = side_pages;
+  request.auxiliary_pages = auxiliary_pages;
   request.window = options.window;
   request.stream = options.stream || options.stream_optional;
   request.stream_optional = options.stream_optional;

@@ -25,7 +25,7 @@ int validate(const std::string& file) {
     fmt::print("{}\n", line);
   }
   const protocols::Definition& definition = *experiment.definition;
-  for (const auto& side : experiment.study->protocol().side_pages(definition)) {
+  for (const auto& side : experiment.study->protocol().auxiliary_pages(definition)) {
     fmt::print("page beside the console: {} (haptrial run --console --side-page {})\n",
                side->title(), side->name());
   }

@@ -43,7 +43,7 @@ struct RunOptions {
   std::string learn_from;          // HOST:PORT of the side that teaches; empty: nobody
   std::string secret;              // file that both sides have
   bool console{false};
-  std::vector<std::string> side_pages;  // of the protocol, beside the console
+  std::vector<std::string> auxiliary_pages;  // of the protocol, beside the console
   bool keyboard{false};
   std::optional<std::string> address;  // of the console; default: the loopback's
   std::optional<int> port;             // of the console; default: any that is free

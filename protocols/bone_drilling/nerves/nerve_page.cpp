@@ -83,7 +83,7 @@ bool number(const json& body, std::size_t size, const char* name, double least, 
 
 }  // namespace
 
-SidePage::Events NervePage::events() {
+AuxiliaryPage::Events NervePage::events() {
   return [desk = desk_, column = std::uint64_t{0}, event = std::uint64_t{0}]() mutable {
     const nerve::MonitorDesk::View view = desk->since(column, event);
     column = view.next_column;

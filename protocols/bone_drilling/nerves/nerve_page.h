@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/nerve/beside/monitor_desk.h"
-#include "protocols/interface/side_page.h"
+#include "protocols/interface/auxiliary_page.h"
 
 namespace haptrial::protocols {
 
@@ -14,7 +14,7 @@ std::string_view nerves_html();
 
 /// The page of a nerve monitor's technician: traces, events, thresholds. Each of its events has
 /// what came since the one before, samples in multiples of 0.1 uV.
-class NervePage final : public SidePage {
+class NervePage final : public AuxiliaryPage {
  public:
   std::string_view name() const override { return "nerves"; }
   std::string_view title() const override { return "nerve monitor"; }

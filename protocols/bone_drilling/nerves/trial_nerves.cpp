@@ -24,7 +24,7 @@ TrialNerves::TrialNerves(const BoneDefinition& definition, const SessionPlace& p
     return std::make_unique<nerve::NerveSimulation>(setup, rate, derived_seed(seed, name), pulse);
   };
   if (place.real) {
-    const auto page = page_of<NervePage>(place.side_pages);
+    const auto page = page_of<NervePage>(place.auxiliary_pages);
     const nerve::NerveListeners listeners{page ? page->desk() : nullptr, voice};
     beside_ = std::make_unique<nerve::ThreadedNerves>(make, d_.rate, listeners);
   } else {

@@ -44,12 +44,12 @@ struct Block {
 /// What a study presents, and in which order.
 struct TrialDesign {
   int participants{1};
-  int sessions{1};                 // of each participant
-  int break_after{0};              // trials; 0: no breaks
-  double break_duration{60.0};     // [s]
-  bool break_until_ready{false};   // and then until somebody goes on
-  Balance order{Balance::kFixed};  // of the blocks that are not practice
-  int most_in_a_row{0};            // trials of one combination of factors; 0: no matter
+  int sessions{1};                                   // of each participant
+  int break_after{0};                                // trials; 0: no breaks
+  double break_duration{60.0};                       // [s]
+  bool break_until_ready{false};                     // and then until somebody goes on
+  Counterbalancing order{Counterbalancing::kFixed};  // of the blocks that are not practice
+  int most_in_a_row{0};  // trials of one combination of factors; 0: no matter
   std::vector<Factor> factors;
   std::vector<Block> blocks;                         // at least one; practice first
   std::vector<std::vector<std::size_t>> by_session;  // blocks of each; empty: all in each

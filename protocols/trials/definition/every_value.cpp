@@ -79,7 +79,7 @@ void check_reach(const TrialsDefinition& d, const Presented& presented) {
 /// A mesh in millimetres that is taken for one in metres is as large as a house.
 void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
   for (const scene::Field& field : fields) {
-    const auto* solid = std::get_if<scene::SolidParameters>(&field.kind);
+    const auto* solid = std::get_if<scene::RigidObjectParameters>(&field.kind);
     const double size = solid != nullptr && solid->body ? solid->scale * solid->body->size : 0.0;
     if (size > 0.0 && !(size >= kLeastObject && size <= kLargestObject)) {
       throw InputError(fmt::format(

@@ -133,7 +133,7 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
     }
     const scene::Field& field = fields[at];
     if (acts(named.stage.fields, i) && !is_weak_friction(field)) {
-      const scene::Steepness steep = scene::steepness(fields, at);
+      const scene::StiffnessBound steep = scene::steepness(fields, at);
       load.stiffness += std::isfinite(steep.stiffness) ? steep.stiffness : 0.0;
       load.damping += steep.damping;
       if (const auto* inertia = std::get_if<scene::InertiaParameters>(&field.kind)) {

@@ -9,7 +9,7 @@
 #include "core/base/text/counted.h"
 #include "core/psychometric/definition/expectation.h"
 #include "core/psychometric/definition/procedure_warnings.h"
-#include "protocols/trials/language/stray_words.h"
+#include "protocols/trials/language/unmatched_literals.h"
 
 namespace haptrial::protocols {
 
@@ -159,8 +159,8 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
 }
 
 std::vector<std::string> TrialsDefinition::warnings() const {
-  std::vector<std::string> all = stray_words(text);
-  all.insert(all.end(), restless.begin(), restless.end());
+  std::vector<std::string> all = unmatched_literals(text);
+  all.insert(all.end(), underdamped.begin(), underdamped.end());
   for (const Track& track : tracks) {
     std::ranges::move(psychometric::procedure_warnings(track), std::back_inserter(all));
   }

@@ -59,8 +59,9 @@ struct TrialsDefinition : Definition {
   int sound_right{-1}, sound_wrong{-1};  // of the cues, with the feedback; -1: none
   double stage_time{0.0};                // of one interval at most, roughly [s]
   // Known once every value was checked (check_every_value).
-  std::vector<std::string> felt;      // what bodies cost and which hands fields need, a line each
-  std::vector<std::string> restless;  // sentences on fields that the hand of [hand] does not carry
+  std::vector<std::string> felt;  // what bodies cost and which hands fields need, a line each
+  std::vector<std::string>
+      underdamped;      // sentences on fields that the hand of [hand] does not carry
   int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
   PedalUse pedal_use() const override;

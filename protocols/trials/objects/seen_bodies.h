@@ -16,7 +16,7 @@ namespace haptrial::protocols {
 /// The forces that press seen bodies on a tick. Plain data, for the screen.
 struct SeenForces {
   struct Force {
-    std::int32_t vertex{0};          // of the FeltMesh
+    std::int32_t vertex{0};          // of the HapticMesh
     std::array<float, 3> newtons{};  // on the body, in its own frame
   };
   static constexpr std::size_t kMost = 64;

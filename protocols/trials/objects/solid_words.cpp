@@ -9,7 +9,7 @@ namespace haptrial::protocols {
 namespace {
 
 /// Why of a solid nothing is proven.
-std::string doubt(const scene::SolidParameters& p) {
+std::string doubt(const scene::RigidObjectParameters& p) {
   return p.renderer == contact::RendererKind::kProxy
              ? "shading turns its force away from its spring"
              : fmt::format("its renderer is \"{}\"", contact::name_of(p.renderer));
@@ -21,11 +21,11 @@ std::vector<std::string> words_of_solids(const std::vector<scene::Field>& fields
                                          double damping) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto* p = std::get_if<scene::SolidParameters>(&fields[i].kind);
+    const auto* p = std::get_if<scene::RigidObjectParameters>(&fields[i].kind);
     if (p == nullptr) {
       continue;
     }
-    const scene::Steepness steepness = scene::steepness(fields, i);
+    const scene::StiffnessBound steepness = scene::steepness(fields, i);
     const double needed = 0.5 * steepness.stiffness / rate;
     lines.push_back(fmt::format(
         "objects.{}: at most {:.4g} N/m; {} {:.3g} N·s/m of damping at {:g} Hz (K T / 2){}; it "

@@ -138,7 +138,7 @@ void read_yielding_shape(Table& table, TrialObject& object) {
   table.choice("shape", {"box"});
   const Eigen::Vector3d size = sides(table);
   try {
-    object.felt = std::make_shared<const deformable::FeltMesh>(
+    object.felt = std::make_shared<const deformable::HapticMesh>(
         deformable::felt_block(size, object.cells, object.sides, "objects." + object.name));
     object.body = contact::felt_body(geometry::make_box(size));
   } catch (const InputError& error) {
@@ -181,7 +181,7 @@ void load_mesh(TrialObject& object, const std::filesystem::path& file) {
   object.file_bytes = bytes.size();
   object.file_checksum = fnv1a(bytes);
   if (object.yields) {
-    object.felt = std::make_shared<const deformable::FeltMesh>(deformable::felt_solid(
+    object.felt = std::make_shared<const deformable::HapticMesh>(deformable::felt_solid(
         object.body->mesh, object.cells, object.sides, "objects." + object.name));
   }
 }

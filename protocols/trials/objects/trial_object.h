@@ -8,7 +8,7 @@
 
 #include "core/contact/surface/felt_body.h"
 #include "core/deformable/springs/law/spring_body.h"
-#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/haptic_mesh.h"
 
 namespace haptrial {
 class Table;

@@ -23,8 +23,8 @@ std::string words_of_cost(const std::string& name, const deformable::TouchCost& 
 }
 
 /// Words about elements that rest on every tick.
-void add_words_of_elements(const scene::Field& field, const scene::YieldingParameters& p,
-                           const scene::Steepness& steepness, double rate, double damping,
+void add_words_of_elements(const scene::Field& field, const scene::DeformableObjectParameters& p,
+                           const scene::StiffnessBound& steepness, double rate, double damping,
                            std::vector<std::string>& lines) {
   const double needed = scene::needed_damping_below(0.0, steepness, rate);
   const double most = deformable::stiffest_touch(*p.body, p.tool.radius);
@@ -52,7 +52,7 @@ void add_words_of_elements(const scene::Field& field, const scene::YieldingParam
 }
 
 /// Words about springs that move at their own rate. @param cost  of their steps on a tick
-void add_words_of_own_rate(const scene::Field& field, const scene::YieldingParameters& p,
+void add_words_of_own_rate(const scene::Field& field, const scene::DeformableObjectParameters& p,
                            double rate, const deformable::TouchCost& cost,
                            std::vector<std::string>& lines) {
   const double window = p.rates.window / rate;
@@ -71,7 +71,7 @@ void add_words_of_own_rate(const scene::Field& field, const scene::YieldingParam
 }
 
 /// Words about springs that move.
-void add_words_of_springs(const scene::Field& field, const scene::YieldingParameters& p,
+void add_words_of_springs(const scene::Field& field, const scene::DeformableObjectParameters& p,
                           double rate, double damping, std::vector<std::string>& lines) {
   const deformable::MovingBody& body = *p.moving;
   const int steps = deformable::steps_on_a_tick(body, 1.0 / rate);
@@ -102,7 +102,7 @@ void add_words_of_springs(const scene::Field& field, const scene::YieldingParame
 
 void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate) {
   for (scene::Field& field : fields) {
-    auto* p = std::get_if<scene::YieldingParameters>(&field.kind);
+    auto* p = std::get_if<scene::DeformableObjectParameters>(&field.kind);
     if (p != nullptr && p->mesh && p->springs) {
       p->moving = deformable::prepared(p->mesh, *p->springs);
       p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
@@ -115,7 +115,7 @@ void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate) {
 void prepare_bodies(std::vector<scene::Field>& fields, double rate, bool real) {
   prepare_moving_bodies(fields, rate);
   for (scene::Field& field : fields) {
-    auto* p = std::get_if<scene::YieldingParameters>(&field.kind);
+    auto* p = std::get_if<scene::DeformableObjectParameters>(&field.kind);
     if (p != nullptr && p->mesh && !p->springs) {
       p->body = deformable::prepared(p->mesh, p->tissue);
     } else if (p != nullptr && p->moving && p->rate > 0.0) {
@@ -129,7 +129,7 @@ std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields
                                          double damping) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto* p = std::get_if<scene::YieldingParameters>(&fields[i].kind);
+    const auto* p = std::get_if<scene::DeformableObjectParameters>(&fields[i].kind);
     if (p == nullptr || !p->prepared()) {
       continue;
     }

@@ -30,7 +30,7 @@ bool is_diagonal(std::span<const Vector3d> at, const Edge& edge, const Across& a
          });
 }
 
-std::vector<Edge> sides_of_cells(const deformable::FeltMesh& mesh) {
+std::vector<Edge> sides_of_cells(const deformable::HapticMesh& mesh) {
   std::map<Edge, Across> edges;
   for (const Face& face : mesh.felt) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -71,7 +71,7 @@ YieldingSight::YieldingSight(SeenBody body, const contact::SharedBody& skin)
   }
 }
 
-const deformable::FeltMesh& YieldingSight::mesh() const {
+const deformable::HapticMesh& YieldingSight::mesh() const {
   return body_.resting ? body_.resting->mesh() : *body_.moving->mesh;
 }
 

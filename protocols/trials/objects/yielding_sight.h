@@ -29,12 +29,12 @@ class YieldingSight {
   const std::vector<deformable::Edge>& grid() const { return grid_; }
 
  private:
-  const deformable::FeltMesh& mesh() const;
+  const deformable::HapticMesh& mesh() const;
   void press(std::span<const SeenForces::Force> forces);
 
   SeenBody body_;
-  std::vector<std::int32_t> place_;      // by vertex of the FeltMesh; -1: none
-  std::vector<Eigen::Vector3d> coarse_;  // (vertices of the FeltMesh)
+  std::vector<std::int32_t> place_;      // by vertex of the HapticMesh; -1: none
+  std::vector<Eigen::Vector3d> coarse_;  // (vertices of the HapticMesh)
   std::vector<Eigen::Vector3d> fine_;
   std::unique_ptr<deformable::Skin> skin_;
   std::vector<geometry::Triangle> triangles_;

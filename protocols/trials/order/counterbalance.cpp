@@ -15,12 +15,12 @@ namespace {
 
 constexpr int kMostForFull = 8;
 
-constexpr std::array<std::pair<std::string_view, Balance>, 5> kNames{
-    {{"fixed", Balance::kFixed},
-     {"latin", Balance::kLatin},
-     {"williams", Balance::kWilliams},
-     {"full", Balance::kFull},
-     {"random", Balance::kRandom}}};
+constexpr std::array<std::pair<std::string_view, Counterbalancing>, 5> kNames{
+    {{"fixed", Counterbalancing::kFixed},
+     {"latin", Counterbalancing::kLatin},
+     {"williams", Counterbalancing::kWilliams},
+     {"full", Counterbalancing::kFull},
+     {"random", Counterbalancing::kRandom}}};
 
 std::vector<int> as_listed(int levels) {
   std::vector<int> order(static_cast<std::size_t>(levels));
@@ -61,7 +61,7 @@ std::int64_t row_of_participant(std::int64_t rows, int participant, std::uint64_
 
 }  // namespace
 
-Balance balance_named(std::string_view word) {
+Counterbalancing balance_named(std::string_view word) {
   const auto found = std::ranges::find(kNames, word, [](const auto& name) { return name.first; });
   if (found == kNames.end()) {
     throw std::invalid_argument("'" + std::string(word) +
@@ -71,30 +71,30 @@ Balance balance_named(std::string_view word) {
   return found->second;
 }
 
-std::int64_t participants_for(Balance balance, int levels) {
+std::int64_t participants_for(Counterbalancing balance, int levels) {
   if (levels < 1) {
     throw std::invalid_argument("participants_for: there must be a level");
   }
   switch (balance) {
-    case Balance::kFixed:
+    case Counterbalancing::kFixed:
       return 1;
-    case Balance::kLatin:
+    case Counterbalancing::kLatin:
       return levels;
-    case Balance::kWilliams:
+    case Counterbalancing::kWilliams:
       return static_cast<std::int64_t>(williams_rows(levels).size());
-    case Balance::kFull:
+    case Counterbalancing::kFull:
       if (levels > kMostForFull) {
         throw std::invalid_argument("every order of " + std::to_string(levels) +
                                     " levels are too many; choose latin or williams, or up to 8");
       }
       return factorial(levels);
-    case Balance::kRandom:
+    case Counterbalancing::kRandom:
       break;
   }
   return 0;
 }
 
-std::vector<int> order_of_levels(Balance balance, int levels, int participant,
+std::vector<int> order_of_levels(Counterbalancing balance, int levels, int participant,
                                  std::uint64_t study_seed, std::uint64_t session_seed) {
   const std::int64_t rows = participants_for(balance, levels);
   if (rows == 0) {
@@ -105,14 +105,14 @@ std::vector<int> order_of_levels(Balance balance, int levels, int participant,
   }
   const std::int64_t row = row_of_participant(rows, participant, study_seed);
   switch (balance) {
-    case Balance::kLatin: {
+    case Counterbalancing::kLatin: {
       std::vector<int> order = as_listed(levels);
       std::ranges::rotate(order, order.begin() + row);
       return order;
     }
-    case Balance::kWilliams:
+    case Counterbalancing::kWilliams:
       return williams_rows(levels)[static_cast<std::size_t>(row)];
-    case Balance::kFull:
+    case Counterbalancing::kFull:
       return permutation(levels, row);
     default:
       return as_listed(levels);

@@ -8,7 +8,7 @@
 namespace haptrial::protocols {
 
 /// How the levels of a factor come to participants or follow each other.
-enum class Balance : std::uint8_t {
+enum class Counterbalancing : std::uint8_t {
   kFixed,     // as listed, for everybody
   kLatin,     // cyclic Latin square: every level at every place equally often
   kWilliams,  // and after every other level equally often (Williams 1949)
@@ -18,11 +18,11 @@ enum class Balance : std::uint8_t {
 
 /// The balance that a definition names: "fixed", "latin", "williams", "full", "random".
 /// @throws std::invalid_argument for another word
-Balance balance_named(std::string_view word);
+Counterbalancing balance_named(std::string_view word);
 
 /// How many participants it takes until every order of `levels` >= 1 levels was used equally often;
 /// 0 where orders are drawn. @throws std::invalid_argument where there are too many orders.
-std::int64_t participants_for(Balance balance, int levels);
+std::int64_t participants_for(Counterbalancing balance, int levels);
 
 /// The order in which one participant meets the levels. Over as many consecutive participants as
 /// participants_for() says, each order is used once; which comes to whom is drawn from the study's
@@ -31,7 +31,7 @@ std::int64_t participants_for(Balance balance, int levels);
 /// @param study_seed    the same for all participants
 /// @param session_seed  of this participant
 /// @returns (levels) values 0 .. levels - 1
-std::vector<int> order_of_levels(Balance balance, int levels, int participant,
+std::vector<int> order_of_levels(Counterbalancing balance, int levels, int participant,
                                  std::uint64_t study_seed, std::uint64_t session_seed);
 
 }  // namespace haptrial::protocols

@@ -20,7 +20,7 @@ class LeftDecision {
     double value{0.0};     // of a typed number
     double reaction{0.0};  // from the question to the answer >= 0 [s]
   };
-  struct Asked {
+  struct DecisionRequest {
     std::size_t question{0};                      // from 0
     std::array<double, kMostIntervals> percepts;  // (intervals) [unit of the sense]
     std::size_t intervals{1};
@@ -28,7 +28,7 @@ class LeftDecision {
   };
 
   // Servo thread: no allocation, lock, I/O or throw.
-  void ask(const Asked& asked) noexcept {
+  void ask(const DecisionRequest& asked) noexcept {
     asked_ = asked;
     state_.store(State::kAsked, std::memory_order_release);
   }
@@ -43,7 +43,7 @@ class LeftDecision {
   bool waits() const noexcept { return state_.load(std::memory_order_acquire) == State::kAsked; }
 
   // Session's thread, while it waits.
-  const Asked& asked() const noexcept { return asked_; }
+  const DecisionRequest& asked() const noexcept { return asked_; }
   void answer(const Answer& answer) noexcept {
     answer_ = answer;
     State expected = State::kAsked;
@@ -54,7 +54,7 @@ class LeftDecision {
   enum class State : std::uint8_t { kNothing, kAsked, kAnswered };
 
   std::atomic<State> state_{State::kNothing};
-  Asked asked_{};
+  DecisionRequest asked_{};
   Answer answer_;
 };
 

@@ -40,11 +40,11 @@ SeenObject seen_object(const contact::ObjectPose& pose, double scale, std::size_
 void show_object(const Presented& presented, const std::string& name, StageSight& sight) {
   std::size_t object = 0;
   for (const scene::Field& field : presented.fields) {
-    if (const auto* solid = std::get_if<scene::SolidParameters>(&field.kind);
+    if (const auto* solid = std::get_if<scene::RigidObjectParameters>(&field.kind);
         solid != nullptr && field.name == name) {
       sight.objects.push_back(seen_object(solid->pose, solid->scale, object));
     }
-    if (const auto* body = std::get_if<scene::YieldingParameters>(&field.kind);
+    if (const auto* body = std::get_if<scene::DeformableObjectParameters>(&field.kind);
         body != nullptr && field.name == name) {
       sight.objects.push_back(seen_object(body->pose, 1.0, object));
     }

@@ -252,7 +252,7 @@ void TrialPass::ask() noexcept {
 
 /// To the next question; a trial that comes again is not asked about any further.
 void TrialPass::go_on() noexcept {
-  const Asked& asked = setup_.questions[question_];
+  const PresentedQuestion& asked = setup_.questions[question_];
   if (answers_[question_].pace != Pace::kInTime && asked.question->again) {
     state_ = PassState::kCompleted;
     return;
@@ -319,7 +319,7 @@ void TrialPass::listen_to_pedal(const Question& question, Answer& answer) noexce
 /// The answer is of the tick on which the tip came in; it counts when it has stayed.
 void TrialPass::watch_places(const Readings& readings, Answer& answer) noexcept {
   constexpr double kRounding = 1e-9;  // [s]
-  const Asked& asked = setup_.questions[question_];
+  const PresentedQuestion& asked = setup_.questions[question_];
   for (std::size_t i = 0; i < asked.places.size(); ++i) {
     const TouchedPlace& place = asked.places[i];
     Dwell& dwell = dwells_[i];
@@ -373,7 +373,7 @@ void TrialPass::listen_to_number(const Question& question, Answer& answer) noexc
 }
 
 /// The participant hears whether the answer was right when this is shown.
-int TrialPass::sound_of(const Asked& asked, const Answer& answer) const noexcept {
+int TrialPass::sound_of(const PresentedQuestion& asked, const Answer& answer) const noexcept {
   const bool told = asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0;
   const bool again = answer.pace != Pace::kInTime && asked.question->again;
   return !told || again                 ? -1
@@ -382,7 +382,7 @@ int TrialPass::sound_of(const Asked& asked, const Answer& answer) const noexcept
 }
 
 void TrialPass::take(const Answer& given, PassOutput& out) noexcept {
-  const Asked& asked = setup_.questions[question_];
+  const PresentedQuestion& asked = setup_.questions[question_];
   Answer& answer = answers_[question_] = given;
   if (answer.source != record::ResponseSource::kPlace) {
     answer.sequence = sequence_;

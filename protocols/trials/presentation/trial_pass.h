@@ -58,7 +58,7 @@ struct TouchedPlace {
 };
 
 /// What is asked after the intervals.
-struct Asked {
+struct PresentedQuestion {
   const Question* question{nullptr};  // outlives the pass
   int right{-1};                      // choice, from 0; -1: none is known to be right
   bool feedback{false};               // tells whether it was right
@@ -87,11 +87,11 @@ class TrialPass final : public Pass {
   struct Setup {
     std::int32_t trial{0};
     std::vector<IntervalRun> intervals;
-    std::vector<Asked> questions;
+    std::vector<PresentedQuestion> questions;
     double feedback_time{0.0};  // [s]
     int most_repeats{5};
-    double max_force{8.0};      // the sum of a device's fields is scaled to at most this [N]
-    SaidAnswer* said{nullptr};  // null: a person answers
+    double max_force{8.0};           // the sum of a device's fields is scaled to at most this [N]
+    SimulatedAnswer* said{nullptr};  // null: a person answers
     const LeftDecision* left{nullptr};     // null: nothing is left to the session's thread
     ContactLog* contacts{nullptr};         // of recorded objects; null if there are none
     int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none
@@ -145,7 +145,7 @@ class TrialPass final : public Pass {
   void begin_interval() noexcept;
   void go_on_feeling() noexcept;
   void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
-  int sound_of(const Asked& asked, const Answer& answer) const noexcept;
+  int sound_of(const PresentedQuestion& asked, const Answer& answer) const noexcept;
   void feel(const Readings& readings) noexcept;
   void present(const Readings& readings, double dt, PassOutput& out) noexcept;
   void show_pressed(const IntervalRun& run, const StageSight& sight, std::size_t devices) noexcept;

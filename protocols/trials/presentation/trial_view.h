@@ -74,7 +74,7 @@ struct TrialView {
 
 /// An answer that a virtual participant gives; a person uses buttons and keys. Written and read on
 /// the servo thread.
-struct SaidAnswer {
+struct SimulatedAnswer {
   bool given{false};
   int choice{-1};     // from 0; of a typed number -1
   double value{0.0};  // of a typed number

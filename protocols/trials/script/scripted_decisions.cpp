@@ -101,7 +101,7 @@ ScriptedDecisions::ScriptedDecisions(const ScriptPlan& plan, std::string subject
 ScriptedDecisions::~ScriptedDecisions() = default;
 
 std::string ScriptedDecisions::line_of(const TrialToDecide& trial, const Question& question,
-                                       const LeftDecision::Asked& asked) const {
+                                       const LeftDecision::DecisionRequest& asked) const {
   Line line{{"subject", subject_},
             {"trial", trial.trial},
             {"practice", trial.practice},
@@ -117,7 +117,7 @@ std::string ScriptedDecisions::line_of(const TrialToDecide& trial, const Questio
 }
 
 LeftDecision::Answer ScriptedDecisions::decide(const TrialToDecide& trial, const Question& question,
-                                               const LeftDecision::Asked& asked) {
+                                               const LeftDecision::DecisionRequest& asked) {
   const auto refuse = [&](const std::string& why) {
     return InputError(fmt::format("observer.script: {}trial {} of {}: {}: {}",
                                   trial.practice ? "practice " : "", trial.trial, subject_,

@@ -39,14 +39,14 @@ class ScriptedDecisions {
 
   /// @throws InputError where it gives no answer, or one that the question does not allow
   LeftDecision::Answer decide(const TrialToDecide& trial, const Question& question,
-                              const LeftDecision::Asked& asked);
+                              const LeftDecision::DecisionRequest& asked);
   /// What was answered in a trial that counts; the script is told of it from then on.
   void told(int trial, bool practice, std::span<const record::ResponseRow> responses);
 
  private:
   struct History;
   std::string line_of(const TrialToDecide& trial, const Question& question,
-                      const LeftDecision::Asked& asked) const;
+                      const LeftDecision::DecisionRequest& asked) const;
 
   const ScriptPlan& plan_;
   std::string subject_;

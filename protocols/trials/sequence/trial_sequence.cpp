@@ -59,14 +59,14 @@ std::vector<std::size_t> shuffled_indices(std::size_t count, RandomStream& rando
 
 }  // namespace
 
-Taker taker_of(const TrialsDefinition& d, const SessionPlace& place) {
+SessionIdentity identity_of(const TrialsDefinition& d, const SessionPlace& place) {
   const std::string group = d.groups.size() > 1 ? group_of(d.groups, place.subject)
                             : d.groups.empty()  ? std::string()
                                                 : d.groups.front().name;
   return {place.participant, group, place.seed, place.session_seed, place.session};
 }
 
-TrialSequence::TrialSequence(const TrialsDefinition& definition, const Taker& taker)
+TrialSequence::TrialSequence(const TrialsDefinition& definition, const SessionIdentity& taker)
     : d_(definition), taker_(taker) {
   std::vector<std::size_t> others;
   for (const std::size_t i : d_.order.blocks_of(taker.session)) {

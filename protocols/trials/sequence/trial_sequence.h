@@ -19,7 +19,7 @@ namespace haptrial::protocols {
 inline constexpr int kPracticeNumbers = 1'000'000;
 
 /// Who takes part, as far as an order depends on it.
-struct Taker {
+struct SessionIdentity {
   int participant{0};  // from 0
   std::string group;
   std::uint64_t study_seed{0};
@@ -28,7 +28,7 @@ struct Taker {
 };
 
 /// Who comes to a session of a definition. @param place  with its seeds
-Taker taker_of(const TrialsDefinition& definition, const SessionPlace& place);
+SessionIdentity identity_of(const TrialsDefinition& definition, const SessionPlace& place);
 
 /// One track in one combination of its factors.
 struct RunningTrack {
@@ -54,7 +54,7 @@ struct NextTrial {
 class TrialSequence {
  public:
   /// @param definition  outlives the sequence
-  TrialSequence(const TrialsDefinition& definition, const Taker& taker);
+  TrialSequence(const TrialsDefinition& definition, const SessionIdentity& taker);
 
   /// What follows; nothing at the end. The same until conclude() is called.
   std::optional<NextTrial> next();
@@ -96,7 +96,7 @@ class TrialSequence {
   bool probe_comes(const Block& block) const;
 
   const TrialsDefinition& d_;
-  Taker taker_;
+  SessionIdentity taker_;
   LevelChooser* chooser_{nullptr};   // null: the procedures
   std::vector<std::size_t> blocks_;  // of the definition, in this participant's order
   std::size_t at_{0};                // of blocks_

@@ -26,8 +26,8 @@ int AnswerByHand::place_of(const Question& question, int choice) noexcept {
   return place;
 }
 
-void AnswerByHand::begin(const TrialView& view, std::size_t mark, subject::Prober& prober,
-                         const PointState& hand) noexcept {
+void AnswerByHand::begin(const TrialView& view, std::size_t mark,
+                         subject::ExplorationController& prober, const PointState& hand) noexcept {
   constexpr double kLeast = 0.01;  // of a place whose size is not shown [m]
   constexpr double kBeyond = 1.5;  // its radius, as far as a box reaches to its corners
   const Mark& aim = view.marks[mark];
@@ -47,13 +47,15 @@ void AnswerByHand::begin(const TrialView& view, std::size_t mark, subject::Probe
   go(prober, hand, (hand.position - place_).norm() < radius);
 }
 
-void AnswerByHand::go(subject::Prober& prober, const PointState& hand, bool away) noexcept {
+void AnswerByHand::go(subject::ExplorationController& prober, const PointState& hand,
+                      bool away) noexcept {
   going_away_ = away;
   time_ = 0.0;
   prober.begin(subject::Reach{away ? away_ : place_, kReach}, hand);
 }
 
-void AnswerByHand::tick(subject::Prober& prober, const PointState& hand, double dt) noexcept {
+void AnswerByHand::tick(subject::ExplorationController& prober, const PointState& hand,
+                        double dt) noexcept {
   time_ += dt;
   if (under_way_ && time_ > kReach + (going_away_ ? 0.0 : kPatience)) {
     go(prober, hand, !going_away_);

@@ -7,7 +7,7 @@
 #include "protocols/trials/presentation/trial_view.h"
 
 namespace haptrial::subject {
-class Prober;
+class ExplorationController;
 }
 
 namespace haptrial::protocols {
@@ -24,16 +24,16 @@ class AnswerByHand {
   static int place_of(const Question& question, int choice) noexcept;
 
   /// @param mark  of view.marks
-  void begin(const TrialView& view, std::size_t mark, subject::Prober& prober,
+  void begin(const TrialView& view, std::size_t mark, subject::ExplorationController& prober,
              const PointState& hand) noexcept;
   /// One tick later.
-  void tick(subject::Prober& prober, const PointState& hand, double dt) noexcept;
+  void tick(subject::ExplorationController& prober, const PointState& hand, double dt) noexcept;
   void end() noexcept { under_way_ = false; }
   bool under_way() const noexcept { return under_way_; }
   std::size_t device() const noexcept { return device_; }  // whose hand it is
 
  private:
-  void go(subject::Prober& prober, const PointState& hand, bool away) noexcept;
+  void go(subject::ExplorationController& prober, const PointState& hand, bool away) noexcept;
 
   Eigen::Vector3d place_{Eigen::Vector3d::Zero()};
   Eigen::Vector3d away_{Eigen::Vector3d::Zero()};  // a point outside of the place

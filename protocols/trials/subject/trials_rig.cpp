@@ -54,8 +54,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
         reaction_(seed_, "reaction") {
     for (const auto& arm : arms) {
       const std::size_t device = limbs_.size();
-      Limb& limb = limbs_.emplace_back(
-          Limb{arm->hand.get(), &arm->device, subject::Prober(hand_parameters_), {}});
+      SimulatedHand& limb = limbs_.emplace_back(SimulatedHand{
+          arm->hand.get(), &arm->device, subject::ExplorationController(hand_parameters_), {}});
       for (const std::string& stage : briefing.stages) {
         limb.actions.push_back(action_in(stage, device));
       }
@@ -82,12 +82,12 @@ class TrialsRig::Participant final : public stimulus::Observer {
       leave_stage();
       begun_ = false;
       end_answer();
-      for (Limb& limb : limbs_) {
+      for (SimulatedHand& limb : limbs_) {
         limb.hand->command({});
       }
       return;
     }
-    for (Limb& limb : limbs_) {
+    for (SimulatedHand& limb : limbs_) {
       limb.state = limb.hand->state();
     }
     if (!begun_ || view->trial != trial_) {
@@ -102,10 +102,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
 
  private:
   /// A hand, what it is about to do, and where it is.
-  struct Limb {
+  struct SimulatedHand {
     subject::HandModel* hand;
     device::VirtualDevice* device;
-    subject::Prober prober;
+    subject::ExplorationController prober;
     std::vector<const StageAction*> actions;  // (stages), null: rests
     PointState state{};                       // at this tick
   };
@@ -160,7 +160,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     decider_.begin_trial(trial);
     // A hand that is quite still would look like a device whose reading is frozen.
     for (std::size_t i = 0; i < limbs_.size(); ++i) {
-      limbs_[i].prober = subject::Prober(
+      limbs_[i].prober = subject::ExplorationController(
           hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
                                                 subject::trial_stream(seed_, kMotor[i], trial)));
     }
@@ -201,7 +201,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   }
 
   void begin_probe(std::size_t device, const TrialView& view) noexcept {
-    Limb& limb = limbs_[device];
+    SimulatedHand& limb = limbs_[device];
     const StageAction* action =
         stage_ >= 0 ? limb.actions[static_cast<std::size_t>(stage_)] : nullptr;
     subject::Probe probe = action != nullptr ? action->probe : subject::Probe{subject::Rest{}};
@@ -235,7 +235,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     subject::Cue felt{0.0, kNever};
     if (both && grip_.held()) {
-      const subject::Encounter met = grip_.met();
+      const subject::ContactEpisode met = grip_.met();
       felt = {subject::felt(senses_, plan_.senses, met, grip_noise_),
               senses_.extent_weber * met.amount};
     } else if (!both && sense_.met().force > 0.0) {
@@ -299,7 +299,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     wait_ -= dt;
     take_decision();
     if (by_hand_.under_way()) {
-      Limb& limb = limbs_[by_hand_.device()];
+      SimulatedHand& limb = limbs_[by_hand_.device()];
       by_hand_.tick(limb.prober, limb.state, dt);
     }
     if (wait_ > 0.0 || thinks_ || decided_ || view.told()) {
@@ -349,7 +349,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
     const int place = AnswerByHand::place_of(question, said_.choice);
     if (place >= 0 && place < view.mark_count) {
       const auto mark = static_cast<std::size_t>(place);
-      Limb& limb = limbs_[std::min<std::size_t>(view.marks[mark].device, limbs_.size() - 1)];
+      SimulatedHand& limb =
+          limbs_[std::min<std::size_t>(view.marks[mark].device, limbs_.size() - 1)];
       by_hand_.begin(view, mark, limb.prober, limb.state);
     } else if (said_.choice >= 0 &&
                question.choices[static_cast<std::size_t>(said_.choice)].pedal > 0.0) {
@@ -374,7 +375,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
 
   const ObserverPlan& plan_;
   const std::vector<Question>& questions_;
-  SaidAnswer& said_;
+  SimulatedAnswer& said_;
   LeftDecision* left_;  // null: decides by itself
   Decider::Said left_said_;
   double left_reaction_{0.0};  // that was proposed [s]
@@ -387,9 +388,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
   subject::Grip grip_;
   subject::FeltNoise grip_noise_;
   std::optional<subject::Sight> sight_;
-  double sight_noise_{0.0};  // of the interval, standard normal
-  DotsShown seen_;           // in the interval
-  std::vector<Limb> limbs_;  // (devices)
+  double sight_noise_{0.0};           // of the interval, standard normal
+  DotsShown seen_;                    // in the interval
+  std::vector<SimulatedHand> limbs_;  // (devices)
   Decider decider_;
   int felt_in_;  // stage; -1: all
   RandomStream reaction_;

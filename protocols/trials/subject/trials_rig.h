@@ -37,9 +37,9 @@ class TrialsRig final : public Rig {
     const std::vector<Question>* questions{nullptr};
     std::vector<std::string> stages;  // names, in their order
     const std::vector<TrialDevice>* devices{nullptr};
-    SaidAnswer* said{nullptr};  // where answers go
+    SimulatedAnswer* said{nullptr};  // where answers go
     /// Answers on the session's thread in place of the participant; null: nobody does.
-    std::function<LeftDecision::Answer(const LeftDecision::Asked&)> decide{};
+    std::function<LeftDecision::Answer(const LeftDecision::DecisionRequest&)> decide{};
   };
   /// @param briefing  what it points to outlives the rig
   /// @param person_seed   who it is follows from it: the same person in every session
@@ -67,7 +67,7 @@ class TrialsRig final : public Rig {
     device::VirtualDevice device;
   };
   class Participant;
-  std::function<LeftDecision::Answer(const LeftDecision::Asked&)> decide_;
+  std::function<LeftDecision::Answer(const LeftDecision::DecisionRequest&)> decide_;
   std::unique_ptr<LeftDecision> left_;  // before the participant, who uses it
   device::EnvelopeLimits envelope_;
   std::vector<std::unique_ptr<Arm>> arms_;

@@ -55,7 +55,7 @@ class MarkerThreadTest : public testing::Test {
   MarkerThread& open(double pulse) {
     options_.pulse = pulse;
     line_ = std::make_unique<SerialLine>(terminal_.name(), options_.baud);
-    MarkerThread::Ways ways;
+    MarkerThread::MarkerOutputs ways;
     ways.serial = line_.get();
     thread_ = std::make_unique<MarkerThread>(log_, options_, meanings(), std::move(ways),
                                              PseudoTerminal::now_ns);

@@ -28,7 +28,7 @@ inline Field surface(Shape shape, bool inside = false, double damping = 2.0) {
 inline Field solid(const contact::Friction& friction = {}, double tool_radius = 0.0) {
   static const auto body =
       std::make_shared<const contact::FeltBody>(geometry::make_torus(0.01, 0.004, 48, 16));
-  SolidParameters p;
+  RigidObjectParameters p;
   p.body = body;
   p.pose = {Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 0).normalized())),
             {0.002, 0.0, -0.001}};

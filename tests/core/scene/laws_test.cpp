@@ -125,7 +125,7 @@ std::vector<Motion> every_motion(const std::string& name) {
 double needed_by(const std::vector<Field>& fields) {
   double needed = 0.0;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const Steepness steep = steepness(fields, i);
+    const StiffnessBound steep = steepness(fields, i);
     EXPECT_TRUE(steep.passive) << fields[i].name;
     needed += needed_damping(steep, kRate);
   }
@@ -240,7 +240,7 @@ TEST(SceneLawTest, TheLawFindsFieldsThatGiveEnergy) {
 
 TEST(NeededDampingTest, SaysWhatColgateAndSchenkelSay) {
   const std::vector<Field> fields{test::surface(HalfSpace{}, false, 3.0)};
-  const Steepness wall = steepness(fields, 0);
+  const StiffnessBound wall = steepness(fields, 0);
   EXPECT_DOUBLE_EQ(needed_damping(wall, 1000.0), 800.0 * 0.001 / 2.0 + 3.0);
   EXPECT_DOUBLE_EQ(needed_damping(wall, 4000.0), 800.0 * 0.00025 / 2.0 + 3.0);
   EXPECT_DOUBLE_EQ(needed_damping_below(0.0, wall, 1000.0), 800.0 * 0.001 / 2.0 - 3.0);

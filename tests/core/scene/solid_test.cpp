@@ -1,4 +1,4 @@
-#include "core/scene/surface/solid.h"
+#include "core/scene/surface/rigid_object.h"
 
 #include <gtest/gtest.h>
 
@@ -20,12 +20,12 @@ contact::SharedBody shared(geometry::Mesh mesh) {
   return std::make_shared<const contact::FeltBody>(std::move(mesh));
 }
 
-Field placed(SolidParameters p, double limit = 50.0) {
+Field placed(RigidObjectParameters p, double limit = 50.0) {
   return {"thing", std::move(p), limit, 0.0, 0.0};
 }
 
-SolidParameters box_of(const Vector3d& size) {
-  SolidParameters p;
+RigidObjectParameters box_of(const Vector3d& size) {
+  RigidObjectParameters p;
   p.body = shared(geometry::make_box(size));
   p.pose = {Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Vector3d(1, -2, 3).normalized())),
             {0.01, -0.02, 0.005}};
@@ -33,7 +33,8 @@ SolidParameters box_of(const Vector3d& size) {
   return p;
 }
 
-/// The last force of a scene with one solid when the tool is led from `from` to `to` in steps of a tick.
+/// The last force of a scene with one solid when the tool is led from `from` to `to` in steps of a
+/// tick.
 Vector3d led(const Field& field, const Vector3d& from, const Vector3d& to, int ticks = 400) {
   Scene scene({field}, kRate);
   scene.switch_to(Scene::kAll);
@@ -45,7 +46,7 @@ Vector3d led(const Field& field, const Vector3d& from, const Vector3d& to, int t
 }
 
 TEST(SolidTest, AFaceOfABoxIsExact) {
-  const SolidParameters p = box_of({0.04, 0.03, 0.05});
+  const RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   RandomStream random(3, "box");
   for (int i = 0; i < 50; ++i) {
     const Vector3d over(random.uniform(-0.018, 0.018), 0.02, random.uniform(-0.023, 0.023));
@@ -59,7 +60,7 @@ TEST(SolidTest, AFaceOfABoxIsExact) {
 }
 
 TEST(SolidTest, ASphereOfTrianglesFeelsLikeTheFieldOfASphere) {
-  SolidParameters p;
+  RigidObjectParameters p;
   p.body = shared(geometry::make_sphere(0.025, 40));
   p.gains = {700.0, 0.0};
   const Field smooth{"ball", SurfaceParameters{Sphere{{0, 0, 0}, 0.025}, false, {700.0, 0.0}}, 50.0,
@@ -78,10 +79,10 @@ TEST(SolidTest, ASphereOfTrianglesFeelsLikeTheFieldOfASphere) {
 
 /// The same body in millimetres, or twice as large, with the scale that makes up for it.
 TEST(SolidTest, TheScaleChangesLengthsAndNoForce) {
-  const SolidParameters metres = box_of({0.04, 0.03, 0.05});
-  SolidParameters other = metres;
+  const RigidObjectParameters metres = box_of({0.04, 0.03, 0.05});
+  RigidObjectParameters other = metres;
   other.gains.damping = 3.0;
-  SolidParameters same = other;
+  RigidObjectParameters same = other;
   same.body = shared(geometry::make_box({40.0, 30.0, 50.0}));
   same.scale = 0.001;
   other.friction = same.friction = {0.5, 0.4};
@@ -93,7 +94,7 @@ TEST(SolidTest, TheScaleChangesLengthsAndNoForce) {
 }
 
 TEST(SolidTest, AHandInsideIsPushedOutByTheNearestFace) {
-  const SolidParameters p = box_of({0.04, 0.03, 0.05});
+  const RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   const Vector3d inside = p.pose.position + p.pose.orientation * Vector3d(0.017, 0.002, 0.001);
   const Vector3d force = led(placed(p), inside, inside, 3);
   EXPECT_LT((force - p.pose.orientation * Vector3d(700.0 * 0.003, 0.0, 0.0)).norm(), 1e-6);
@@ -101,7 +102,7 @@ TEST(SolidTest, AHandInsideIsPushedOutByTheNearestFace) {
 
 /// A new trial's scene: the proxy stays where it was, so that friction that sticks goes on.
 TEST(SolidTest, ANewSceneGoesOnWhereTheProxyWas) {
-  SolidParameters p = box_of({0.04, 0.03, 0.05});
+  RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   p.friction = {2.0, 2.0};
   const Field field = placed(p);
   const auto at = [&](const Vector3d& local) {
@@ -120,7 +121,7 @@ TEST(SolidTest, ANewSceneGoesOnWhereTheProxyWas) {
 }
 
 TEST(SolidTest, RidgesLieBelowTheMesh) {
-  const SolidParameters p = box_of({0.04, 0.03, 0.05});
+  const RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   const Vector3d x = p.pose.orientation * Vector3d::UnitX();
   const GratingParameters grating{"thing", x, 0.0004, 0.004};
   Scene scene({placed(p), {"ridges", grating, 10.0, 0.0, 0.0}}, kRate);
@@ -143,7 +144,7 @@ TEST(SolidTest, RidgesLieBelowTheMesh) {
 }
 
 TEST(SolidTest, ATickAllocatesNothing) {
-  SolidParameters p;
+  RigidObjectParameters p;
   p.body = shared(geometry::make_rough_solid(0.05, 20, 1));
   p.friction = {0.4, 0.3};
   p.crease_angle = 0.5;
@@ -159,7 +160,8 @@ TEST(SolidTest, ATickAllocatesNothing) {
 }
 
 TEST(SolidTest, ABodyThatIsNotThereIsNotFelt) {
-  EXPECT_EQ(led(placed(SolidParameters{}), Vector3d::Zero(), Vector3d::Ones()), Vector3d::Zero());
+  EXPECT_EQ(led(placed(RigidObjectParameters{}), Vector3d::Zero(), Vector3d::Ones()),
+            Vector3d::Zero());
 }
 
 }  // namespace

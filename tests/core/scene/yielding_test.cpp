@@ -1,4 +1,4 @@
-#include "core/scene/surface/yielding.h"
+#include "core/scene/surface/deformable_object.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ constexpr double kTop = 0.01;  // of the block [m]
 Field soft_block(const contact::ObjectPose& pose = {}) {
   deformable::FeltSides sides;
   sides.felt = {deformable::BodySide::kTop};
-  YieldingParameters p;
-  p.mesh = std::make_shared<const deformable::FeltMesh>(
+  DeformableObjectParameters p;
+  p.mesh = std::make_shared<const deformable::HapticMesh>(
       deformable::felt_block({0.04, 0.02, 0.04}, 8, sides, "block"));
   p.tissue = {15e3, 0.45, 1000.0, {}};
   p.tool.radius = 0.006;
@@ -61,7 +61,7 @@ TEST(YieldingTest, ABlockThatIsTurnedAndMovedIsFeltTurnedAndMoved) {
 TEST(YieldingTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
   const Field field = soft_block();
   Scene scene({field}, 1000.0);
-  const Steepness steepness = scene::steepness({field}, 0);
+  const StiffnessBound steepness = scene::steepness({field}, 0);
   EXPECT_TRUE(steepness.passive);
   EXPECT_LT(steepness.stiffness, 1000.0) << "not the spring alone";
   scene.switch_to(Scene::kAll);
@@ -79,7 +79,7 @@ TEST(YieldingTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
 
 TEST(YieldingTest, ABodyThatIsNotPreparedIsNotFelt) {
   Field field = soft_block();
-  std::get<YieldingParameters>(field.kind).body = nullptr;
+  std::get<DeformableObjectParameters>(field.kind).body = nullptr;
   Scene scene({field}, 1000.0);
   EXPECT_EQ(pressed(scene, {}, 0.002).norm(), 0.0);
 }

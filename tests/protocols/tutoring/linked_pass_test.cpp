@@ -224,7 +224,7 @@ TEST(LinkedPassTest, AnAbortOnOneSideIsOneOnBoth) {
   EXPECT_EQ(pair.teaches.pass.state(), PassState::kAborted);
   pair.tick();
   EXPECT_EQ(pair.learns.pass.state(), PassState::kAborted);
-  EXPECT_EQ(pair.learns.pass.why(), network::Turns::Step::kBreak);
+  EXPECT_EQ(pair.learns.pass.why(), network::PassBarrier::Step::kBreak);
   EXPECT_EQ(pair.learns.stops, 0);
 }
 

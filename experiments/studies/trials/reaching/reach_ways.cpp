@@ -24,9 +24,9 @@ using analysis::trials::TrialsData;
 constexpr double kNearTarget = 1e-9;  // a region whose centre is so near is the target's [m]
 
 /// The definition, read anew for every trial: places may depend on all that a trial is.
-class Ways {
+class ReachRoutes {
  public:
-  Ways(const protocols::TrialsDefinition& definition, const ReachingPlan& plan)
+  ReachRoutes(const protocols::TrialsDefinition& definition, const ReachingPlan& plan)
       : definition_(definition),
         plan_(plan),
         root_(Table::parse(definition.text, definition.file_name)) {
@@ -115,7 +115,7 @@ class Ways {
 
 std::vector<std::optional<ReachWay>> reach_ways(const protocols::TrialsDefinition& definition,
                                                 const TrialsData& data, const ReachingPlan& plan) {
-  Ways ways(definition, plan);
+  ReachRoutes ways(definition, plan);
   std::vector<std::optional<ReachWay>> all;
   for (const StudyTrial& trial : data.trials) {
     all.push_back(trial.counts() ? std::optional(ways.of(data, trial)) : std::nullopt);

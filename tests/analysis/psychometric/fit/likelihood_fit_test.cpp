@@ -189,7 +189,7 @@ TEST(LikelihoodFit, RefusesWhatIsOutOfBounds) {
                std::invalid_argument);
 }
 
-std::vector<Asked> all_asked() {
+std::vector<BootstrapTarget> all_asked() {
   return {{Reading::kThreshold},
           {Reading::kSlope, 0.5},
           {Reading::kLevelOfProbability, 0.75},

@@ -18,7 +18,7 @@ TEST(ShapesTest, TurnsAreCosineAndSine) {
 }
 
 TEST(ShapesTest, ATubeOfEqualRadiusIsAsFarAsItsLineLessThatRadius) {
-  const Worm worm({{{0, 0, 0}, 1.0}, {{4, 0, 0}, 1.0}, {{4, 3, 0}, 1.0}});
+  const Tube worm({{{0, 0, 0}, 1.0}, {{4, 0, 0}, 1.0}, {{4, 3, 0}, 1.0}});
   EXPECT_DOUBLE_EQ(worm.length(), 7.0);
   EXPECT_DOUBLE_EQ(worm.distance({2, 0, 2.5}), 1.5);
   EXPECT_DOUBLE_EQ(worm.distance({4, 3, 0}), -1.0);

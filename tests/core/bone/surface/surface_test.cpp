@@ -88,7 +88,7 @@ TEST(SurfaceTest, WhatIsCountedBeforehandIsWhatABuildMakes) {
     occupancy.follow(volume);
     std::vector<std::int32_t> bricks(static_cast<std::size_t>(volume.bricks()) - 1);
     std::iota(bricks.begin(), bricks.end(), 1);
-    Remains remains;
+    RemainingFraction remains;
     remains.follow(volume, occupancy, bricks, nullptr);
     CellField::Count all;
     CellField field;

@@ -34,9 +34,9 @@ SharedMovingBody soft_body(double decay = 25.0) {
 
 /// The same block, and nothing holds it.
 SharedMovingBody free_body() {
-  FeltMesh mesh = *test::soft_block(6);
+  HapticMesh mesh = *test::soft_block(6);
   std::ranges::fill(mesh.held, std::uint8_t{0});
-  return prepared(std::make_shared<const FeltMesh>(std::move(mesh)), soft_springs(0.0));
+  return prepared(std::make_shared<const HapticMesh>(std::move(mesh)), soft_springs(0.0));
 }
 
 TouchOptions ball(double radius = kRadius, double friction = 0.0) {
@@ -253,7 +253,7 @@ TEST(MovingTouchTest, AGraspedSideIsFeltAsItsStatics) {
   sides.fixed = {BodySide::kLeft};
   sides.grasped = {BodySide::kRight};
   const auto mesh =
-      std::make_shared<const FeltMesh>(felt_block({0.048, 0.024, 0.024}, 12, sides, "bar"));
+      std::make_shared<const HapticMesh>(felt_block({0.048, 0.024, 0.024}, 12, sides, "bar"));
   const SharedMovingBody body = prepared(mesh, soft_springs(50.0));
   MovingTouch touch(body, ball(), kTick);
   const Vector3d begin(0.1, -0.05, 0.02), way(0.006, 0.002, 0.0);

@@ -264,10 +264,10 @@ TEST(TwoRateTouchTest, AToolThatIsNotFiniteFeelsNothing) {
 
 TEST(TwoRateTouchTest, RatesAreRefusedWithASentence) {
   const auto shared = test::soft_block(12);
-  const FeltMesh& block = *shared;
+  const HapticMesh& block = *shared;
   EXPECT_EQ(ticks_of_window(block, 1000.0, 250.0), 4);
   EXPECT_EQ(ticks_of_window(block, 4000.0, 4000.0), 1);
-  const auto refused = [](const FeltMesh& body, double rate) {
+  const auto refused = [](const HapticMesh& body, double rate) {
     try {
       ticks_of_window(body, 1000.0, rate);
     } catch (const InputError& error) {
@@ -278,7 +278,7 @@ TEST(TwoRateTouchTest, RatesAreRefusedWithASentence) {
   for (const double rate : {300.0, 2000.0, 10.0}) {
     EXPECT_THAT(refused(block, rate), testing::HasSubstr("Hz; allowed: the 1000 Hz of the loop"));
   }
-  FeltMesh held = block;
+  HapticMesh held = block;
   held.grasped = {0};
   EXPECT_THAT(refused(held, 250.0), testing::HasSubstr("keep `grasped` or `rate`"));
 }

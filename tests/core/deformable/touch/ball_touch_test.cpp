@@ -52,7 +52,7 @@ Vector3d sum_of(std::span<const VertexForce> forces) {
   return sum;
 }
 
-LoadCase load_of(const FeltMesh& mesh, std::span<const VertexForce> forces) {
+LoadCase load_of(const HapticMesh& mesh, std::span<const VertexForce> forces) {
   LoadCase load;
   load.name = "touch";
   for (std::size_t v = 0; v < mesh.held.size(); ++v) {
@@ -87,7 +87,7 @@ TEST(BallTouchTest, TheElementsUnderItsForcesTouchTheBallAndNothingMore) {
     BallTouch touch(soft_body(), ball(radius));
     const Vector3d over(0.0013, kTop + radius, 0.0007);
     const contact::Contact felt = press_to(touch, over, 0.0015);
-    const FeltMesh& mesh = soft_body()->mesh();
+    const HapticMesh& mesh = soft_body()->mesh();
     const ElasticBody body(mesh.tets, elasticity_of(mesh, soft_tissue()));
     const StaticResult rest = solve_static(body, load_of(mesh, touch.forces()));
     double least = 1.0;
@@ -294,8 +294,8 @@ TEST(BallTouchTest, ACostIsMeasuredAndACrowdedContactTold) {
   EXPECT_FALSE(cost.crowded);
   FeltSides sides;
   sides.felt = {BodySide::kTop};
-  const auto fine =
-      std::make_shared<const FeltMesh>(felt_block({0.006, 0.003, 0.006}, 10, sides, "fine block"));
+  const auto fine = std::make_shared<const HapticMesh>(
+      felt_block({0.006, 0.003, 0.006}, 10, sides, "fine block"));
   EXPECT_TRUE(
       measured_cost(std::make_shared<const Compliance>(fine, soft_tissue()), ball(0.005)).crowded);
 }

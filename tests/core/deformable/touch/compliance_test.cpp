@@ -22,7 +22,7 @@ using test::soft_tissue;
 using testing::HasSubstr;
 
 LoadCase small_load(const Compliance& body, std::int32_t place) {
-  const FeltMesh& mesh = body.mesh();
+  const HapticMesh& mesh = body.mesh();
   LoadCase load;
   load.name = "small";
   for (std::size_t v = 0; v < mesh.held.size(); ++v) {
@@ -60,7 +60,7 @@ TEST(ComplianceTest, RespondsAsTheElements) {
 }
 
 TEST(ComplianceTest, AVoxelBodyTouchedAllOverRespondsAsTheElements) {
-  const auto mesh = std::make_shared<const FeltMesh>(
+  const auto mesh = std::make_shared<const HapticMesh>(
       felt_solid(geometry::make_sphere(0.02, 8), 10, FeltSides{}, "ball"));
   const Compliance body(mesh, soft_tissue());
   EXPECT_GT(body.touched(), body.places() / 4);
@@ -71,7 +71,7 @@ TEST(ComplianceTest, AVoxelBodyTouchedAllOverRespondsAsTheElements) {
 TEST(ComplianceTest, AHeldPlaceDoesNotMoveAndABallThatReachesItHasNoBound) {
   FeltSides sides;  // all but the bottom: the sides reach down to held vertices
   const auto mesh =
-      std::make_shared<const FeltMesh>(felt_block({0.02, 0.01, 0.02}, 6, sides, "small"));
+      std::make_shared<const HapticMesh>(felt_block({0.02, 0.01, 0.02}, 6, sides, "small"));
   const Compliance body(mesh, soft_tissue());
   bool found = false;
   for (std::size_t p = 0; p < body.touched(); ++p) {

@@ -11,7 +11,7 @@
 namespace haptrial::test {
 
 using deformable::BodySide;
-using deformable::FeltMesh;
+using deformable::HapticMesh;
 using deformable::SharedFeltMesh;
 using deformable::Tissue;
 
@@ -19,7 +19,7 @@ using deformable::Tissue;
 inline SharedFeltMesh soft_block(int cells = 12) {
   deformable::FeltSides sides;
   sides.felt = {BodySide::kTop};
-  return std::make_shared<const FeltMesh>(
+  return std::make_shared<const HapticMesh>(
       deformable::felt_block({0.048, 0.024, 0.048}, cells, sides, "block"));
 }
 
@@ -39,7 +39,7 @@ inline SharedFeltMesh half_space(double fine) {
   }
   deformable::FeltSides sides;
   sides.felt = {BodySide::kTop};
-  FeltMesh mesh =
+  HapticMesh mesh =
       deformable::felt_block({2.0 * kHalf, kHalf, 2.0 * kHalf}, 2 * kHalf, sides, "half");
   const auto placed = [&](double x) {
     const double far = at[static_cast<std::size_t>(std::lround(std::abs(x)))];
@@ -60,7 +60,7 @@ inline SharedFeltMesh half_space(double fine) {
     }
     return false;
   });
-  return std::make_shared<const FeltMesh>(std::move(mesh));
+  return std::make_shared<const HapticMesh>(std::move(mesh));
 }
 
 }  // namespace haptrial::test

@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kMillisecond = 1'000'000;
 
 /// Gives numbers as long as there are any, and keeps those it takes.
-struct Numbers final : Freight {
+struct Numbers final : ReliablePayload {
   explicit Numbers(std::uint32_t give) : last(give) { came.reserve(100'000); }
   std::size_t give(std::span<std::byte> room) noexcept override {
     std::size_t used = 0;

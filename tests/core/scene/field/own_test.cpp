@@ -9,13 +9,13 @@ namespace haptrial::scene {
 namespace {
 
 /// Counts its ticks, and at the third one gives what no force is.
-class Counting final : public OwnLaw {
+class Counting final : public RegisteredLaw {
  public:
   Eigen::Vector3d force(const Felt&, FieldState& state) noexcept override {
     state.depth = ++ticks_;
     return {ticks_ == 3 ? std::numeric_limits<double>::quiet_NaN() : ticks_, 0.0, 0.0};
   }
-  void adopt(const OwnLaw& before) noexcept override {
+  void adopt(const RegisteredLaw& before) noexcept override {
     ticks_ = static_cast<const Counting&>(before).ticks_;
   }
 
@@ -23,22 +23,24 @@ class Counting final : public OwnLaw {
   double ticks_{0.0};
 };
 
-class CountingNumbers final : public OwnNumbers {
+class CountingNumbers final : public RegisteredNumbers {
  public:
-  std::unique_ptr<OwnLaw> law(const Setting&) const override {
+  std::unique_ptr<RegisteredLaw> law(const Setting&) const override {
     return std::make_unique<Counting>();
   }
 };
 
-class NoLaw final : public OwnNumbers {
+class NoLaw final : public RegisteredNumbers {
  public:
-  std::unique_ptr<OwnLaw> law(const Setting&) const override { return nullptr; }
+  std::unique_ptr<RegisteredLaw> law(const Setting&) const override { return nullptr; }
 };
 
-Own counting(const char* type) { return {{type, std::make_shared<CountingNumbers>()}, {}}; }
+RegisteredField counting(const char* type) {
+  return {{type, std::make_shared<CountingNumbers>()}, {}};
+}
 
 TEST(OwnTest, AForceThatIsNotFiniteCountsAsZero) {
-  Own own = counting("count");
+  RegisteredField own = counting("count");
   FieldState state;
   EXPECT_EQ(own.force({}, state).x(), 1.0);
   EXPECT_EQ(own.force({}, state).x(), 2.0);
@@ -49,19 +51,19 @@ TEST(OwnTest, AForceThatIsNotFiniteCountsAsZero) {
 
 TEST(OwnTest, GoesOnOnlyWhereALawOfTheSameTypeStood) {
   FieldState state;
-  Own before = counting("count");
+  RegisteredField before = counting("count");
   before.force({}, state);
-  Own same = counting("count");
+  RegisteredField same = counting("count");
   same.adopt(before);
   EXPECT_EQ(same.force({}, state).x(), 2.0);
-  Own other = counting("another");
+  RegisteredField other = counting("another");
   other.adopt(before);
   EXPECT_EQ(other.force({}, state).x(), 1.0);
 }
 
 TEST(OwnTest, WithoutNumbersOrALawIsRefused) {
-  EXPECT_THROW(Own({"none", nullptr}, {}), std::invalid_argument);
-  EXPECT_THROW(Own({"none", std::make_shared<NoLaw>()}, {}), std::invalid_argument);
+  EXPECT_THROW(RegisteredField({"none", nullptr}, {}), std::invalid_argument);
+  EXPECT_THROW(RegisteredField({"none", std::make_shared<NoLaw>()}, {}), std::invalid_argument);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(ReadSolidTest, EveryKeyIsRead) {
                                  "friction = { static = 0.5, dynamic = 0.4 }\nshading = 0.7\n"
                                  "tool_radius = 0.002\nrenderer = \"ruspini\"\nlimit = 5\n"
                                  "fade_in = 0.2\nfade_out = 0.1");
-  const auto& p = std::get<SolidParameters>(field.kind);
+  const auto& p = std::get<RigidObjectParameters>(field.kind);
   EXPECT_EQ(p.pose.position, Eigen::Vector3d(0.01, 0.02, 0.03));
   EXPECT_LT((p.pose.orientation * Eigen::Vector3d::UnitX() -
              Eigen::Vector3d(std::cos(1.5), std::sin(1.5), 0.0))
@@ -68,8 +68,8 @@ TEST(ReadSolidTest, EveryMistakeGetsItsSentence) {
 }
 
 TEST(ReadSolidTest, KeysOfOtherRenderersAreRefused) {
-  const auto& cells =
-      std::get<SolidParameters>(read_thing(kLeast + "renderer = \"voxel\"\nresolution = 32").kind);
+  const auto& cells = std::get<RigidObjectParameters>(
+      read_thing(kLeast + "renderer = \"voxel\"\nresolution = 32").kind);
   EXPECT_EQ(cells.resolution, 32);
   EXPECT_THAT(told_of_thing(kLeast + "resolution = 32"),
               HasSubstr("resolution stands beside the renderer \"proxy\", which has no cells"));

@@ -32,7 +32,7 @@ struct Flat {
 };
 
 /// Goes along a bout as deep as allowed.
-void drill(DrillingMemory& memory, const Bout& bout, double deepest) {
+void drill(DrillingMemory& memory, const StrokeSeries& bout, double deepest) {
   for (int step = 0; step <= 40; ++step) {
     const Eigen::Vector2d at = bout.from + (bout.to - bout.from) * step / 40.0;
     memory.sweep({at.x(), at.y(), std::min(memory.limit(at), deepest)});
@@ -61,7 +61,7 @@ TEST(DrillingMemoryTest, BoutsComeToAnEndWithAllOfItGone) {
   memory.begin(flat.chart.surface);
   memory.begin_burr(flat.reach, kRadius);
   RandomStream random(1, "bouts");
-  Bout bout;
+  StrokeSeries bout;
   int bouts = 0;
   while (memory.choose({}, {0.0, 0.0}, random, bout) && bouts < 2000) {
     drill(memory, bout, memory.touch(bout.from) + 1e-3);
@@ -80,7 +80,7 @@ TEST(DrillingMemoryTest, WhoWorksEvenlyGoesFarForTheHighestBone) {
     memory.begin(flat.chart.surface);
     memory.begin_burr(flat.reach, kRadius);
     RandomStream random(1, "bouts");
-    Bout bout;
+    StrokeSeries bout;
     Eigen::Vector2d hand(10e-3, 15e-3);
     double sum = 0.0;
     for (int n = 0; n < 12; ++n) {
@@ -111,7 +111,7 @@ TEST(DrillingMemoryTest, BoutsUnderAnEdgeGoBeyondIt) {
   }
   BoutChoice choice;
   choice.undercut = 1.0;
-  Bout bout;
+  StrokeSeries bout;
   int under = 0;
   for (int n = 0; n < 20; ++n) {
     ASSERT_TRUE(memory.choose(choice, {15e-3, 15e-3}, random, bout));
@@ -127,7 +127,7 @@ TEST(DrillingMemoryTest, NothingAllocatesWhileItWorks) {
   const Flat flat;
   DrillingMemory memory(flat.chart);
   RandomStream random(1, "bouts");
-  Bout bout;
+  StrokeSeries bout;
   const test::AllocationGuard guard;
   memory.begin(flat.chart.surface);
   memory.begin_burr(flat.reach, kRadius);

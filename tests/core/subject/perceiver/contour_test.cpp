@@ -20,7 +20,7 @@ using test::kStep;
 using test::Vector3d;
 
 scene::Field solid(geometry::Mesh mesh) {
-  scene::SolidParameters p;
+  scene::RigidObjectParameters p;
   p.body = std::make_shared<const contact::FeltBody>(std::move(mesh));
   p.gains = {600.0, 1.0};
   p.friction = {0.2, 0.15};

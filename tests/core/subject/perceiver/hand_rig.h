@@ -69,7 +69,7 @@ class HandRig {
   Hand hand;
   device::VirtualDevice device;
   scene::Scene scene;
-  Prober prober;
+  ExplorationController prober;
   Vector3d extra{Vector3d::Zero()};  // of the arm, beside the probe's command [N]
 };
 

@@ -35,7 +35,8 @@ double pressed(double stiffness, const Probe& probe, int trial, int interval, Se
                RandomStream& random) {
   HandRig rig({floor_of(stiffness)}, {0.0, 0.003, 0.0});
   const RandomStream motor = trial_stream(kSeed, interval == 0 ? "motor 1" : "motor 2", trial);
-  rig.prober = Prober(HandParameters{}, MotorNoise(SubjectParameters{}, kStep, motor));
+  rig.prober =
+      ExplorationController(HandParameters{}, MotorNoise(SubjectParameters{}, kStep, motor));
   sense.begin(random);
   rig.run(probe, 1.5, [&](double, const Vector3d& force, const PointState& hand) {
     sense.feel(force, hand, kStep);

@@ -158,7 +158,8 @@ TEST(ProberTest, AHandThatHoldsCarriesASteadyLoadAndOneAtRestDoesNot) {
 
 TEST(ProberTest, MotorNoiseShakesTheHand) {
   HandRig rig({floor_of(300.0)});
-  rig.prober = Prober(HandParameters{}, MotorNoise(SubjectParameters{}, kStep, {1, "motor"}));
+  rig.prober =
+      ExplorationController(HandParameters{}, MotorNoise(SubjectParameters{}, kStep, {1, "motor"}));
   double sum = 0.0;
   double squares = 0.0;
   rig.run(Press{{0.0, -1.0, 0.0}, 3.0, 0.5}, 1.0);
@@ -194,7 +195,8 @@ TEST(ProberTest, BadProbesAreNamed) {
 }
 
 TEST(ProberTest, DoesNotAllocate) {
-  Prober prober(HandParameters{}, MotorNoise(SubjectParameters{}, kStep, {1, "motor"}));
+  ExplorationController prober(HandParameters{},
+                               MotorNoise(SubjectParameters{}, kStep, {1, "motor"}));
   PointState hand;
   double sum = 0.0;
   const haptrial::test::AllocationGuard guard;

@@ -46,7 +46,7 @@ double percept(const SenseParameters& senses, Quantity quantity,
 }
 
 /// sd of the log of the percept over intervals that are alike but for the senses.
-double log_spread(const SenseParameters& senses, Quantity quantity, const Encounter& met) {
+double log_spread(const SenseParameters& senses, Quantity quantity, const ContactEpisode& met) {
   double sum = 0.0;
   double squares = 0.0;
   for (int i = 0; i < kIntervals; ++i) {

@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-scene::Field solid(scene::SolidParameters p) {
+scene::Field solid(scene::RigidObjectParameters p) {
   p.gains = {5000.0, 2.0};
   scene::Field field;
   field.name = "thing";
@@ -26,7 +26,7 @@ scene::Field solid(scene::SolidParameters p) {
 
 // Colgate and Schenkel: K T / 2 < b, so 5,000 N/m at 1 kHz ask for 2.5 N·s/m.
 TEST(SolidWordsTest, EachObjectIsSaidToBePassiveOrNotProven) {
-  scene::SolidParameters shaded, penalty;
+  scene::RigidObjectParameters shaded, penalty;
   shaded.crease_angle = 0.5;
   penalty.renderer = contact::RendererKind::kPenalty;
   const scene::Field constant{"pull", scene::ConstantParameters{}};
@@ -43,7 +43,7 @@ TEST(SolidWordsTest, EachObjectIsSaidToBePassiveOrNotProven) {
 
 TEST(SolidWordsTest, ABodyWhoseFacesLookInwardsIsARoom) {
   geometry::Mesh box = geometry::make_box({0.1, 0.2, 0.3});
-  scene::SolidParameters p;
+  scene::RigidObjectParameters p;
   p.body = contact::felt_body(box);
   EXPECT_THAT(words_of_solids({solid(p)}, 1000.0, 15.0), ElementsAre(Not(HasSubstr("room"))));
   for (geometry::Triangle& t : box.triangles) {

@@ -184,8 +184,8 @@ TEST(TrialObjectTest, ABodyOfSpringsIsFeltByOneDevice) {
 
 /// What validate says of a body of springs: its steps, and what a tick costs.
 TEST(TrialObjectTest, WhatABodyOfSpringsTakesIsSaid) {
-  scene::YieldingParameters p;
-  p.mesh = std::make_shared<const deformable::FeltMesh>(
+  scene::DeformableObjectParameters p;
+  p.mesh = std::make_shared<const deformable::HapticMesh>(
       deformable::felt_block({0.04, 0.02, 0.04}, 6, {}, "objects.tissue"));
   p.springs = deformable::SpringTissue{{6e-4, 2e-4, 1e-3}, nullptr, 1000.0, 10.0};
   std::vector<scene::Field> fields(1);
@@ -197,7 +197,7 @@ TEST(TrialObjectTest, WhatABodyOfSpringsTakesIsSaid) {
   EXPECT_THAT(lines[0], AllOf(HasSubstr("540 tetrahedra of springs, "), HasSubstr(" ms on a tick"),
                               HasSubstr("the hand of [hand] has 15")));
   EXPECT_THAT(lines[1], HasSubstr("a tick in contact takes "));
-  auto& own = std::get<scene::YieldingParameters>(fields[0].kind);
+  auto& own = std::get<scene::DeformableObjectParameters>(fields[0].kind);
   own.rate = 250.0;
   prepare_bodies(fields, 1000.0);
   EXPECT_THAT(words_of_bodies(fields, 1000.0, 15.0)[1],

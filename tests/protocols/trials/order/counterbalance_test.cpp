@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::uint64_t kStudy = 7;
 
-std::vector<int> order_for(Balance balance, int levels, int participant) {
+std::vector<int> order_for(Counterbalancing balance, int levels, int participant) {
   return order_of_levels(balance, levels, participant, kStudy,
                          1000U + static_cast<std::uint64_t>(participant));
 }
 
-class BalancedTest : public testing::TestWithParam<Balance> {};
+class BalancedTest : public testing::TestWithParam<Counterbalancing> {};
 
 TEST_P(BalancedTest, OverOneRoundEachLevelIsAtEachPlaceEquallyOften) {
   for (int levels = 1; levels <= 6; ++levels) {
@@ -40,12 +40,13 @@ TEST_P(BalancedTest, OverOneRoundEachLevelIsAtEachPlaceEquallyOften) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BalancedTest,
-                         testing::Values(Balance::kLatin, Balance::kWilliams, Balance::kFull));
+                         testing::Values(Counterbalancing::kLatin, Counterbalancing::kWilliams,
+                                         Counterbalancing::kFull));
 
 TEST(CounterbalanceTest, AFullRoundHasEveryOrderOnce) {
   std::set<std::vector<int>> orders;
   for (int p = 0; p < 24; ++p) {
-    orders.insert(order_for(Balance::kFull, 4, p));
+    orders.insert(order_for(Counterbalancing::kFull, 4, p));
   }
   EXPECT_EQ(orders.size(), 24U);
 }
@@ -53,20 +54,20 @@ TEST(CounterbalanceTest, AFullRoundHasEveryOrderOnce) {
 TEST(CounterbalanceTest, WhichOrderComesToWhomFollowsFromTheStudysSeed) {
   std::set<std::vector<int>> of_the_first;
   for (std::uint64_t study = 0; study < 60; ++study) {
-    of_the_first.insert(order_of_levels(Balance::kLatin, 4, 0, study, 1));
-    EXPECT_EQ(order_of_levels(Balance::kLatin, 4, 3, study, 1),
-              order_of_levels(Balance::kLatin, 4, 3, study, 2))
+    of_the_first.insert(order_of_levels(Counterbalancing::kLatin, 4, 0, study, 1));
+    EXPECT_EQ(order_of_levels(Counterbalancing::kLatin, 4, 3, study, 1),
+              order_of_levels(Counterbalancing::kLatin, 4, 3, study, 2))
         << "not from the participant's";
   }
   EXPECT_EQ(of_the_first.size(), 4U);
 }
 
 TEST(CounterbalanceTest, FixedIsAsListedAndRandomDiffers) {
-  EXPECT_EQ(order_for(Balance::kFixed, 3, 5), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(order_for(Counterbalancing::kFixed, 3, 5), (std::vector<int>{0, 1, 2}));
   std::map<std::vector<int>, int> drawn;
   constexpr int kPeople = 6000;
   for (int p = 0; p < kPeople; ++p) {
-    ++drawn[order_for(Balance::kRandom, 3, p)];
+    ++drawn[order_for(Counterbalancing::kRandom, 3, p)];
   }
   ASSERT_EQ(drawn.size(), 6U);
   double chi_squared = 0.0;
@@ -77,12 +78,12 @@ TEST(CounterbalanceTest, FixedIsAsListedAndRandomDiffers) {
 }
 
 TEST(CounterbalanceTest, NamesAndLimits) {
-  EXPECT_EQ(balance_named("williams"), Balance::kWilliams);
+  EXPECT_EQ(balance_named("williams"), Counterbalancing::kWilliams);
   EXPECT_THROW(balance_named("latin square"), std::invalid_argument);
-  EXPECT_THROW(participants_for(Balance::kFull, 9), std::invalid_argument);
-  EXPECT_THROW(participants_for(Balance::kLatin, 0), std::invalid_argument);
-  EXPECT_EQ(participants_for(Balance::kWilliams, 3), 6);
-  EXPECT_EQ(participants_for(Balance::kWilliams, 4), 4);
+  EXPECT_THROW(participants_for(Counterbalancing::kFull, 9), std::invalid_argument);
+  EXPECT_THROW(participants_for(Counterbalancing::kLatin, 0), std::invalid_argument);
+  EXPECT_EQ(participants_for(Counterbalancing::kWilliams, 3), 6);
+  EXPECT_EQ(participants_for(Counterbalancing::kWilliams, 4), 4);
 }
 
 }  // namespace

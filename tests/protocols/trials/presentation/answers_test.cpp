@@ -40,7 +40,7 @@ TrialPass pass_of(const std::vector<const Question*>& questions, int right = -1)
   setup.intervals.push_back({std::move(scenes), StageMachine({feel}, {}, 0), {}, 0, -1});
   setup.intervals.back().sights.resize(1);
   for (const Question* question : questions) {
-    Asked asked{question};
+    PresentedQuestion asked{question};
     asked.right = right;
     asked.feedback = right >= 0;
     for (std::size_t i = 0; i < 2 && question->touched(); ++i) {

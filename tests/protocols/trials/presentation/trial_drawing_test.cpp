@@ -88,7 +88,7 @@ TEST_P(SeenBodyTest, ABodyThatGivesWayIsSeenAsTheHandPressesIt) {
   constexpr double kRadius = 0.006, kFinger = 0.005;  // over a corner of cells of 5 mm [m]
   const double half = 0.01;
   const bool moves = GetParam();
-  const auto mesh = std::make_shared<const deformable::FeltMesh>(deformable::felt_block(
+  const auto mesh = std::make_shared<const deformable::HapticMesh>(deformable::felt_block(
       {0.04, 2.0 * half, 0.04}, 8, {{deformable::BodySide::kBottom}, {deformable::BodySide::kTop}},
       "tissue"));
   const auto body = std::make_shared<const deformable::Compliance>(

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-Taker taker(int participant = 0) {
+SessionIdentity taker(int participant = 0) {
   return {participant, "", 7, derived_seed(7, std::to_string(participant))};
 }
 
@@ -283,7 +283,7 @@ std::string two_days(const std::string& order) {
                       "participants = 4\nsessions = 2\nblocks = \"" + order + "\"");
 }
 
-std::vector<std::string> names_of(const TrialsDefinition& d, const Taker& taker) {
+std::vector<std::string> names_of(const TrialsDefinition& d, const SessionIdentity& taker) {
   std::vector<std::string> names;
   const TrialSequence sequence(d, taker);
   for (const std::size_t block : sequence.blocks()) {
@@ -295,7 +295,7 @@ std::vector<std::string> names_of(const TrialsDefinition& d, const Taker& taker)
 TEST(TrialSequenceTest, ASessionHasItsBlocksAlone) {
   TrialsDefinition d;
   read_small(two_days("fixed"), d);
-  Taker own = taker();
+  SessionIdentity own = taker();
   EXPECT_THAT(names_of(d, own), ElementsAre("d", "a", "b"));
   own.session = 2;
   EXPECT_THAT(names_of(d, own), ElementsAre("c", "a"));
@@ -316,7 +316,7 @@ TEST(TrialSequenceTest, EachSessionIsCounterbalancedByItself) {
   read_small(two_days("latin"), d);
   std::map<std::pair<std::string, std::size_t>, int> first_day, second_day;
   for (int participant = 0; participant < 6; ++participant) {
-    Taker own = taker(participant);
+    SessionIdentity own = taker(participant);
     for (auto* day : {&first_day, &second_day}) {
       own.session = day == &first_day ? 1 : 2;
       const auto names = names_of(d, own);

@@ -30,7 +30,7 @@ class LeftDecisionTest : public testing::Test {
     const auto& d = dynamic_cast<const StudiedDefinition&>(*definition_);
     rig_ = std::make_unique<TrialsRig>(
         TrialsRig::Briefing{&d, &d.observer, &d.questions, d.stages, &d.hands, &said_,
-                            [this](const LeftDecision::Asked& asked) {
+                            [this](const LeftDecision::DecisionRequest& asked) {
                               asked_.push_back(asked);
                               return answer_;
                             }},
@@ -59,9 +59,9 @@ class LeftDecisionTest : public testing::Test {
   }
 
   std::unique_ptr<Definition> definition_;
-  SaidAnswer said_;
+  SimulatedAnswer said_;
   LeftDecision::Answer answer_{1, 0.0, 0.010};
-  std::vector<LeftDecision::Asked> asked_;
+  std::vector<LeftDecision::DecisionRequest> asked_;
   std::unique_ptr<TrialsRig> rig_;
 };
 

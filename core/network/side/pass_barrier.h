@@ -11,7 +11,7 @@ namespace haptrial::network {
 /// aborted on one side is aborted on both. Both present the same items in the same order. A side
 /// that finds itself at another item than the other one aborts its pass: it skips a trial that the
 /// other has left, and presents again what the other presents again. Servo thread.
-class Turns {
+class PassBarrier {
  public:
   static constexpr std::uint32_t kPhases = 16;  // of a trial at most
 

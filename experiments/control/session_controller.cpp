@@ -1,4 +1,4 @@
-#include "experiments/control/session_desk.h"
+#include "experiments/control/session_controller.h"
 
 #include <fmt/format.h>
 
@@ -6,16 +6,16 @@
 
 namespace haptrial::experiments {
 
-SessionDesk::SessionDesk(SessionControl* control, Actions actions)
+SessionController::SessionController(SessionControl* control, Actions actions)
     : control_(control), actions_(std::move(actions)) {}
 
-void SessionDesk::follow(std::span<const record::Sample> samples, double period_ns) {
+void SessionController::follow(std::span<const record::Sample> samples, double period_ns) {
   if (attended()) {
     live_.follow(samples, period_ns);
   }
 }
 
-void SessionDesk::take_messages() {
+void SessionController::take_messages() {
   if (!attended()) {
     return;
   }
@@ -31,51 +31,51 @@ void SessionDesk::take_messages() {
 }
 
 /// "trial 5: ", before what an experimenter writes about it; a refusal of the console is of none.
-std::string SessionDesk::trial_of(const SessionControl::Message& message) const {
+std::string SessionController::trial_of(const SessionControl::Message& message) const {
   if (status_.trial < 1 || message.text.starts_with("console: ")) {
     return "";
   }
   return fmt::format("{} {}: ", status_.practice ? "practice trial" : "trial", status_.trial);
 }
 
-std::vector<SessionControl::Message> SessionDesk::take_answers() {
+std::vector<SessionControl::Message> SessionController::take_answers() {
   return std::exchange(answers_, {});
 }
 
-void SessionDesk::heed(Request request, Asker by) {
+void SessionController::heed(Request request, RequestSource by) {
   const std::string who = std::string("by the ") + name_of(by);
   switch (request) {
     case Request::kStart:
-      wishes_.start = true;
-      wishes_.pause = false;
+      requests_.start = true;
+      requests_.pause = false;
       actions_.event("start", who);
       break;
     case Request::kPause:
-      wishes_.pause = true;
+      requests_.pause = true;
       break;
     case Request::kRepeatTrial:
-      wishes_.repeat = true;
+      requests_.repeat = true;
       actions_.break_off();
       break;
     case Request::kSkipTrial:
-      wishes_.skip = true;
+      requests_.skip = true;
       actions_.break_off();
       break;
     case Request::kEnd:
-      wishes_.for_good = true;
+      requests_.for_good = true;
       [[fallthrough]];
     case Request::kAbort:
-      wishes_.abort = true;
+      requests_.abort = true;
       actions_.break_off();
       break;
     case Request::kEmergencyStop:  // the force is zero already
-      if (!std::exchange(wishes_.stopped, true)) {
+      if (!std::exchange(requests_.stopped, true)) {
         actions_.event("emergency_stop", who);
       }
       break;
     case Request::kClear:
-      wishes_.stopped = false;
-      wishes_.pause = true;  // goes on when the experimenter says so
+      requests_.stopped = false;
+      requests_.pause = true;  // goes on when the experimenter says so
       status_.fault.clear();
       actions_.clear_fault();
       actions_.event("clear", who);
@@ -90,7 +90,7 @@ void SessionDesk::heed(Request request, Asker by) {
   }
 }
 
-void SessionDesk::publish(const std::string& state) {
+void SessionController::publish(const std::string& state) {
   constexpr std::chrono::milliseconds kBetween{50};
   const auto now = std::chrono::steady_clock::now();
   if (!attended() || (now - published_ < kBetween && status_.state == state)) {

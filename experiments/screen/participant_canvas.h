@@ -8,7 +8,7 @@
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text_screen.h"
 #include "core/render/trial/trial_display.h"
-#include "experiments/screen/pace.h"
+#include "experiments/screen/frame_pacing.h"
 #include "experiments/screen/screen_pointer.h"
 #include "experiments/screen/session_mark.h"
 #include "protocols/definition/screen_options.h"
@@ -29,12 +29,12 @@ struct Scene {
 };
 
 /// Draws the pictures of a window; lives on the screen's thread.
-class Easel {
+class ParticipantCanvas {
  public:
   /// @param style  whose size is the window's
-  Easel(render::Window& window, const render::TrialDisplayStyle& style,
-        const protocols::ScreenOptions& options, const SessionMark& mark);
-  ~Easel();
+  ParticipantCanvas(render::Window& window, const render::TrialDisplayStyle& style,
+                    const protocols::ScreenOptions& options, const SessionMark& mark);
+  ~ParticipantCanvas();
 
   /// @returns whether it is another one than before.
   bool take(const Scene& scene);

@@ -1,10 +1,10 @@
-#include "core/network/side/turns.h"
+#include "core/network/side/pass_barrier.h"
 
 namespace haptrial::network {
 
-static std::uint32_t trial_of(std::uint32_t item) { return item / Turns::kPhases; }
+static std::uint32_t trial_of(std::uint32_t item) { return item / PassBarrier::kPhases; }
 
-void Turns::begin(std::uint32_t item) noexcept {
+void PassBarrier::begin(std::uint32_t item) noexcept {
   own_.last_done = own_.phase == TurnPhase::kDone ? 1 : 0;
   ++own_.pass;
   own_.with = 0;
@@ -14,13 +14,13 @@ void Turns::begin(std::uint32_t item) noexcept {
   alone_ = false;
 }
 
-Turns::Step Turns::end(bool completed, Step step) noexcept {
+PassBarrier::Step PassBarrier::end(bool completed, Step step) noexcept {
   own_.phase = completed ? TurnPhase::kDone : TurnPhase::kBroken;
   open_ = false;
   return step;
 }
 
-void Turns::abort() noexcept {
+void PassBarrier::abort() noexcept {
   if (open_) {
     end(false, Step::kBreak);
   }
@@ -28,7 +28,7 @@ void Turns::abort() noexcept {
 
 /// Only a side that waits says where it is for certain: what else it says may be of the pass
 /// before.
-Turns::Step Turns::wait(const TurnState& other, bool alone) noexcept {
+PassBarrier::Step PassBarrier::wait(const TurnState& other, bool alone) noexcept {
   const bool ready = other.phase == TurnPhase::kReady;
   const bool begun = other.phase == TurnPhase::kRuns || other.phase == TurnPhase::kDone;
   if (alone || (other.item == own_.item && (ready || (begun && other.with == own_.pass)))) {
@@ -47,9 +47,11 @@ Turns::Step Turns::wait(const TurnState& other, bool alone) noexcept {
 }
 
 /// It has begun a later pass than the one that goes with the own.
-bool Turns::other_has_left(const TurnState& other) const noexcept { return other.pass > own_.with; }
+bool PassBarrier::other_has_left(const TurnState& other) const noexcept {
+  return other.pass > own_.with;
+}
 
-Turns::Step Turns::step(const TurnState& other, bool own_done, bool alone) noexcept {
+PassBarrier::Step PassBarrier::step(const TurnState& other, bool own_done, bool alone) noexcept {
   if (own_.phase == TurnPhase::kReady) {
     return wait(other, alone);
   }

@@ -14,7 +14,7 @@
 namespace haptrial::experiments {
 
 /// What the experimenter asked for and has not come about yet.
-struct Wishes {
+struct PendingRequests {
   bool start{false};  // go on before the time of a break has passed
   bool pause{false};
   bool repeat{false};    // the present trial
@@ -24,9 +24,9 @@ struct Wishes {
   bool stopped{false};   // by a fault or an emergency stop, until it is cleared
 };
 
-/// The session's side of its control: turns messages into wishes and events, and shows how the
+/// The session's side of its control: turns messages into requests and events, and shows how the
 /// session stands. Without a control it does nothing. Session's thread.
-class SessionDesk {
+class SessionController {
  public:
   /// What a message does to the session at once.
   struct Actions {
@@ -35,7 +35,7 @@ class SessionDesk {
     std::function<void(const std::string& kind, const std::string& text)> event;
     std::function<void(bool take)> lead{};  // of a partner's hand; empty: nobody is linked
   };
-  SessionDesk(SessionControl* control, Actions actions);
+  SessionController(SessionControl* control, Actions actions);
 
   bool attended() const { return control_ != nullptr; }
   void follow(std::span<const record::Sample> samples, double period_ns);
@@ -43,7 +43,7 @@ class SessionDesk {
   void take_messages();
   /// Answers to pages that came and nobody has taken yet.
   std::vector<SessionControl::Message> take_answers();
-  Wishes& wishes() { return wishes_; }
+  PendingRequests& requests() { return requests_; }
 
   /// Fields that the session fills itself.
   SessionStatus& status() { return status_; }
@@ -52,13 +52,13 @@ class SessionDesk {
 
  private:
   std::string trial_of(const SessionControl::Message& message) const;
-  void heed(Request request, Asker by);
+  void heed(Request request, RequestSource by);
 
   SessionControl* control_;
   Actions actions_;
   LiveStatus live_;
   TickRate rate_;
-  Wishes wishes_;
+  PendingRequests requests_;
   std::vector<SessionControl::Message> answers_;
   SessionStatus status_;
   std::chrono::steady_clock::time_point published_{};

@@ -5,9 +5,9 @@ namespace haptrial::experiments {
 /// How the force is taken away from a signal's handler. Each does only what a handler may, but
 /// write_zero(): it calls the vendor's library, the lesser evil when the program dies anyway and
 /// the servo thread cannot do it any more.
-class LastStop {
+class FatalStopHandler {
  public:
-  virtual ~LastStop() = default;
+  virtual ~FatalStopHandler() = default;
   virtual void ask() noexcept = 0;                    // the servo thread to command zero
   virtual bool done() const noexcept = 0;             // whether the device has it
   virtual bool on_servo_thread() const noexcept = 0;  // whether that is the calling thread
@@ -18,7 +18,7 @@ class LastStop {
 /// force away first. At most one at a time.
 class WatchedStop {
  public:
-  explicit WatchedStop(LastStop& stop) noexcept;  // outlives this
+  explicit WatchedStop(FatalStopHandler& stop) noexcept;  // outlives this
   ~WatchedStop();
   WatchedStop(const WatchedStop&) = delete;
   WatchedStop& operator=(const WatchedStop&) = delete;

@@ -1,4 +1,4 @@
-#include "core/contact/proxy/held_corner.h"
+#include "core/contact/proxy/vertex_contact.h"
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ TEST(HeldCornerTest, WhatItHoldsSweepsHoldToo) {
   int held = 0, told = 0, free = 0;
   for (int i = 0; i < 4000; ++i) {
     Corner corner(random, 3 + i % 4);
-    HeldCorner known;
+    VertexContact known;
     known.set(corner.met(), Vector3d::Zero(), corner.skin());
     ASSERT_TRUE(known.known(corner.skin())) << i;
     for (int k = 0; k < 10; ++k) {
@@ -131,7 +131,7 @@ TEST(HeldCornerTest, AnotherSkinOrAFewPlanesAreNotKnown) {
   RandomStream random(4, "skin");
   Corner corner(random, 8);
   ASSERT_GE(corner.met().size(), 3);
-  HeldCorner known;
+  VertexContact known;
   EXPECT_FALSE(known.known(corner.skin()));
   known.set(corner.met(), Vector3d::Zero(), corner.skin());
   EXPECT_TRUE(known.known(corner.skin()));

@@ -1,4 +1,4 @@
-#include "protocols/trials/language/stray_words.h"
+#include "protocols/trials/language/unmatched_literals.h"
 
 #include <fmt/format.h>
 
@@ -101,7 +101,7 @@ std::vector<std::string> words_of(const std::string& text) {
 
 }  // namespace
 
-std::vector<std::string> stray_words(std::string_view definition) {
+std::vector<std::string> unmatched_literals(std::string_view definition) {
   std::string text = without_comments(definition);
   std::vector<std::string> sentences;
   for (const std::string& word : take_compared(text)) {

@@ -6,7 +6,7 @@ namespace haptrial::protocols {
 
 /// What two linked sessions work on: the world of the side that teaches; that of the other side
 /// follows it by what the one gives and the other takes. What the bytes are, the protocol knows.
-class SharedWorld : public network::Freight {
+class SharedSimulation : public network::ReliablePayload {
  public:
   /// Whether both sides know that the pass that was completed left them the same world, or have
   /// said how it differs; the pass lasts until then. Servo thread.

@@ -1,4 +1,4 @@
-#include "core/scene/surface/solid.h"
+#include "core/scene/surface/rigid_object.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 namespace {
 
 /// Forces are reckoned in W, lengths by the renderer in the body's frame.
-contact::RendererOptions options_of(const SolidParameters& p) {
+contact::RendererOptions options_of(const RigidObjectParameters& p) {
   contact::RendererOptions options;
   options.stiffness = p.gains.stiffness * p.scale;
   options.damping = p.gains.damping * p.scale;
@@ -29,27 +29,27 @@ contact::RendererOptions options_of(const SolidParameters& p) {
 
 }  // namespace
 
-Solid::Solid(const SolidParameters& parameters, const Setting& setting)
+RigidObject::RigidObject(const RigidObjectParameters& parameters, const Setting& setting)
     : parameters_(parameters), period_(1.0 / setting.rate), limit_(setting.limit) {
   require(std::isfinite(parameters.scale) && parameters.scale > 0.0,
-          "Solid: scale must be finite and above 0");
+          "RigidObject: scale must be finite and above 0");
   if (parameters.body) {
     renderer_ = contact::make_renderer(parameters.renderer, parameters.body->mesh,
                                        parameters.body->surface, options_of(parameters));
   }
 }
 
-Vector3d Solid::to_body(const Vector3d& p) const noexcept {
+Vector3d RigidObject::to_body(const Vector3d& p) const noexcept {
   return parameters_.pose.orientation.conjugate() * (p - parameters_.pose.position) /
          parameters_.scale;
 }
 
-void Solid::begin_at(const Vector3d& p) noexcept {
+void RigidObject::begin_at(const Vector3d& p) noexcept {
   const double radius = parameters_.tool_radius / parameters_.scale;
   renderer_->start(contact::free_place(*parameters_.body, to_body(p), radius));
 }
 
-void Solid::start(const PointState& hand) noexcept {
+void RigidObject::start(const PointState& hand) noexcept {
   touch_ = {};
   proxy_ = hand.position;
   if (renderer_) {
@@ -58,7 +58,7 @@ void Solid::start(const PointState& hand) noexcept {
 }
 
 /// The proxy goes on from where it was, if the body lets it.
-void Solid::adopt(const Solid& before) noexcept {
+void RigidObject::adopt(const RigidObject& before) noexcept {
   touch_ = before.touch_;
   proxy_ = before.proxy_;
   if (renderer_) {
@@ -66,8 +66,8 @@ void Solid::adopt(const Solid& before) noexcept {
   }
 }
 
-Vector3d Solid::push(const contact::Contact& contact, const Felt& felt,
-                     FieldState& state) noexcept {
+Vector3d RigidObject::push(const contact::Contact& contact, const Felt& felt,
+                           FieldState& state) noexcept {
   const auto& q = parameters_.pose.orientation;
   const Vector3d normal = q * contact.normal;
   const Vector3d whole = felt.shares.stiffness * (q * contact.force);
@@ -93,12 +93,12 @@ Vector3d Solid::push(const contact::Contact& contact, const Felt& felt,
   return force;
 }
 
-double Solid::stored(double depth, double share) const noexcept {
+double RigidObject::stored(double depth, double share) const noexcept {
   return control::PdController(parameters_.gains)
       .stored(depth, limit_ / (1.0 + relief_.steepest), share);
 }
 
-Vector3d Solid::force(const Felt& felt, FieldState& state) noexcept {
+Vector3d RigidObject::force(const Felt& felt, FieldState& state) noexcept {
   state.contact = state.sliding = false;
   state.depth = 0.0;
   touch_.pressing = 0.0;

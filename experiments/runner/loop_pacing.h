@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/realtime/servo_loop.h"
-#include "experiments/control/session_desk.h"
+#include "experiments/control/session_controller.h"
 #include "experiments/loop/loop_watch.h"
 #include "experiments/loop/servo_thread.h"
 #include "experiments/runner/session_record.h"
@@ -27,7 +27,7 @@ class SessionPace {
     const SessionRequest& request;
     realtime::ServoLoop& loop;
     SessionRecord& record;
-    SessionDesk& desk;
+    SessionController& controller;
     protocols::SessionTask& task;
     bool felt{false};  // somebody feels what the device does
     Screen* screen{nullptr};

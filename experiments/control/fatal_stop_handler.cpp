@@ -1,4 +1,4 @@
-#include "experiments/control/last_stop.h"
+#include "experiments/control/fatal_stop_handler.h"
 
 #include <time.h>
 #include <unistd.h>
@@ -13,8 +13,8 @@
 namespace haptrial::experiments {
 namespace {
 
-std::atomic<LastStop*> registered{nullptr};
-static_assert(std::atomic<LastStop*>::is_always_lock_free);  // for a signal's handler
+std::atomic<FatalStopHandler*> registered{nullptr};
+static_assert(std::atomic<FatalStopHandler*>::is_always_lock_free);  // for a signal's handler
 
 void pause_for(long nanoseconds) noexcept {
   timespec left{0, nanoseconds};
@@ -23,7 +23,7 @@ void pause_for(long nanoseconds) noexcept {
 }
 
 /// @returns whether the servo thread has commanded zero.
-bool stopped_by_servo(LastStop& stop) noexcept {
+bool stopped_by_servo(FatalStopHandler& stop) noexcept {
   constexpr long kLook = 200'000;  // [ns]
   constexpr int kLooks = 250;
   stop.ask();
@@ -48,9 +48,9 @@ extern "C" void stop_and_die(int signal) {
   ::raise(signal);  // comes when this handler returns
 }
 
-WatchedStop::WatchedStop(LastStop& stop) noexcept {
+WatchedStop::WatchedStop(FatalStopHandler& stop) noexcept {
   registered.store(&stop);
-  call_on_interrupt([](void* each) { static_cast<LastStop*>(each)->ask(); }, &stop);
+  call_on_interrupt([](void* each) { static_cast<FatalStopHandler*>(each)->ask(); }, &stop);
 }
 
 WatchedStop::~WatchedStop() {
@@ -59,7 +59,7 @@ WatchedStop::~WatchedStop() {
 }
 
 void take_force_away() noexcept {
-  LastStop* const stop = registered.load();
+  FatalStopHandler* const stop = registered.load();
   if (stop == nullptr || stopped_by_servo(*stop)) {
     return;
   }

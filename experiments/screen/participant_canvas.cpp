@@ -1,4 +1,4 @@
-#include "experiments/screen/easel.h"
+#include "experiments/screen/participant_canvas.h"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -22,8 +22,9 @@ double seconds_since(ScreenClock::time_point start) {
 
 }  // namespace
 
-Easel::Easel(render::Window& window, const render::TrialDisplayStyle& style,
-             const protocols::ScreenOptions& options, const SessionMark& mark)
+ParticipantCanvas::ParticipantCanvas(render::Window& window, const render::TrialDisplayStyle& style,
+                                     const protocols::ScreenOptions& options,
+                                     const SessionMark& mark)
     : window_(window),
       style_(style),
       mark_(mark),
@@ -35,9 +36,9 @@ Easel::Easel(render::Window& window, const render::TrialDisplayStyle& style,
       patch_(window.gl(), style.width, style.height),
       words_(window.gl(), style.width, style.height) {}
 
-Easel::~Easel() = default;
+ParticipantCanvas::~ParticipantCanvas() = default;
 
-bool Easel::take(const Scene& scene) {
+bool ParticipantCanvas::take(const Scene& scene) {
   if (scene.version == scene_.version) {
     return false;
   }
@@ -49,7 +50,7 @@ bool Easel::take(const Scene& scene) {
   return true;
 }
 
-void Easel::draw(const stimulus::Shown& shown) {
+void ParticipantCanvas::draw(const stimulus::Shown& shown) {
   if (drawing_) {
     drawing_->draw(shown);
   } else {
@@ -64,7 +65,7 @@ void Easel::draw(const stimulus::Shown& shown) {
   draw_patch(shown);
 }
 
-void Easel::draw_mark() {
+void ParticipantCanvas::draw_mark() {
   constexpr double kFrame = 0.02;  // of the screen's shorter side, half of it outside
   constexpr double kWords = 0.025;
   const double side = std::min(style_.width, style_.height);
@@ -83,7 +84,7 @@ void Easel::draw_mark() {
   }
 }
 
-std::uint64_t Easel::flash(std::uint64_t onsets) {
+std::uint64_t ParticipantCanvas::flash(std::uint64_t onsets) {
   if (photodiode_ != protocols::Photodiode::kOnset || onsets == onsets_) {
     return 0;
   }
@@ -93,7 +94,7 @@ std::uint64_t Easel::flash(std::uint64_t onsets) {
   return onsets;
 }
 
-double Easel::probe() {
+double ParticipantCanvas::probe() {
   std::array<double, kProbes> intervals{};
   for (double& interval : intervals) {
     const auto start = ScreenClock::now();
@@ -107,13 +108,13 @@ double Easel::probe() {
   return *middle;
 }
 
-void Easel::pressed(int key) {
+void ParticipantCanvas::pressed(int key) {
   if (drawing_) {
     drawing_->pressed(key);
   }
 }
 
-ScreenPointer Easel::pointer(const device::PointerInput& input) {
+ScreenPointer ParticipantCanvas::pointer(const device::PointerInput& input) {
   const protocols::Drawing* drawing = drawing_ ? drawing_.get() : before_.get();
   const auto seen = drawing != nullptr ? drawing->to_world(input.pixel) : std::nullopt;
   const Eigen::Vector3d point = seen.value_or(trial_.to_world(input.pixel));
@@ -124,7 +125,7 @@ ScreenPointer Easel::pointer(const device::PointerInput& input) {
   return pointer;
 }
 
-bool Easel::is_white(const stimulus::Shown& shown) const {
+bool ParticipantCanvas::is_white(const stimulus::Shown& shown) const {
   switch (photodiode_) {
     case protocols::Photodiode::kRun:
       return drawing_ != nullptr && shown.engaged();
@@ -135,7 +136,7 @@ bool Easel::is_white(const stimulus::Shown& shown) const {
   }
 }
 
-void Easel::draw_patch(const stimulus::Shown& shown) {
+void ParticipantCanvas::draw_patch(const stimulus::Shown& shown) {
   if (photodiode_ == protocols::Photodiode::kOff) {
     return;
   }

@@ -13,7 +13,7 @@
 namespace haptrial::scene {
 
 /// An object that gives way to the hand.
-struct YieldingParameters {
+struct DeformableObjectParameters {
   deformable::SharedFeltMesh mesh;                  // null: nothing is felt
   deformable::Tissue tissue;                        // of elements that rest on every tick
   std::optional<deformable::SpringTissue> springs;  // of springs that move, instead
@@ -32,12 +32,12 @@ struct YieldingParameters {
 /// A body that a ball presses, in W: of linear elements (core/deformable/touch) or of springs that
 /// move (core/deformable/moving), at the loop's rate or their own. `depth` is how far the ball is
 /// in the body as it would be at rest, `proxy` the ball's centre.
-class Yielding {
+class DeformableObject {
  public:
-  Yielding(const YieldingParameters& parameters, const Setting& setting);
+  DeformableObject(const DeformableObjectParameters& parameters, const Setting& setting);
 
   void start(const PointState& hand) noexcept;
-  void adopt(const Yielding& before) noexcept;
+  void adopt(const DeformableObject& before) noexcept;
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
   /// Null: nothing is felt.
   const deformable::BodyTouch* touch() const noexcept { return touch_.get(); }
@@ -45,7 +45,7 @@ class Yielding {
  private:
   Eigen::Vector3d to_body(const Eigen::Vector3d& p) const noexcept;
 
-  YieldingParameters parameters_;
+  DeformableObjectParameters parameters_;
   std::unique_ptr<deformable::BodyTouch> touch_;
   double period_;
   Eigen::Vector3d hand_{Eigen::Vector3d::Zero()};  // of the last tick, in W [m]

@@ -12,12 +12,12 @@ namespace haptrial::protocols {
 /// something of it. A protocol makes it for a definition, the console serves it, and the session
 /// that is under way finds it in its place (page_of()). Any thread but the servo's, several at
 /// once.
-class SidePage {
+class AuxiliaryPage {
  public:
   /// The next event as one line of JSON: what came since the last one.
   using Events = std::function<std::string()>;
 
-  virtual ~SidePage() = default;
+  virtual ~AuxiliaryPage() = default;
   /// What its address ends with: letters a to z and '_', such as "assistant".
   virtual std::string_view name() const = 0;
   /// What it is, for the terminal, such as "assistant's page".
@@ -32,12 +32,12 @@ class SidePage {
   virtual void ask(const std::string& json) = 0;
 };
 
-using SidePages = std::vector<std::shared_ptr<SidePage>>;
+using AuxiliaryPages = std::vector<std::shared_ptr<AuxiliaryPage>>;
 
 /// The page of a kind among others; null if it is not served.
 template <class Page>
-std::shared_ptr<Page> page_of(const SidePages& pages) {
-  for (const std::shared_ptr<SidePage>& page : pages) {
+std::shared_ptr<Page> page_of(const AuxiliaryPages& pages) {
+  for (const std::shared_ptr<AuxiliaryPage>& page : pages) {
     if (auto found = std::dynamic_pointer_cast<Page>(page)) {
       return found;
     }

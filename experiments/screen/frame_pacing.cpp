@@ -1,4 +1,4 @@
-#include "experiments/screen/pace.h"
+#include "experiments/screen/frame_pacing.h"
 
 #include <fmt/format.h>
 

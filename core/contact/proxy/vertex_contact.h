@@ -12,7 +12,7 @@ namespace haptrial::contact {
 /// A corner where a point rests, and what stopped it on every way on from there. While the tool
 /// moves and the point does not, planes and triangles lie as they did: a few products tell whether
 /// each way is still stopped at once. Servo thread.
-class HeldCorner {
+class VertexContact {
  public:
   void forget() noexcept { met_.clear(); }
 

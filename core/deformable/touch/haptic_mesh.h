@@ -32,7 +32,7 @@ struct FeltSides {
 };
 
 /// The tetrahedra of a body that is to be felt: the same for every material.
-struct FeltMesh {
+struct HapticMesh {
   std::string name;                   // as messages call the body
   geometry::TetMesh tets;             // [m]
   std::vector<std::uint8_t> held;     // by vertex
@@ -41,25 +41,25 @@ struct FeltMesh {
   Eigen::AlignedBox3d box;            // [m]
   double spacing{};                   // the longest side of its cells [m]
 };
-using SharedFeltMesh = std::shared_ptr<const FeltMesh>;
+using SharedFeltMesh = std::shared_ptr<const HapticMesh>;
 
 inline constexpr double kMostFeltVertices = 1e5;  // what takes a minute or so to prepare
 inline constexpr int kMostFeltCells = 200;        // along the longest side
 
 /// Whether two bodies are the same but for what they are made of.
-bool same_mesh(const FeltMesh& a, const FeltMesh& b);
+bool same_mesh(const HapticMesh& a, const HapticMesh& b);
 
 /// A box about the origin of cells that are nearly cubes.
 /// @param size  of its sides, > 0 [m]  @param cells  along the longest side, 2 to kMostFeltCells
 /// @throws InputError naming the body: sides so thin that a cell would be flat, a body that nothing
 /// holds, and one without a place to be touched.
-FeltMesh felt_block(const Eigen::Vector3d& size, int cells, const FeltSides& sides,
-                    std::string name);
+HapticMesh felt_block(const Eigen::Vector3d& size, int cells, const FeltSides& sides,
+                      std::string name);
 
 /// The voxels inside of a closed surface: a body with steps of a voxel's side.
 /// @throws InputError likewise, and as voxelize() does
-FeltMesh felt_solid(const geometry::Mesh& surface, int cells, const FeltSides& sides,
-                    std::string name);
+HapticMesh felt_solid(const geometry::Mesh& surface, int cells, const FeltSides& sides,
+                      std::string name);
 
 /// The vertices that felt_block() would make, before anything is made.
 double felt_block_vertices(const Eigen::Vector3d& size, int cells);

@@ -13,7 +13,7 @@
 namespace haptrial::scene {
 
 /// An object that is felt by its triangles.
-struct SolidParameters {
+struct RigidObjectParameters {
   contact::SharedBody body;            // null: nothing is felt
   contact::ObjectPose pose;            // of the body's frame in W
   double scale{1.0};                   // lengths of W over those of the body > 0
@@ -36,12 +36,12 @@ struct SolidParameters {
 /// so that the highest ridges lie at the mesh and grooves below it. F as in surface.h. A hand that
 /// is inside a closed body when the field is switched on is felt as pushed out to the nearest
 /// place of its surface.
-class Solid {
+class RigidObject {
  public:
-  Solid(const SolidParameters& parameters, const Setting& setting);
+  RigidObject(const RigidObjectParameters& parameters, const Setting& setting);
 
   void start(const PointState& hand) noexcept;
-  void adopt(const Solid& before) noexcept;
+  void adopt(const RigidObject& before) noexcept;
   void lay(const ReliefHere& relief) noexcept { relief_ = relief; }  // before force()
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
   const SurfaceTouch& touch() const noexcept { return touch_; }
@@ -54,7 +54,7 @@ class Solid {
   Eigen::Vector3d push(const contact::Contact& contact, const Felt& felt,
                        FieldState& state) noexcept;
 
-  SolidParameters parameters_;
+  RigidObjectParameters parameters_;
   std::unique_ptr<contact::Renderer> renderer_;
   double period_;
   double limit_;

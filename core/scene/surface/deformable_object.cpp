@@ -1,10 +1,11 @@
-#include "core/scene/surface/yielding.h"
+#include "core/scene/surface/deformable_object.h"
 
 namespace haptrial::scene {
 
 using Eigen::Vector3d;
 
-Yielding::Yielding(const YieldingParameters& parameters, const Setting& setting)
+DeformableObject::DeformableObject(const DeformableObjectParameters& parameters,
+                                   const Setting& setting)
     : parameters_(parameters), period_(1.0 / setting.rate) {
   if (parameters.moving && parameters.gives) {
     touch_ = std::make_unique<deformable::TwoRateTouch>(parameters.moving, parameters.gives,
@@ -20,11 +21,11 @@ Yielding::Yielding(const YieldingParameters& parameters, const Setting& setting)
   }
 }
 
-Vector3d Yielding::to_body(const Vector3d& p) const noexcept {
+Vector3d DeformableObject::to_body(const Vector3d& p) const noexcept {
   return parameters_.pose.orientation.conjugate() * (p - parameters_.pose.position);
 }
 
-void Yielding::start(const PointState& hand) noexcept {
+void DeformableObject::start(const PointState& hand) noexcept {
   hand_ = hand.position;
   if (touch_) {
     touch_->start(to_body(hand.position));
@@ -33,7 +34,7 @@ void Yielding::start(const PointState& hand) noexcept {
 
 /// A body that moves goes on moving; any other begins at rest under the hand: only what friction
 /// held is forgotten.
-void Yielding::adopt(const Yielding& before) noexcept {
+void DeformableObject::adopt(const DeformableObject& before) noexcept {
   hand_ = before.hand_;
   if (touch_ && before.touch_) {
     touch_->adopt(*before.touch_, to_body(hand_));
@@ -42,7 +43,7 @@ void Yielding::adopt(const Yielding& before) noexcept {
   }
 }
 
-Vector3d Yielding::force(const Felt& felt, FieldState& state) noexcept {
+Vector3d DeformableObject::force(const Felt& felt, FieldState& state) noexcept {
   hand_ = felt.hand.position;
   state.sliding = false;
   state.depth = 0.0;

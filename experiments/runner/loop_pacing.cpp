@@ -1,4 +1,4 @@
-#include "experiments/runner/session_pace.h"
+#include "experiments/runner/loop_pacing.h"
 
 #include <fmt/format.h>
 
@@ -61,15 +61,16 @@ void SessionPace::drive_until_idle() {
 
 /// What has come since the last call: records, pictures shown, messages.
 void SessionPace::collect() {
-  const std::size_t count = p_.record.collect(
-      [this](std::span<const record::Sample> samples) { p_.desk.follow(samples, 1e9 / d_.rate); });
+  const std::size_t count = p_.record.collect([this](std::span<const record::Sample> samples) {
+    p_.controller.follow(samples, 1e9 / d_.rate);
+  });
   if (p_.request.ticks != nullptr) {
     p_.request.ticks->fetch_add(count, std::memory_order_relaxed);
   }
   if (p_.screen != nullptr) {
     p_.record.keep_frames(p_.screen->take_frames());
   }
-  p_.desk.take_messages();
+  p_.controller.take_messages();
   if (p_.hear) {
     p_.hear();
   }
@@ -86,22 +87,22 @@ void SessionPace::meanwhile() {
 }
 
 bool SessionPace::wait(double seconds, const char* state, bool until_asked) {
-  Wishes& wishes = p_.desk.wishes();
-  wishes.start = false;
+  PendingRequests& requests = p_.controller.requests();
+  requests.start = false;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (Clock::now() < end && !asked_to_stop() && !wishes.abort &&
-         !(until_asked && (wishes.start || wishes.stopped))) {
+  while (Clock::now() < end && !asked_to_stop() && !requests.abort &&
+         !(until_asked && (requests.start || requests.stopped))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    p_.desk.status().break_left = std::chrono::duration<double>(end - Clock::now()).count();
+    p_.controller.status().break_left = std::chrono::duration<double>(end - Clock::now()).count();
     collect();
     publish(state);
   }
-  p_.desk.status().break_left = 0.0;
+  p_.controller.status().break_left = 0.0;
   return Clock::now() >= end;
 }
 
 void SessionPace::wait_to_begin(const std::string& text) {
-  if (p_.desk.attended()) {
+  if (p_.controller.attended()) {
     wait_for_experimenter("instructions", text, d_.texts.begin);
   } else if (p_.screen != nullptr) {
     show_text(text, d_.texts.begin_alone);
@@ -111,15 +112,15 @@ void SessionPace::wait_to_begin(const std::string& text) {
 
 void SessionPace::wait_for_experimenter(const char* state, const std::string& text,
                                         const std::string& hint) {
-  Wishes& wishes = p_.desk.wishes();
-  wishes.pause = true;
+  PendingRequests& requests = p_.controller.requests();
+  requests.pause = true;
   std::optional<bool> shown;  // as stopped
-  while ((wishes.pause || wishes.stopped) && !wishes.abort) {
-    if (shown != wishes.stopped) {
-      shown = wishes.stopped;
-      show_text(wishes.stopped ? d_.texts.stopped : text, wishes.stopped ? "" : hint);
+  while ((requests.pause || requests.stopped) && !requests.abort) {
+    if (shown != requests.stopped) {
+      shown = requests.stopped;
+      show_text(requests.stopped ? d_.texts.stopped : text, requests.stopped ? "" : hint);
     }
-    wait(0.02, wishes.stopped ? "stopped" : state);
+    wait(0.02, requests.stopped ? "stopped" : state);
     if (asked_to_stop()) {
       end_early("interrupted");
     }
@@ -134,12 +135,12 @@ void SessionPace::wait_for_participant() {
       end_early("interrupted");
     }
   }
-  p_.record.event("start", fmt::format("by the {}", name_of(Asker::kWindow)));
+  p_.record.event("start", fmt::format("by the {}", name_of(RequestSource::kWindow)));
 }
 
 void SessionPace::pause_where_asked() {
-  const Wishes& wishes = p_.desk.wishes();
-  if (wishes.stopped || wishes.pause) {
+  const PendingRequests& requests = p_.controller.requests();
+  if (requests.stopped || requests.pause) {
     wait_for_experimenter("paused", d_.texts.paused, "");
   }
 }
@@ -194,19 +195,19 @@ void SessionPace::rest(bool until_asked) {
 
 /// Until the participant or the experimenter goes on, where there is one of them.
 void SessionPace::wait_until_ready() {
-  if (!p_.desk.attended() && p_.screen == nullptr) {
+  if (!p_.controller.attended() && p_.screen == nullptr) {
     return;
   }
-  const Wishes& wishes = p_.desk.wishes();
+  const PendingRequests& requests = p_.controller.requests();
   p_.begin_pressed->store(false);
   show_text(d_.texts.take_again, p_.screen != nullptr ? d_.texts.begin_alone : d_.texts.begin);
-  while (!wishes.abort && !wishes.stopped && !wishes.pause && !asked_to_stop()) {
+  while (!requests.abort && !requests.stopped && !requests.pause && !asked_to_stop()) {
     wait(0.02, "break", true);
     if (p_.begin_pressed->load()) {
-      p_.record.event("start", fmt::format("by the {}", name_of(Asker::kWindow)));
+      p_.record.event("start", fmt::format("by the {}", name_of(RequestSource::kWindow)));
       return;
     }
-    if (wishes.start) {
+    if (requests.start) {
       return;
     }
   }
@@ -220,7 +221,7 @@ void SessionPace::show_text(const std::string& text, const std::string& hint, do
     }
     p_.screen->show_text(std::move(page));
   }
-  p_.desk.status().screen = text;
+  p_.controller.status().screen = text;
   text_shown_ = true;
 }
 
@@ -228,7 +229,7 @@ void SessionPace::show_page(render::TextPage page, const std::string& text) {
   if (p_.screen != nullptr) {
     p_.screen->show_text(std::move(page));
   }
-  p_.desk.status().screen = text;
+  p_.controller.status().screen = text;
   text_shown_ = true;
 }
 
@@ -242,9 +243,9 @@ void SessionPace::show_progress(double share) {
 }
 
 void SessionPace::wait_for_picture(std::uint64_t number) {
-  const Wishes& wishes = p_.desk.wishes();
+  const PendingRequests& requests = p_.controller.requests();
   const auto start = Clock::now();
-  while (!p_.screen->has_shown(number) && p_.screen->trouble().empty() && !wishes.abort) {
+  while (!p_.screen->has_shown(number) && p_.screen->trouble().empty() && !requests.abort) {
     wait(0.002, "preparing");
     if (asked_to_stop()) {
       end_early("interrupted");
@@ -272,15 +273,15 @@ void SessionPace::let_read(const std::string& text, const char* state) {
 }
 
 void SessionPace::clear_text() {
-  p_.desk.status().screen.clear();
+  p_.controller.status().screen.clear();
   text_shown_ = false;
 }
 
 void SessionPace::publish(const char* state) {
-  if (!p_.desk.attended()) {
+  if (!p_.controller.attended()) {
     return;
   }
-  SessionStatus& status = p_.desk.status();
+  SessionStatus& status = p_.controller.status();
   const record::PassRow& pass = p_.record.pass();
   status.trial = pass.trial;
   status.practice = pass.practice;
@@ -294,7 +295,7 @@ void SessionPace::publish(const char* state) {
   if (p_.live != nullptr) {
     status.figures = p_.live->now();
   }
-  p_.desk.publish(state);
+  p_.controller.publish(state);
 }
 
 bool SessionPace::asked_to_stop() const {

@@ -1,4 +1,4 @@
-#include "core/contact/proxy/held_corner.h"
+#include "core/contact/proxy/vertex_contact.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,14 +16,15 @@ constexpr double kInto = 1.0 / 8.0;
 
 }  // namespace
 
-void HeldCorner::set(const PlaneSet& met, const Vector3d& at, const Skin& skin) noexcept {
+void VertexContact::set(const PlaneSet& met, const Vector3d& at, const Skin& skin) noexcept {
   met_ = met;
   at_ = at;
   skin_ = skin;
   prepared_ = false;
 }
 
-HeldCorner::Side HeldCorner::side(const ContactPlane& plane, const Hull& hull) const noexcept {
+VertexContact::Side VertexContact::side(const ContactPlane& plane,
+                                        const Hull& hull) const noexcept {
   const Hull::Heights heights = hull.heights(at_, Vector3d::Zero());
   const double h = skin_.thickness;
   Side side{plane.normal, std::min(-plane.height(at_), 0.0), 0.0, {}, {}, {}, {}};
@@ -46,7 +47,7 @@ HeldCorner::Side HeldCorner::side(const ContactPlane& plane, const Hull& hull) c
   return side;
 }
 
-void HeldCorner::prepare(NearTriangles& near) noexcept {
+void VertexContact::prepare(NearTriangles& near) noexcept {
   for (int j = 0; j < met_.size(); ++j) {
     sides_[j] = side(met_[j], near.hull(met_[j].slot));
     for (int i = 0; i < j; ++i) {
@@ -63,8 +64,8 @@ void HeldCorner::prepare(NearTriangles& near) noexcept {
 }
 
 /// Whether a move is at a place well inside of the hull, before which it leads nowhere.
-bool HeldCorner::stops(const Side& side, const Vector3d& move, double square,
-                       double enough) const noexcept {
+bool VertexContact::stops(const Side& side, const Vector3d& move, double square,
+                          double enough) const noexcept {
   const double h = skin_.thickness;
   const double falls = -side.normal.dot(move), into = side.above + kInto * h;
   const double free = std::max(side.above - h, 0.0) + kDoubt * h;
@@ -84,8 +85,8 @@ bool HeldCorner::stops(const Side& side, const Vector3d& move, double square,
   return left[0] > 0.0 && left[1] > 0.0;
 }
 
-bool HeldCorner::stopped(const Vector3d& move, double enough,
-                         Operations& operations) const noexcept {
+bool VertexContact::stopped(const Vector3d& move, double enough,
+                            Operations& operations) const noexcept {
   const double square = move.squaredNorm();
   if (square <= enough * enough) {
     return true;  // it leads nowhere
@@ -99,7 +100,7 @@ bool HeldCorner::stopped(const Vector3d& move, double enough,
   return false;
 }
 
-bool HeldCorner::holds(const Vector3d& wish, double enough, NearTriangles& near) noexcept {
+bool VertexContact::holds(const Vector3d& wish, double enough, NearTriangles& near) noexcept {
   if (!prepared_) {
     prepare(near);
   }

@@ -1,4 +1,4 @@
-#include "core/deformable/touch/felt_mesh.h"
+#include "core/deformable/touch/haptic_mesh.h"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ Eigen::AlignedBox3d box_of(const geometry::TetMesh& tets) {
   return box;
 }
 
-bool is_on(const FeltMesh& mesh, std::int32_t vertex, BodySide side) {
+bool is_on(const HapticMesh& mesh, std::int32_t vertex, BodySide side) {
   const int axis = static_cast<int>(side) / 2;
   const bool high = static_cast<int>(side) % 2 == 1;
   const double wall = high ? mesh.box.max()[axis] : mesh.box.min()[axis];
@@ -48,7 +48,7 @@ bool is_on(const FeltMesh& mesh, std::int32_t vertex, BodySide side) {
   return std::abs(at - wall) < 1e-6 * mesh.spacing;
 }
 
-void check_held(const FeltMesh& mesh) {
+void check_held(const HapticMesh& mesh) {
   LoadCase load;
   load.name = mesh.name;
   for (std::size_t v = 0; v < mesh.held.size(); ++v) {
@@ -64,7 +64,7 @@ void check_held(const FeltMesh& mesh) {
 }
 
 /// Once its tetrahedra are known.
-void finish(FeltMesh& mesh, const FeltSides& sides) {
+void finish(HapticMesh& mesh, const FeltSides& sides) {
   mesh.box = box_of(mesh.tets);
   mesh.held.assign(mesh.tets.vertices.size(), 0);
   for (std::size_t v = 0; v < mesh.held.size(); ++v) {
@@ -107,7 +107,7 @@ void finish(FeltMesh& mesh, const FeltSides& sides) {
 
 std::string_view name_of(BodySide side) { return kSideNames[static_cast<std::size_t>(side)]; }
 
-bool same_mesh(const FeltMesh& a, const FeltMesh& b) {
+bool same_mesh(const HapticMesh& a, const HapticMesh& b) {
   return a.name == b.name && a.held == b.held && a.grasped == b.grasped && a.felt == b.felt &&
          std::ranges::equal(a.tets.tetrahedra, b.tets.tetrahedra) &&
          std::ranges::equal(a.tets.vertices, b.tets.vertices);
@@ -130,7 +130,7 @@ void check_cells(double vertices, int cells, const std::string& name) {
   }
 }
 
-FeltMesh felt_block(const Vector3d& size, int cells, const FeltSides& sides, std::string name) {
+HapticMesh felt_block(const Vector3d& size, int cells, const FeltSides& sides, std::string name) {
   check_cells(felt_block_vertices(size, cells), cells, name);
   const std::array<int, 3> counts = cells_of(size, cells);
   const Vector3d cell(size[0] / counts[0], size[1] / counts[1], size[2] / counts[2]);
@@ -143,7 +143,7 @@ FeltMesh felt_block(const Vector3d& size, int cells, const FeltSides& sides, std
   solid.grid.size = {counts[0], counts[1], counts[2]};
   solid.grid.origin = Vector3d::Constant(0.5);  // corners lie at whole numbers
   solid.labels.assign(solid.grid.count(), geometry::VoxelLabel::kInside);
-  FeltMesh mesh;
+  HapticMesh mesh;
   mesh.name = std::move(name);
   mesh.spacing = cell.maxCoeff();
   geometry::tetrahedralize(solid, mesh.tets);
@@ -154,9 +154,9 @@ FeltMesh felt_block(const Vector3d& size, int cells, const FeltSides& sides, std
   return mesh;
 }
 
-FeltMesh felt_solid(const geometry::Mesh& surface, int cells, const FeltSides& sides,
-                    std::string name) {
-  FeltMesh mesh;
+HapticMesh felt_solid(const geometry::Mesh& surface, int cells, const FeltSides& sides,
+                      std::string name) {
+  HapticMesh mesh;
   mesh.name = std::move(name);
   try {
     const geometry::VoxelGrid grid = geometry::make_grid(geometry::bounds(surface), cells);

@@ -1,6 +1,6 @@
 // Passes in step over a channel that loses, doubles and overtakes.
 
-#include "core/network/side/turns.h"
+#include "core/network/side/pass_barrier.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@
 namespace haptrial::network {
 namespace {
 
-using Step = Turns::Step;
+using Step = PassBarrier::Step;
 
 /// A session that presents trials of two phases until all are done. It may be aborted at any tick,
 /// and then presents the trial again.
 struct Session {
-  Turns turns;
+  PassBarrier turns;
   int trials;
   std::uint32_t trial{1};
   std::uint32_t phase{0};
@@ -30,7 +30,7 @@ struct Session {
   explicit Session(int all) : trials(all) {}
   void begin(int ticks) {
     left = ticks;
-    turns.begin(trial * Turns::kPhases + phase);
+    turns.begin(trial * PassBarrier::kPhases + phase);
   }
   void ended(Step step) {
     const bool done = step == Step::kComplete;
@@ -140,8 +140,8 @@ TEST(TurnsTest, AbortsOnEitherSideLeaveBothInStep) {
 }
 
 TEST(TurnsTest, NobodyIsWaitedForWhoIsOver) {
-  Turns turns;
-  turns.begin(5 * Turns::kPhases);
+  PassBarrier turns;
+  turns.begin(5 * PassBarrier::kPhases);
   EXPECT_EQ(turns.step({}, false, false), Step::kWait);
   EXPECT_EQ(turns.step({}, false, true), Step::kRun);
   EXPECT_FALSE(turns.together());
@@ -149,7 +149,7 @@ TEST(TurnsTest, NobodyIsWaitedForWhoIsOver) {
 }
 
 TEST(TurnsTest, AWordFromThePassBeforeBeginsNothing) {
-  Turns turns;
+  PassBarrier turns;
   turns.begin(16);
   TurnState other{1, 1, 16, TurnPhase::kRuns, 0};
   EXPECT_EQ(turns.step(other, false, false), Step::kRun);

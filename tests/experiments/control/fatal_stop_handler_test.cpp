@@ -1,4 +1,4 @@
-#include "experiments/control/last_stop.h"
+#include "experiments/control/fatal_stop_handler.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@ namespace haptrial::experiments {
 namespace {
 
 /// A servo thread that stops when it has been looked at so often, or never.
-struct FakeServo final : LastStop {
+struct FakeServo final : FatalStopHandler {
   explicit FakeServo(int looks, bool itself = false) : looks_left(looks), is_servo(itself) {}
   void ask() noexcept override { asked = true; }
   bool done() const noexcept override {
