@@ -250,6 +250,18 @@ TEST(TwoHandsDefinitionTest, WhatCannotBeIsSaid) {
               HasSubstr("second_hand.tool_stiffness is 9000; allowed: a number of at least 0 and "
                         "at most 5000 [N/m]"));
   EXPECT_THAT(says("[heat]\nloss = 1.0\nrinsed_loss = 0.5\n"), HasSubstr("heat.rinsed_loss"));
+  EXPECT_THAT(says("[bleeding]\nstructures = [\"sigmoid vein\"]\n"),
+              HasSubstr("has no structure 'sigmoid vein'; it has "));
+}
+
+/// A definition may be for several bones, of which some lack a vessel.
+TEST(TwoHandsDefinitionTest, AKnownVesselThatTheBoneLacksDoesNotBleed) {
+  const test::TemporaryFolder folder;
+  const fs::path study =
+      write_study(folder.path(), 2.0, "[bleeding]\nstructures = [\"sigmoid sinus\"]\n");
+  const test::CommandResult result =
+      test::run_command("haptrial validate '" + study.string() + "'");
+  EXPECT_EQ(result.status, 0) << result.errors;
 }
 
 TEST(TwoHandsDefinitionTest, ABoneWithTwoHandsIsNotSharedOverALink) {
