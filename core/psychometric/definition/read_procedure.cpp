@@ -287,10 +287,7 @@ void read_psi(const TrackKeys& keys, Track& track) {
   track.most_trials = stop.trials;
   try {
     const auto tables = std::make_shared<const QuestTables>(psi_definition(p));
-    const QuestStop ends{stop.trials, stop.entropy};
-    track.begin = [tables, ends](std::uint64_t, const std::string&) {
-      return std::make_unique<QuestPlus>(tables, ends);
-    };
+    begin_with(keys, tables, {stop.trials, stop.entropy}, track);
   } catch (const std::invalid_argument& error) {
     keys.of("levels").reject("levels", fmt::format("cannot be used as stated: {}", error.what()));
   }

@@ -252,6 +252,21 @@ void check_size(const QuestDefinition& quest) {
 
 }  // namespace
 
+void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>& tables,
+                const QuestStop& stop, Track& track) {
+  const QuestPlus begun(tables, stop);
+  if (begun.finished()) {
+    Table ends = keys.of("stop").table("stop");
+    ends.reject("entropy", fmt::format("{:g} [nat]", stop.entropy),
+                fmt::format("less than the {:.3g} nat before the first trial, or the track ends "
+                            "there",
+                            begun.entropy()));
+  }
+  track.begin = [tables, stop](std::uint64_t, const std::string&) {
+    return std::make_unique<QuestPlus>(tables, stop);
+  };
+}
+
 void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
   QuestDefinition quest;
   read_stimulus(keys, quest, track);
@@ -281,9 +296,8 @@ void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
       return;
     }
     const auto tables = std::make_shared<const QuestTables>(std::move(quest));
-    track.begin = [tables, stop](std::uint64_t, const std::string&) {
-      return std::make_unique<QuestPlus>(tables, stop);
-    };
+    track.outcomes = tables->outcomes();
+    begin_with(keys, tables, stop, track);
   } catch (const std::exception& error) {
     keys.of(key).reject(key, fmt::format("cannot be used as stated: {}", sentence_of(error)));
   }

@@ -1,11 +1,18 @@
 #pragma once
 
+#include <memory>
+
 #include "core/psychometric/quest/quest_plus.h"
 
 namespace haptrial::psychometric {
 
 struct Track;
 struct TrackKeys;
+
+/// Begins a track with these tables, its own or those of psi. An entropy of `stop` that ends it
+/// before its first trial is noted.
+void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>& tables,
+                const QuestStop& stop, Track& track);
 
 /// Reads a QUEST+ over any number of dimensions. Keys in brackets are optional; grids are lists or
 /// { from, to, count, [spacing] }, or { values = [...] } with the keys that follow them.

@@ -1,5 +1,7 @@
 #include "core/psychometric/definition/track.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,6 +21,25 @@ double rounded_within(double asked, double low, double high, double resolution) 
 }
 
 }  // namespace
+
+std::string Track::lesson() const {
+  if (kind == "magnitude") {
+    return "a number above 0";
+  }
+  if (kind == "adjustment") {
+    return "1, -1 or 0";
+  }
+  return outcomes == 2 ? "0 or 1" : fmt::format("a whole number from 0 to {}", outcomes - 1);
+}
+
+bool Track::learns(double outcome) const noexcept {
+  if (kind == "magnitude") {
+    return std::isfinite(outcome) && outcome > 0.0;
+  }
+  const bool whole = outcome == std::floor(outcome);
+  return kind == "adjustment" ? whole && std::abs(outcome) <= 1.0
+                              : whole && outcome >= 0.0 && outcome < static_cast<double>(outcomes);
+}
 
 double Track::applied(double asked) const noexcept {
   return rounded_within(asked, low, high, resolution);

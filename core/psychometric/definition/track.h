@@ -35,12 +35,17 @@ struct Track {
   std::vector<TrackDimension> further;  // of a level with several dimensions
   int most_trials{0};                   // of one track
   bool listed{false};                   // its trials are known from the beginning
+  std::size_t outcomes{2};              // that a track of answers tells apart
   std::optional<bool> falls;  // whether answers 1 get rarer as the level rises; none: not known
   Axis axis;                  // of its steps
   std::optional<StaircaseParameters> staircase;    // of a staircase
   std::optional<PsychometricParameters> expected;  // that the study counts on
   std::function<std::unique_ptr<Procedure>(std::uint64_t seed, const std::string& name)> begin;
 
+  /// What it can learn: "a number above 0", or "0 or 1".
+  std::string lesson() const;
+  /// Whether an outcome is one of these.
+  bool learns(double outcome) const noexcept;
   /// What is presented if a level is asked for: rounded, within the range.
   double applied(double asked) const noexcept;
   Level applied(const Level& asked) const;

@@ -96,8 +96,8 @@ void QuestPlus::report(double answer, const Level& applied) {
     likelihood = off_grid.data();
   }
   const double sum = row_sum(likelihood, posterior_.size(), posterior_.data());
-  checks::require(sum > 0.0, kQuest, "the answer must be possible for some of the parameters");
-  for (std::size_t c = 0; c < posterior_.size(); ++c) {
+  // An answer that no parameters allow, as without lapses, tells nothing of them: people slip.
+  for (std::size_t c = 0; sum > 0.0 && c < posterior_.size(); ++c) {
     posterior_[c] *= likelihood[c] / sum;
   }
   ++trials_;

@@ -16,7 +16,8 @@ struct QuestStop {
 /// parameters, by Bayes' rule over a grid. Any number of dimensions, parameters and outcomes. Psi
 /// (Kontsevich and Tyler 1999) and marginal Psi (Prins 2013) are cases of it: psi_definition().
 ///
-/// The posterior is that of the level really applied, on the grid or not.
+/// The posterior is that of the level really applied, on the grid or not. An answer that is
+/// impossible with all parameters leaves it as it was.
 class QuestPlus final : public Procedure {
  public:
   /// @throws std::invalid_argument naming the parameter that breaks its bound.

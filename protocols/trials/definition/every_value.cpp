@@ -9,6 +9,7 @@
 #include "core/base/text/exception_words.h"
 #include "core/scene/scene.h"
 #include "protocols/trials/definition/defaults.h"
+#include "protocols/trials/definition/lead_words.h"
 #include "protocols/trials/definition/picture_words.h"
 #include "protocols/trials/definition/presented.h"
 #include "protocols/trials/definition/read_definition.h"
@@ -90,10 +91,63 @@ void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& f
   }
 }
 
+/// What formulas take an answer for: each choice, or the ends of a typed number.
+std::vector<double> values_of(const Question& question) {
+  if (question.types()) {
+    return {question.low, question.high};
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < question.choices.size(); ++i) {
+    values.push_back(question.first + static_cast<double>(i));
+  }
+  return values;
+}
+
+/// @throws InputError for an answer from which the procedure of a track cannot learn
+void check_lesson(const TrialsDefinition& d, const Track& track, double outcome,
+                  const std::string& answers) {
+  if (std::isfinite(outcome) && !track.learns(outcome)) {
+    throw InputError(
+        fmt::format("{}: {} learns {:g} from the answer {}; allowed: {}; say what it "
+                    "learns with `counts`",
+                    d.file_name, track.name, outcome, answers, track.lesson()));
+  }
+}
+
+/// Every answer must be one from which the procedures can learn, or a session ends at the first
+/// other one. @param names  with the values of a trial
+void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& names) {
+  if (values.levels.empty()) {
+    return;  // the block asks no procedure
+  }
+  std::size_t combinations = 1;
+  for (const Question& question : d.questions) {
+    combinations = std::min(kMostCombinations, combinations * values_of(question).size());
+  }
+  for (std::size_t c = 0; c < combinations; ++c) {
+    std::string answers;
+    std::size_t rest = c;
+    for (const Question& question : d.questions) {
+      const std::vector<double> all = values_of(question);
+      const double value = all[rest % all.size()];
+      rest /= all.size();
+      names.set(question.name, value);
+      answers += fmt::format("{}{} = {:g}", answers.empty() ? "" : ", ", question.name, value);
+    }
+    for (const Track& track : d.tracks) {
+      if (!track.counts.empty()) {
+        check_lesson(d, track, names.value(track.counts), answers);
+      } else if (c == 0 && !d.questions.empty() && !d.questions.front().correct.empty()) {
+        check_lesson(d, track, 0.0, "that is wrong");
+      }
+    }
+  }
+}
+
 /// @returns what is said of bodies that give way, if asked for
 std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValues& values,
                                       bool with_bodies, HandleReport& handle,
-                                      PictureReport& picture) {
+                                      PictureReport& picture, LeadReport& lead) {
   std::vector<std::string> bodies;
   Table root = Table::parse(d.text, d.file_name);
   root.fill_in(trials_defaults());
@@ -110,6 +164,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       check_reach(d, presented);
       handle.add(presented);
       picture.add(presented);
+      lead.add(presented);
       prepare_moving_bodies(presented.fields, d.rate);
       if (with_bodies && place == 0) {
         prepare_bodies(presented.fields, d.rate);
@@ -124,6 +179,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
         right_choice(*names, question);
       }
     }
+    check_answers(d, values, *names);
   } catch (const std::exception& error) {
     const std::string said = sentence_of(error);
     throw InputError(fmt::format("{}{}\n(with {})",
@@ -139,6 +195,7 @@ HandleWords check_every_value(const TrialsDefinition& d) {
   std::vector<std::string> bodies;
   HandleReport handle(d);
   PictureReport picture(d);
+  LeadReport lead;
   for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
     const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
     std::size_t combinations = 1;
@@ -162,14 +219,15 @@ HandleWords check_every_value(const TrialsDefinition& d) {
         const Block& given = d.order.blocks[block];
         values.values.insert(values.values.end(), given.values.begin(), given.values.end());
         const bool first = block == 0 && c == 0 && !high;
-        const std::vector<std::string> said = present_once(d, values, first, handle, picture);
+        const std::vector<std::string> said = present_once(d, values, first, handle, picture, lead);
         bodies.insert(bodies.end(), said.begin(), said.end());
       }
     }
   }
   HandleWords words = handle.words();
-  const std::vector<std::string> unseen = picture.warnings();
-  words.warnings.insert(words.warnings.end(), unseen.begin(), unseen.end());
+  for (const auto& said : {picture.warnings(), lead.warnings()}) {
+    words.warnings.insert(words.warnings.end(), said.begin(), said.end());
+  }
   words.lines.insert(words.lines.begin(), bodies.begin(), bodies.end());
   return words;
 }

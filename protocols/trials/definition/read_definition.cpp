@@ -135,12 +135,12 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
     try {
       give(*names, d, sample_values(d, 0));
       give_interval(*names, d.intervals[place], place);
+      stages = read_presented(root, *names, d, nullptr).stages;
     } catch (const InputError& error) {
-      root.reject("experiment", fmt::format("cannot begin: {}", error.what()));
+      root.reject("experiment", fmt::format("cannot begin with the block {}: {}",
+                                            d.order.blocks.front().name, error.what()));
       root.check();  // what is not read after this would count as not known
     }
-    Presented presented = read_presented(root, *names, d, nullptr);
-    stages = std::move(presented.stages);
   }
   keep_stages(stages, d);
   check_stages(root, d, stages);

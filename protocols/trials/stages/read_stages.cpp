@@ -150,12 +150,17 @@ class StageReader {
     if (table.has("for")) {
       until.hold = read_hold(table);
     }
+    if (until.speed_above >= until.speed_below) {
+      table.reject("speed_above", fmt::format("{:g} [m/s]", until.speed_above),
+                   fmt::format("less than speed_below, {:g} [m/s]", until.speed_below));
+    }
   }
 
   double read_hold(Table& table) {
     const std::vector<double> range = holds_range(table)
                                           ? table.numbers("for", kDuration, "s")
                                           : std::vector{number(table, "for", kDuration, "s")};
+    longest_hold_ = range.empty() ? 0.0 : range.back();
     if (range.size() == 1) {
       return range.front();
     }
@@ -173,6 +178,12 @@ class StageReader {
       Table timeout = table_.table("timeout");
       result_.stage.timeout = number(timeout, "after", kTimeoutBounds, "s");
       result_.stage.late = read_consequence(timeout, "then");
+      const double soonest = std::max(result_.stage.until.time, longest_hold_);
+      if (result_.stage.timeout < soonest) {
+        timeout.reject("after",
+                       fmt::format("{:g}, before the stage can end", result_.stage.timeout),
+                       fmt::format("at least the {:g} s that until takes", soonest));
+      }
     } else if (waits_) {
       table_.reject("until", "may never come; add timeout = { after = …, then = \"abort\" }");
     }
@@ -200,7 +211,8 @@ class StageReader {
   Table& table_;
   const StageSource& source_;
   NamedStage result_;
-  bool waits_{false};  // for more than a time
+  bool waits_{false};         // for more than a time
+  double longest_hold_{0.0};  // that `for` of until may ask [s]
 };
 
 }  // namespace

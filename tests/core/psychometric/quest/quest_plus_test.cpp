@@ -318,5 +318,20 @@ TEST(QuestPlusTest, DefinitionsOutOfBoundsAreNamed) {
   });
 }
 
+TEST(QuestPlusTest, AnAnswerThatNoParametersAllowEndsNoSession) {
+  QuestDefinition d;
+  d.stimulus = {{"x", {0.0, 1.0}, {}, false}};
+  d.parameters = {{"u", {0.4, 0.6}, {}, false}};
+  d.model = [](const double* s, const double* p, double* out) {  // no lapses
+    out[1] = s[0] > p[0] ? 1.0 : 0.0;
+    out[0] = 1.0 - out[1];
+  };
+  QuestPlus procedure(std::make_shared<const QuestTables>(d), {5, 0.0});
+  const std::vector<double> before = procedure.posterior();
+  procedure.report(0, {1.0});
+  EXPECT_EQ(procedure.posterior(), before);
+  EXPECT_EQ(procedure.trials(), 1);
+}
+
 }  // namespace
 }  // namespace haptrial::psychometric

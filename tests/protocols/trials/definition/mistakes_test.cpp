@@ -241,6 +241,62 @@ TEST(TrialMistakesTest, ARegionOutOfReachIsRefused) {
               Contains(HasSubstr("stage press waits until the tool is inside regions.start")));
 }
 
+TEST(TrialMistakesTest, AHandThatIsLedBesideTheRegionGetsAWarning) {
+  const auto warnings_if_led_to = [](const std::string& to) {
+    const std::string more =
+        "[fields.guide]\ntype = \"spring\"\nto = " + to +
+        "\nstiffness = 150.0\ndamping = 8.0\nlimit = 3.0\n"
+        "[regions.start]\ntype = \"sphere\"\ncentre = [0.01, 0.0, 0.0]\nradius = 0.008\n";
+    TrialsDefinition d;
+    read_small(with(with(small_trials(kSmallStaircase, more), "until = { time = 0.2 }",
+                         "until = { inside = \"start\" }\n"
+                         "timeout = { after = 5.0, then = \"abort\" }"),
+                    "fields = [\"floor\"]", "fields = [\"floor\", \"guide\"]"),
+               d);
+    return check_every_value(d).warnings;
+  };
+  EXPECT_THAT(warnings_if_led_to("[0.005, 0.0, 0.0]"), IsEmpty());
+  EXPECT_THAT(warnings_if_led_to("[0.0, 0.0, 0.0]"),
+              Contains(HasSubstr("inside regions.start, and fields.guide leads it to a place 0.002 "
+                                 "m beside it; a hand that is led never arrives")));
+}
+
+TEST(TrialMistakesTest, ABlockThatCannotBeginIsNamed) {
+  const std::string blocks =
+      "[[blocks]]\nname = \"bare\"\n[[blocks]]\nname = \"main\"\ntouched = \"floor\"\n";
+  EXPECT_THAT(problems_of_trials(with(small_trials(kSmallStaircase, blocks), "fields = [\"floor\"]",
+                                      "fields = [\"$touched\"]\n")),
+              Contains(AllOf(HasSubstr(".toml:"), HasSubstr("cannot begin with the block bare: "
+                                                            "touched has no value yet"))));
+}
+
+TEST(TrialMistakesTest, AnAnswerThatAProcedureCannotLearnFromIsRefused) {
+  const std::string list =
+      "[procedure]\nkind = \"constant\"\nvariable = \"level\"\nlevels = [310.0, 400.0]\n"
+      "repetitions = 2\n";
+  const auto with_counts = [&](const std::string& kind, const std::string& counts) {
+    return problems_of_trials(
+        small_trials(kind + (counts.empty() ? "" : "counts = \"" + counts + "\"\n")));
+  };
+  EXPECT_THAT(with_counts(list, "$answer == 1"), IsEmpty());
+  EXPECT_THAT(with_counts(list, "$answer"),
+              Contains(HasSubstr("track 1 learns 2 from the answer answer = 2; allowed: 0 or 1")));
+  const std::string magnitude =
+      "[procedure]\nkind = \"magnitude\"\nvariable = \"level\"\nlevels = [310.0, 400.0]\n"
+      "repetitions = 2\n";
+  EXPECT_THAT(with_counts(magnitude, "$answer"), IsEmpty());
+  EXPECT_THAT(with_counts(magnitude, ""), Contains(HasSubstr("allowed: a number above 0")));
+}
+
+TEST(TrialMistakesTest, ATrackThatEndsBeforeItsFirstTrialIsRefused) {
+  const std::string psi =
+      "[procedure]\nkind = \"psi\"\nvariable = \"level\"\nlevels = [310.0, 400.0, 500.0]\n"
+      "stop = { trials = 9, entropy = ";
+  EXPECT_THAT(problems_of_trials(small_trials(psi + "0.5 }\n")), IsEmpty());
+  EXPECT_THAT(problems_of_trials(small_trials(psi + "50.0 }\n")),
+              Contains(HasSubstr("stop.entropy is 50 [nat]; allowed: less than the")));
+}
+
 TEST(TrialMistakesTest, FeedbackForNoTimeGetsAWarning) {
   const std::string no_time = "[display]\nfeedback_time = 0.0\n";
   TrialsDefinition silent, told, late;

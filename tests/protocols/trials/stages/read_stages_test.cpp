@@ -124,6 +124,25 @@ TEST(ReadStagesTest, MistakesGetTheirSentence) {
                           "floor"));
   EXPECT_THAT(problems_of(head + "until = { time = 1.0, for = [2.0, 1.0] }\n"),
               ElementsAre(HasSubstr("for is [2, 1]; allowed: a time or [shortest, longest] [s]")));
+  const std::string abort = ", then = \"abort\" }\n";
+  EXPECT_THAT(problems_of(head + "until = { time = 0.5 }\ntimeout = { after = 0.05" + abort),
+              ElementsAre(HasSubstr("stages[1].timeout.after is 0.05, before the stage can end; "
+                                    "allowed: at least the 0.5 s that until takes")));
+  EXPECT_THAT(problems_of(head +
+                          "until = { inside = \"start\", for = [0.1, 0.7] }\n"
+                          "timeout = { after = 0.6" +
+                          abort),
+              ElementsAre(HasSubstr("at least the 0.7 s that until takes")))
+      << "or trials of a long drawn time would abort for ever";
+  EXPECT_THAT(
+      problems_of(head + "until = { time = 0.5, for = 0.5 }\ntimeout = { after = 0.5" + abort),
+      ElementsAre());
+  EXPECT_THAT(problems_of(head +
+                          "until = { speed_above = 0.2, speed_below = 0.1 }\n"
+                          "timeout = { after = 2.0" +
+                          abort),
+              ElementsAre(HasSubstr("until.speed_above is 0.2 [m/s]; allowed: less than "
+                                    "speed_below, 0.1 [m/s]")));
   EXPECT_THAT(problems_of(head + "until = { time = 1.0 }\n" + head + "until = { time = 1.0 }\n"),
               ElementsAre(HasSubstr("stages[2].name is \"a\"; allowed: a name that no other stage "
                                     "has")));
