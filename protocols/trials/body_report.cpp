@@ -26,7 +26,7 @@ struct Loss {
 
 constexpr std::array<Loss, BodyReport::kLosses> kAllLosses{
     Loss{&TouchCounts::inverted, "/touched_bodies", "inside_out",
-         "a tetrahedron would have been turned inside out; the force stayed below that"},
+         "the hand pressed a body deeper than its elements can follow, and the force did not grow"},
     Loss{&TouchCounts::crowded, "/touched_bodies", "crowded_contact",
          "the ball lay on more places of the body than are computed; it may have been felt softer "
          "than its elements (use fewer cells or a smaller ball)"},
