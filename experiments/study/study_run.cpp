@@ -165,8 +165,9 @@ class SessionWorkers {
     Progress progress("dry run", ticks_each_ * count());
     while (!sessions.ended_within(std::chrono::milliseconds(20)) && !cancel_) {
       const auto done = static_cast<double>(ticks_.load(std::memory_order_relaxed));
-      progress.update(done, fmt::format("{} of {} sessions", finished_.load(), count()),
-                      setup_.rate);
+      progress.update(
+          done, count() == 1 ? "" : fmt::format("{} of {} sessions", finished_.load(), count()),
+          setup_.rate);
     }
   }
 

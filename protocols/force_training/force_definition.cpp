@@ -117,10 +117,11 @@ void reject_gains(Table& root, const ForceDefinition& d) {
   for (const auto& [name, gains] :
        {std::pair{"trajectory", d.guidance.trajectory}, {"plane", d.guidance.plane}}) {
     if (control::lightest_calm_hand(gains, loop) > control::kHeaviestHand) {
-      guidance.reject(name, fmt::format("{:g} N/m and {:g} N·s/m", gains.stiffness, gains.damping),
-                      fmt::format("what a hand of up to {:g} kg carries at {:g} Hz with forces that "
-                                  "come {} ticks late",
-                                  control::kHeaviestHand, d.rate, loop.force_delay));
+      guidance.reject(
+          name, fmt::format("{:g} N/m and {:g} N·s/m", gains.stiffness, gains.damping),
+          fmt::format("what a hand of up to {:g} kg carries at {:g} Hz with forces that "
+                      "come {} ticks late",
+                      control::kHeaviestHand, d.rate, loop.force_delay));
     }
   }
 }
@@ -199,8 +200,8 @@ std::vector<std::string> ForceDefinition::description() const {
                   counted(design.blocks(), "block", "blocks"), design.repetitions,
                   design.conditions.size() == 1 ? "condition" : "conditions",
                   fmt::join(design.conditions, ", "), rate),
-      fmt::format("about {:.0f} minutes per participant, breaks not counted",
-                  longest(design.trials) / 60.0)};
+      fmt::format("about {} per participant, breaks and pages not counted",
+                  planned_minutes(longest(design.trials)))};
   for (std::string& line : margins()) {
     lines.push_back(std::move(line));
   }

@@ -110,7 +110,7 @@ TEST_F(CommandTest, ValidateAndDevices) {
   const CommandResult valid = run_command("haptrial validate " + shipped());
   EXPECT_EQ(valid.status, 0);
   EXPECT_THAT(valid.output, HasSubstr("12 participants, 72 trials in 24 blocks of 3"));
-  EXPECT_THAT(valid.output, HasSubstr(" minutes per participant, breaks not counted\n"));
+  EXPECT_THAT(valid.output, HasSubstr(" minutes per participant, breaks and pages not counted\n"));
   EXPECT_THAT(run_command("haptrial devices").output, HasSubstr("virtual"));
 }
 
@@ -395,8 +395,20 @@ TEST_F(CommandTest, AnInterruptStopsAtOnceAndLeavesNothing) {
       "\"$HAPTRIAL\" dry-run " + shipped() + " --jobs 1 --out " + path("cut") + " & until ls " +
       path("cut") + "/*.partial > /dev/null 2>&1; do sleep 0.05; done; kill -INT $!; wait $!");
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.errors, HasSubstr("interrupted"));
+  EXPECT_THAT(result.errors,
+              HasSubstr("interrupted; no session is kept. With --parts FOLDER finished ones are"));
   EXPECT_FALSE(fs::exists(folder_ / "cut"));
+}
+
+TEST_F(CommandTest, AnInterruptedReplayLeavesNoPictures) {
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  const CommandResult result =
+      run_command("\"$HAPTRIAL\" replay " + path("study/S01.h5") + " --trial 1 --frames " +
+                  path("seen") + " --fps 240 & until ls " + path("seen") +
+                  "/*.png > /dev/null 2>&1; do sleep 0.02; done; kill -INT $!; wait $!");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.errors, HasSubstr("interrupted; nothing was written"));
+  EXPECT_FALSE(fs::exists(folder_ / "seen"));
 }
 
 TEST_F(CommandTest, ASubjectWhoHasASessionIsNamedWithWhatToDo) {

@@ -60,7 +60,7 @@ TEST(GivenUpTest, TrialsThatAreMissingAreSaidEverywhere) {
   const std::string out = (folder / "out").string();
   const auto dry =
       test::run_command("haptrial dry-run " + (folder / "study.toml").string() + " --out " + out);
-  ASSERT_EQ(dry.status, 0) << dry.errors;
+  ASSERT_EQ(dry.status, 0) << "as the guide for experimenters says: " << dry.errors;
   EXPECT_THAT(dry.errors, HasSubstr("1 session ended with trials left"));
   EXPECT_THAT(test::run_command("haptrial info " + out + "/S01.h5").output,
               HasSubstr("block main ended with trials left"));
@@ -71,6 +71,22 @@ TEST(GivenUpTest, TrialsThatAreMissingAreSaidEverywhere) {
   const auto results = nlohmann::json::parse(file_text(folder / "out" / "results.json"));
   EXPECT_EQ(results.at("participants").at(0).at("planned_trials_at_most"), 20);
   EXPECT_THAT(file_text(folder / "out" / "report.md"), HasSubstr("trials are missing"));
+}
+
+TEST(GivenUpTest, AStudyOfAbortedPassesSaysWhy) {
+  const test::TemporaryFolder folder;
+  std::string text = kStudy;
+  const std::string end = "until = { time = 0.05 }";
+  ASSERT_NE(text.find(end), std::string::npos);
+  text.replace(text.find(end), end.size(),
+               "until = { speed_above = 9.0 }\ntimeout = { after = 0.5, then = \"abort\" }");
+  test::write_text(folder / "study.toml", text);
+  test::write_text(folder / "slow.py", kSlow);
+  const auto dry = test::run_command("haptrial dry-run " + (folder / "study.toml").string() +
+                                     " --out " + (folder / "out").string());
+  EXPECT_EQ(dry.status, 1);
+  EXPECT_THAT(dry.errors, HasSubstr("every pass was aborted, the first since trial 1: a stage was "
+                                    "not done in time: tap"));
 }
 
 }  // namespace

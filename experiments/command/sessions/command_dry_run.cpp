@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text/counted.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/control/interrupt.h"
@@ -71,6 +72,33 @@ int take_parts(const DryRunOptions& options, DryRun& dry) {
 
 }  // namespace
 
+/// run_dry(), whose interrupt says what is left and how more would be.
+static DryRunSummary run_until_interrupt(const protocols::Protocol& protocol,
+                                         const protocols::Definition& setup, const DryRun& dry) {
+  try {
+    return run_dry(protocol, setup, dry);
+  } catch (const RunError&) {
+    if (!interrupted()) {
+      throw;
+    }
+    throw RunError(
+        dry.parts ? fmt::format("interrupted; finished sessions stay in {}, and the same command "
+                                "runs those that are missing",
+                                dry.folder.string())
+                  : "interrupted; no session is kept. With --parts FOLDER finished ones are kept");
+  }
+}
+
+/// "the first since trial 1: a stage was not done in time: approach, 2 mm from the region start".
+static std::string first_abort(const fs::path& session) {
+  for (const record::EventRow& event : record::SessionReader(session).events()) {
+    if (event.kind == "aborted") {
+      return "the first since " + event.text;
+    }
+  }
+  return "without a reason";
+}
+
 /// Where pictures were written; an empty folder for them goes.
 static std::string pictures_in(const fs::path& folder) {
   const fs::path frames = folder / "frames";
@@ -106,7 +134,7 @@ int dry_run(const DryRunOptions& options) {
   dry.taught = options.taught;
   const int rank = take_parts(options, dry);
   if (interrupted()) {  // while the definition was read, which makes its bones
-    throw RunError("interrupted");
+    throw RunError("interrupted; no session was begun");
   }
   if (!dry.parts) {
     dry.folder = options.out.empty() ? fresh_folder(setup.name) : fs::path(options.out);
@@ -118,18 +146,21 @@ int dry_run(const DryRunOptions& options) {
   for (const std::string& line : setup.left_out_of_dry_runs()) {
     fmt::print("{}\n", line);
   }
-  const DryRunSummary done = run_dry(experiment.study->protocol(), setup, dry);
+  const DryRunSummary done = run_until_interrupt(experiment.study->protocol(), setup, dry);
   if (rank > 0) {
     return 0;  // the first of them reports
   }
   fmt::print("{}, {:.0f} s of simulated time in {:.1f} s ({:.0f} times real time)\n",
              counted(done.sessions, "session", "sessions"), done.recorded_seconds,
              done.elapsed_seconds, done.recorded_seconds / done.elapsed_seconds);
+  if (done.passes == 0 && done.sessions > 0) {
+    throw RunError("no trial was presented: the procedures were finished before their first one");
+  }
   if (done.aborted_passes == done.passes && done.sessions > 0) {
     const fs::path first =
         dry.folder / session_file_name("S01", std::max(1, dry.session), setup.sessions());
-    throw RunError(
-        fmt::format("every pass was aborted; haptrial info {} says why", first.string()));
+    throw RunError(fmt::format("every pass was aborted, {}; haptrial info {} says more",
+                               first_abort(first), first.string()));
   }
   if (done.aborted_passes > 0) {
     fmt::print("{}; haptrial info FILE says which and why\n",

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/base/text/counted.h"
 #include "core/record/recovery/recover.h"
 #include "experiments/command/sessions/session_commands.h"
 #include "experiments/studies/registry.h"
@@ -33,8 +34,9 @@ int recover(const std::string& file, const std::string& out) {
   fmt::print("rows        {}, sequence {} to {}, {} missing between them\n", found.samples,
              found.first_sequence, found.last_sequence, found.missing);
   fmt::print("passes      {}, {} incomplete\n", found.passes, found.passes_cut);
-  fmt::print("also        {} events, stimuli of {} blocks, {} frames\n", found.events,
-             found.stimulus_blocks, found.frames);
+  fmt::print("also        {}, stimuli of {}, {}\n", counted(found.events, "event", "events"),
+             counted(found.stimulus_blocks, "block", "blocks"),
+             counted(found.frames, "frame", "frames"));
   fmt::print("loop        {}\n", found.ended ? "complete" : "its counts are lost");
   fmt::print("written to  {}; {} is unchanged\n", to.string(), file);
   return 0;

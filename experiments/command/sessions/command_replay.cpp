@@ -10,6 +10,7 @@
 #include "experiments/command/sessions/session_commands.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
+#include "experiments/control/signals.h"
 #include "experiments/screen/video.h"
 #include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
@@ -61,6 +62,7 @@ class PictureFolder {
 }  // namespace
 
 int replay(const ReplayOptions& options) {
+  watch_for_interrupt();
   constexpr int kMostFps = 240;
   const int fps = checked_number("--fps", options.fps, 1, kMostFps);
   const Study& study = *with_recorded_kinds(
@@ -92,7 +94,7 @@ int replay(const ReplayOptions& options) {
   };
   request.progress = [&](double done, double all, const std::string& what, double rate) {
     if (interrupted()) {
-      throw RunError("interrupted");
+      throw RunError("interrupted; nothing was written");
     }
     if (!progress) {
       progress = std::make_unique<Progress>("replay", all);

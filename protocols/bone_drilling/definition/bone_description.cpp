@@ -171,10 +171,10 @@ std::vector<stream::SideStream> BoneDefinition::side_streams() const {
 }
 
 std::vector<std::string> BoneDefinition::left_out_of_dry_runs() const {
-  return practice > 0.0 ? std::vector{fmt::format(
-                              "{:.0f} minutes of practice left out: virtual subjects need none",
-                              practice / 60.0)}
-                        : std::vector<std::string>{};
+  return practice > 0.0
+             ? std::vector{fmt::format("{} of practice left out: virtual subjects need none",
+                                       planned_minutes(practice))}
+             : std::vector<std::string>{};
 }
 
 }  // namespace haptrial::protocols

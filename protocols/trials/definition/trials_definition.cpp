@@ -82,8 +82,8 @@ namespace {
 /// How long each participant's session takes, or each of several sessions.
 void add_sessions(const TrialsDefinition& d, std::vector<std::string>& lines) {
   if (d.order.sessions == 1) {
-    lines.push_back(fmt::format("about {:.0f} minutes per participant, breaks not counted",
-                                d.longest(d.most_trials()) / 60.0));
+    lines.push_back(fmt::format("about {} per participant, breaks and pages not counted",
+                                planned_minutes(d.longest(d.most_trials()))));
     return;
   }
   for (int session = 1; session <= d.order.sessions; ++session) {
@@ -91,10 +91,10 @@ void add_sessions(const TrialsDefinition& d, std::vector<std::string>& lines) {
     for (const std::size_t block : d.order.blocks_of(session)) {
       names.push_back(d.order.blocks[block].name);
     }
-    lines.push_back(fmt::format("session {}: {}; at most {}, about {:.0f} minutes", session,
+    lines.push_back(fmt::format("session {}: {}; at most {}, about {}", session,
                                 fmt::join(names, ", "),
                                 counted(d.most_trials(session), "trial", "trials"),
-                                d.longest(d.most_trials(session)) / 60.0));
+                                planned_minutes(d.longest(d.most_trials(session)))));
   }
 }
 
