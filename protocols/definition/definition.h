@@ -91,6 +91,8 @@ struct Definition {
   virtual std::vector<markers::MarkerMeaning> marker_meanings() const;
   /// What it plays beside what the protocol sounds like itself; null: nothing.
   virtual const sound::CueSet* sounds() const { return nullptr; }
+  /// Whether a session with a person wants a sound card.
+  virtual bool is_heard() const { return sounds() != nullptr; }
 
   /// What a session streams beside its samples, from tables of the protocol's own.
   virtual std::vector<stream::SideStream> side_streams() const { return {}; }

@@ -44,6 +44,21 @@ fs::path language_file(const fs::path& definition, const std::string& language) 
   return {};
 }
 
+fs::path own_language_file(const fs::path& definition, const std::string& language) {
+  return definition.parent_path() / (own_begin(definition) + language + std::string(kEnd));
+}
+
+void check_language(const std::string& language) {
+  constexpr std::size_t kLongest = 16;
+  const bool plain = std::all_of(language.begin(), language.end(), [](unsigned char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+  });
+  if (!plain || language.empty() || language.size() > kLongest) {
+    throw InputError(
+        fmt::format("--language is '{}'; allowed: a language such as de or pt-BR", language));
+  }
+}
+
 std::vector<std::string> languages_of(const fs::path& definition) {
   std::set<std::string> languages;
   std::error_code ignored;
@@ -61,14 +76,7 @@ std::vector<std::string> languages_of(const fs::path& definition) {
 }
 
 Translations translations_for(const fs::path& definition, const std::string& language) {
-  constexpr std::size_t kLongest = 16;
-  const bool plain = std::all_of(language.begin(), language.end(), [](unsigned char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
-  });
-  if (!plain || language.size() > kLongest) {
-    throw InputError(
-        fmt::format("--language is '{}'; allowed: a language such as de or pt-BR", language));
-  }
+  check_language(language);
   const fs::path file = language_file(definition, language);
   const std::vector<std::string>& known = program_languages();
   const bool program_speaks = std::find(known.begin(), known.end(), language) != known.end();
@@ -81,9 +89,7 @@ Translations translations_for(const fs::path& definition, const std::string& lan
                                   : fmt::format("{}", fmt::join(there, ", "))));
   }
   Translations translations =
-      file.empty() ? Translations{language, (definition.parent_path() /
-                                             (own_begin(definition) + language + std::string(kEnd)))
-                                                .string()}
+      file.empty() ? Translations{language, own_language_file(definition, language).string()}
                    : load_translations(file, language);
   translations.by_text = program_words(language);
   return translations;

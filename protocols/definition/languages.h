@@ -13,6 +13,13 @@ namespace haptrial::protocols {
 std::filesystem::path language_file(const std::filesystem::path& definition,
                                     const std::string& language);
 
+/// DEFINITION.texts.LANGUAGE.toml, whether it is there or not.
+std::filesystem::path own_language_file(const std::filesystem::path& definition,
+                                        const std::string& language);
+
+/// @throws InputError unless it is a word such as de or pt-BR
+void check_language(const std::string& language);
+
 /// The languages for which a definition has a file of its own or its folder has one, by name.
 std::vector<std::string> languages_of(const std::filesystem::path& definition);
 

@@ -20,12 +20,25 @@ void add_new(CLI::App& app, int& status) {
   sub->add_option("--from", o.from, "One that haptrial examples lists (default: " + o.from + ")");
 }
 
+void add_texts(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "texts", "Begin the file of a definition's texts in a language",
+                             "haptrial texts first_experiment --language ja",
+                             {"DEFINITION.texts.LANGUAGE.toml, to be filled in",
+                              "guide-own-experiment.md#pages-and-languages"});
+  auto& o = options_of<TextsOptions>(*sub, status, write_texts);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("--language", o.language, "Language, such as ja or pt-BR")->required();
+}
+
 void add_doctor(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "doctor", "Check whether this machine is fit for sessions",
-                             "haptrial doctor", {"", "guide-first-participant.md"});
-  auto& folder = options_of<std::string>(*sub, status, doctor);
-  folder = ".";
-  sub->add_option("FOLDER", folder, "Where session files are to go (default: here)");
+  CLI::App* sub =
+      subcommand(app, "doctor", "Check whether this machine is fit for sessions",
+                 "haptrial doctor first_experiment", {"", "guide-first-participant.md"});
+  auto& where = options_of<std::string>(*sub, status, doctor);
+  where = ".";
+  sub->add_option("WHERE", where,
+                  "Definition whose sessions are to run here, or folder for session files "
+                  "(default: here)");
 }
 
 void add_keys(CLI::App& app, int& status) {

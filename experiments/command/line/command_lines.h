@@ -12,6 +12,7 @@ namespace haptrial::experiments {
 // command_line_start.cpp: before the first session
 void add_examples(CLI::App& app, int& status);
 void add_new(CLI::App& app, int& status);
+void add_texts(CLI::App& app, int& status);
 void add_doctor(CLI::App& app, int& status);
 void add_keys(CLI::App& app, int& status);
 

@@ -23,11 +23,9 @@ namespace {
 
 using State = MachineCheck::State;
 
-constexpr double kRate = 1000.0;  // [Hz], as most definitions have it
-
 class CountedTicks final : public realtime::ServoTask {
  public:
-  explicit CountedTicks(double seconds) : left_(static_cast<int>(seconds * kRate)) {}
+  explicit CountedTicks(double count) : left_(static_cast<int>(count)) {}
   bool tick(const realtime::Tick&) noexcept override { return --left_ > 0; }
 
  private:
@@ -53,19 +51,18 @@ MachineCheck ready_unless(const char* what, const std::string& refusal, State ot
 
 }  // namespace
 
-MachineCheck check_clock(double seconds) {
-  realtime::ServoLoop loop(realtime::ClockKind::kReal, kRate);
-  CountedTicks task(seconds);
+MachineCheck check_clock(double seconds, double rate) {
+  realtime::ServoLoop loop(realtime::ClockKind::kReal, rate);
+  CountedTicks task(seconds * rate);
   loop.run(task);
   const realtime::LoopTiming& timing = loop.timing();
   const bool good = loop.overruns() == 0;
-  return {
-      "clock", good ? State::kReady : State::kLimited,
-      fmt::format("{} ticks at 1 kHz on {} processors: 99.9 % at most {:.0f} µs late, the latest "
-                  "{:.0f} µs, {} overruns{}",
-                  loop.ticks(), std::thread::hardware_concurrency(),
-                  1e-3 * timing.lateness.percentile(99.9), 1e-3 * timing.lateness.max(),
-                  loop.overruns(), good ? "" : "; close other programs and try again")};
+  return {"clock", good ? State::kReady : State::kLimited,
+          fmt::format("{} ticks at {:g} kHz on {} processors: 99.9 % at most {:.0f} µs late, the "
+                      "latest {:.0f} µs, {} overruns{}",
+                      loop.ticks(), 1e-3 * rate, std::thread::hardware_concurrency(),
+                      1e-3 * timing.lateness.percentile(99.9), 1e-3 * timing.lateness.max(),
+                      loop.overruns(), good ? "" : "; close other programs and try again")};
 }
 
 MachineCheck check_real_time() {

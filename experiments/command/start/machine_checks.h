@@ -12,15 +12,17 @@ struct MachineCheck {
     kBroken,   // sessions do not run
     kLimited,  // sessions run, with less: the sentence says what to do
     kReady,
-    kAbsent  // a device that is not connected: nothing is wrong
+    kAbsent,  // a device that is not connected: nothing is wrong
+    kUnused   // the definition's sessions do without
   };
   std::string what;  // "real time"
   State state{State::kReady};
   std::string found;  // a sentence
 };
 
-/// A second of the servo loop, by an otherwise idle program: how late its ticks are.
-MachineCheck check_clock(double seconds);
+/// Some seconds of the servo loop, by an otherwise idle program: how late its ticks are.
+/// @param rate  of its ticks [Hz]
+MachineCheck check_clock(double seconds, double rate);
 MachineCheck check_real_time();
 MachineCheck check_off_screen();
 MachineCheck check_window();

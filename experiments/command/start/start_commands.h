@@ -16,8 +16,16 @@ struct NewOptions {
 };
 int new_definition(const NewOptions& options);
 
-/// What this machine can do. @param folder  where session files are to go
+struct TextsOptions {
+  std::string definition;
+  std::string language;
+};
+/// Writes the file of a definition's texts in a language, to be filled in.
+int write_texts(const TextsOptions& options);
+
+/// What this machine can do. @param where  a folder for session files, or a definition whose
+/// sessions are to run here, into files below the working folder
 /// @returns 0 if sessions can run, else 1
-int doctor(const std::string& folder);
+int doctor(const std::string& where);
 
 }  // namespace haptrial::experiments

@@ -101,6 +101,7 @@ struct BoneDefinition : Definition {
   std::vector<std::string> left_out_of_dry_runs() const override;
   double longest(int trials) const override { return trials * drilling.time_limit; }
   bool has_target() const override { return false; }
+  bool is_heard() const override { return sound_card; }
   /// Electromyograms of the nerve monitor.
   std::vector<stream::SideStream> side_streams() const override;
   std::uint32_t functions_of(const std::vector<int>& held) const override {

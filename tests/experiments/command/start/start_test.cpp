@@ -82,6 +82,32 @@ TEST(StartTest, AShippedDefinitionIsNamedWithoutAFile) {
   EXPECT_THAT(path.errors, HasSubstr("force_training is a shipped definition"));
 }
 
+TEST(StartTest, AFileOfTextsHasEveryTextToBeTranslated) {
+  const test::TemporaryFolder folder;
+  const std::string in_folder = "cd '" + folder.path().string() + "'; ";
+  std::string text(example_named("first_experiment").text);
+  text.replace(text.find("\"yes\""), 5, "\"oh yes\"");  // a key of two words
+  test::write_text(folder / "study.toml",
+                   text + "[texts]\nrest = \"\"\"\nSay \\\"Ja\\\"\nä \\\\ b\"\"\"\n");
+  const auto made = run_command(in_folder + "haptrial texts study.toml --language ja");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_THAT(run_command(in_folder + "haptrial validate study.toml").output,
+              HasSubstr("language ja: incomplete"))
+      << "what keeps its mark is not translated";
+  const fs::path file = folder / "study.texts.ja.toml";
+  EXPECT_THAT(test::read_text(file),
+              HasSubstr("# response.choices.\"oh yes\".label = \"oh yes\"\n"));
+  ASSERT_EQ(run_command(in_folder + "sed -i 's/^# \\([a-z][a-z.\" ]* = \\)/\\1/' " + file.string())
+                .status,
+            0);
+  const auto valid = run_command(in_folder + "haptrial validate study.toml");
+  EXPECT_THAT(valid.output, HasSubstr("language ja: complete")) << valid.output << valid.errors;
+  const auto again = run_command(in_folder + "haptrial texts study.toml --language ja");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.errors, HasSubstr("study.texts.ja.toml: exists already"));
+  EXPECT_EQ(run_command(in_folder + "haptrial texts study.toml --language ../x").status, 2);
+}
+
 TEST(StartTest, TheDoctorSaysWhatSessionsCanUse) {
   const test::TemporaryFolder folder;
   const auto found = run_command("haptrial doctor '" + folder.path().string() + "'");
@@ -99,9 +125,27 @@ TEST(StartTest, TheDoctorSaysWhatSessionsCanUse) {
   EXPECT_TRUE(fs::is_empty(folder.path())) << "it leaves nothing behind";
 }
 
+TEST(StartTest, TheDoctorOfADefinitionKnowsWhatItsSessionsNeed) {
+  const test::TemporaryFolder folder;
+  const std::string in_folder = "cd '" + folder.path().string() + "'; ";
+  const std::string sound = "[sounds.go]\ntype = \"click\"\nlevel = -30.0\n";
+  const std::string silent = std::string(example_named("first_experiment").text);
+  test::write_text(folder / "silent.toml", silent);
+  test::write_text(folder / "sounding.toml", silent + sound);
+  // No card is found without ALSA's configuration.
+  const std::string deaf = in_folder + "export ALSA_CONFIG_PATH=/dev/null; haptrial doctor ";
+  const auto without = run_command(deaf + "silent.toml");
+  EXPECT_EQ(without.status, 0) << without.output;
+  EXPECT_THAT(without.output, testing::ContainsRegex("\nsound +unused "));
+  EXPECT_THAT(without.output, HasSubstr("Sessions of first_experiment can run here"));
+  const auto with = run_command(deaf + "sounding.toml");
+  EXPECT_THAT("\n" + with.output, testing::ContainsRegex("\nsound +limited "));
+  EXPECT_EQ(run_command(in_folder + "haptrial doctor none.toml").status, 2);
+}
+
 /// Half a second has 500 ticks of 1 ms, however late each is.
 TEST(StartTest, TheClocksTicksAreCounted) {
-  EXPECT_THAT(check_clock(0.5).found, testing::StartsWith("500 ticks at 1 kHz"));
+  EXPECT_THAT(check_clock(0.5, 1000.0).found, testing::StartsWith("500 ticks at 1 kHz"));
 }
 
 }  // namespace
