@@ -189,6 +189,9 @@ TEST_F(StatisticsCommandTest, WhatCannotBeTestedGetsASentence) {
         Case{"--subject who --value error --factor speed --planned 'slow'", "--planned is"},
         Case{"--subject who --value group --factor speed", "group is 'expert'"},
         Case{"--subject who --value error --factor speed --resamples -1", "--resamples"},
+        Case{"--subject who --value error",
+             "there is no column 'condition'; allowed: who, group, speed, error; a row has one "
+             "value, with its participant and condition beside it"},
         Case{"--subject who --value error --factor speed --reference quick",
              "the reference condition names 'quick'"}}) {
     const CommandResult run =

@@ -25,11 +25,12 @@ std::string_view trimmed(std::string_view text) {
              : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
-/// Blanks around the sign are no matter.
-std::optional<PlannedTest> parsed(std::string_view text) {
+/// Splits a test at its only sign.
+/// @param blanks  whether the sign stands between blanks
+std::optional<PlannedTest> split_test(std::string_view text, bool blanks) {
   std::optional<PlannedTest> found;
   for (const auto& [spaced, tail] : kSigns) {
-    const std::string_view sign = trimmed(spaced);
+    const std::string_view sign = blanks ? spaced : trimmed(spaced);
     for (auto at = text.find(sign); at != std::string_view::npos; at = text.find(sign, at + 1)) {
       if (found) {
         return std::nullopt;  // a second sign
@@ -39,6 +40,13 @@ std::optional<PlannedTest> parsed(std::string_view text) {
     }
   }
   return found && !found->a.empty() && !found->b.empty() ? found : std::nullopt;
+}
+
+/// A sign between blanks divides the sides, so that levels may have signs, as "<50 ms != >90 ms";
+/// without such a sign one without blanks does.
+std::optional<PlannedTest> parsed(std::string_view text) {
+  const auto spaced = split_test(text, true);
+  return spaced ? spaced : split_test(text, false);
 }
 
 /// Sentence on two tests of the same two sides, which the adjustment would count twice; empty

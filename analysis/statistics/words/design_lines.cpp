@@ -87,6 +87,21 @@ bool is_missing(std::string_view text) {
   return std::ranges::find(kMissing, lower) != kMissing.end();
 }
 
+/// The column of a name; a table that has none may have a column for each condition.
+std::size_t column_of(const CsvTable& table, const std::string& name) {
+  try {
+    return table.column(name);
+  } catch (const InputError& error) {
+    if (table.has(name)) {
+      throw;
+    }
+    throw InputError(fmt::format(
+        "{}; a row has one value, with its participant and condition beside it: write a table with "
+        "a column for each condition as one with a row for each",
+        error.what()));
+  }
+}
+
 /// Rows without a missing field. @param columns  that are read
 std::vector<std::size_t> rows_with(const CsvTable& table,
                                    const std::vector<std::vector<std::size_t>>& columns,
@@ -183,13 +198,13 @@ ObservedTable read_observations(const std::string& file, const std::vector<std::
   const auto columns_of = [&](const std::vector<std::string>& names) {
     std::vector<std::size_t> columns;
     for (const std::string& name : names) {
-      columns.push_back(table.column(name));
+      columns.push_back(column_of(table, name));
     }
     return columns;
   };
   const auto who = columns_of(subject);
   const auto levels = columns_of(factors);
-  const std::size_t measured = table.column(value);
+  const std::size_t measured = column_of(table, value);
   const auto rows = rows_with(table, {who, levels, {measured}}, leave_out_missing);
   const std::vector<double> values = table.numbers(measured, rows);
   ObservedTable result{{}, table.rows(), table.rows() - rows.size()};

@@ -394,6 +394,16 @@ TEST(AnalysisPlan, IsReadAndWrittenAlike) {
   EXPECT_EQ(parse_analysis_plan({}, "a", "--planned").reference, "a");
 }
 
+/// A level such as "<50 ms" has a sign of its own; the sign between blanks divides the sides.
+TEST(AnalysisPlan, LevelsMayHaveSigns) {
+  const PlannedTest test = test_of("<50 ms != >90 ms");
+  EXPECT_EQ(test.a, "<50 ms");
+  EXPECT_EQ(test.b, ">90 ms");
+  EXPECT_EQ(test.tail, Tail::kTwoSided);
+  EXPECT_EQ(test_of("<50 ms < 50 ms").a, "<50 ms");
+  EXPECT_EQ(test_of("a<b").b, "b") << "a sign without blanks, where it is the only one";
+}
+
 TEST(AnalysisPlan, APairStatedTwiceIsFoundWhateverItsDirection) {
   EXPECT_EQ(parse_analysis_plan({"a < b", "b < c"}, "", "--planned").tests.size(), 2U);
   EXPECT_EQ(test::message_of([] {
