@@ -23,6 +23,12 @@ WayFrame::WayFrame(const Eigen::Vector3d& start, const Eigen::Vector3d& target,
   left_ = up.cross(along_);
 }
 
+double WayFrame::lateral(const Eigen::Vector3d& vector) const {
+  constexpr double kRounding = 1e-14;  // of positions that were filtered and rotated
+  const double part = left_.dot(vector);
+  return std::abs(part) <= kRounding * vector.norm() ? 0.0 : part;
+}
+
 double WayFrame::angle(const Eigen::Vector3d& vector) const {
   return std::atan2(lateral(vector), along(vector));
 }

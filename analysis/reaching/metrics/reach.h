@@ -33,7 +33,8 @@ class WayFrame {
   double distance() const { return distance_; }  // from start to target, in the plane [m]
 
   double along(const Eigen::Vector3d& vector) const { return along_.dot(vector); }
-  double lateral(const Eigen::Vector3d& vector) const { return left_.dot(vector); }
+  /// 0 for what is only rounding of the vector's longer parts.
+  double lateral(const Eigen::Vector3d& vector) const;
   /// From the way to a vector, counterclockwise, in (-π, π] [rad].
   double angle(const Eigen::Vector3d& vector) const;
 

@@ -24,6 +24,13 @@ std::string number(double value) {
   return size >= 1e3 && size < 1e7 ? fmt::format("{:.0f}", value) : fmt::format("{:#.4g}", value);
 }
 
+std::string number_within(double value, double low, double high) {
+  constexpr double kRounding = 1e-12;
+  const double extent = std::abs(high - low);
+  const bool rounding = std::isfinite(extent) && std::abs(value) < kRounding * extent;
+  return rounding ? "0" : number(value);
+}
+
 std::string p_value(double p) {
   if (p < 0.001) {
     return "p < 0.001";
@@ -35,8 +42,9 @@ std::string mean_with_interval(const Defined<MeanInterval>& interval) {
   if (!interval) {
     return not_defined(interval.because());
   }
-  return fmt::format("{}, 95 % CI {} to {}", number(interval->mean), number(interval->low),
-                     number(interval->high));
+  return fmt::format("{}, 95 % CI {} to {}",
+                     number_within(interval->mean, interval->low, interval->high),
+                     number(interval->low), number(interval->high));
 }
 
 std::string anova_result(const Defined<Anova>& anova) {

@@ -199,6 +199,17 @@ TEST(ReachMetricsTest, WhatIsWrongWithAReachIsFlagged) {
   EXPECT_TRUE(reach_metrics(late.reach()).flags.no_onset);
 }
 
+/// The rounding of a straight reach at an angle is no error of the hand.
+TEST(ReachMetricsTest, AStraightReachHasNoErrorAtAnyAngle) {
+  for (int i = 0; i < 32; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / 32.0;
+    const Eigen::Vector3d target(0.06 * std::cos(angle), 0.0, -0.06 * std::sin(angle));
+    const ReachMetrics metrics = reach_metrics(test::straight({0.0, 0.0, 0.0}, target).reach());
+    ASSERT_TRUE(metrics.maximum_perpendicular_error) << angle;
+    EXPECT_EQ(*metrics.maximum_perpendicular_error, 0.0) << angle;
+  }
+}
+
 TEST(ReachMetricsTest, BadArgumentsAreNamed) {
   Recorded r = test::straight({0.0, 0.0, 0.0}, {0.0, 0.0, -kDistance});
   MetricOptions options;
