@@ -122,7 +122,9 @@ void add_effects(SerialEffects& own, Recorded& recorded, const TrialsPlan& plan)
                         : SerialCoefficients{unknown, unknown};
   }
   own.effects = {difference(found.drift, own.by_chance.drift),
-                 difference(found.repetition, own.by_chance.repetition)};
+                 difference(found.repetition, own.by_chance.repetition),
+                 std::hypot(found.drift_error, own.by_chance.drift_error),
+                 std::hypot(found.repetition_error, own.by_chance.repetition_error)};
 }
 
 std::vector<double> defined_of(const std::vector<SerialEffects>& effects,

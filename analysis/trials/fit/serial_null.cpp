@@ -1,5 +1,6 @@
 #include "analysis/trials/fit/serial_null.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -109,13 +110,20 @@ SerialFunctions fitted_anew(const std::vector<SerialTrial>& trials, std::size_t 
 /// A running mean of what is defined.
 struct Mean {
   double sum{0.0};
+  double squares{0.0};
   int count{0};
 
   void add(const Defined<double>& value) {
     if (value) {
       sum += *value;
+      squares += *value * *value;
       ++count;
     }
+  }
+  /// Standard error of value().
+  double error() const {
+    const double n = count;
+    return std::sqrt(std::max(0.0, squares - sum * sum / n) / (n - 1.0) / n);
   }
   Defined<double> value() const {
     if (count < kFewest) {
@@ -139,7 +147,7 @@ SerialCoefficients serial_coefficients_by_chance(const SerialRecord& record,
     drift.add(found.drift);
     repetition.add(found.repetition);
   }
-  return {drift.value(), repetition.value()};
+  return {drift.value(), repetition.value(), drift.error(), repetition.error()};
 }
 
 }  // namespace haptrial::analysis::trials

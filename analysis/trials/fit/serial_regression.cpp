@@ -47,15 +47,15 @@ BinomialData empty_rows(std::size_t count, Eigen::Index predictors) {
 }
 
 /// Coefficient of the last predictor.
-Defined<double> last_coefficient(const BinomialData& data) {
+Defined<BinomialCoefficient> last_coefficient(const BinomialData& data) {
   const auto model = binomial_regression(data, BinomialLink::kLogit);
   if (!model) {
     return Undefined{model.because()};
   }
-  return model->coefficients.back().estimate;
+  return model->coefficients.back();
 }
 
-Defined<double> drift_of(const std::vector<Seen>& seen) {
+Defined<BinomialCoefficient> drift_of(const std::vector<Seen>& seen) {
   BinomialData data = empty_rows(seen.size(), 2);
   const double last = std::max(1.0, static_cast<double>(seen.size()) - 1.0);
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -67,7 +67,7 @@ Defined<double> drift_of(const std::vector<Seen>& seen) {
   return last_coefficient(data);
 }
 
-Defined<double> repetition_of(std::vector<Seen> seen) {
+Defined<BinomialCoefficient> repetition_of(std::vector<Seen> seen) {
   std::erase_if(seen, [](const Seen& one) { return one.before == 0; });
   BinomialData data = empty_rows(seen.size(), 2);
   double weight = 0.0;
@@ -79,8 +79,22 @@ Defined<double> repetition_of(std::vector<Seen> seen) {
     data.predictors(row, 1) = 0.5 * one.before;
     weight += variance_at(one.offset);
   }
-  const Defined<double> found = last_coefficient(data);
-  return found ? Defined<double>(*found + 1.0 / weight) : found;
+  const Defined<BinomialCoefficient> found = last_coefficient(data);
+  if (!found) {
+    return found;
+  }
+  BinomialCoefficient unbiased = *found;
+  unbiased.estimate += 1.0 / weight;
+  return unbiased;
+}
+
+void take(const Defined<BinomialCoefficient>& found, Defined<double>& value, double& error) {
+  if (!found) {
+    value = Undefined{found.because()};
+    return;
+  }
+  value = found->estimate;
+  error = found->error;
 }
 
 }  // namespace
@@ -89,8 +103,8 @@ SerialCoefficients serial_coefficients(std::span<const SerialTrial> trials,
                                        const SerialFunctions& functions) {
   SerialCoefficients result;
   if (const auto seen = seen_of(trials, functions); !seen.empty()) {
-    result.drift = drift_of(seen);
-    result.repetition = repetition_of(seen);
+    take(drift_of(seen), result.drift, result.drift_error);
+    take(repetition_of(seen), result.repetition, result.repetition_error);
   }
   return result;
 }

@@ -26,6 +26,8 @@ using SerialFunctions = std::vector<std::optional<psychometric::PsychometricFunc
 struct SerialCoefficients {
   Defined<double> drift{Undefined{"nothing was fitted"}};       // log odds, first to last trial
   Defined<double> repetition{Undefined{"nothing was fitted"}};  // log odds of the answer before
+  double drift_error{0.0};  // standard errors of those that are defined, functions given
+  double repetition_error{0.0};
 };
 
 /// Logistic regressions beside the functions psi, o = logit psi:

@@ -76,15 +76,20 @@ SerialRecord session(RandomStream& random, const Habit& habit) {
   }
   record.adaptive = {{true, staircase}};
   const LikelihoodFit fit = likelihood_fit(pooled(blocks), options());
-  record.functions = {fit.undetermined ? std::nullopt
-                                       : std::optional(fitted_function(function(), fit.parameters))};
+  record.functions = {
+      fit.undetermined ? std::nullopt : std::optional(fitted_function(function(), fit.parameters))};
   return record;
 }
 
 /// Numbers of the people of a study: as they are found, and less those by chance.
 struct Study {
   std::vector<double> drift, repetition, plain_drift, plain_repetition;
+  std::size_t people{0}, drift_held{0}, repetition_held{0};  // intervals of one that hold 0
 };
+
+bool holds_nothing(double value, double error, double chance_error) {
+  return std::abs(value) <= 1.959964 * std::hypot(error, chance_error);
+}
 
 Study study(std::size_t number, const Habit& habit) {
   RandomStream random(derived_seed(number, "serial null"), "answers");
@@ -98,6 +103,13 @@ Study study(std::size_t number, const Habit& habit) {
       result.plain_repetition.push_back(*found.repetition);
       result.drift.push_back(*found.drift - *chance.drift);
       result.repetition.push_back(*found.repetition - *chance.repetition);
+      ++result.people;
+      result.drift_held +=
+          holds_nothing(result.drift.back(), found.drift_error, chance.drift_error) ? 1 : 0;
+      result.repetition_held +=
+          holds_nothing(result.repetition.back(), found.repetition_error, chance.repetition_error)
+              ? 1
+              : 0;
     }
   }
   return result;
@@ -113,7 +125,11 @@ TEST(SerialNullTest, ATestOverPeopleKeepsItsLevel) {
   std::vector<Study> studies(kStudies);
   parallel_for(kStudies, 2, [&](std::size_t i) { studies[i] = study(i, {}); });
   std::size_t drift = 0, repetition = 0, plain_repetition = 0;
+  std::size_t people = 0, drift_held = 0, repetition_held = 0;
   for (const Study& each : studies) {
+    people += each.people;
+    drift_held += each.drift_held;
+    repetition_held += each.repetition_held;
     drift += found(each.drift) ? 1 : 0;
     repetition += found(each.repetition) ? 1 : 0;
     plain_repetition += found(each.plain_repetition) ? 1 : 0;
@@ -123,6 +139,11 @@ TEST(SerialNullTest, ATestOverPeopleKeepsItsLevel) {
   EXPECT_LE(drift, band.high);
   EXPECT_LE(repetition, band.high);
   EXPECT_GT(plain_repetition, band.high) << "or there is nothing to take off";
+  const auto share = [&](std::size_t held) {
+    return static_cast<double>(held) / static_cast<double>(people);
+  };
+  EXPECT_NEAR(share(drift_held), 0.95, 0.025) << people << " people";
+  EXPECT_NEAR(share(repetition_held), 0.95, 0.025) << people << " people";
 }
 
 TEST(SerialNullTest, WhatIsThereIsFound) {
