@@ -146,6 +146,23 @@ std::string headings(const Figure& figure) {
   return text;
 }
 
+/// Draws the figure once more for a paper, which has the title in its caption; what marks simulated
+/// results stays.
+std::string paper_plot(const Figure& figure, const std::string& plot, int width) {
+  constexpr double kMillimetres = 10.0;  // in a centimetre
+  const double wide = width / kMillimetres;
+  return fmt::format(
+      "unset label 1\n{}set tmargin {}\n"
+      "set terminal pdfcairo size {:.2f}cm,{:.2f}cm noenhanced font 'sans,8' fontscale 1 linewidth "
+      "0.5 pointscale 0.5 background rgb 'white'\nset output '{}.pdf'\n{}\nset output\n",
+      figure.simulated
+          ? fmt::format("set label 2 {} at graph 1, graph 1 offset 0,0.7 right font ',7' textcolor "
+                        "rgb '#b00020' noenhanced\n",
+                        quoted("SIMULATED " + figure.who))
+          : "",
+      figure.simulated ? 2 : 1, wide, figure.height * wide, figure.name, plot);
+}
+
 constexpr const char* kStyle = R"(reset
 set encoding utf8
 set decimalsign '.'
@@ -196,7 +213,7 @@ std::string first_words_of(const fs::path& log) {
 
 }  // namespace
 
-std::string gnuplot_script(const Figure& figure) {
+std::string gnuplot_script(const Figure& figure, int paper) {
   check(figure);
   std::string text = kStyle + layout(figure) + headings(figure) + axes(figure);
   std::string plot = "plot ";
@@ -213,16 +230,19 @@ std::string gnuplot_script(const Figure& figure) {
       "set terminal pngcairo size {},{} noenhanced font 'sans,14' fontscale 1.8 linewidth 2 "
       "pointscale 2 background rgb 'white'\nset output '{}.png'\n{}\nset output\n",
       2 * kWidth, 2 * height, figure.name, plot);
+  if (paper > 0) {
+    text += paper_plot(figure, plot, paper);
+  }
   return text;
 }
 
-void draw_figures(const std::vector<Figure>& figures, const fs::path& folder) {
+void draw_figures(const std::vector<Figure>& figures, const fs::path& folder, int paper) {
   if (figures.empty()) {
     return;
   }
   std::string script;
   for (const auto& figure : figures) {
-    script += gnuplot_script(figure);
+    script += gnuplot_script(figure, paper);
   }
   write_text(folder / kScriptName, script);
   const int status = run_gnuplot(folder);
@@ -230,8 +250,12 @@ void draw_figures(const std::vector<Figure>& figures, const fs::path& folder) {
     throw RunError(fmt::format("gnuplot failed with status {} while drawing the figures: {}",
                                status, first_words_of(folder / kLogName)));
   }
+  std::vector<std::pair<const char*, const char*>> kinds{{".svg", "</svg>"}, {".png", "IEND"}};
+  if (paper > 0) {
+    kinds.emplace_back(".pdf", "%%EOF");
+  }
   for (const auto& figure : figures) {
-    for (const auto& [extension, ending] : {std::pair{".svg", "</svg>"}, {".png", "IEND"}}) {
+    for (const auto& [extension, ending] : kinds) {
       const fs::path file = folder / (figure.name + extension);
       if (!ends_with(file, ending)) {
         throw RunError(fmt::format("{}: gnuplot did not finish this picture; is the disk full?",

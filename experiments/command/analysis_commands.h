@@ -21,6 +21,7 @@ struct AnalyzeOptions {
   bool pilots{false};                // them alone, in place of the study
   std::vector<std::string> planned;  // in place of the definition's
   std::string reference;             // likewise
+  std::optional<int> paper;          // width of figures as PDF [mm]
   std::optional<int> jobs;
 };
 int analyze(const AnalyzeOptions& options);

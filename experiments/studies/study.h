@@ -22,6 +22,7 @@ struct AnalysisRequest {
   std::filesystem::path out;  // for the report
   Pilots pilots{Pilots::kLeftOut};
   int threads{1};
+  int paper{0};                      // width of figures as PDF [mm]; 0: none
   std::vector<std::string> planned;  // tests, in place of the definition's
   std::string reference;             // condition, likewise
 };

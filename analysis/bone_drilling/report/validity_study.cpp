@@ -111,7 +111,7 @@ ValidityResult analyze(const ValidityStudy& study) {
   return result;
 }
 
-void write_validity(const ValidityResult& result, const fs::path& folder) {
+void write_validity(const ValidityResult& result, const fs::path& folder, int paper) {
   const Staging staging(folder);
   staging.write("metrics.csv", metrics_csv(result.procedures));
   staging.write("statistics.json", validity_json(result));
@@ -125,7 +125,7 @@ void write_validity(const ValidityResult& result, const fs::path& folder) {
     staging.write("hints.csv", hints_csv(result.hints));
   }
   const std::vector<Figure> figures = validity_figures(result);
-  draw_figures(figures, staging.path());
+  draw_figures(figures, staging.path(), paper);
   std::vector<Drawing> drawings;
   for (const StudyPicture& picture : result.pictures) {
     drawings.push_back(drawing_of(picture, result.validity.simulated));

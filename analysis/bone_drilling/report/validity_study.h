@@ -38,6 +38,7 @@ ValidityResult analyze(const ValidityStudy& study);
 
 /// report.html, report.md, statistics.json, metrics.csv and figures (SVG and PNG) into a folder,
 /// all or none. @throws InputError, RunError as Staging and draw_figures() do.
-void write_validity(const ValidityResult& result, const std::filesystem::path& folder);
+void write_validity(const ValidityResult& result, const std::filesystem::path& folder,
+                    int paper = 0);
 
 }  // namespace haptrial::analysis::drilling

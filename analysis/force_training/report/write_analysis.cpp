@@ -17,12 +17,12 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-void write_analysis(const StudyResult& study, const fs::path& folder) {
+void write_analysis(const StudyResult& study, const fs::path& folder, int paper) {
   const Staging staging(folder);
   staging.write("scores.csv", scores_csv(study.scores, study.factors));
   staging.write("statistics.json", statistics_json(study));
   const auto figures = study_figures(study);
-  draw_figures(figures, staging.path());
+  draw_figures(figures, staging.path(), paper);
   std::vector<Drawing> drawings;
   for (const auto& figure : figures) {
     drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});

@@ -11,6 +11,6 @@ namespace haptrial::analysis {
 /// end, each at once: an earlier analysis is replaced, never half-written.
 /// @throws InputError when `folder` is not a folder or may not be written; RunError when the disk
 /// is full or gnuplot is absent or fails.
-void write_analysis(const StudyResult& study, const std::filesystem::path& folder);
+void write_analysis(const StudyResult& study, const std::filesystem::path& folder, int paper = 0);
 
 }  // namespace haptrial::analysis

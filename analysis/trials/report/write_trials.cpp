@@ -13,7 +13,7 @@
 
 namespace haptrial::analysis::trials {
 
-void write_trials(const TrialsResult& result, const std::filesystem::path& folder) {
+void write_trials(const TrialsResult& result, const std::filesystem::path& folder, int paper) {
   const Staging staging(folder);
   trials_csv(result.data, [&](const std::string& text) { staging.append("trials.csv", text); });
   staging.write("estimates.csv", estimates_csv(result));
@@ -25,7 +25,7 @@ void write_trials(const TrialsResult& result, const std::filesystem::path& folde
     staging.write("reaches.csv", reaches_csv(result));
   }
   const std::vector<Figure> figures = trials_figures(result);
-  draw_figures(figures, staging.path());
+  draw_figures(figures, staging.path(), paper);
   std::vector<Drawing> drawings;
   for (const Figure& figure : figures) {
     drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});

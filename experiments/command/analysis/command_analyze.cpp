@@ -43,7 +43,13 @@ void report_link(const AnalysisRequest& request) {
   }
 }
 
-int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads) {
+/// @throws InputError for a width that no page has
+int paper_width(const AnalyzeOptions& options) {
+  constexpr int kNarrowest = 40, kWidest = 250;  // [mm]
+  return options.paper ? checked_number("--paper", *options.paper, kNarrowest, kWidest) : 0;
+}
+
+int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads, int paper) {
   mallopt(M_ARENA_MAX,
           1);  // what is read of thousands of files stays; what was read with is reused
   AnalysisRequest request;
@@ -53,6 +59,7 @@ int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads) 
   request.out = report_folder(options.folder, pilots);
   request.pilots = pilots;
   request.threads = threads;
+  request.paper = paper;
   request.planned = options.planned;
   request.reference = options.reference;
   const std::vector<std::string> lines = with_recorded_kinds(
@@ -114,11 +121,12 @@ void check_source(const AnalyzeOptions& options) {
 
 int analyze(const AnalyzeOptions& options) {
   const int threads = checked_jobs(options.jobs);
+  const int paper = paper_width(options);
   check_source(options);
   const bool import = is_import(options);
   const Pilots pilots = options.pilots ? Pilots::kAlone : Pilots::kLeftOut;
   if (!import) {
-    return analyze_sessions(options, pilots, threads);
+    return analyze_sessions(options, pilots, threads, paper);
   }
   print_report(analyze_curves(options, threads), options.out);
   return 0;

@@ -94,7 +94,7 @@ CurveAnalysis analysis_of_curves(const std::vector<fs::path>& files) {
 
 std::vector<std::string> analyze_curves(const AnalyzeOptions& options, int threads) {
   const analysis::StudyResult study = analyzed_curves(options, threads);
-  analysis::write_analysis(study, options.out);
+  analysis::write_analysis(study, options.out, options.paper.value_or(0));
   std::vector<std::string> lines = analysis::summary_lines(study);
   lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
   lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());

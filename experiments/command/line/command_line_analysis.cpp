@@ -35,6 +35,9 @@ void add_analyze(CLI::App& app, int& status) {
                   "repeated")
       ->allow_extra_args(false);
   sub->add_option("--reference", o.reference, "Reference condition in place of the definition's");
+  sub->add_option("--paper", o.paper,
+                  "Width [mm] of figures for a paper, such as 85: PDF in 8 pt, without titles "
+                  "(default: none are written)");
   sub->add_option("--jobs", o.jobs, "Number of threads (default: one per processor)");
 }
 

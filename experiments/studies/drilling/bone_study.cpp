@@ -101,7 +101,7 @@ class BoneStudy final : public Study {
                               file);
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
-    return analyze_drillings(request.folder, request.files, request.out, request.threads);
+    return analyze_drillings(request);
   }
   std::string next_step(const fs::path& folder) const override {
     return "haptrial replay " + (folder / "S01.h5").string();

@@ -92,9 +92,8 @@ std::vector<drilling::StudyPicture> visibility_pictures(
 
 }  // namespace
 
-std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFiles& files,
-                                           const fs::path& out, int threads) {
-  const record::SessionInfo& first = files.first;
+std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
+  const record::SessionInfo& first = request.files.first;
   const std::vector<protocols::StudyGroup> groups =
       protocols::study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
@@ -102,9 +101,9 @@ std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFi
   study.title = definition.nerves  ? "Drilling beside watched nerves"
                 : definition.hints ? "Drilling with hints"
                                    : "Construct validity of simulated bone surgery";
-  study.files = files.files;
-  study.threads = threads;
-  study.ratings = folder / kRatingsFile;
+  study.files = request.files.files;
+  study.threads = request.threads;
+  study.ratings = request.folder / kRatingsFile;
   study.setup = [&](const record::SessionReader& session) {
     return procedure_setup(session, groups);
   };
@@ -115,10 +114,10 @@ std::vector<std::string> analyze_drillings(const fs::path& folder, const StudyFi
     }
   }
   drilling::ValidityResult result = drilling::analyze(study);
-  result.remarks = files.remarks;
-  const PictureFolder pictures(out);
+  result.remarks = request.files.remarks;
+  const PictureFolder pictures(request.out);
   result.pictures = visibility_pictures(result.procedures, definition, pictures.path());
-  drilling::write_validity(result, out);
+  drilling::write_validity(result, request.out, request.paper);
   std::vector<std::string> lines = drilling::summary_lines(result);
   lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
   return lines;

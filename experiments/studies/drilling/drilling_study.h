@@ -7,7 +7,7 @@
 
 #include "analysis/bone_drilling/report/validity_study.h"
 #include "experiments/studies/drilling/procedure_setup.h"
-#include "experiments/study/study_files.h"
+#include "experiments/studies/study.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/definition/groups.h"
 
@@ -16,12 +16,8 @@ namespace haptrial::experiments {
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";
 
-/// Analyses drilling sessions.
-/// @param folder  of the study, where its ratings are
-/// @param out  folder for the report
+/// Analyses drilling sessions. Ratings are in their folder.
 /// @returns lines for the terminal
-std::vector<std::string> analyze_drillings(const std::filesystem::path& folder,
-                                           const StudyFiles& files,
-                                           const std::filesystem::path& out, int threads);
+std::vector<std::string> analyze_drillings(const AnalysisRequest& request);
 
 }  // namespace haptrial::experiments

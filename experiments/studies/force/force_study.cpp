@@ -73,7 +73,7 @@ class ForceStudy final : public Study {
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
     const analysis::StudyResult study = analyzed(request);
-    analysis::write_analysis(study, request.out);
+    analysis::write_analysis(study, request.out, request.paper);
     std::vector<std::string> lines = analysis::summary_lines(study);
     lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
     lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());

@@ -187,7 +187,7 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   result.remarks = std::move(remarks);
   result.definition = first.definition;
   result.definition_name = first.definition_name;
-  trials::write_trials(result, request.out);
+  trials::write_trials(result, request.out, request.paper);
   std::vector<std::string> lines = trials::summary_lines(result);
   lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
   return lines;

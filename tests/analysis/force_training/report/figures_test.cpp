@@ -51,6 +51,23 @@ unsigned big_endian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
+TEST_F(Figures, OfAPaperAreAsWideAsItsColumnAndHaveNoTitle) {
+  Figure figure = simple();
+  figure.title = "Tracks of S01";
+  figure.simulated = true;
+  draw_figures({figure}, folder_, 85);
+  const std::string pdf = read("simple.pdf");
+  // 85 mm are 240.9 pt, and the height is 0.6 of that.
+  EXPECT_THAT(pdf, testing::ContainsRegex(
+                       "/MediaBox *\\[ *0 0 24[01](\\.[0-9]*)? 14[45](\\.[0-9]*)? *\\]"));
+  const std::string script = gnuplot_script(figure, 85);
+  const std::string paper = script.substr(script.find("unset label 1"));
+  EXPECT_THAT(paper, HasSubstr("SIMULATED"));
+  EXPECT_THAT(paper, Not(HasSubstr("Tracks of S01")));
+  draw_figures({figure}, folder_);
+  EXPECT_THAT(gnuplot_script(figure), Not(HasSubstr("pdf")));
+}
+
 TEST_F(Figures, OfAStudyAreAllDrawn) {
   const auto figures = study_figures(example_study(true));
   EXPECT_EQ(figures.size(), 11u);  // 28, learning twice, 26 and 27 three times, 22, 23
