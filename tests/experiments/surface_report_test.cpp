@@ -111,6 +111,8 @@ TEST_F(SurfaceReportTest, ADetectionHasItToo) {
   EXPECT_FALSE(surface.contains("no_contour_because"));
   const std::string report = file_text(out + "/report.md");
   EXPECT_THAT(report, HasSubstr("Sensitivity d'"));
+  EXPECT_THAT(report, HasSubstr("| radius = 0.004\u00a0m | depth |"));
+  EXPECT_THAT(report, HasSubstr("level [95 %] (m)"));
   EXPECT_THAT(report, HasSubstr("surface-S01-"));
 }
 

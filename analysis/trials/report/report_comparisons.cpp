@@ -107,6 +107,12 @@ std::string on_ranks(const std::vector<SerialEffects>& serial,
              : "";
 }
 
+/// "0.31 [-0.20, 0.82]" of one participant, by the normal distribution.
+std::string with_error(const Defined<double>& value, double error) {
+  constexpr double kNormal = 1.959964;
+  return value ? estimate_word({*value, *value - kNormal * error, *value + kNormal * error}) : "–";
+}
+
 void add_serial(Document& document, const TrialsResult& result) {
   if (result.serial.empty()) {
     return;
@@ -114,19 +120,19 @@ void add_serial(Document& document, const TrialsResult& result) {
   Rows rows;
   for (const SerialEffects& s : result.serial) {
     rows.push_back({s.participant, fmt::format("{} of {}", s.easy_wrong, s.easy),
-                    s.effects.drift ? number(*s.effects.drift) : "–",
-                    s.effects.repetition ? number(*s.effects.repetition) : "–",
+                    with_error(s.effects.drift, s.effects.drift_error),
+                    with_error(s.effects.repetition, s.effects.repetition_error),
                     std::to_string(s.limited)});
   }
   document.table({"participant", "answers 0 where the function is above 99 %",
-                  "drift (log odds, first to last trial)", "repetition (log odds)",
+                  "drift (log odds, first to last trial) [95 %]", "repetition (log odds) [95 %]",
                   "trials with another level than asked for"},
                  rows);
   document.paragraph(fmt::format(
       "Drift: how the log odds of an answer 1 change over the session beside the function. "
       "Repetition: how much the answer before moves the log odds of giving it again. Over "
-      "participants against 0: drift {}{}; repetition {}{}. Numbers of single people have no "
-      "intervals: those of few answers may lie far out.{}",
+      "participants against 0: drift {}{}; repetition {}{}. Intervals of single people take their "
+      "function as known.{}",
       t_result(result.drift), on_ranks(result.serial, &SerialCoefficients::drift),
       t_result(result.repetition), on_ranks(result.serial, &SerialCoefficients::repetition),
       words_of_chance(result)));
@@ -192,6 +198,9 @@ void add_trial_quality(Document& document, const TrialsResult& result,
   add_serial(document, result);
   add_reach_quality(document, result);
   document.paragraph(limit_words(result.participants));
+  for (const std::string& sentence : body_lines(result)) {
+    document.paragraph(sentence);
+  }
   add_markers(document, result);
   add_pictures(document, drawings, "reaction-times", 1);
 }

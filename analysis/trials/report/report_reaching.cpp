@@ -63,14 +63,40 @@ void add_contrasts(Document& document, const ReachingResult& reaching) {
                  rows);
 }
 
-std::string interval_word(double value, const Defined<BootstrapInterval>& interval, double scale) {
-  return interval ? estimate_word({scale * value, scale * interval->low, scale * interval->high})
-                  : number(scale * value) + " (interval not defined, because " +
-                        interval.because() + ")";
-}
+/// Estimates of a table with their intervals over resampled participants, and what the sentences
+/// below it say of the intervals that are missing or left draws out.
+class Resampled {
+ public:
+  explicit Resampled(std::size_t draws) : draws_(draws) {}
+
+  /// @param name  of the estimate, such as "amplitude of adaptation"
+  std::string word(const std::string& name, double value,
+                   const Defined<BootstrapInterval>& interval, double scale) {
+    if (!interval) {
+      notes_.push_back(fmt::format("{}: no interval, because {}", name, interval.because()));
+      return number(scale * value);
+    }
+    if (interval->resamples < draws_) {
+      notes_.push_back(
+          fmt::format("{}: {} of {} resamples are left out, for which it does not exist", name,
+                      draws_ - interval->resamples, draws_));
+    }
+    return estimate_word({scale * value, scale * interval->low, scale * interval->high});
+  }
+  void add_notes(Document& document) const {
+    if (!notes_.empty()) {
+      document.points(notes_);
+    }
+  }
+
+ private:
+  std::size_t draws_;
+  std::vector<std::string> notes_;
+};
 
 void add_exponentials(Document& document, const ReachingResult& reaching) {
   Rows rows;
+  Resampled resampled(reaching.plan.resamples);
   for (const ReachBlock& block : reaching.blocks) {
     if (!block.learns) {
       continue;
@@ -81,10 +107,13 @@ void add_exponentials(Document& document, const ReachingResult& reaching) {
       continue;
     }
     const LearningFit& f = *block.fit;
-    rows.push_back({block.name, interval_word(f.fit.amplitude, f.amplitude, kMillimetres),
-                    interval_word(f.fit.asymptote, f.asymptote, kMillimetres),
-                    interval_word(f.fit.time_constant, f.time_constant, 1.0), number(f.fit.rate()),
-                    fmt::format("{:.3f}", f.fit.r_squared)});
+    const auto word = [&](const char* what, double value, const auto& interval, double scale) {
+      return resampled.word(fmt::format("{} of {}", what, block.name), value, interval, scale);
+    };
+    rows.push_back({block.name, word("amplitude", f.fit.amplitude, f.amplitude, kMillimetres),
+                    word("asymptote", f.fit.asymptote, f.asymptote, kMillimetres),
+                    word("time constant", f.fit.time_constant, f.time_constant, 1.0),
+                    number(f.fit.rate()), fmt::format("{:.3f}", f.fit.r_squared)});
   }
   if (rows.empty()) {
     document.paragraph("No block has another field than the block before, so no curve is fitted.");
@@ -98,6 +127,7 @@ void add_exponentials(Document& document, const ReachingResult& reaching) {
                   "cycle; a cycle has "
                   "{}. Intervals [95 %] resample participants.",
                   counted(reaching.plan.cycle, "trial")));
+  resampled.add_notes(document);
 }
 
 void add_two_rate(Document& document, const ReachingResult& reaching) {
@@ -109,11 +139,14 @@ void add_two_rate(Document& document, const ReachingResult& reaching) {
   }
   const TwoRateLearning& t = *reaching.two_rate;
   const TwoRateModel& m = t.fit.model;
-  document.table({"process", "retention [95 %]", "learning [95 %]"},
-                 {{"fast", interval_word(m.fast.retention, t.fast_retention, 1.0),
-                   interval_word(m.fast.learning, t.fast_learning, 1.0)},
-                  {"slow", interval_word(m.slow.retention, t.slow_retention, 1.0),
-                   interval_word(m.slow.learning, t.slow_learning, 1.0)}});
+  Resampled resampled(reaching.plan.resamples);
+  document.table(
+      {"process", "retention [95 %]", "learning [95 %]"},
+      {{"fast", resampled.word("fast retention", m.fast.retention, t.fast_retention, 1.0),
+        resampled.word("fast learning", m.fast.learning, t.fast_learning, 1.0)},
+       {"slow", resampled.word("slow retention", m.slow.retention, t.slow_retention, 1.0),
+        resampled.word("slow learning", m.slow.learning, t.slow_learning, 1.0)}});
+  resampled.add_notes(document);
   document.paragraph(fmt::format(
       "One model for all trials of all participants, {} measured values. Without adaptation the "
       "field makes an error of {} mm at 150 ms. Errors at 150 ms, before feedback has acted much, "

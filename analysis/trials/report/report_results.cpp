@@ -183,6 +183,7 @@ void add_functions(Document& document, const TrialsResult& result,
     add_means(document, result);
     add_pictures(document, drawings, "by-condition-", kMostPictures);
   }
+  add_pictures(document, drawings, "functions", 1);
   add_pictures(document, drawings, "function-", kMostPictures);
   add_fit_table(document, result);
   add_population(document, result);

@@ -20,6 +20,7 @@ namespace {
 constexpr Look kMean{palette::kBlack, palette::kSolid, 7, 2.5, 1.2};
 constexpr Look kPerson{palette::kGrey, palette::kSolid, 6, 1.5, 0.9};
 constexpr Look kReversal{palette::kBlack, palette::kSolid, 6, 1.6, 1.7};
+constexpr int kFilled = 7, kOpen = 6;  // points of the answers 1 and 0
 
 /// Median and quartiles of reaction times.
 void add_times(Series& series, double place, const std::vector<double>& times) {
@@ -60,7 +61,9 @@ Figure quantity_figure(const TrialsResult& result, const Quantity& q) {
   const std::size_t cells = q.table.cells.size();
   for (std::size_t cell = 0; cell < cells; ++cell) {
     const double place = static_cast<double>(cell + 1);
-    figure.x_names.emplace_back(place, result.plan.by.empty() ? "everybody" : q.table.names[cell]);
+    figure.x_names.emplace_back(place, result.plan.by.empty()
+                                           ? counted(q.table.participants(cell), "participant")
+                                           : q.table.names[cell]);
     const std::size_t count = q.table.means.size();
     for (std::size_t p = 0; p < count; ++p) {
       if (q.table.means[p][cell]) {
@@ -131,6 +134,20 @@ std::span<const ParticipantTrials> drawn_participants(const TrialsResult& result
   return all.first(std::min(all.size(), kMostDrawn));
 }
 
+/// A dotted line over a track's trials at its own estimate, if that is of one variable.
+static Series estimate_of(const TrackEstimate& track, const Series& line, Look look) {
+  look.dash = "(2,4)";
+  look.width = 1.2;
+  Series series{"", Mark::kSegments, look};
+  if (track.estimates.size() == 1 && !line.x.empty()) {
+    const double value = track.estimates.front().value;
+    series.x = {line.x.front()};
+    series.x2 = {line.x.back()};
+    series.y = series.y2 = {value};
+  }
+  return series;
+}
+
 std::vector<Figure> track_figures(const TrialsResult& result) {
   std::vector<Figure> figures;
   for (const ParticipantTrials& person : drawn_participants(result)) {
@@ -138,29 +155,44 @@ std::vector<Figure> track_figures(const TrialsResult& result) {
                                "Tracks of " + person.participant, "Trial", level_label(result));
     Series reversals{"reversal", Mark::kPoints, kReversal};
     std::size_t tracks = 0;
+    bool estimated = false;
     for (const TrackEstimate& track : result.tracks) {
       if (track.participant != person.participant || !track.adaptive) {
         continue;
       }
       Series line{track.track, Mark::kLine, look_of(tracks)};
-      Series points{"", Mark::kPoints, look_of(tracks)};
-      ++tracks;
-      points.look.point_size = 0.6;
+      Series ones{"", Mark::kPoints, look_of(tracks)};
+      ones.look.point = kFilled;
+      ones.look.point_size = 0.6;
+      Series zeros = ones;
+      zeros.look.point = kOpen;
       for (const TrackStep& step : track.steps) {
         const double x = result.data.trials[step.trial].trial;
         line.x.push_back(x);
         line.y.push_back(step.applied);
+        Series& answers = step.outcome == 0.0 ? zeros : ones;
+        answers.x.push_back(x);
+        answers.y.push_back(step.applied);
         if (step.reversal) {
           reversals.x.push_back(x);
           reversals.y.push_back(step.applied);
         }
       }
-      points.x = line.x;
-      points.y = line.y;
-      figure.series.push_back(std::move(line));
-      figure.series.push_back(std::move(points));
+      const Series estimate = estimate_of(track, line, look_of(tracks));
+      ++tracks;
+      estimated = estimated || !estimate.x.empty();
+      for (const Series& each : {line, ones, zeros, estimate}) {
+        if (!each.x.empty()) {
+          figure.series.push_back(each);
+        }
+      }
     }
-    figure.caption = "The level that was presented in each trial.";
+    figure.caption =
+        "The level that was presented in each trial: filled if the procedure learnt a 1 (a right "
+        "answer), open if it learnt a 0.";
+    if (estimated) {
+      figure.caption += " Dotted: the procedure's own estimate.";
+    }
     if (!reversals.x.empty()) {
       figure.caption += " Circles: reversals.";
       figure.series.push_back(std::move(reversals));

@@ -179,7 +179,8 @@ std::string estimate_word(const Estimated& e) {
   }
   const auto end = [](double x) { return std::isinf(x) ? std::string("open") : number(x); };
   const bool interval = !std::isnan(e.low) && !std::isnan(e.high);
-  return interval ? fmt::format("{} [{}, {}]", number(e.value), end(e.low), end(e.high))
+  return interval ? fmt::format("{} [{}, {}]", number_within(e.value, e.low, e.high), end(e.low),
+                                end(e.high))
                   : number(e.value);
 }
 
@@ -210,8 +211,11 @@ void add_touched(const TrialsData& data, std::vector<Body> StudyTrial::*bodies,
   }
   if (sum > 0) {
     lines.push_back(
-        fmt::format("in {}, on {} of {} ticks in contact with a body that gives way, {}",
-                    counted(trials, "trial"), sum, contact, what));
+        fmt::format("In {}, on {} of {} ticks in contact with a body that gives way ({}), {}.",
+                    counted(trials, "trial"), sum, contact,
+                    percent(static_cast<double>(sum) /
+                            static_cast<double>(std::max<std::uint64_t>(contact, 1))),
+                    what));
   }
 }
 
@@ -244,8 +248,9 @@ std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t
     }
     return kMissing;
   }
-  return fmt::format("{}, 95 % CI {} to {}", number(level(mean->mean)), number(level(mean->low)),
-                     number(level(mean->high)));
+  const double low = level(mean->low), high = level(mean->high);
+  return fmt::format("{}, 95 % CI {} to {}", number_within(level(mean->mean), low, high),
+                     number(low), number(high));
 }
 
 std::string unit_word(const TrialsResult& result, const Quantity& q) {
@@ -297,14 +302,20 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
   say_gaps(result, lines);
   say_cut_parameters(result, lines);
   say_ended_tracks(result, lines);
+  return lines;
+}
+
+std::vector<std::string> body_lines(const TrialsResult& result) {
+  std::vector<std::string> lines;
   add_touched(result.data, &StudyTrial::touched, &TouchedBody::inverted,
-              "a tetrahedron would have been turned inside out: the force stayed below that",
+              "the hand pressed it deeper than its elements can follow, and the force did not grow",
               lines);
   add_touched(result.data, &StudyTrial::touched, &TouchedBody::crowded,
-              "the ball lay on more places than are computed: the body may have been felt softer",
+              "the ball lay on more places than are computed, and the body may have been felt "
+              "softer",
               lines);
   add_touched(result.data, &StudyTrial::moving, &MovingBody::limited,
-              "the force was cut: it might have given out more energy than the hand had given",
+              "the force was cut, as it might have given out more energy than the hand had given",
               lines);
   add_touched(result.data, &StudyTrial::moving, &MovingBody::flown_apart,
               "the body flew apart and was put to rest", lines);

@@ -32,5 +32,7 @@ std::string unit_word(const TrialsResult& result, const Quantity& q);
 
 /// The results in a few lines, for the command and the head of the report.
 std::vector<std::string> summary_lines(const TrialsResult& result);
+/// Sentences on ticks on which bodies that give way were not felt as they should be.
+std::vector<std::string> body_lines(const TrialsResult& result);
 
 }  // namespace haptrial::analysis::trials

@@ -51,7 +51,10 @@ std::string second_of(const ContourPoint& point) {
   return fmt::format("{} [{}, {}]", values.front(), end(point.low), end(point.high));
 }
 
-void add_points(Document& document, const std::vector<SurfaceCondition>& surfaces) {
+/// @param unit  of both variables; empty if the definition states none
+void add_points(Document& document, const std::vector<SurfaceCondition>& surfaces,
+                const std::string& unit) {
+  const std::string in_unit = unit.empty() ? "" : kNoBreak + unit;
   for (const SurfaceCondition& one : surfaces) {
     if (one.fit && !one.no_contour.empty()) {
       document.paragraph(fmt::format("{}: there is no threshold contour, because {}.", name_of(one),
@@ -65,13 +68,15 @@ void add_points(Document& document, const std::vector<SurfaceCondition>& surface
       continue;
     }
     for (const ContourPoint& point : one.points) {
-      rows.push_back({name_of(one), fmt::format("{} = {}", one.variables[0], number(point.first)),
+      rows.push_back({name_of(one),
+                      fmt::format("{} = {:.4g}{}", one.variables[0], point.first, in_unit),
                       one.variables[1], second_of(point)});
     }
   }
   if (!rows.empty()) {
-    document.table({"participant", "at", "threshold of", "level [95 %]"}, rows,
-                   "The threshold over both variables");
+    document.table({"participant", "at", "threshold of",
+                    unit.empty() ? "level [95 %]" : fmt::format("level [95 %] ({})", unit)},
+                   rows, "The threshold over both variables");
   }
 }
 
@@ -91,7 +96,7 @@ void add_surfaces(Document& document, const TrialsResult& result,
                                    counted(others, "picture")));
   }
   add_parameters(document, result.surfaces);
-  add_points(document, result.surfaces);
+  add_points(document, result.surfaces, result.plan.function.axis.unit);
   document.paragraph(fmt::format(
       "The definition's own formula is fitted over all its variables: the posterior of its "
       "parameters from every answer, with the definition's priors, between the lowest and the "

@@ -80,11 +80,12 @@ Figure figure_of(const TrialsResult& result, const SurfaceCondition& one) {
   figure.series.push_back(pieces("95 %", kBand, one.contour->sure));
   figure.series.push_back(pieces("", kBand, one.contour->hardly));
   std::erase_if(figure.series, [](const Series& s) { return s.x.empty(); });
+  const std::string after = unit.empty() ? "" : " " + unit;
   for (const ContourPoint& point : one.points) {
     if (point.second.size() == 1) {
       figure.alt +=
-          fmt::format("{}{} at {} {}", figure.alt.empty() ? "" : "; ", number(point.second.front()),
-                      one.variables[0], number(point.first));
+          fmt::format("{}{}{} at {} {:.4g}{}", figure.alt.empty() ? "" : "; ",
+                      number(point.second.front()), after, one.variables[0], point.first, after);
     }
   }
   figure.caption = fmt::format(
