@@ -35,6 +35,7 @@ question = "Did it pull?"
 choices = [{ value = "yes" }, { value = "no" }]
 [procedure]
 kind = "quest_plus"
+unit = "N"
 probability = "normcdf((sqrt($x ^ 2 + $y ^ 2) - $threshold) / $spread)"
 counts = "$answer == 1"
 stop = { trials = 60 }
@@ -90,6 +91,8 @@ TEST_F(SurfaceReportTest, TheFunctionIsFittedOverBothVariables) {
   const std::string report = file_text(folder_ / "out/report.md");
   EXPECT_THAT(report, HasSubstr("Functions of several variables (simulated)"));
   EXPECT_THAT(report, HasSubstr("The threshold over both variables"));
+  EXPECT_THAT(report, HasSubstr(" | x = 0.25\u00a0N | y | "));
+  EXPECT_THAT(report, HasSubstr("level \\[95 %\\] (N)"));
   EXPECT_THAT(report, HasSubstr("surface-S01-"));
   EXPECT_THAT(report, Not(HasSubstr("Every participant's function\n")))
       << "a function of x alone would be of trials with every y";
@@ -111,8 +114,6 @@ TEST_F(SurfaceReportTest, ADetectionHasItToo) {
   EXPECT_FALSE(surface.contains("no_contour_because"));
   const std::string report = file_text(out + "/report.md");
   EXPECT_THAT(report, HasSubstr("Sensitivity d'"));
-  EXPECT_THAT(report, HasSubstr("| radius = 0.004\u00a0m | depth |"));
-  EXPECT_THAT(report, HasSubstr("level [95 %] (m)"));
   EXPECT_THAT(report, HasSubstr("surface-S01-"));
 }
 

@@ -163,9 +163,10 @@ std::vector<Figure> track_figures(const TrialsResult& result) {
       Series line{track.track, Mark::kLine, look_of(tracks)};
       Series ones{"", Mark::kPoints, look_of(tracks)};
       ones.look.point = kFilled;
-      ones.look.point_size = 0.6;
+      ones.look.point_size = 0.8;
       Series zeros = ones;
       zeros.look.point = kOpen;
+      zeros.look.point_size = 1.1;
       for (const TrackStep& step : track.steps) {
         const double x = result.data.trials[step.trial].trial;
         line.x.push_back(x);

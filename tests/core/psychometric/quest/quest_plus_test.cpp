@@ -278,6 +278,7 @@ TEST(QuestPlusTest, StopsByTrialsOrEntropy) {
   EXPECT_LT(trials, 1000);
 }
 
+/// People slip, and a slip of the finger must not end a session.
 TEST(QuestPlusTest, AnImpossibleAnswerLeavesThePosterior) {
   QuestDefinition d;
   d.stimulus = {{"x", {0.0, 1.0}, {}, false}};
@@ -288,9 +289,9 @@ TEST(QuestPlusTest, AnImpossibleAnswerLeavesThePosterior) {
   };
   QuestPlus quest(std::make_shared<QuestTables>(d), {5, 0.0});
   EXPECT_EQ(quest.next(), Level{1.0});
-  EXPECT_THROW(quest.report(1, {0.0}), std::invalid_argument);
+  quest.report(1, {0.0});
   EXPECT_EQ(quest.posterior(), (std::vector<double>{0.5, 0.5}));
-  EXPECT_EQ(quest.trials(), 0);
+  EXPECT_EQ(quest.trials(), 1);
 }
 
 TEST(QuestPlusTest, DefinitionsOutOfBoundsAreNamed) {
@@ -316,21 +317,6 @@ TEST(QuestPlusTest, DefinitionsOutOfBoundsAreNamed) {
   names("are 0.4, 0.4, 0.4 for a = -1", [](auto& d) {
     d.model = [](const double*, const double*, double* out) { out[0] = out[1] = out[2] = 0.4; };
   });
-}
-
-TEST(QuestPlusTest, AnAnswerThatNoParametersAllowEndsNoSession) {
-  QuestDefinition d;
-  d.stimulus = {{"x", {0.0, 1.0}, {}, false}};
-  d.parameters = {{"u", {0.4, 0.6}, {}, false}};
-  d.model = [](const double* s, const double* p, double* out) {  // no lapses
-    out[1] = s[0] > p[0] ? 1.0 : 0.0;
-    out[0] = 1.0 - out[1];
-  };
-  QuestPlus procedure(std::make_shared<const QuestTables>(d), {5, 0.0});
-  const std::vector<double> before = procedure.posterior();
-  procedure.report(0, {1.0});
-  EXPECT_EQ(procedure.posterior(), before);
-  EXPECT_EQ(procedure.trials(), 1);
 }
 
 }  // namespace

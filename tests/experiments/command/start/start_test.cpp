@@ -97,9 +97,10 @@ TEST(StartTest, AFileOfTextsHasEveryTextToBeTranslated) {
   const fs::path file = folder / "study.texts.ja.toml";
   EXPECT_THAT(test::read_text(file),
               HasSubstr("# response.choices.\"oh yes\".label = \"oh yes\"\n"));
-  ASSERT_EQ(run_command(in_folder + "sed -i 's/^# \\([a-z][a-z.\" ]* = \\)/\\1/' " + file.string())
-                .status,
-            0);
+  ASSERT_EQ(
+      run_command(in_folder + "sed -i 's/^# \\([a-z][a-z0-9_.\" ]* = \\)/\\1/' " + file.string())
+          .status,
+      0);
   const auto valid = run_command(in_folder + "haptrial validate study.toml");
   EXPECT_THAT(valid.output, HasSubstr("language ja: complete")) << valid.output << valid.errors;
   const auto again = run_command(in_folder + "haptrial texts study.toml --language ja");
