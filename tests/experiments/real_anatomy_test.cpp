@@ -204,8 +204,11 @@ TEST_P(RealAnatomyTest, AVirtualSurgeonDrillsItAndItIsRatedAndReported) {
   const auto ratings = simulate_ratings(dry.folder, 1);
   ASSERT_EQ(ratings.size(), simulated_raters().size());
   test::write_text(dry.folder / kRatingsFile, analysis::drilling::ratings_csv(ratings));
-  analyze_drillings(dry.folder, study_files(dry.folder, Pilots::kLeftOut, protocol_of), dry.folder,
-                    1);
+  AnalysisRequest request;
+  request.folder = request.out = dry.folder;
+  request.files = study_files(dry.folder, Pilots::kLeftOut, protocol_of);
+  request.threads = 2;
+  analyze_drillings(request);
   EXPECT_THAT(test::read_text(dry.folder / "report.md"), testing::HasSubstr("SIMULATED"));
 }
 
