@@ -235,11 +235,11 @@ std::vector<MarkerRow> SessionMarkers::take_rows(bool last) {
   if (!used()) {
     return {};
   }
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
+  const auto now = &std::chrono::steady_clock::now;
+  const auto begin = now();
   gather();
-  while ((!all_sent() && Clock::now() < begin + kLongestForThread) ||
-         (!all_shown() && Clock::now() < begin + kLongestForShown)) {
+  while ((!all_sent() && now() < begin + kLongestForThread) ||
+         (!all_shown() && now() < begin + kLongestForShown)) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     gather();
   }
