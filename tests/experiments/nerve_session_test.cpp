@@ -266,7 +266,7 @@ TEST(LiveNerveTest, ATechnicianSeesASessionOnTheRealClock) {
   ASSERT_NE(page, nullptr);
   const SessionSummary done = run_session(request);
   EXPECT_EQ(done.dropped, 0u);
-  const nerve::MonitorDesk::View view = page->controller()->since(0, 0);
+  const nerve::MonitorDesk::View view = page->desk()->since(0, 0);
   EXPECT_EQ(view.channels.size(), 3u);
   EXPECT_GT(view.next_column, 400u);
   const record::SessionReader reader(folder / "S01.h5");

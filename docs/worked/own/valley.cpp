@@ -12,7 +12,7 @@ namespace {
 using namespace haptrial::scene;
 
 /// f_z = -s (z / w)^3 [N]
-class Valley final : public OwnLaw {
+class Valley final : public RegisteredLaw {
  public:
   Valley(double strength, double width) : strength_(strength), width_(width) {}
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept override {
@@ -26,10 +26,10 @@ class Valley final : public OwnLaw {
   double width_;     // [m]
 };
 
-class ValleyNumbers final : public OwnNumbers {
+class ValleyNumbers final : public RegisteredNumbers {
  public:
   ValleyNumbers(double strength, double width) : strength_(strength), width_(width) {}
-  std::unique_ptr<OwnLaw> law(const Setting&) const override {
+  std::unique_ptr<RegisteredLaw> law(const Setting&) const override {
     return std::make_unique<Valley>(strength_, width_);
   }
 
@@ -42,7 +42,7 @@ class ValleyNumbers final : public OwnNumbers {
 FieldKind read_valley(const FieldReader& read) {
   const double strength = read.number("strength", kStrengthBounds, "N");
   const double width = std::max(read.number("width", kLengthBounds, "m"), 1e-6);
-  return OwnParameters{"valley", std::make_shared<ValleyNumbers>(strength, width)};
+  return RegisteredParameters{"valley", std::make_shared<ValleyNumbers>(strength, width)};
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 /// An assistant's page beside the console: shows the trial, and sets for how long each spring of
 /// the following ones is felt, {"interval": 1.5} [s].
-class SpringPage final : public haptrial::protocols::SidePage {
+class SpringPage final : public haptrial::protocols::AuxiliaryPage {
  public:
   std::string_view name() const override { return "springs"; }
   std::string_view title() const override { return "assistant"; }

@@ -99,7 +99,7 @@ class SpringTrials final : public Trials {
   SpringTrials(const SpringsDefinition& d, const SessionPlace& place)
       : d_(d),
         place_(place),
-        page_(page_of<SpringPage>(place.side_pages)),
+        page_(page_of<SpringPage>(place.auxiliary_pages)),
         staircase_(staircase_of(d)) {}
 
   Extent extent(int most) const override {
@@ -192,7 +192,7 @@ class Springs final : public Protocol {
   record::TableList tables() const override {
     return {&record::table_of<SpringRow>(), &record::table_of<DepthRow>()};
   }
-  SidePages side_pages(const Definition&) const override {
+  AuxiliaryPages auxiliary_pages(const Definition&) const override {
     return {std::make_shared<SpringPage>()};
   }
   std::unique_ptr<Trials> trials(const Definition& d, const SessionPlace& place) const override {
