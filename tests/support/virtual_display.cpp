@@ -36,7 +36,12 @@ class X {
       throw std::runtime_error("the display does not answer");
     }
     // A session may close its window before the last event reaches it; Xlib would end the test.
-    get<decltype(&XSetErrorHandler)>("XSetErrorHandler")([](Display*, XErrorEvent*) { return 0; });
+    get<decltype(&XSetErrorHandler)>("XSetErrorHandler")([](Display*, XErrorEvent* error) {
+      if (error->error_code != BadWindow) {
+        std::abort();
+      }
+      return 0;
+    });
   }
   ~X() {
     get<decltype(&XCloseDisplay)>("XCloseDisplay")(display_);  // sends what is not sent yet

@@ -42,7 +42,7 @@ struct Track {
   std::optional<PsychometricParameters> expected;  // that the study counts on
   std::function<std::unique_ptr<Procedure>(std::uint64_t seed, const std::string& name)> begin;
 
-  /// What it can learn: "a number above 0", or "0 or 1".
+  /// Names the outcomes that it can learn: "a number above 0", or "0 or 1".
   std::string lesson() const;
   /// Whether an outcome is one of these.
   bool learns(double outcome) const noexcept;

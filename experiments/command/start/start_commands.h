@@ -23,7 +23,7 @@ struct TextsOptions {
 /// Writes the file of a definition's texts in a language, to be filled in.
 int write_texts(const TextsOptions& options);
 
-/// What this machine can do. @param where  a folder for session files, or a definition whose
+/// Prints what this machine can do. @param where  a folder for session files, or a definition whose
 /// sessions are to run here, into files below the working folder
 /// @returns 0 if sessions can run, else 1
 int doctor(const std::string& where);

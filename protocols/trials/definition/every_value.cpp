@@ -91,7 +91,7 @@ void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& f
   }
 }
 
-/// What formulas take an answer for: each choice, or the ends of a typed number.
+/// The numbers that formulas may take an answer for: each choice, or the ends of a typed one.
 std::vector<double> values_of(const Question& question) {
   if (question.types()) {
     return {question.low, question.high};

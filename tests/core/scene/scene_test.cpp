@@ -94,22 +94,22 @@ TEST(SceneTest, SolidsPushOutAndHollowsKeepIn) {
   EXPECT_LT((at(block, true, {0.023, 0.024, 0.0}) - Vector3d(-3.0, -4.0, 0.0)).norm(), 1e-12);
 }
 
-/// Of a hand that goes straight through it at 0.15 m/s [N in 1 ms].
+/// The largest step of the force on a hand that goes straight through at 0.15 m/s [N in 1 ms].
 double largest_step(const Field& surface) {
   Scene scene({surface}, kRate);
   scene.switch_to(Scene::kAll);
   Vector3d last = Vector3d::Zero();
   double largest = 0.0;
   for (int i = 0; i <= 400; ++i) {
-    const Vector3d force =
-        scene.force({{1e-9, 0.03 - 0.15e-3 * i, 0.0}, {0.0, -0.15, 0.0}});
+    const Vector3d force = scene.force({{1e-9, 0.03 - 0.15e-3 * i, 0.0}, {0.0, -0.15, 0.0}});
     largest = std::max(largest, (force - last).norm());
     last = force;
   }
   return largest;
 }
 
-/// In the middle the force of 10 N fades and comes back over 4 mm; that of a damper begins over 1 mm.
+/// In the middle the force of 10 N fades and comes back over 4 mm; that of a damper begins over 1
+/// mm.
 TEST(SceneTest, AHandThatIsPushedThroughAShapeIsNotStruck) {
   for (const Shape& shape : {Shape(Sphere{kOrigin, 0.02}), Shape(Box{kOrigin, {0.04, 0.04, 0.04}}),
                              Shape(Cylinder{kOrigin, {0.0, 0.0, 1.0}, 0.02})}) {
