@@ -68,6 +68,17 @@ void check_translations(const Translations& translations, Experiment& experiment
   experiment.definition->language = translations.language;
 }
 
+/// Sessions that were recorded with it can be read, but none begins.
+void refuse_waves(Table& root) {
+  if (!root.is_table("tutoring")) {
+    return;
+  }
+  Table tutoring = root.table("tutoring");
+  if (tutoring.has("passivity") && tutoring.text("passivity") == "waves") {
+    tutoring.reject("passivity", "'waves', which version 0.2 alone had", "tank, none");
+  }
+}
+
 }  // namespace
 
 Experiment load_experiment(const std::filesystem::path& file, const std::string& language,
@@ -75,6 +86,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::string&
   const std::filesystem::path folder = file.parent_path();
   refuse_session(file);
   Table root = protocols::load_with_lab(file, given);
+  refuse_waves(root);
   std::optional<Translations> translations;
   if (!language.empty()) {
     translations = protocols::translations_for(file, language);

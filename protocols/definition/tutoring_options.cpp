@@ -39,8 +39,9 @@ static void read_link_options(Table& table, TutoringOptions& o) {
   o.authority = table.number_or("authority", o.authority, {0.0, 1.0}, "1");
   o.felt_back = table.number_or("felt_back", o.felt_back, {0.0, 1.0}, "1");
   if (table.has("passivity")) {
-    o.passivity =
-        table.choice("passivity", {"tank", "none"}) == "tank" ? Passivity::kTank : Passivity::kNone;
+    // Recordings of version 0.2 may have "waves"; whoever only reads them needs no law of theirs.
+    const std::string word = table.choice("passivity", {"tank", "none", "waves"});
+    o.passivity = word == "none" ? Passivity::kNone : Passivity::kTank;
   }
   if (table.has("deadband")) {
     o.deadband = table.boolean("deadband");

@@ -256,5 +256,27 @@ TEST_F(TaughtTest, StiffCouplingsWithoutControlAreWarnedOf) {
   EXPECT_THAT(warned("stiffness = 500" + far), testing::Not(HasSubstr("swing up")));
 }
 
+/// Version 0.2 could also couple hands by waves: its sessions are analysed, but none begins.
+TEST_F(TaughtTest, SessionsThatWavesLedCanStillBeAnalysed) {
+  const std::string out = taught("passivity = \"tank\"\n[tutoring.channel]\ndelay = 0.02\n", "out");
+  const std::string edit =
+      "import h5py, sys\n"
+      "with h5py.File(sys.argv[1], 'r+') as f:\n"
+      "    f.attrs['definition'] = f.attrs['definition'].replace('\"tank\"', '\"waves\"')\n";
+  test::write_text((folder_ / "edit.py").string(), edit);
+  const test::CommandResult edited =
+      run_command("/usr/bin/python3 '" + (folder_ / "edit.py").string() + "' " + out + "/S01.h5");
+  ASSERT_EQ(edited.status, 0) << edited.errors;
+  const test::CommandResult analysed = run_command("haptrial analyze " + out);
+  EXPECT_EQ(analysed.status, 0) << analysed.errors;
+
+  const std::string file = (folder_ / "waves.toml").string();
+  test::write_text(file, test::brisk_text() + "\n[tutoring]\npassivity = \"waves\"\n");
+  const test::CommandResult refused = run_command("haptrial validate " + file);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("tutoring.passivity is 'waves'"));
+  EXPECT_THAT(refused.errors, HasSubstr("allowed: tank, none"));
+}
+
 }  // namespace
 }  // namespace haptrial::experiments

@@ -55,7 +55,7 @@ tutoring.pause_buttons | in force training every button, else none | a recorded 
 tutoring.pause_keys | none | likewise for keys of the window
 tutoring.authority | | over a link: how far the hand that teaches leads the other one
 tutoring.felt_back | | over a link: how much of the coupling the hand that leads feels
-tutoring.passivity | tank | over a link: what keeps the coupled hands from swinging up
+tutoring.passivity | tank | over a link: what keeps the coupled hands from swinging up; waves is read in recordings of version 0.2 alone
 tutoring.deadband | false | over a link: send only what would be missed
 tutoring.jitter_buffer | false | over a link: take the other hand as evenly as it was sent, for some delay
 tutoring.deadline | | over a link: silence after which its force is zero
