@@ -20,6 +20,14 @@ FLAGS = [
 ESCAPE = "\ue00c"
 
 
+class Refused(Exception):
+    """What chromedriver answers to a command that it does not carry out."""
+
+    def __init__(self, answer):
+        super().__init__(f"{answer['error']}: {answer['message']}")
+        self.error = answer["error"]
+
+
 class Driver:
     """One chromedriver on a port of its own choice, with one window."""
 
@@ -39,7 +47,7 @@ class Driver:
         try:
             answer = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
                 "browserName": "chrome", "goog:chromeOptions": options, **logging}}})
-        except OSError:
+        except (OSError, Refused):
             self.process.kill()
             raise
         self.base += "/session/" + answer["sessionId"]
@@ -49,8 +57,11 @@ class Driver:
         request = urllib.request.Request(self.base + path, data, method=method,
                                          headers={"Content-Type": "application/json"})
         opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
-        with opener.open(request) as answer:
-            return json.load(answer)["value"]
+        try:
+            with opener.open(request) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as refused:
+            raise Refused(json.load(refused)["value"]) from None
 
     def run(self, script):
         return self.call("POST", "/execute/sync", {"script": script, "args": []})
@@ -66,8 +77,16 @@ class Driver:
         return next(iter(found.values()))
 
     def click(self, name):
-        """As a person does: at the place on the screen, which nothing may cover."""
-        self.call("POST", f"/element/{self.element(name)}/click")
+        """As a person does: at the place on the screen, once nothing covers it any more."""
+        def possible():
+            try:
+                self.call("POST", f"/element/{self.element(name)}/click")
+            except Refused as refused:
+                if refused.error not in ("element click intercepted", "element not interactable"):
+                    raise
+                return False
+            return True
+        wait(f"a place to click on '{name}'", possible)
 
     def type(self, name, text):
         self.call("POST", f"/element/{self.element(name)}/value", {"text": text})
@@ -96,7 +115,7 @@ class Driver:
     def close(self):
         try:
             self.call("DELETE", "")
-        except (urllib.error.URLError, OSError):
+        except (OSError, Refused):
             pass
         self.process.terminate()
         self.process.wait()
