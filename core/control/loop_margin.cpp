@@ -35,6 +35,10 @@ std::string hand(double mass) {
 
 }  // namespace
 
+std::string ticks_in_words(int ticks) {
+  return ticks == 1 ? "a tick" : fmt::format("{} ticks", ticks);
+}
+
 BareHandle bare_handle(const control::PdGains& gains, const control::HandleLoop& loop) {
   // Where a spring has no damper, the guard's own takes its place.
   const double calming =

@@ -119,9 +119,8 @@ void reject_gains(Table& root, const ForceDefinition& d) {
     if (control::lightest_calm_hand(gains, loop) > control::kHeaviestHand) {
       guidance.reject(
           name, fmt::format("{:g} N/m and {:g} N·s/m", gains.stiffness, gains.damping),
-          fmt::format("what a hand of up to {:g} kg carries at {:g} Hz with forces that "
-                      "come {} ticks late",
-                      control::kHeaviestHand, d.rate, loop.force_delay));
+          fmt::format("what a hand of up to {:g} kg carries at {:g} Hz with forces that come {} late",
+                      control::kHeaviestHand, d.rate, control::ticks_in_words(loop.force_delay)));
     }
   }
 }

@@ -162,7 +162,7 @@ void HandleReport::judge(Load& load) const {
         "stage {}: its fields add up to {}; no hand of up to {:g} kg carries that at {:g} Hz, with "
         "forces that come {} late; allowed: less of it, or a faster loop",
         load.stage, amount_of(load), control::kHeaviestHand, d_.rate,
-        loop.force_delay == 1 ? "a tick" : fmt::format("{} ticks", loop.force_delay)));
+        control::ticks_in_words(loop.force_delay)));
   }
   constexpr double kStep = 0.01;  // [kg]
   while (!mass_carried_by(load.lightest)) {
