@@ -1,18 +1,34 @@
 #include "core/control/curve_tracker.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::control {
 
-CurveFollowing read_curve_following(Table& table) {
-  CurveFollowing f;
-  f.step = table.number("step", {0.0, 1.0, true}, "m");
-  f.reach = table.number("reach", {f.step, 1.0}, "m");
-  f.margin = table.number("margin", {0.0, 1.0}, "m");
-  return f;
+const Schema<CurveFollowing>& curve_following_schema() {
+  using F = CurveFollowing;
+  static const auto schema =
+      Schema<F>()
+          .number("step", &F::step, {0.0, 1.0, true}, "m",
+                  "Distance along the curve that the place on it may move in one tick")
+          .required()
+          .number("reach", &F::reach, {0.0, 1.0, true}, "m",
+                  "Distance along the curve that is searched ahead of the place")
+          .required()
+          .number("margin", &F::margin, {0.0, 1.0}, "m",
+                  "Distance by which a farther place must be nearer to the hand to be taken")
+          .required()
+          .check([](Table& table, const F& f) {
+            if (f.reach < f.step) {
+              table.reject("reach", fmt::format("{}", f.reach),
+                           fmt::format("at least step, {} [m]", f.step));
+            }
+          });
+  return schema;
 }
 
 namespace {

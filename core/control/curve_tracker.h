@@ -3,7 +3,8 @@
 #include "core/control/sampled_curve.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::control {
@@ -16,8 +17,8 @@ struct CurveFollowing {
   double tolerance{1e-9};  // of the distance: CurveQuery::tolerance >= 0 [m]
 };
 
-/// Reads the keys step, reach and margin of a table.
-CurveFollowing read_curve_following(Table& table);
+/// The keys of guidance.following.
+const Schema<CurveFollowing>& curve_following_schema();
 
 /// The place of a curve that belongs to a tool, with continuity: a strand that the tool passes or
 /// crosses is not jumped to, however near it comes, while it is farther along the arc than `reach`.

@@ -3,16 +3,20 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/longer.h"
 
 namespace haptrial::control {
 
-PdGains read_pd_gains(Table& table) {
-  PdGains gains;
-  gains.stiffness = table.number("stiffness", {0.0, 1e5}, "N/m");
-  gains.damping = table.number("damping", {0.0, 1e4}, "N·s/m");
-  return gains;
+const Schema<PdGains>& pd_gains_schema() {
+  static const auto schema = Schema<PdGains>()
+                                 .number("stiffness", &PdGains::stiffness, {0.0, 1e5}, "N/m",
+                                         "Stiffness of the spring that guides the hand")
+                                 .required()
+                                 .number("damping", &PdGains::damping, {0.0, 1e4}, "N·s/m",
+                                         "Damping beside the spring that guides the hand")
+                                 .required();
+  return schema;
 }
 
 PdController::PdController(const PdGains& gains) : gains_(gains) {
@@ -26,9 +30,8 @@ PdController::PdController(const PdGains& gains) : gains_(gains) {
 
 Eigen::Vector3d PdController::force(const PointState& target, const PointState& tip,
                                     const GainShares& shares) const noexcept {
-  const Eigen::Vector3d f =
-      shares.stiffness * gains_.stiffness * (target.position - tip.position) +
-      shares.damping * gains_.damping * (target.velocity - tip.velocity);
+  const Eigen::Vector3d f = shares.stiffness * gains_.stiffness * (target.position - tip.position) +
+                            shares.damping * gains_.damping * (target.velocity - tip.velocity);
   return f.allFinite() ? f : Eigen::Vector3d::Zero();
 }
 

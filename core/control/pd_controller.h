@@ -6,7 +6,8 @@
 #include "core/control/gain_shares.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::control {
@@ -17,8 +18,8 @@ struct PdGains {
   double damping{100.0};    // b >= 0 [N·s/m]
 };
 
-/// Reads the keys stiffness and damping of a table.
-PdGains read_pd_gains(Table& table);
+/// The keys of a table of gains, such as guidance.plane.
+const Schema<PdGains>& pd_gains_schema();
 
 /// Spring and damper that pull the tool tip T towards a moving target D:
 ///

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/longer.h"
 
 namespace haptrial::device {
@@ -20,24 +20,41 @@ constexpr double kLargestHolding = 2.0;  // [N]
 constexpr double kFastestForce = 10'000.0;  // [N/s]
 
 }  // namespace
-EnvelopeLimits read_envelope_limits(Table& table) {
-  EnvelopeLimits limits;
-  limits.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
-  limits.max_force_rate = table.number("max_force_rate", {10.0, kFastestForce}, "N/s");
-  limits.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
-  limits.max_speed = table.number("max_speed", {0.0, 20.0, true}, "m/s");
-  limits.max_jump = table.number("max_jump", {0.0, 0.1, true}, "m");
-  limits.ramp_in = table.number("ramp_in", {kShortestFade, 10.0}, "s");
-  limits.ramp_out = table.number("ramp_out", {kShortestFade, 10.0}, "s");
-  limits.change_time =
-      table.number_or("change_time", limits.change_time, {kShortestFade, 10.0}, "s");
-  if (table.has("max_saturation")) {
-    limits.max_saturation = table.number("max_saturation", {0.0, kLongestAtLimit, true}, "s");
-  }
-  if (table.has("holding_force")) {
-    limits.holding_force = table.number("holding_force", {0.0, kLargestHolding, true}, "N");
-  }
-  return limits;
+const Schema<EnvelopeLimits>& envelope_schema() {
+  using E = EnvelopeLimits;
+  static const auto schema =
+      Schema<E>()
+          .number("max_force", &E::max_force, {0.0, 100.0, true}, "N",
+                  "Greatest force that is commanded; a protocol that asks for more is stopped")
+          .required()
+          .number("max_force_rate", &E::max_force_rate, {10.0, kFastestForce}, "N/s",
+                  "Fastest change of the commanded force")
+          .required()
+          .number("workspace_radius", &E::workspace_radius, {0.0, 2.0, true}, "m",
+                  "Distance from the origin beyond which the force is switched off")
+          .required()
+          .number("max_speed", &E::max_speed, {0.0, 20.0, true}, "m/s",
+                  "Greatest speed of the hand; above it the force is switched off")
+          .required()
+          .number("max_jump", &E::max_jump, {0.0, 0.1, true}, "m",
+                  "Largest change of position between two ticks; a larger one ends the pass")
+          .required()
+          .number("ramp_in", &E::ramp_in, {kShortestFade, 10.0}, "s",
+                  "Time over which the force of a pass grows from zero")
+          .required()
+          .number("ramp_out", &E::ramp_out, {kShortestFade, 10.0}, "s",
+                  "Time over which the force falls to zero after a normal end")
+          .required()
+          .number(
+              "change_time", &E::change_time, {kShortestFade, 10.0}, "s",
+              "Time over which the force goes over to that of another stage, question or object")
+          .number("max_saturation", &E::max_saturation, {0.0, kLongestAtLimit, true}, "s",
+                  "Longest time without a break at max_force; a longer one ends the pass")
+          .number("holding_force", &E::holding_force, {0.0, kLargestHolding, true}, "N",
+                  "Change of force that a still hand and friction may hide; beyond it a position "
+                  "that does not change counts as frozen")
+          .otherwise("from the friction of [hand]");
+  return schema;
 }
 
 Envelope::Envelope(const EnvelopeLimits& limits)

@@ -9,7 +9,8 @@
 #include "core/device/reading_watch.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::device {
@@ -28,9 +29,9 @@ struct EnvelopeLimits {
   double holding_force{0.5};  // change of force that friction and a still hand may hide > 0 [N]
 };
 
-/// Reads the keys of an [envelope] table; change_time, max_saturation and holding_force may be left
-/// out. No value takes a check out of use: ramps and changes last 0.05 s at least.
-EnvelopeLimits read_envelope_limits(Table& table);
+/// The keys of [envelope]. No value takes a check out of use: ramps and changes last 0.05 s at
+/// least.
+const Schema<EnvelopeLimits>& envelope_schema();
 
 /// Stands between every protocol and every device on every tick. The force that leaves it is
 /// finite, never longer than max_force and never changes faster than max_force_rate, except that a

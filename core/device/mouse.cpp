@@ -5,18 +5,30 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::device {
 
-MouseParameters read_mouse_parameters(Table& table) {
-  MouseParameters p;
-  p.pointer_speed = table.number("pointer_speed", {0.0, 10.0, true}, "m/s");
-  p.max_press = table.number("max_press", {0.0, 100.0, true}, "N");
-  p.first_press = table.number("first_press", {0.0, 100.0}, "N");
-  p.press_step = table.number("press_step", {0.0, 100.0}, "N");
-  p.stop_button = static_cast<int>(table.integer("stop_button", -1, 31));
-  return p;
+const Schema<MouseParameters>& mouse_schema() {
+  using P = MouseParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("pointer_speed", &P::pointer_speed, {0.0, 10.0, true}, "m/s",
+                  "Greatest speed at which the simulated mass follows the pointer")
+          .required()
+          .number("max_press", &P::max_press, {0.0, 100.0, true}, "N",
+                  "Greatest force of a press of the left button")
+          .required()
+          .number("first_press", &P::first_press, {0.0, 100.0}, "N",
+                  "Force of a press when the left button goes down")
+          .required()
+          .number("press_step", &P::press_step, {0.0, 100.0}, "N",
+                  "Change of a press for each step of the mouse wheel")
+          .required()
+          .integer("stop_button", &P::stop_button, -1, 31,
+                   "Button of the mouse for emergency stops; -1: none")
+          .required();
+  return schema;
 }
 
 MouseDevice::MouseDevice(const MouseParameters& parameters, double rate, const std::string& name)

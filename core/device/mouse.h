@@ -8,7 +8,8 @@
 #include "core/realtime/latest_value.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::device {
@@ -26,8 +27,8 @@ struct MouseParameters {
   Eigen::Vector3d start{Eigen::Vector3d::Zero()};  // of the hand [m]
 };
 
-/// Reads the keys of a [mouse] table.
-MouseParameters read_mouse_parameters(Table& table);
+/// The keys of [mouse].
+const Schema<MouseParameters>& mouse_schema();
 
 /// A session on a laptop: the pointer stands for the hand. A simulated mass follows it through a
 /// spring, and the protocol's forces act on that mass, so that guidance is seen but not felt. The

@@ -4,21 +4,30 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/longer.h"
 
 namespace haptrial::device {
 
-VirtualDeviceParameters read_virtual_device_parameters(Table& table) {
-  VirtualDeviceParameters p;
-  p.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
-  p.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
-  p.position_quantum = table.number("position_quantum", {0.0, 1e-3}, "m");
-  p.velocity_window = static_cast<int>(table.integer("velocity_window", 2, 64));
-  if (table.has("force_delay")) {
-    p.force_delay = static_cast<int>(table.integer("force_delay", 1, 8));
-  }
-  return p;
+const Schema<VirtualDeviceParameters>& virtual_device_schema() {
+  using P = VirtualDeviceParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
+                  "Force at which the virtual device's motors saturate")
+          .required()
+          .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
+                  "Radius of the virtual device's workspace")
+          .required()
+          .number("position_quantum", &P::position_quantum, {0.0, 1e-3}, "m",
+                  "Resolution of the virtual device's encoders")
+          .required()
+          .integer("velocity_window", &P::velocity_window, 2, 64,
+                   "Milliseconds of readings over which velocity is estimated")
+          .required()
+          .integer("force_delay", &P::force_delay, 1, 8,
+                   "Ticks from a command to the force that the hand feels");
+  return schema;
 }
 
 int readings_in_window(int milliseconds, double rate) noexcept {

@@ -6,7 +6,8 @@
 #include "core/device/handle_physics.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::device {
@@ -23,8 +24,8 @@ struct VirtualDeviceParameters {
 /// How many readings a window of velocity has: two at least.
 int readings_in_window(int milliseconds, double rate) noexcept;
 
-/// Reads the keys of a [device] table; force_delay may be left out.
-VirtualDeviceParameters read_virtual_device_parameters(Table& table);
+/// The keys of [device].
+const Schema<VirtualDeviceParameters>& virtual_device_schema();
 
 /// A device without hardware. Each write() advances the physics by one period; the force of a tick
 /// acts force_delay ticks later, by default during the next one, as it does through a bus.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/markers/serial_line.h"
 
 namespace haptrial::markers {
@@ -38,35 +38,36 @@ std::string full_name(const MarkerMeaning& meaning) {
 
 }  // namespace
 
-MarkerOptions read_marker_options(Table& table) {
-  MarkerOptions options;
-  options.used = true;
-  if (table.has("serial")) {
-    options.serial = table.text("serial");
-  }
-  if (table.has("baud")) {
-    options.baud = static_cast<int>(table.integer("baud", 1, 10'000'000));
-    if (!SerialLine::has_rate(options.baud)) {
-      table.reject("baud", fmt::format("{}", options.baud),
-                   "9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600");
-    }
-  }
-  if (table.has("pulse")) {
-    options.pulse = table.number("pulse", {0.0, 1.0}, "s");
-  }
-  for (const auto& [key, code] :
-       std::initializer_list<std::pair<const char*, int*>>{{"trial", &options.trial},
-                                                           {"interval", &options.interval},
-                                                           {"stage", &options.stage},
-                                                           {"response", &options.response}}) {
-    if (table.has(key)) {
-      *code = static_cast<int>(table.integer(key, 1, kMostCode));
-    }
-  }
-  if (table.has("send")) {
-    read_send(table, options);
-  }
-  return options;
+const Schema<MarkerOptions>& marker_schema() {
+  using O = MarkerOptions;
+  static const auto schema =
+      Schema<O>()
+          .text("serial", &O::serial,
+                "Serial line that receives each code as a byte, such as \"/dev/ttyUSB0\"")
+          .otherwise("none")
+          .integer("baud", &O::baud, 1, 10'000'000, "Speed of the serial line, in bits per second")
+          .number("pulse", &O::pulse, {0.0, 1.0}, "s",
+                  "Time for which a code stands on the serial line before a zero follows; 0: it "
+                  "stays")
+          .integer("trial", &O::trial, 1, kMostCode, "Code of the beginning of a trial")
+          .integer("interval", &O::interval, 1, kMostCode,
+                   "Code of the first interval; the codes of the others count on from it")
+          .integer("stage", &O::stage, 1, kMostCode,
+                   "Code of the first stage; the codes of the others count on from it")
+          .integer("response", &O::response, 1, kMostCode,
+                   "Code of the first answer; the codes of the others count on from it")
+          .custom("send",
+                  "Kinds of marker that go to the serial line; codes of one tick go in this order",
+                  [](Table& table, const std::string&, O& o) { read_send(table, o); })
+          .otherwise("stage, response, interval, trial")
+          .check([](Table& table, O& o) {
+            o.used = true;
+            if (!SerialLine::has_rate(o.baud)) {
+              table.reject("baud", fmt::format("{}", o.baud),
+                           "9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600");
+            }
+          });
+  return schema;
 }
 
 void check_meanings(Table& root, const char* key, const std::vector<MarkerMeaning>& meanings) {

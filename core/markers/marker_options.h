@@ -8,7 +8,9 @@
 
 namespace haptrial {
 class Table;
-}
+template <class T>
+class Schema;
+}  // namespace haptrial
 
 namespace haptrial::markers {
 
@@ -27,12 +29,8 @@ struct MarkerOptions {
                                      record::MarkerOf::kInterval, record::MarkerOf::kTrial};
 };
 
-/// Reads a [markers] table; every key is optional.
-///
-///     serial  a serial line            baud   9600 to 921600 (115200)
-///     pulse   of a code [s] (0.005)    send   of "stage", "response", "interval", "trial"
-///     trial (1), interval (11), stage (21), response (101)   codes, 1 to 255
-MarkerOptions read_marker_options(Table& table);
+/// The keys of [markers].
+const Schema<MarkerOptions>& marker_schema();
 
 /// What a code stands for.
 struct MarkerMeaning {

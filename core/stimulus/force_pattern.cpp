@@ -1,11 +1,13 @@
 #include "core/stimulus/force_pattern.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/random.h"
 
 namespace haptrial::stimulus {
@@ -58,18 +60,50 @@ void ramp_ends(double ramp, double duration, std::vector<double>& forces) {
 
 }  // namespace
 
-ForcePatternParameters read_force_pattern_parameters(Table& table) {
-  ForcePatternParameters p;
-  p.sinusoids = static_cast<int>(table.integer("sinusoids", 1, 1000));
-  p.max_frequency = table.number("max_frequency", {0.001, 100.0}, "Hz");
-  p.base_max = table.number("base_max", {0.0, 100.0, true}, "N");
-  p.bumps_min = static_cast<int>(table.integer("bumps_min", 0, 100));
-  p.bumps_max = static_cast<int>(table.integer("bumps_max", p.bumps_min, 100));
-  p.bump_max = table.number("bump_max", {p.base_max, 100.0, false}, "N");
-  p.bump_width_min = table.number("bump_width_min", {0.0, 60.0, true}, "s");
-  p.bump_width_max = table.number("bump_width_max", {p.bump_width_min, 60.0, false}, "s");
-  p.ramp = table.number("ramp", {0.0, 60.0, false}, "s");
-  return p;
+const Schema<ForcePatternParameters>& force_pattern_schema() {
+  using P = ForcePatternParameters;
+  static const auto schema =
+      Schema<P>()
+          .integer("sinusoids", &P::sinusoids, 1, 1000,
+                   "Number of sinusoids whose sum is the base of a force pattern")
+          .required()
+          .number("max_frequency", &P::max_frequency, {0.001, 100.0}, "Hz",
+                  "Highest frequency of the sinusoids of a force pattern's base")
+          .required()
+          .number("base_max", &P::base_max, {0.0, 100.0, true}, "N",
+                  "Greatest force of a force pattern's base")
+          .required()
+          .integer("bumps_min", &P::bumps_min, 0, 100, "Least number of bumps of a force pattern")
+          .required()
+          .integer("bumps_max", &P::bumps_max, 0, 100,
+                   "Greatest number of bumps of a force pattern")
+          .required()
+          .number("bump_max", &P::bump_max, {0.0, 100.0, true}, "N",
+                  "Greatest force of a force pattern with its bumps")
+          .required()
+          .number("bump_width_min", &P::bump_width_min, {0.0, 60.0, true}, "s",
+                  "Least width of a bump")
+          .required()
+          .number("bump_width_max", &P::bump_width_max, {0.0, 60.0, true}, "s",
+                  "Greatest width of a bump")
+          .required()
+          .number("ramp", &P::ramp, {0.0, 60.0}, "s",
+                  "Time over which a force pattern begins and ends")
+          .required()
+          .check([](Table& table, const P& p) {
+            const auto at_least = [&table](const char* key, double value, double least,
+                                           const char* other, const char* unit) {
+              if (value < least) {
+                table.reject(key, fmt::format("{:g}", value),
+                             fmt::format("at least {}, {:g}{}", other, least, unit));
+              }
+            };
+            at_least("bumps_max", p.bumps_max, p.bumps_min, "bumps_min", "");
+            at_least("bump_max", p.bump_max, p.base_max, "base_max", " [N]");
+            at_least("bump_width_max", p.bump_width_max, p.bump_width_min, "bump_width_min",
+                     " [s]");
+          });
+  return schema;
 }
 
 ForcePattern::ForcePattern(const ForcePatternParameters& parameters, double duration,

@@ -4,7 +4,8 @@
 
 namespace haptrial {
 class RandomStream;
-class Table;
+template <class T>
+class Schema;
 }  // namespace haptrial
 
 namespace haptrial::stimulus {
@@ -22,8 +23,8 @@ struct ForcePatternParameters {
   double ramp{1.0};            // linear ramp at either end >= 0 [s]
 };
 
-/// Reads the keys of a [force_pattern] table.
-ForcePatternParameters read_force_pattern_parameters(Table& table);
+/// The keys of [force_pattern].
+const Schema<ForcePatternParameters>& force_pattern_schema();
 
 /// The magnitude of the normal force to be learnt, as a function of time:
 ///

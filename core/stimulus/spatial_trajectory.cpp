@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/random.h"
 
 namespace haptrial::stimulus {
@@ -39,19 +39,33 @@ std::vector<Eigen::Vector3d> random_curve(const TrajectoryParameters& p, RandomS
 
 }  // namespace
 
-TrajectoryParameters read_trajectory_parameters(Table& table) {
-  TrajectoryParameters p;
-  if (table.has("from")) {
-    p.from = table.text("from");
-    p.speed = table.number("speed", {0.0, 1.0, true}, "m/s");
-    return p;
-  }
-  p.length_x = table.number("length_x", {0.0, 1.0, true}, "m");
-  p.range_z = table.number("range_z", {0.0, 1.0, true}, "m");
-  p.sinusoids = static_cast<int>(table.integer("sinusoids", 1, 1000));
-  p.max_spatial_frequency = table.number("max_spatial_frequency", {0.1, 1000.0}, "cycles/m");
-  p.speed = table.number("speed", {0.0, 1.0, true}, "m/s");
-  return p;
+const Schema<TrajectoryParameters>& trajectory_schema() {
+  using P = TrajectoryParameters;
+  const auto generated = [](const P& p) { return p.from.empty(); };
+  static const auto schema =
+      Schema<P>()
+          .text("from", &P::from, "File with the curve to follow, relative to the definition")
+          .otherwise("generated curves")
+          .number("length_x", &P::length_x, {0.0, 1.0, true}, "m",
+                  "Extent of a generated trajectory from left to right")
+          .required()
+          .only_if(generated)
+          .number("range_z", &P::range_z, {0.0, 1.0, true}, "m",
+                  "Extent of a generated trajectory across")
+          .required()
+          .only_if(generated)
+          .integer("sinusoids", &P::sinusoids, 1, 1000,
+                   "Number of sinusoids whose sum is a generated trajectory")
+          .required()
+          .only_if(generated)
+          .number("max_spatial_frequency", &P::max_spatial_frequency, {0.1, 1000.0}, "cycles/m",
+                  "Highest spatial frequency of the sinusoids of a generated trajectory")
+          .required()
+          .only_if(generated)
+          .number("speed", &P::speed, {0.0, 1.0, true}, "m/s",
+                  "Speed along the arc of the trajectory")
+          .required();
+  return schema;
 }
 
 SpatialTrajectory::SpatialTrajectory(const TrajectoryParameters& parameters, RandomStream& random)

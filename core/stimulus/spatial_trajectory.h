@@ -8,7 +8,8 @@
 
 namespace haptrial {
 class RandomStream;
-class Table;
+template <class T>
+class Schema;
 }  // namespace haptrial
 
 namespace haptrial::stimulus {
@@ -24,8 +25,8 @@ struct TrajectoryParameters {
   std::vector<Eigen::Vector3d> points{};  // its path, once it is read // (N x 3) [m]
 };
 
-/// Reads the keys of a [trajectory] table: `speed`, and either `from` or those of a random path.
-TrajectoryParameters read_trajectory_parameters(Table& table);
+/// The keys of [trajectory].
+const Schema<TrajectoryParameters>& trajectory_schema();
 
 /// A curve in the xz plane, travelled at constant speed along its arc:
 ///

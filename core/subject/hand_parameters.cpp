@@ -1,20 +1,38 @@
 #include "core/subject/hand_parameters.h"
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::subject {
 
-HandParameters read_hand_parameters(Table& table) {
-  HandParameters p;
-  p.handle_mass = table.number("handle_mass", {0.001, 10.0}, "kg");
-  p.coulomb_friction = table.number("coulomb_friction", {0.0, 10.0}, "N");
-  p.hand_mass = table.number("hand_mass", {0.001, 10.0}, "kg");
-  p.damping = table.number("damping", {0.0, 1000.0}, "N·s/m");
-  p.stiffness = table.number("stiffness", {0.0, 1e5}, "N/m");
-  p.posture_time = table.number("posture_time", {0.001, 100.0}, "s");
-  p.excitation_time = table.number("excitation_time", {0.001, 1.0}, "s");
-  p.activation_time = table.number("activation_time", {0.001, 1.0}, "s");
-  return p;
+const Schema<HandParameters>& hand_schema() {
+  using P = HandParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("handle_mass", &P::handle_mass, {0.001, 10.0}, "kg",
+                  "Mass of the device's handle, which moves with the hand")
+          .required()
+          .number("coulomb_friction", &P::coulomb_friction, {0.0, 10.0}, "N",
+                  "Coulomb friction of the device's handle")
+          .required()
+          .number("hand_mass", &P::hand_mass, {0.001, 10.0}, "kg",
+                  "Mass of a virtual participant's hand")
+          .required()
+          .number("damping", &P::damping, {0.0, 1000.0}, "N·s/m",
+                  "Damping of a virtual participant's grip")
+          .required()
+          .number("stiffness", &P::stiffness, {0.0, 1e5}, "N/m",
+                  "Stiffness of a virtual participant's grip")
+          .required()
+          .number("posture_time", &P::posture_time, {0.001, 100.0}, "s",
+                  "Time constant at which a virtual hand's posture yields to a lasting force")
+          .required()
+          .number("excitation_time", &P::excitation_time, {0.001, 1.0}, "s",
+                  "Time constant of the muscles' excitation")
+          .required()
+          .number("activation_time", &P::activation_time, {0.001, 1.0}, "s",
+                  "Time constant of the muscles' activation")
+          .required();
+  return schema;
 }
 
 AxisDynamics axis_dynamics(const HandParameters& p, bool posture_yields) {

@@ -3,7 +3,8 @@
 #include <Eigen/Core>
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::subject {
@@ -21,8 +22,8 @@ struct HandParameters {
   double activation_time{0.040};  // muscle, second lag >= 0.001 [s]
 };
 
-/// Reads the keys of a [hand] table.
-HandParameters read_hand_parameters(Table& table);
+/// The keys of [hand].
+const Schema<HandParameters>& hand_schema();
 
 /// State of one axis: position, velocity, posture, excitation, muscle force [m, m/s, m, N, N].
 using AxisState = Eigen::Matrix<double, 5, 1>;

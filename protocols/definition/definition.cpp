@@ -6,24 +6,24 @@
 #include <cctype>
 #include <filesystem>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/pages/read_pages.h"
 
 namespace haptrial::protocols {
 namespace {
 
 void read_devices(Table& root, Definition& setup) {
-  const auto read = [&root](const char* key, auto& into, auto reader) {
+  const auto read = [&root](const char* key, auto& into, const auto& schema) {
     if (root.has(key)) {
       Table table = root.table(key);
-      into = reader(table);
+      schema.read(table, into);
     }
   };
-  read("force_dimension", setup.force_dimension, device::read_force_dimension_parameters);
-  read("open_haptics", setup.open_haptics, device::read_open_haptics_parameters);
-  read("mouse", setup.mouse, device::read_mouse_parameters);
-  read("gamepad", setup.gamepad, device::read_gamepad_parameters);
-  read("pedal", setup.pedal, device::read_pedal_parameters);
+  read("force_dimension", setup.force_dimension, device::force_dimension_schema());
+  read("open_haptics", setup.open_haptics, device::open_haptics_schema());
+  read("mouse", setup.mouse, device::mouse_schema());
+  read("gamepad", setup.gamepad, device::gamepad_schema());
+  read("pedal", setup.pedal, device::pedal_schema());
 }
 
 }  // namespace
@@ -45,26 +45,26 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
     definition.protocol = experiment.text("protocol");
   }
   definition.rate = experiment.number("rate", {100.0, 20000.0}, "Hz");
-  definition.envelope = device::read_envelope_limits(envelope);
-  definition.device = device::read_virtual_device_parameters(device);
+  definition.envelope = device::envelope_schema().read(envelope);
+  definition.device = device::virtual_device_schema().read(device);
   const bool cvode = hand.choice("integrator", {"exact", "cvode"}) == "cvode";
   definition.integrator = cvode ? Integrator::kCvode : Integrator::kExact;
-  definition.hand = subject::read_hand_parameters(hand);
+  definition.hand = subject::hand_schema().read(hand);
   if (!envelope.has("holding_force")) {  // friction holds on both sides of a standstill
     definition.envelope.holding_force =
         std::max(definition.envelope.holding_force, 5.0 * definition.hand.coulomb_friction);
   }
-  definition.screen = read_screen_options(screen);
-  definition.texts = read_session_texts(texts);
+  definition.screen = screen_schema().read(screen);
+  definition.texts = text_schema().read(texts);
   definition.pages = pages::read_pages(root);
   read_devices(root, definition);
   if (root.has("markers")) {
     Table markers = root.table("markers");
-    definition.markers = markers::read_marker_options(markers);
+    definition.markers = markers::marker_schema().read(markers);
   }
   if (root.has("tutoring")) {
     Table tutoring = root.table("tutoring");
-    definition.tutoring = read_tutoring_options(tutoring);
+    definition.tutoring = tutoring_schema().read(tutoring);
   }
   definition.tutoring.most_force = definition.envelope.max_force;
   if (definition.screen.photodiode == Photodiode::kOnset) {

@@ -2,86 +2,75 @@
 
 #include <fmt/format.h>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::protocols {
 namespace {
 
 constexpr std::size_t kLongestText = 4000;  // [bytes]; more would not be legible on a screen
 
-std::string read_text(Table& table, std::string_view key, std::string_view otherwise = "") {
-  const std::string text =
-      otherwise.empty() ? table.shown_text(key) : table.shown_text(key, otherwise);
-  if (text.size() > kLongestText) {
-    table.reject(key, fmt::format("{} bytes long", text.size()),
-                 fmt::format("at most {} bytes", kLongestText));
-  }
-  return text;
-}
-
-Photodiode read_photodiode(Table& table) {
-  const std::string when = table.choice("photodiode", {"off", "frames", "run", "onset"});
-  if (when == "frames") {
-    return Photodiode::kEveryFrame;
-  }
-  return when == "run" ? Photodiode::kRun : when == "onset" ? Photodiode::kOnset : Photodiode::kOff;
-}
-
 }  // namespace
 
-ScreenOptions read_screen_options(Table& table) {
-  ScreenOptions options;
-  if (table.has("title")) {
-    options.title = table.text("title");
-  }
-  if (table.has("full_screen")) {
-    options.full_screen = table.boolean("full_screen");
-  }
-  if (table.has("monitor")) {
-    constexpr long kMostMonitors = 16;
-    options.monitor = static_cast<int>(table.integer("monitor", 0, kMostMonitors - 1));
-  }
-  if (table.has("refresh_lock")) {
-    options.refresh_lock = table.boolean("refresh_lock");
-  }
-  if (table.has("participant_steers")) {
-    options.participant_steers = table.boolean("participant_steers");
-  }
-  if (table.has("photodiode")) {
-    options.photodiode = read_photodiode(table);
-  }
-  if (table.has("photodiode_time")) {
-    options.photodiode_time = table.number("photodiode_time", {0.0, 10.0, true}, "s");
-  }
-  return options;
+const Schema<ScreenOptions>& screen_schema() {
+  using O = ScreenOptions;
+  constexpr long kMostMonitors = 16;
+  static const auto schema =
+      Schema<O>()
+          .text("title", &O::title, "Title of the participant's window")
+          .flag("full_screen", &O::full_screen,
+                "Whether the participant's window fills the monitor")
+          .integer("monitor", &O::monitor, 0, kMostMonitors - 1,
+                   "Monitor of the participant's window, from 0, the primary one")
+          .flag("refresh_lock", &O::refresh_lock, "Whether pictures wait for the monitor's refresh")
+          .flag("participant_steers", &O::participant_steers,
+                "Whether keys of the participant's window start, pause, repeat, skip and clear")
+          .choice("photodiode", &O::photodiode,
+                  {{"off", Photodiode::kOff},
+                   {"frames", Photodiode::kEveryFrame},
+                   {"run", Photodiode::kRun},
+                   {"onset", Photodiode::kOnset}},
+                  "Square in a corner for a photodiode: it changes with each picture, is white "
+                  "while a trial runs, or is white after onsets")
+          .number("photodiode_time", &O::photodiode_time, {0.0, 10.0, true}, "s",
+                  "Time for which the photodiode's square stays white after an onset");
+  return schema;
 }
 
-SessionTexts read_session_texts(Table& table) {
-  SessionTexts texts;
-  texts.instructions = read_text(table, "instructions");
-  texts.practice = read_text(table, "practice");
-  texts.rest = read_text(table, "rest");
-  texts.thanks = read_text(table, "thanks");
-  const auto read_if_there = [&table](std::string_view key, std::string& text) {
-    table.otherwise(key, text);
-    text = read_text(table, key, text);
-  };
-  read_if_there("stopped", texts.stopped);
-  read_if_there("paused", texts.paused);
-  read_if_there("preparing", texts.preparing);
-  read_if_there("recovering", texts.recovering);
-  read_if_there("limit", texts.limit);
-  read_if_there("begin", texts.begin);
-  read_if_there("begin_alone", texts.begin_alone);
-  read_if_there("go_on", texts.go_on);
-  read_if_there("choose", texts.choose);
-  read_if_there("move_mark", texts.move_mark);
-  read_if_there("counts", texts.counts);
-  read_if_there("take_again", texts.take_again);
-  read_if_there("type_number", texts.type_number);
-  read_if_there("type_words", texts.type_words);
-  read_if_there("declined", texts.declined);
-  return texts;
+const Schema<SessionTexts>& text_schema() {
+  using T = SessionTexts;
+  static const auto schema = [] {
+    Schema<T> texts;
+    const auto add = [&texts](const char* key, std::string T::*member, const char* description) {
+      texts.shown_text(key, member, kLongestText, description);
+    };
+    const auto require = [&](const char* key, std::string T::*member, const char* description) {
+      add(key, member, description);
+      texts.required();
+    };
+    require("instructions", &T::instructions,
+            "Text before the first trial; the first line of every text is its title");
+    require("practice", &T::practice, "Text before practice");
+    require("rest", &T::rest, "Text during a break");
+    require("thanks", &T::thanks, "Text after the last trial");
+    add("stopped", &T::stopped, "Text after a fault or an emergency stop");
+    add("paused", &T::paused, "Text while the experimenter pauses the session");
+    add("preparing", &T::preparing, "Text while a bone is built, before its first picture");
+    add("recovering", &T::recovering, "Text while the force stays off after an aborted pass");
+    add("limit", &T::limit, "Last paragraph of the instructions of a force study");
+    add("begin", &T::begin, "Small line below a text that the experimenter ends");
+    add("begin_alone", &T::begin_alone,
+        "Small line below a text that ends with a key in a session without an experimenter");
+    add("go_on", &T::go_on, "Small line below a page that is only read");
+    add("choose", &T::choose, "Small line below a question with choices");
+    add("move_mark", &T::move_mark, "Small line below a scale");
+    add("counts", &T::counts, "Text between practice and the first trial that counts");
+    add("take_again", &T::take_again, "Text at the end of a break");
+    add("type_number", &T::type_number, "Small line below a question for a number");
+    add("type_words", &T::type_words, "Small line below a question for words");
+    add("declined", &T::declined, "Text for a participant who does not consent");
+    return texts;
+  }();
+  return schema;
 }
 
 render::TextPage page_of(const std::string& text, const std::string& hint) {

@@ -6,7 +6,8 @@
 #include "core/render/flat/text_screen.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::protocols {
@@ -58,21 +59,11 @@ struct SessionTexts {
   std::string declined{"Thank you\nThe session ends here."};  // who does not consent
 };
 
-/// Reads a [screen] table; every key is optional.
-///
-///     title         of the window
-///     full_screen   true or false
-///     monitor       from 0
-///     refresh_lock  true or false: whether drawing waits for the monitor
-///     participant_steers  true or false: whether keys of the participant's window do more than
-///                         stop
-///     photodiode    "off", "frames" (white every other frame), "run" (white during the run) or
-///                   "onset" (white for photodiode_time after the onset of a marker)
-///     photodiode_time  [s]
-ScreenOptions read_screen_options(Table& table);
+/// The keys of [screen].
+const Schema<ScreenOptions>& screen_schema();
 
-/// Reads a [texts] table. Required: instructions, practice, rest, thanks; the others have defaults.
-SessionTexts read_session_texts(Table& table);
+/// The keys of [texts] that every protocol has.
+const Schema<SessionTexts>& text_schema();
 
 /// A page of a text. @param hint  how to go on; empty where nobody is asked to
 render::TextPage page_of(const std::string& text, const std::string& hint = "");

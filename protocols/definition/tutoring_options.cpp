@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/definition/table_vector.h"
 #include "core/device/device.h"
 #include "core/record/table/schema.h"
@@ -13,14 +13,22 @@
 
 namespace haptrial::protocols {
 
+using control::TutoringGains;
 using network::Passivity;
 
+static const Schema<TutoringNetwork>& network_schema() {
+  using N = TutoringNetwork;
+  static const auto schema =
+      Schema<N>()
+          .text("name", &N::name, "Name of a simulated network that is a condition")
+          .required()
+          .keys_of(&N::channel, network::channel_schema());
+  return schema;
+}
+
 static void read_networks(Table& table, TutoringOptions& o) {
-  if (!table.has("networks")) {
-    return;
-  }
   for (Table& each : table.tables("networks")) {
-    TutoringNetwork network{each.text("name"), network::read_channel_conditions(each)};
+    TutoringNetwork network = network_schema().read(each);
     const bool taken = std::ranges::any_of(
         o.networks, [&](const TutoringNetwork& other) { return other.name == network.name; });
     if (network.name.empty() || network.name.size() >= record::kConditionBytes || taken) {
@@ -35,44 +43,63 @@ static void read_networks(Table& table, TutoringOptions& o) {
   }
 }
 
-static void read_link_options(Table& table, TutoringOptions& o) {
-  o.authority = table.number_or("authority", o.authority, {0.0, 1.0}, "1");
-  o.felt_back = table.number_or("felt_back", o.felt_back, {0.0, 1.0}, "1");
-  if (table.has("passivity")) {
-    // Recordings of version 0.2 may have "waves"; whoever only reads them needs no law of theirs.
-    const std::string word = table.choice("passivity", {"tank", "none", "waves"});
-    o.passivity = word == "none" ? Passivity::kNone : Passivity::kTank;
-  }
-  if (table.has("deadband")) {
-    o.deadband = table.boolean("deadband");
-  }
-  if (table.has("jitter_buffer")) {
-    o.jitter_buffer = table.boolean("jitter_buffer");
-  }
-  o.deadline = table.number_or("deadline", o.deadline, {0.01, 5.0}, "s");
-  o.patience = table.number_or("patience", o.patience, {1.0, 600.0}, "s");
-  if (table.has("channel")) {
-    Table channel = table.table("channel");
-    o.channel = network::read_channel_conditions(channel);
-  }
-  read_networks(table, o);
+static const Schema<TutoringGains>& gains_schema() {
+  using G = TutoringGains;
+  static const auto schema =
+      Schema<G>()
+          .number("stiffness", &G::stiffness, {0.0, 1000.0}, "N/m",
+                  "Stiffness of the spring from the hand to the tutor's, with --tutor")
+          .number("damping", &G::damping, {0.0, 100.0}, "N·s/m",
+                  "Damping beside the spring from the hand to the tutor's")
+          .number("force_share", &G::force_share, {0.0, 1.0}, "1",
+                  "Share of the tutor's forces that is played to the hand");
+  return schema;
 }
 
-TutoringOptions read_tutoring_options(Table& table) {
-  TutoringOptions o;
-  o.gains.stiffness = table.number_or("stiffness", o.gains.stiffness, {0.0, 1000.0}, "N/m");
-  o.gains.damping = table.number_or("damping", o.gains.damping, {0.0, 100.0}, "N·s/m");
-  o.gains.force_share = table.number_or("force_share", o.gains.force_share, {0.0, 1.0}, "1");
-  o.ramp = table.number_or("ramp", o.ramp, {0.05, 10.0}, "s");
-  o.speed = table.number_or("speed", o.speed, {0.5, 1.0}, "1");
-  if (table.has("pause_buttons")) {
-    o.pause_buttons = read_bits(table, "pause_buttons");
-  }
-  if (table.has("pause_keys")) {
-    o.pause_keys = read_window_keys(table, "pause_keys");
-  }
-  read_link_options(table, o);
-  return o;
+const Schema<TutoringOptions>& tutoring_schema() {
+  using O = TutoringOptions;
+  static const auto schema =
+      Schema<O>()
+          .keys_of(&O::gains, gains_schema())
+          .number("ramp", &O::ramp, {0.05, 10.0}, "s",
+                  "Time over which the tutor takes the lead, and gives it back")
+          .number("speed", &O::speed, {0.5, 1.0}, "1",
+                  "Speed at which a recorded run is played, as a share of its own")
+          .bits("pause_buttons", &O::pause_buttons,
+                "Buttons of the handle; a recorded run waits while one of them is pressed")
+          .otherwise("in force training every button, else none")
+          .custom("pause_keys",
+                  "Keys of the window; a recorded run waits while one of them is pressed",
+                  [](Table& table, const std::string& key, O& o) {
+                    o.pause_keys = read_window_keys(table, key);
+                  })
+          .otherwise("none")
+          .number("authority", &O::authority, {0.0, 1.0}, "1",
+                  "Share with which the hand that teaches leads the other one over a link")
+          .number("felt_back", &O::felt_back, {0.0, 1.0}, "1",
+                  "Share of the coupling that the hand that leads feels over a link")
+          // Recordings of version 0.2 may have "waves"; only reading them needs no law of theirs.
+          .choice(
+              "passivity", &O::passivity,
+              {{"tank", Passivity::kTank}, {"none", Passivity::kNone}, {"waves", Passivity::kTank}},
+              "Law that keeps hands that are coupled over a link from swinging up; waves is "
+              "read in recordings of version 0.2 alone")
+          .flag("deadband", &O::deadband,
+                "Whether a link sends only what would be missed, to save bandwidth")
+          .flag("jitter_buffer", &O::jitter_buffer,
+                "Whether the other hand's ticks are taken as evenly as they were sent, at the cost "
+                "of some delay")
+          .number("deadline", &O::deadline, {0.01, 5.0}, "s",
+                  "Silence of a link after which the force is zero")
+          .number("patience", &O::patience, {1.0, 600.0}, "s",
+                  "Silence of a link after which the session ends, to be resumed")
+          .table("channel", &O::channel, network::channel_schema(),
+                 "Simulated network of a dry run, each way")
+          .custom("networks",
+                  "Simulated networks that are conditions: in a dry run each trial goes over one "
+                  "of them",
+                  [](Table& table, const std::string&, O& o) { read_networks(table, o); });
+  return schema;
 }
 
 bool asks_to_wait(const TutoringOptions& o, const device::DeviceReading& reading) noexcept {

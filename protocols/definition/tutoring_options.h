@@ -9,7 +9,8 @@
 #include "core/network/side/side_parameters.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 namespace device {
 struct DeviceReading;
 }
@@ -49,7 +50,8 @@ struct TutoringOptions {
 /// it.
 inline constexpr std::uint32_t kPauseBit = std::uint32_t{1} << 31;
 
-TutoringOptions read_tutoring_options(Table& table);
+/// The keys of [tutoring].
+const Schema<TutoringOptions>& tutoring_schema();
 
 /// Whether who is led asks a playback to wait. Servo thread.
 bool asks_to_wait(const TutoringOptions& options, const device::DeviceReading& reading) noexcept;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/text/counted.h"
 #include "core/base/text/nearest.h"
 #include "core/control/loop_margin.h"
@@ -119,8 +119,9 @@ void reject_gains(Table& root, const ForceDefinition& d) {
     if (control::lightest_calm_hand(gains, loop) > control::kHeaviestHand) {
       guidance.reject(
           name, fmt::format("{:g} N/m and {:g} N·s/m", gains.stiffness, gains.damping),
-          fmt::format("what a hand of up to {:g} kg carries at {:g} Hz with forces that come {} late",
-                      control::kHeaviestHand, d.rate, control::ticks_in_words(loop.force_delay)));
+          fmt::format(
+              "what a hand of up to {:g} kg carries at {:g} Hz with forces that come {} late",
+              control::kHeaviestHand, d.rate, control::ticks_in_words(loop.force_delay)));
     }
   }
 }
@@ -143,8 +144,8 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   ForceDefinition d{subject::Population(subject)};
   d.protocol = kForceTraining;
   read_common(root, file_name, d);
-  d.trajectory = stimulus::read_trajectory_parameters(trajectory);
-  d.force_pattern = stimulus::read_force_pattern_parameters(force_pattern);
+  d.trajectory = stimulus::trajectory_schema().read(trajectory);
+  d.force_pattern = stimulus::force_pattern_schema().read(force_pattern);
   d.guidance = read_guidance_parameters(guidance);
   d.stimulus_rate = recording.number("stimulus_rate", {10.0, 10000.0}, "Hz");
   d.design = read_design(design);

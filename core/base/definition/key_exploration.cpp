@@ -131,6 +131,14 @@ void KeyExploration::ask(KnownKey key) {
   }
 }
 
+void KeyExploration::describe(std::string_view table, std::string_view key,
+                              const std::string& words, const std::string& otherwise) {
+  described_[path_of(table, key)] = words;
+  if (!otherwise.empty()) {
+    note_default(table, key, otherwise);
+  }
+}
+
 void KeyExploration::note_default(std::string_view table, std::string_view key,
                                   const std::string& value) {
   std::string& known = defaults_[path_of(table, key)];
@@ -182,6 +190,9 @@ std::vector<KnownKey> KeyExploration::keys() const {
     key.optional = optional_.contains(path) || !key.otherwise.empty();
     if (const auto at = defaults_.find(path); at != defaults_.end() && key.otherwise.empty()) {
       key.otherwise = at->second;
+    }
+    if (const auto at = described_.find(path); at != described_.end()) {
+      key.words = at->second;
     }
     if (texts_.contains(path) && key.type.find("text") == std::string::npos) {
       key.type += " or text";

@@ -24,6 +24,7 @@ struct KnownKey {
   std::string otherwise;  // what it is worth if it is left out; empty: the reader does not say
   bool optional{false};   // the reader asks whether it is there
   std::vector<std::string> when;  // "type: wall, box": only with these choices of the same table
+  std::string words;              // what it is; empty: its reader has no schema
 
   std::string path() const { return table.empty() ? key : table + "." + key; }
 };
@@ -41,6 +42,8 @@ class KeyExploration {
   std::string choose(std::string_view table, std::string_view key,
                      const std::vector<std::string>& allowed, const std::string& first);
   void ask(KnownKey key);
+  void describe(std::string_view table, std::string_view key, const std::string& words,
+                const std::string& otherwise);
   void note_default(std::string_view table, std::string_view key, const std::string& value);
   /// What note_default() said in any reading, if it is a number.
   std::optional<double> default_of(std::string_view table, std::string_view key) const;
@@ -72,6 +75,7 @@ class KeyExploration {
   std::map<std::string, std::map<std::string, std::vector<std::string>>> words_;  // table, key
   std::set<std::string> optional_, texts_;
   std::map<std::string, std::string> defaults_;
+  std::map<std::string, std::string> described_;  // words, by path
 };
 
 /// Finds every key that a reader asks for, by reading definitions that are not there: each key that

@@ -13,6 +13,7 @@
 namespace haptrial {
 
 class KeyExploration;
+class Table;
 
 /// A file's text and its name as sentences say it.
 struct NamedText {
@@ -24,6 +25,20 @@ struct NamedText {
 struct NumberOrText {
   std::optional<double> number;  // nothing: the text counts
   std::string text;
+};
+
+/// What lists of keys and documents say about a key of a table.
+struct KeyDescription {
+  std::string name;
+  std::string text;       // a noun phrase and its consequence
+  std::string otherwise;  // what holds if it is left out, where no value says it: "none"
+  bool required{false};
+
+  /// Whether its value is to be read; an optional key may be absent.
+  /// @param usual  what it is worth then
+  bool stands_in(const Table& table) const;
+  bool stands_in(const Table& table, double usual) const;
+  bool stands_in(const Table& table, std::string_view usual) const;
 };
 
 /// A table of a definition file (TOML), read key by key. Each read checks presence, type and bounds
@@ -71,7 +86,9 @@ class Table {
   double number_or(std::string_view key, double otherwise, const Bounds& bounds,
                    std::string_view unit);
   int integer_or(std::string_view key, int otherwise, long low, long high);
-  /// Says what the reader takes for a key that is left out; only an exploration listens.
+  /// Says what a key is, and what the reader takes for one that is left out; only lists of keys
+  /// listen.
+  void describe(const KeyDescription& key) const;
   void otherwise(std::string_view key, double value) const;
   void otherwise(std::string_view key, std::string_view value) const;
 

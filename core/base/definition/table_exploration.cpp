@@ -37,7 +37,8 @@ void Table::tell(std::string_view key, const char* type, std::string_view allowe
                       std::string(unit),
                       states(key) ? shown(*node_->table->get(key)) : "",
                       false,
-                      {}});
+                      {},
+                      ""});
 }
 
 void Table::otherwise(std::string_view key, double value) const {
@@ -50,6 +51,28 @@ void Table::otherwise(std::string_view key, std::string_view value) const {
   if (exploration() != nullptr) {
     exploration()->note_default(node_->path, key, std::string(value));
   }
+}
+
+void Table::describe(const KeyDescription& key) const {
+  if (exploration() != nullptr) {
+    exploration()->describe(node_->path, key.name, key.text, key.otherwise);
+  }
+}
+
+bool KeyDescription::stands_in(const Table& table) const { return required || table.has(name); }
+
+bool KeyDescription::stands_in(const Table& table, double usual) const {
+  if (!required && otherwise.empty()) {
+    table.otherwise(name, usual);
+  }
+  return stands_in(table);
+}
+
+bool KeyDescription::stands_in(const Table& table, std::string_view usual) const {
+  if (!required && otherwise.empty() && !usual.empty()) {
+    table.otherwise(name, usual);
+  }
+  return stands_in(table);
 }
 
 double Table::number_or(std::string_view key, double value, const Bounds& bounds,

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::device {
 namespace {
@@ -46,13 +46,18 @@ std::vector<std::string> find_gamepads(const std::string& folder) {
   return files;
 }
 
-GamepadParameters read_gamepad_parameters(Table& table) {
-  GamepadParameters p;
-  p.input = table.text("input");
-  p.dead_zone = table.number_or("dead_zone", p.dead_zone, {0.0, 0.9}, "1");
-  p.stop_button =
-      table.integer_or("stop_button", p.stop_button, -1, static_cast<long>(kButtons.size()) - 1);
-  return p;
+const Schema<GamepadParameters>& gamepad_schema() {
+  using P = GamepadParameters;
+  static const auto schema =
+      Schema<P>()
+          .text("input", &P::input,
+                "File of the game controller, /dev/input/by-id/...-event-joystick")
+          .required()
+          .number("dead_zone", &P::dead_zone, {0.0, 0.9}, "1",
+                  "Share of a stick's or a trigger's range that counts as rest")
+          .integer("stop_button", &P::stop_button, -1, static_cast<long>(kButtons.size()) - 1,
+                   "Button of the game controller for emergency stops, 7 is start; -1: none");
+  return schema;
 }
 
 double stick_of(double value, const InputFile::Range& range, double dead_zone) noexcept {

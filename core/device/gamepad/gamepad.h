@@ -11,7 +11,8 @@
 #include "core/realtime/latest_value.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::device {
@@ -27,8 +28,8 @@ struct GamepadParameters {
 /// also if there is no such folder.
 std::vector<std::string> find_gamepads(const std::string& folder = "/dev/input/by-id");
 
-/// Reads a [gamepad] table.
-GamepadParameters read_gamepad_parameters(Table& table);
+/// The keys of [gamepad].
+const Schema<GamepadParameters>& gamepad_schema();
 
 /// What a game controller says, as the kernel names its parts (Linux gamepad specification). At
 /// rest all is 0.

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/device/input/axis_names.h"
 
@@ -13,6 +13,14 @@ namespace haptrial::device {
 namespace {
 
 constexpr double kMostValue = 2147483647.0;  // of the kernel's axes
+
+std::vector<std::pair<std::string, int>> named_axes() {
+  std::vector<std::pair<std::string, int>> axes;
+  for (const std::string& name : axis_names()) {
+    axes.emplace_back(name, axis_of(name));
+  }
+  return axes;
+}
 
 /// An end of the calibration: as stated, else as the device has it.
 double end_of(const char* key, std::optional<double> stated, std::optional<int> told,
@@ -28,23 +36,31 @@ double end_of(const char* key, std::optional<double> stated, std::optional<int> 
 
 }  // namespace
 
-PedalParameters read_pedal_parameters(Table& table) {
-  PedalParameters p;
-  p.input = table.text("input");
-  p.axis = axis_of(table.choice("axis", axis_names()));
-  const auto end = [&table](const char* key, std::optional<double>& into) {
-    if (table.has(key)) {
-      into = table.number(key, {-kMostValue, kMostValue}, "");
-    }
-  };
-  end("released", p.released);
-  end("pressed", p.pressed);
-  p.dead_zone = table.number_or("dead_zone", p.dead_zone, {0.0, 0.9}, "1");
-  if (p.released && p.pressed && *p.released == *p.pressed) {
-    table.reject("pressed", fmt::format("{:g}", *p.pressed),
-                 "another value than pedal.released, which is above or below it");
-  }
-  return p;
+const Schema<PedalParameters>& pedal_schema() {
+  using P = PedalParameters;
+  static const auto schema =
+      Schema<P>()
+          .text("input", &P::input,
+                "File of the input device of an analog pedal: "
+                "/dev/input/by-id/…-event-joystick, /dev/input/eventN, or a named pipe")
+          .required()
+          .choice("axis", &P::axis, named_axes(), "Axis of the pedal, by the kernel's name")
+          .required()
+          .number("released", &P::released, {-kMostValue, kMostValue}, "",
+                  "Axis value of a pedal that nobody presses")
+          .otherwise("lower end of the axis, as the device states it")
+          .number("pressed", &P::pressed, {-kMostValue, kMostValue}, "",
+                  "Axis value of a pedal that is fully down")
+          .otherwise("upper end of the axis, as the device states it")
+          .number("dead_zone", &P::dead_zone, {0.0, 0.9}, "1",
+                  "Share of the pedal's range that still counts as up")
+          .check([](Table& table, const P& p) {
+            if (p.released && p.pressed && *p.released == *p.pressed) {
+              table.reject("pressed", fmt::format("{:g}", *p.pressed),
+                           "another value than pedal.released, which is above or below it");
+            }
+          });
+  return schema;
 }
 
 double depth_of(double value, double released, double pressed, double dead_zone) noexcept {

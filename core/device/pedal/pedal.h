@@ -8,7 +8,8 @@
 #include "core/realtime/latest_value.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::device {
@@ -22,8 +23,8 @@ struct PedalParameters {
   double dead_zone{0.05};          // share of the way that still counts as up, 0 to 0.9
 };
 
-/// Reads a [pedal] table.
-PedalParameters read_pedal_parameters(Table& table);
+/// The keys of [pedal].
+const Schema<PedalParameters>& pedal_schema();
 
 /// How far a pedal is down, 0 to 1, where released != pressed:
 ///

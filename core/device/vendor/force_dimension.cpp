@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/device/dynamic_library.h"
 
@@ -189,21 +189,41 @@ ForceDimensionDevice::Api::Api(const std::string& path) : library(open_library(p
   library.find(drd_stop, "drdStop");
 }
 
-ForceDimensionParameters read_force_dimension_parameters(Table& table) {
-  ForceDimensionParameters p;
-  p.index = static_cast<int>(table.integer("index", 0, 3));
-  p.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
-  p.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
-  p.effector_mass = table.number("effector_mass", {0.0, 2.0}, "kg");
-  p.gravity_compensation = table.boolean("gravity_compensation");
-  p.velocity_window = table.number("velocity_window", {0.001, 0.1}, "s");
-  p.watchdog = table.number("watchdog", {0.001, kLongestWatchdog}, "s");
-  if (table.has("velocity_threshold")) {
-    p.velocity_threshold = static_cast<int>(table.integer("velocity_threshold", 0, 1'000'000));
-  }
-  p.time_guard = table.number("time_guard", {0.0, 0.01}, "s");
-  p.stop_button = static_cast<int>(table.integer("stop_button", -1, 31));
-  return p;
+const Schema<ForceDimensionParameters>& force_dimension_schema() {
+  using P = ForceDimensionParameters;
+  static const auto schema =
+      Schema<P>()
+          .integer("index", &P::index, 0, 3, "Number of the device if several are connected")
+          .required()
+          .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
+                  "Force at which the driver saturates; at most what the model gives is used")
+          .required()
+          .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
+                  "Radius of the device's workspace")
+          .required()
+          .number("effector_mass", &P::effector_mass, {0.0, 2.0}, "kg",
+                  "Mass mounted on the handle, which gravity compensation carries, too")
+          .required()
+          .flag("gravity_compensation", &P::gravity_compensation,
+                "Whether the device carries its own weight")
+          .required()
+          .number("velocity_window", &P::velocity_window, {0.001, 0.1}, "s",
+                  "Time over which velocity is estimated")
+          .required()
+          .number("watchdog", &P::watchdog, {0.001, kLongestWatchdog}, "s",
+                  "Time without a command after which the motors are switched off")
+          .required()
+          .integer("velocity_threshold", &P::velocity_threshold, 0, 1'000'000,
+                   "Velocity at which the device brakes, in its own units")
+          .otherwise("the device's own")
+          .number("time_guard", &P::time_guard, {0.0, 0.01}, "s",
+                  "Shortest time between two readings; a faster one gives the last position; 0: "
+                  "off")
+          .required()
+          .integer("stop_button", &P::stop_button, -1, 31,
+                   "Button of the handle for emergency stops; -1: none")
+          .required();
+  return schema;
 }
 
 ForceDimensionDevice::ForceDimensionDevice(const ForceDimensionParameters& parameters, double rate,

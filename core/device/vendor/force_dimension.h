@@ -7,7 +7,8 @@
 #include "core/device/vendor/call_timer.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::device {
@@ -29,8 +30,8 @@ struct ForceDimensionParameters {
   int stop_button{0};             // emergency stop; -1: none
 };
 
-/// Reads the keys of a [force_dimension] table; velocity_threshold may be left out.
-ForceDimensionParameters read_force_dimension_parameters(Table& table);
+/// The keys of [force_dimension].
+const Schema<ForceDimensionParameters>& force_dimension_schema();
 
 /// Drives an omega.3, delta.3, sigma or Falcon through the vendor's DHD library, and through its
 /// DRD library, where that is installed, for the automatic start-up calibration.

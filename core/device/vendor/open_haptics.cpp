@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/device/dynamic_library.h"
 
@@ -112,14 +112,26 @@ struct OpenHapticsDevice::Api {
   ErrorInfo (*get_error)();
 };
 
-OpenHapticsParameters read_open_haptics_parameters(Table& table) {
-  OpenHapticsParameters p;
-  p.name = table.text("name");
-  p.max_force = table.number("max_force", {0.0, 100.0, true}, "N");
-  p.workspace_radius = table.number("workspace_radius", {0.0, 2.0, true}, "m");
-  p.patience = table.number("patience", {0.002, 1.0}, "s");
-  p.stop_button = static_cast<int>(table.integer("stop_button", -1, 31));
-  return p;
+const Schema<OpenHapticsParameters>& open_haptics_schema() {
+  using P = OpenHapticsParameters;
+  static const auto schema =
+      Schema<P>()
+          .text("name", &P::name, "Name of the device, as the vendor's set-up program gave it")
+          .required()
+          .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
+                  "Force at which the driver saturates; at most the device's own limit is used")
+          .required()
+          .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
+                  "Radius of the device's workspace")
+          .required()
+          .number("patience", &P::patience, {0.002, 1.0}, "s",
+                  "Silence between the loop and the vendor's scheduler after which the force is "
+                  "switched off")
+          .required()
+          .integer("stop_button", &P::stop_button, -1, 31,
+                   "Button of the handle for emergency stops; -1: none")
+          .required();
+  return schema;
 }
 
 OpenHapticsDevice::OpenHapticsDevice(const OpenHapticsParameters& parameters, double rate,

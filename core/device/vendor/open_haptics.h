@@ -8,7 +8,8 @@
 #include "core/realtime/latest_value.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::device {
@@ -22,8 +23,8 @@ struct OpenHapticsParameters {
   int stop_button{1};             // emergency stop; -1: none
 };
 
-/// Reads the keys of an [open_haptics] table.
-OpenHapticsParameters read_open_haptics_parameters(Table& table);
+/// The keys of [open_haptics].
+const Schema<OpenHapticsParameters>& open_haptics_schema();
 
 /// Drives a Phantom or Touch through the vendor's OpenHaptics HD library.
 ///

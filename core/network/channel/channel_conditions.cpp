@@ -1,18 +1,25 @@
 #include "core/network/channel/channel_conditions.h"
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::network {
 
-ChannelConditions read_channel_conditions(Table& table) {
-  ChannelConditions c;
-  c.delay = table.number_or("delay", c.delay, {0.0, 10.0}, "s");
-  c.jitter = table.number_or("jitter", c.jitter, {0.0, 1.0}, "s");
-  c.loss = table.number_or("loss", c.loss, {0.0, 1.0}, "1");
-  c.duplication = table.number_or("duplication", c.duplication, {0.0, 1.0}, "1");
-  c.reordering = table.number_or("reordering", c.reordering, {0.0, 1.0}, "1");
-  c.bandwidth = table.number_or("bandwidth", c.bandwidth, {0.0, 1e10}, "bytes/s");
-  return c;
+const Schema<ChannelConditions>& channel_schema() {
+  using C = ChannelConditions;
+  static const auto schema =
+      Schema<C>()
+          .number("delay", &C::delay, {0.0, 10.0}, "s",
+                  "Delay of the simulated network of a dry run, each way")
+          .number("jitter", &C::jitter, {0.0, 1.0}, "s",
+                  "Mean of the random delay that each message has beside the constant one")
+          .number("loss", &C::loss, {0.0, 1.0}, "1", "Share of messages that never arrive")
+          .number("duplication", &C::duplication, {0.0, 1.0}, "1",
+                  "Share of messages that arrive twice")
+          .number("reordering", &C::reordering, {0.0, 1.0}, "1",
+                  "Share of messages that may overtake others")
+          .number("bandwidth", &C::bandwidth, {0.0, 1e10}, "bytes/s",
+                  "Bandwidth of the simulated network; 0: no limit");
+  return schema;
 }
 
 }  // namespace haptrial::network

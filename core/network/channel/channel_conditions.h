@@ -1,7 +1,8 @@
 #pragma once
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::network {
@@ -18,7 +19,7 @@ struct ChannelConditions {
   bool operator==(const ChannelConditions&) const = default;
 };
 
-/// Reads the keys delay, jitter, loss, duplication, reordering and bandwidth of a table.
-ChannelConditions read_channel_conditions(Table& table);
+/// The keys of [tutoring.channel], and of a network of [[tutoring.networks]].
+const Schema<ChannelConditions>& channel_schema();
 
 }  // namespace haptrial::network

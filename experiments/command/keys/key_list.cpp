@@ -214,6 +214,9 @@ std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
     if (own != nullptr) {
       own->used = true;
     }
+    if (!key.words.empty()) {
+      return ListedKey{key, key.words, key.otherwise};
+    }
     return ListedKey{key, own != nullptr ? own->meaning : "",
                      !key.otherwise.empty() || own == nullptr ? key.otherwise : own->otherwise};
   };
@@ -314,15 +317,17 @@ std::vector<std::string> mistakes_of_key_words() {
   for (const KeySection& section : sections_of_all(words)) {
     for (const ListedKey& listed : section.keys) {
       const Words* own = words_of(words, section.protocol, listed.key.path());
-      if (own == nullptr) {
+      if (own == nullptr && listed.words.empty()) {
         mistakes.push_back(fmt::format("{}:{} has no words", section.protocol, listed.key.path()));
-      } else if (!own->otherwise.empty() && !listed.key.otherwise.empty()) {
+      } else if (own != nullptr && !listed.key.words.empty()) {
+        mistakes.push_back(fmt::format("{} has words in a schema already", listed.key.path()));
+      } else if (own != nullptr && !own->otherwise.empty() && !listed.key.otherwise.empty()) {
         mistakes.push_back(
             fmt::format("{} states a default, and so does the program", listed.key.path()));
       } else if (listed.key.optional && listed.otherwise.empty()) {
         mistakes.push_back(
             fmt::format("{} may be left out, and nothing says what then", listed.key.path()));
-      } else if (!listed.key.optional && !own->otherwise.empty()) {
+      } else if (own != nullptr && !listed.key.optional && !own->otherwise.empty()) {
         mistakes.push_back(fmt::format("{} states a default, and is needed", listed.key.path()));
       }
     }

@@ -8,85 +8,7 @@ experiment.name | | of the study, for reports and new folders
 experiment.protocol | force_training | what kind of experiment it is
 experiment.rate | | ticks of the servo loop per second
 lab.use | | file with tables of devices and screen, relative to the definition; without [lab] the definition has them
-envelope.max_force | | limit of the commanded force
-envelope.max_force_rate | | limit of its change
-envelope.workspace_radius | | beyond it the force goes off
-envelope.max_speed | | of the hand; above it the force goes off
-envelope.max_jump | | greatest change of position between two ticks
-envelope.ramp_in | | time over which the force of a pass grows
-envelope.ramp_out | | time over which it falls after a normal end
-envelope.change_time | | time over which the force goes over to that of another stage, question or object
-envelope.max_saturation | 3 | longest time without a break at max_force
-envelope.holding_force | from the friction of [hand] | change of force that friction and a still hand may hide
-device.max_force | | at which the virtual device's motors saturate
-device.workspace_radius | | of the virtual device
-device.position_quantum | | resolution of its encoders
-device.velocity_window | | milliseconds over which velocity is estimated; readings at 1 kHz
-device.force_delay | 1 | ticks from a command to its force
-force_dimension.index | | of the device, where several are connected
-force_dimension.max_force | | at which the driver saturates
-force_dimension.workspace_radius | | of the device
-force_dimension.effector_mass | | mass mounted on the handle
-force_dimension.gravity_compensation | | whether the device carries its own weight
-force_dimension.velocity_window | | time over which velocity is estimated
-force_dimension.watchdog | | the motors switch off after this time without a command
-force_dimension.velocity_threshold | the device's own | velocity at which the device brakes, in its own units
-force_dimension.time_guard | | shortest time between two readings; 0: off
-force_dimension.stop_button | | button of the handle for emergency stops; -1: none
-open_haptics.name | | of the device, as its vendor's set-up has it
-open_haptics.max_force | | at most the device's own limit is used
-open_haptics.workspace_radius | | of the device
-open_haptics.patience | | how long one side goes on without word from the other
-open_haptics.stop_button | | button of the handle for emergency stops; -1: none
-mouse.pointer_speed | | greatest speed at which the mass follows the pointer
-mouse.max_press | | greatest pressing force
-mouse.first_press | | pressing force when the left button goes down
-mouse.press_step | | change of it for each step of the wheel
-mouse.stop_button | | button for emergency stops; -1: none
-gamepad.input | | file of the game controller, /dev/input/by-id/...-event-joystick
-gamepad.dead_zone | | share of a stick's or a trigger's way that counts as rest
-gamepad.stop_button | | button for emergency stops, 7 is start; -1: none
-tutoring.stiffness | | of the spring from the hand to the tutor's, with --tutor
-tutoring.damping | | beside it
-tutoring.force_share | | of the tutor's forces that is played
-tutoring.ramp | | time over which the tutor takes the lead, and gives it back
-tutoring.speed | | of a recorded run, beside its own
-tutoring.pause_buttons | in force training every button, else none | a recorded run waits while one of these buttons of the handle is pressed
-tutoring.pause_keys | none | likewise for keys of the window
-tutoring.authority | | over a link: how far the hand that teaches leads the other one
-tutoring.felt_back | | over a link: how much of the coupling the hand that leads feels
-tutoring.passivity | tank | over a link: what keeps the coupled hands from swinging up; waves is read in recordings of version 0.2 alone
-tutoring.deadband | false | over a link: send only what would be missed
-tutoring.jitter_buffer | false | over a link: take the other hand as evenly as it was sent, for some delay
-tutoring.deadline | | over a link: silence after which its force is zero
-tutoring.patience | | over a link: silence after which the session ends, to be resumed
-tutoring.channel.delay | | of the simulated network of a dry run, each way
-tutoring.channel.jitter | | beside it, mean
-tutoring.channel.loss | | share of messages that never come
-tutoring.channel.duplication | | share that comes twice
-tutoring.channel.reordering | | share that may overtake others
-tutoring.channel.bandwidth | | of the line; 0: no limit
-tutoring.networks[].name | | of a simulated network that is a condition: in a dry run each trial goes over one of them
-tutoring.networks[].delay | | each way
-tutoring.networks[].jitter | | beside it, mean
-tutoring.networks[].loss | | share of messages that never come
-tutoring.networks[].duplication | | share that comes twice
-tutoring.networks[].reordering | | share that may overtake others
-tutoring.networks[].bandwidth | | of the line; 0: no limit
-pedal.input | | file of the input device of an analog pedal: /dev/input/by-id/…-event-joystick, /dev/input/eventN, or a named pipe
-pedal.axis | | its axis, by the kernel's name
-pedal.released | lower end of the axis, as the device states it | axis value of a pedal that nobody presses
-pedal.pressed | upper end of the axis, as the device states it | axis value of a pedal that is down
-pedal.dead_zone | | share of the way that still counts as up
 hand.integrator | | exact solution of the virtual hand, or CVODE's
-hand.handle_mass | | of the handle, which moves with the hand
-hand.coulomb_friction | | of the handle
-hand.hand_mass | | of the hand
-hand.damping | | of the grip
-hand.stiffness | | of the grip
-hand.posture_time | | time constant at which the hand's posture follows
-hand.excitation_time | | time constant of the muscles' excitation
-hand.activation_time | | time constant of the muscles' activation
 display.width | | of pictures and of a window
 display.height | | of pictures and of a window
 display.margin | | between the picture's edge and what is drawn
@@ -117,7 +39,6 @@ display.viewing_distance | 0.5 | from the eyes to the screen
 display.sound_right | none | sound after a right answer, where feedback is given
 display.sound_wrong | none | sound after a wrong one
 devices.NAME.start | | where the hand of a virtual participant begins
-sounds.device | default | ALSA's name of the sound card
 sounds.NAME.type | | what the sound is
 sounds.NAME.level | 0 of a file, else needed | root mean square below full scale; of a file, its gain
 sounds.NAME.duration | 0.001 of a click, else needed | of the sound
@@ -136,32 +57,6 @@ sounds.masking.stages | the whole session | stages in which it sounds
 feedback.page | | whether a page about the session is written beside its file at its end
 feedback.study | none | folder of a study relative to the definition; the page compares with its experts
 display.stills | 0 | stills of the bone's stages that can be shown
-screen.title | haptrial | of the participant's window
-screen.full_screen | true | whether the window fills the monitor
-screen.monitor | 0 | from 0, the primary one
-screen.refresh_lock | true | whether pictures wait for the monitor's refresh
-screen.participant_steers | false | whether the participant's keys start, pause, repeat, skip and clear
-screen.photodiode | off | square in a corner: changes with each picture, is white while a trial runs, or after onsets
-screen.photodiode_time | 0.05 | how long the square stays white after an onset
-texts.instructions | | before the first trial; the first line of every text is its title
-texts.practice | | before practice
-texts.rest | | during a break
-texts.take_again | | at the end of a break
-texts.counts | | between practice and the first trial that counts
-texts.thanks | | after the last trial
-texts.stopped | | after a fault or an emergency stop
-texts.paused | | while the experimenter pauses the session
-texts.preparing | | while a bone is built, before its first picture
-texts.recovering | | while the force stays off after an aborted pass
-texts.limit | | last paragraph of the instructions of a force study
-texts.begin | | small line below a text that the experimenter ends
-texts.begin_alone | | the same in a session without an experimenter
-texts.go_on | | small line below a page that is only read
-texts.choose | | small line below a question with choices
-texts.move_mark | | small line below a scale
-texts.type_number | | small line below a question for a number
-texts.type_words | | small line below a question for words
-texts.declined | | for a participant who does not consent
 texts.too_fast | Too fast | after an answer below `too_fast` of its response
 texts.too_slow | Too slow | after an answer above `too_slow`
 pages.before | none | names of pages before the first trial, in this order
@@ -170,7 +65,6 @@ pages.after_block.NAME | | names of pages after the last trial of the block of t
 pages.NAME.kind | text | what the page is
 pages.NAME.title | none | heading of the page
 pages.NAME.text | | what is read
-pages.NAME.picture | none | PNG file, relative to the definition
 pages.NAME.accept | I agree to take part | choice of those who take part
 pages.NAME.decline | I do not agree | choice that ends the session
 pages.NAME.weighted | false | whether the 15 pairs of NASA-TLX are asked, too
@@ -185,14 +79,6 @@ pages.NAME.items[].step | 1 | between neighbouring values of the scale
 pages.NAME.items[].ends.low | | words at the scale's lowest value
 pages.NAME.items[].ends.high | | words at its highest value
 pages.NAME.items[].number | choices, a scale or words | lowest and highest number that may be typed
-markers.serial | none | serial line that receives each code as a byte, such as "/dev/ttyUSB0"
-markers.baud | 115200 | speed of the line, in bits per second
-markers.pulse | 0.005 | how long a code stands before a zero follows; 0: it stays
-markers.trial | 1 | code of a trial's beginning
-markers.interval | 11 | code of the first interval; the others count on
-markers.stage | 21 | code of the first stage; the others count on
-markers.response | 101 | code of the first answer; the others count on
-markers.send | stage, response, interval, trial | what goes to the serial line; codes of one tick go in this order
 design.participants | | of the study
 design.sessions | 1 | of each participant, on days of their own
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
@@ -386,7 +272,6 @@ fields.NAME.felt_from | outside | side from which the surface is felt
 fields.NAME.axes | | free axes of the channel: x, y, z
 fields.NAME.through | | point of the channel or plane
 fields.NAME.velocity_filter | | cut-off of the filter of velocity
-fields.NAME.matrix | | B of the force B v
 fields.NAME.mass | | mass that is felt
 fields.NAME.acceleration_filter | | cut-off of the filter of acceleration
 fields.NAME.on | everywhere | field of a surface that this one belongs to
@@ -434,12 +319,9 @@ objects.NAME.calibrated | needed, or constants | of springs: file of constants t
 objects.NAME.density | | of springs
 objects.NAME.rate | the loop's | of springs: how often they move a second, if less often than they are felt
 objects.NAME.decay | | of springs: a free motion dies down with exp(-decay t)
-objects.NAME.young | | Young's modulus
 objects.NAME.spring | | between the hand and the ball that presses
-objects.NAME.poisson | | Poisson's ratio
 objects.NAME.inclusions.NAME.centre | | of a ball of another stiffness, from the body's origin
 objects.NAME.inclusions.NAME.radius | | of the ball; 0: it is not there
-objects.NAME.inclusions.NAME.young | | Young's modulus of the ball
 objects.NAME.record | false | whether every tick of contact is a row of /contacts
 objects.NAME.device | every device | whose tool feels it
 objects.NAME.limit | | its force is scaled to at most this
@@ -462,7 +344,6 @@ objects.NAME.length | | along z
 objects.NAME.tube | | radius of a torus's tube
 objects.NAME.friction.static | | coefficient of what holds the tool where it rests
 objects.NAME.friction.dynamic | | coefficient of what resists the tool that slides
-level_script.file | | Python script (.py), or a program, that chooses the levels between trials, beside the definition
 level_script.deadline | | for its answer; where nobody waits it has a minute
 looks.NAME.type | | what can be seen: a bar of random dots
 looks.NAME.width | | of the bar
@@ -516,10 +397,8 @@ observer.actions.NAME.NAME.around | 0, 0, 1 | axis of the first loop
 observer.actions.NAME.NAME.then_around | 1, 0, 0 | axis of the second loop
 observer.actions.NAME.NAME.turn_after | | when the second loop begins
 observer.actions.NAME.NAME.speed | | along the surface
-observer.script.file | | Python script (.py), or a program, by which virtual participants answer, beside the definition
 observer.script.deadline | | for an answer
 observer.adaptation.stage | | of the reach that is learnt from
-observer.adaptation.matrix | | B of the field that is learnt
 observer.adaptation.fast.retention | | of the fast process from trial to trial; without the table 0.59
 observer.adaptation.fast.learning | | of the fast process from an error; without the table 0.21
 observer.adaptation.slow.retention | | of the slow process from trial to trial; without the table 0.992
@@ -599,21 +478,6 @@ power.responses | nothing is known | what responses need to know (docs/guide-pow
 power.vary[].key | | key that is varied, with its tables: observer.lapse.median
 power.vary[].values | | its values
 power.vary[].none | it makes no effect | its value without an effect
-trajectory.from | generated curves | file with the curve to follow
-trajectory.speed | | along the arc
-trajectory.length_x | | of the trajectory from left to right
-trajectory.range_z | | of the trajectory across
-trajectory.sinusoids | | number of sinusoids that the trajectory is the sum of
-trajectory.max_spatial_frequency | | of the sinusoids
-force_pattern.sinusoids | | number of sinusoids that the base is the sum of
-force_pattern.max_frequency | | of the sinusoids
-force_pattern.base_max | | greatest force of the base
-force_pattern.bumps_min | | least number of bumps
-force_pattern.bumps_max | | greatest number of bumps
-force_pattern.bump_max | | greatest force with bumps
-force_pattern.bump_width_min | | least width of a bump
-force_pattern.bump_width_max | | greatest width of a bump
-force_pattern.ramp | | time over which the force begins and ends
 guidance.kind | trajectory | whether a point is followed in time, or a curve at the participant's own pace
 guidance.force_limit | | of the commanded force
 guidance.approach_speed | | peak speed on the way to the start
@@ -624,13 +488,6 @@ guidance.recovery | | time without force after an aborted pass
 guidance.recall | guided | whether the hand is led in the test, or finds path and force itself
 guidance.pause_beyond | | a playback waits for a hand that is farther from the expert's
 guidance.run_timeout | | longest duration of a run at one's own pace
-guidance.trajectory.stiffness | | of the spring to the trajectory
-guidance.trajectory.damping | | along it
-guidance.plane.stiffness | | of the spring to the plane
-guidance.plane.damping | | along it
-guidance.curve.step | | between neighbouring points of the curve
-guidance.curve.reach | | within which the next point is looked for
-guidance.curve.margin | | by which another branch must be nearer
 recording.stimulus_rate | | samples of the stored target curves
 path_memory.visual_noise | needed | of a place that was seen
 path_memory.haptic_noise | needed | of a place to which the hand was led

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/longer.h"
 
 namespace haptrial::protocols {
@@ -25,8 +25,8 @@ GuidanceParameters read_guidance_parameters(Table& table) {
   const bool curve = table.has("kind") && table.choice("kind", {"trajectory", "curve"}) == "curve";
   Table trajectory = table.table("trajectory");
   Table plane = table.table("plane");
-  p.trajectory = control::read_pd_gains(trajectory);
-  p.plane = control::read_pd_gains(plane);
+  p.trajectory = control::pd_gains_schema().read(trajectory);
+  p.plane = control::pd_gains_schema().read(plane);
   p.force_limit = table.number("force_limit", {0.0, 100.0, true}, "N");
   p.approach_speed = table.number("approach_speed", {0.001, 1.0}, "m/s");
   p.settle_distance = table.number("settle_distance", {0.0, 0.1, true}, "m");
@@ -39,7 +39,7 @@ GuidanceParameters read_guidance_parameters(Table& table) {
     p.kind = Guidance::kCurve;
     p.run_timeout = table.number("run_timeout", {0.0, 3600.0, true}, "s");
     Table following = table.table("curve");
-    p.curve = control::read_curve_following(following);
+    p.curve = control::curve_following_schema().read(following);
   }
   return p;
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
@@ -151,12 +151,12 @@ TEST(PdControllerTest, GainsOutOfBoundsAreRefusedByName) {
 
 TEST(PdControllerTest, GainsAreReadWithTheirBounds) {
   Table good = Table::parse("stiffness = 2000.0\ndamping = 300\n", "f.toml");
-  const PdGains gains = read_pd_gains(good);
+  const PdGains gains = pd_gains_schema().read(good);
   EXPECT_NO_THROW(good.finish());
   EXPECT_EQ(gains.stiffness, 2000.0);
   EXPECT_EQ(gains.damping, 300.0);
   Table bad = Table::parse("stiffness = -1\ndamping = \"soft\"\n", "f.toml");
-  read_pd_gains(bad);
+  pd_gains_schema().read(bad);
   EXPECT_THROW(bad.finish(), InputError);
 }
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
@@ -514,7 +514,7 @@ TEST(EnvelopeTest, NoKeyTakesACheckOutOfUse) {
         "max_force = 8.0\nworkspace_radius = 0.08\nmax_speed = 1.0\nmax_jump = 0.005\n" + line +
             "\n",
         "study.toml");
-    read_envelope_limits(table);
+    envelope_schema().read(table);
     const std::string said = test::message_of([&] { table.finish(); });
     EXPECT_NE(said.find(line.substr(0, line.find(' '))), std::string::npos) << said;
   };
@@ -569,7 +569,7 @@ TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
       "max_force = 8.0\nmax_force_rate = 100.0\nworkspace_radius = 0.05\nmax_speed = 0.5\n"
       "max_jump = 0.001\nramp_in = 0.05\nramp_out = 0.3\n",
       "f.toml");
-  const EnvelopeLimits limits = read_envelope_limits(good);
+  const EnvelopeLimits limits = envelope_schema().read(good);
   EXPECT_NO_THROW(good.finish());
   EXPECT_NO_THROW(Envelope{limits});
   EXPECT_EQ(limits.max_force, 8.0);
@@ -579,7 +579,7 @@ TEST(EnvelopeTest, LimitsAreReadWithTheirBounds) {
       "max_force = 0.0\nmax_force_rate = 0.0\nworkspace_radius = 0.0\nmax_speed = 0.0\n"
       "max_jump = 0.0\nramp_in = -1.0\nramp_out = 11.0\n",
       "f.toml");
-  read_envelope_limits(bad);
+  envelope_schema().read(bad);
   try {
     bad.finish();
     FAIL();

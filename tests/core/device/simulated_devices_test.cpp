@@ -6,7 +6,7 @@
 #include <limits>
 #include <thread>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/mouse.h"
 #include "core/device/replay.h"
@@ -102,7 +102,7 @@ TEST(MouseTest, TheWheelSetsThePressOfTheLeftButton) {
       "pointer_speed = 0.3\nmax_press = 8.0\nfirst_press = 1.5\npress_step = 0.25\n"
       "stop_button = 2\n",
       "m.toml");
-  const MouseParameters p = read_mouse_parameters(table);
+  const MouseParameters p = mouse_schema().read(table);
   EXPECT_NO_THROW(table.finish());
   EXPECT_EQ(p.pointer_speed, 0.3);
   EXPECT_EQ(p.max_press, 8.0);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
@@ -209,14 +209,14 @@ TEST(VirtualDeviceTest, ParametersAreReadWithTheirBounds) {
   Table good = Table::parse(
       "max_force = 8.0\nworkspace_radius = 0.05\nposition_quantum = 0.0\nvelocity_window = 64\n",
       "f.toml");
-  const VirtualDeviceParameters p = read_virtual_device_parameters(good);
+  const VirtualDeviceParameters p = virtual_device_schema().read(good);
   EXPECT_NO_THROW(good.finish());
   ScriptedHandle handle;
   EXPECT_EQ(VirtualDevice(p, handle, kRate).info().max_force, 8.0);
   Table bad = Table::parse(
       "max_force = 8.0\nworkspace_radius = 0.05\nposition_quantum = 0.0\nvelocity_window = 65\n",
       "f.toml");
-  read_virtual_device_parameters(bad);
+  virtual_device_schema().read(bad);
   EXPECT_THROW(bad.finish(), InputError);
 }
 

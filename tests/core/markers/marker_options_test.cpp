@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 
 namespace haptrial::markers {
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 MarkerOptions options_of(const std::string& text) {
   Table root = Table::parse("[markers]\n" + text, "study.toml");
   Table table = root.table("markers");
-  MarkerOptions options = read_marker_options(table);
+  MarkerOptions options = marker_schema().read(table);
   root.finish();
   return options;
 }
@@ -33,7 +33,7 @@ std::string problem_of(const std::string& text) {
 std::string problem_of(const std::vector<MarkerMeaning>& meanings) {
   Table root = Table::parse("[markers]\ntrial = 1\n", "study.toml");
   Table table = root.table("markers");
-  read_marker_options(table);
+  marker_schema().read(table);
   check_meanings(root, "markers", meanings);
   try {
     root.finish();

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/stimulus/stimulus.h"
@@ -179,7 +179,7 @@ TEST(ForcePatternTest, ParametersAreReadWithTheirBounds) {
     std::string changed = text;
     changed.replace(changed.find(from), from.size(), to);
     Table t = Table::parse(changed, "f.toml");
-    read_force_pattern_parameters(t);
+    force_pattern_schema().read(t);
     try {
       t.finish();
     } catch (const InputError& error) {
@@ -189,12 +189,10 @@ TEST(ForcePatternTest, ParametersAreReadWithTheirBounds) {
   };
   EXPECT_EQ(problems("4", "4"), "");
   EXPECT_EQ(problems("bumps_max = 4", "bumps_max = 1"),
-            "f.toml:5: bumps_max is 1; allowed: a whole number from 2 to 100");
-  EXPECT_EQ(problems("12.0", "9.0"),
-            "f.toml:6: bump_max is 9; allowed: a number of at least 10 and at most 100 [N]");
+            "f.toml:5: bumps_max is 1; allowed: at least bumps_min, 2");
+  EXPECT_EQ(problems("12.0", "9.0"), "f.toml:6: bump_max is 9; allowed: at least base_max, 10 [N]");
   EXPECT_EQ(problems("1.4", "0.5"),
-            "f.toml:8: bump_width_max is 0.5; allowed: a number of at least 0.6 and at most 60 "
-            "[s]");
+            "f.toml:8: bump_width_max is 0.5; allowed: at least bump_width_min, 0.6 [s]");
   EXPECT_EQ(problems("base_max = 10.0\n", ""),
             "f.toml:1: base_max is missing; allowed: a number above 0 and at most 100 [N]");
 }

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
@@ -202,7 +202,7 @@ TEST(SpatialTrajectoryTest, ParametersAreReadWithTheirBounds) {
   Table good = Table::parse(
       "length_x = 0.2\nrange_z = 0.04\nsinusoids = 5\nmax_spatial_frequency = 20.0\nspeed = 0.03\n",
       "f.toml");
-  const TrajectoryParameters p = read_trajectory_parameters(good);
+  const TrajectoryParameters p = trajectory_schema().read(good);
   EXPECT_NO_THROW(good.finish());
   const SpatialTrajectory path = drawn(1, p);
   EXPECT_NEAR(extent(path, 0).second - extent(path, 0).first, 0.2, 1e-12);
@@ -212,7 +212,7 @@ TEST(SpatialTrajectoryTest, ParametersAreReadWithTheirBounds) {
   Table bad = Table::parse(
       "length_x = 0\nrange_z = -1\nsinusoids = 0\nmax_spatial_frequency = inf\nspeed = 2.0\n",
       "f.toml");
-  read_trajectory_parameters(bad);
+  trajectory_schema().read(bad);
   try {
     bad.finish();
     FAIL();

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 
 namespace haptrial::experiments {
@@ -14,7 +14,7 @@ using testing::HasSubstr;
 protocols::ScreenOptions screen(const std::string& lines) {
   Table root = Table::parse("[screen]\n" + lines, "x.toml");
   Table table = root.table("screen");
-  const protocols::ScreenOptions options = protocols::read_screen_options(table);
+  const protocols::ScreenOptions options = protocols::screen_schema().read(table);
   root.finish();
   return options;
 }
@@ -33,12 +33,12 @@ std::string problem(const std::string& text, void (*read)(Table&), const char* n
 
 std::string screen_problem(const std::string& lines) {
   return problem(
-      "[screen]\n" + lines, [](Table& t) { protocols::read_screen_options(t); }, "screen");
+      "[screen]\n" + lines, [](Table& t) { protocols::screen_schema().read(t); }, "screen");
 }
 
 std::string text_problem(const std::string& lines) {
   return problem(
-      "[texts]\n" + lines, [](Table& t) { protocols::read_session_texts(t); }, "texts");
+      "[texts]\n" + lines, [](Table& t) { protocols::text_schema().read(t); }, "texts");
 }
 
 TEST(ScreenOptionsTest, EveryKeyIsReadAndNoneIsNeeded) {
@@ -71,7 +71,7 @@ TEST(SessionTextsTest, FourAreNeeded) {
   const std::string good = "instructions = \"a\"\npractice = \"b\"\nrest = \"c\"\nthanks = \"d\"\n";
   EXPECT_EQ(text_problem(good), "");
   Table table = Table::parse(good, "x.toml");
-  const protocols::SessionTexts texts = protocols::read_session_texts(table);
+  const protocols::SessionTexts texts = protocols::text_schema().read(table);
   EXPECT_EQ(texts.instructions + texts.practice + texts.rest + texts.thanks, "abcd");
   EXPECT_THAT(text_problem("instructions = \"a\"\npractice = \"b\"\nrest = \"c\"\n"),
               HasSubstr("texts.thanks"));
@@ -85,7 +85,7 @@ TEST(SessionTextsTest, FourAreNeeded) {
 TEST(SessionTextsTest, TheOthersHaveDefaultsThatADefinitionMayReplace) {
   const std::string four = "instructions = \"a\"\npractice = \"b\"\nrest = \"c\"\nthanks = \"d\"\n";
   Table plain = Table::parse(four, "x.toml");
-  const protocols::SessionTexts defaults = protocols::read_session_texts(plain);
+  const protocols::SessionTexts defaults = protocols::text_schema().read(plain);
   for (const std::string* text : {&defaults.stopped, &defaults.paused, &defaults.recovering,
                                   &defaults.limit, &defaults.begin, &defaults.begin_alone}) {
     EXPECT_FALSE(text->empty());
@@ -95,7 +95,7 @@ TEST(SessionTextsTest, TheOthersHaveDefaultsThatADefinitionMayReplace) {
                                "stopped = \"e\"\npaused = \"f\"\nrecovering = \"g\"\n"
                                "limit = \"h\"\nbegin = \"i\"\nbegin_alone = \"j\"\n",
                            "x.toml");
-  const protocols::SessionTexts texts = protocols::read_session_texts(own);
+  const protocols::SessionTexts texts = protocols::text_schema().read(own);
   EXPECT_EQ(texts.stopped + texts.paused + texts.recovering + texts.limit + texts.begin +
                 texts.begin_alone,
             "efghij");

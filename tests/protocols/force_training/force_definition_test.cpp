@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
             "guidance.force_limit is 13; allowed: at most envelope.max_force, 12 [N]"},
         Bad{"ramp", "ramp = 9.0", "force_pattern.ramp is 9; allowed: at most half"},
         Bad{"bump_max", "bump_max = 8.0",
-            "force_pattern.bump_max is 8; allowed: a number of at least 10"},
+            "force_pattern.bump_max is 8; allowed: at least base_max, 10"},
         Bad{"integrator", "integrator = \"euler\"",
             "hand.integrator is 'euler'; allowed: exact, cvode"},
         Bad{"rate", "rate = 0.0", "experiment.rate is 0; allowed: a number of at least 100"},

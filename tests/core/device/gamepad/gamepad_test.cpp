@@ -10,7 +10,7 @@
 
 #include <functional>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/files/file_text.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/event_records.h"
@@ -41,7 +41,7 @@ TEST(GamepadTest, TheTableIsReadWhole) {
   const auto read = [](const std::string& lines) {
     Table root = Table::parse("[gamepad]\n" + lines, "lab.toml");
     Table table = root.table("gamepad");
-    const GamepadParameters p = read_gamepad_parameters(table);
+    const GamepadParameters p = gamepad_schema().read(table);
     root.finish();
     return p;
   };

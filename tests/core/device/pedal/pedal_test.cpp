@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <thread>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/device/input/axis_names.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/event_records.h"
@@ -41,7 +41,7 @@ TEST(PedalTest, DepthGoesFromTheDeadZoneToTheEndEitherWay) {
 PedalParameters read(const std::string& text) {
   Table root = Table::parse(text, "lab.toml");
   Table table = root.table("pedal");
-  const PedalParameters p = read_pedal_parameters(table);
+  const PedalParameters p = pedal_schema().read(table);
   root.finish();
   return p;
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/device/gamepad/gamepad.h"
 #include "core/device/vendor/catalog.h"
@@ -221,14 +221,14 @@ TEST(ForceDimensionTest, ParametersAreReadWithTheirBounds) {
       "gravity_compensation = false\nvelocity_window = 0.02\nwatchdog = 0.01\ntime_guard = 0.0\n"
       "stop_button = 2\n";
   Table table = Table::parse(text, "f.toml");
-  const ForceDimensionParameters p = read_force_dimension_parameters(table);
+  const ForceDimensionParameters p = force_dimension_schema().read(table);
   EXPECT_NO_THROW(table.finish());
   EXPECT_EQ(p.index, 1);
   EXPECT_FALSE(p.gravity_compensation);
   EXPECT_EQ(p.velocity_threshold, -1);
   EXPECT_EQ(p.stop_button, 2);
   Table off = Table::parse(text + "velocity_threshold = -5\n", "f.toml");
-  read_force_dimension_parameters(off);
+  force_dimension_schema().read(off);
   EXPECT_THROW(off.finish(), InputError);
 }
 
@@ -307,7 +307,7 @@ TEST_F(OpenHapticsTest, ParametersAreReadWithTheirBounds) {
       "name = \"Touch\"\nmax_force = 3.0\nworkspace_radius = 0.07\npatience = 0.01\n"
       "stop_button = 0\n",
       "f.toml");
-  const OpenHapticsParameters p = read_open_haptics_parameters(table);
+  const OpenHapticsParameters p = open_haptics_schema().read(table);
   EXPECT_NO_THROW(table.finish());
   EXPECT_EQ(p.name, "Touch");
   EXPECT_EQ(p.patience, 0.01);

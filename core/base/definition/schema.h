@@ -1,0 +1,233 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/base/definition/table.h"
+#include "core/base/definition/table_vector.h"
+
+namespace haptrial {
+
+/// The keys of one table of a definition, and the members of a struct that they set. A schema is
+/// written once, beside its struct, and is all that the program knows of these keys: reading with
+/// bounds, units and defaults, the sentences about mistakes, and the lists of keys follow from it.
+///
+///     const Schema<EnvelopeLimits>& envelope_schema() {
+///       static const auto schema =
+///           Schema<EnvelopeLimits>()
+///               .number("max_force", &EnvelopeLimits::max_force, {0.0, 100.0, true}, "N",
+///                       "Greatest force that is commanded")
+///               .required()
+///               .number("ramp_in", &EnvelopeLimits::ramp_in, {0.05, 10.0}, "s",
+///                       "Time over which the force of a pass grows");
+///       return schema;
+///     }
+///
+/// A key may be left out unless it is required(); its default is that of a default-constructed T.
+/// Descriptions are noun phrases that a stranger understands without the neighbouring keys: what it
+/// is, and what follows from it. Not for the servo thread; const once it is built.
+template <class T>
+class Schema {
+ public:
+  /// A number, or nothing while the key is left out.
+  Schema& number(std::string name, double T::*member, const Bounds& bounds, std::string unit,
+                 std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table, into.*member)) {
+                   into.*member = table.number(key.name, bounds, unit);
+                 }
+               });
+  }
+  Schema& number(std::string name, std::optional<double> T::*member, const Bounds& bounds,
+                 std::string unit, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = table.number(key.name, bounds, unit);
+                 }
+               });
+  }
+  template <class Integer>
+  requires std::is_integral_v<Integer> Schema& integer(std::string name, Integer T::*member,
+                                                       long low, long high,
+                                                       std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table, static_cast<double>(into.*member))) {
+                   into.*member = static_cast<Integer>(table.integer(key.name, low, high));
+                 }
+               });
+  }
+  Schema& integer(std::string name, std::optional<int> T::*member, long low, long high,
+                  std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = static_cast<int>(table.integer(key.name, low, high));
+                 }
+               });
+  }
+  Schema& flag(std::string name, bool T::*member, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table, into.*member ? "true" : "false")) {
+                   into.*member = table.boolean(key.name);
+                 }
+               });
+  }
+  Schema& text(std::string name, std::string T::*member, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table, into.*member)) {
+                   into.*member = table.text(key.name);
+                 }
+               });
+  }
+  /// A text that participants read, which translations may replace; in bytes no longer than `most`.
+  Schema& shown_text(std::string name, std::string T::*member, std::size_t most,
+                     std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 const bool stands = key.stands_in(table, into.*member);
+                 into.*member =
+                     stands ? table.shown_text(key.name) : table.shown_as(key.name, into.*member);
+                 if ((into.*member).size() > most) {
+                   table.reject(key.name, std::to_string((into.*member).size()) + " bytes long",
+                                "at most " + std::to_string(most) + " bytes");
+                 }
+               });
+  }
+  /// One of some words, each of which stands for a value of the member.
+  template <class E>
+  Schema& choice(std::string name, E T::*member, std::vector<std::pair<std::string, E>> words,
+                 std::string description) {
+    return add(
+        std::move(name), std::move(description),
+        [member, words = std::move(words)](Table& table, const KeyDescription& key, T& into) {
+          std::vector<std::string> allowed;
+          std::string usual;
+          for (const auto& [word, value] : words) {
+            allowed.push_back(word);
+            usual = value == into.*member && usual.empty() ? word : usual;
+          }
+          if (key.stands_in(table, usual)) {
+            const std::string word = table.choice(key.name, allowed);
+            for (const auto& [each, value] : words) {
+              into.*member = each == word ? value : into.*member;
+            }
+          }
+        });
+  }
+  /// Three numbers, x, y and z.
+  Schema& vector(std::string name, Eigen::Vector3d T::*member, const Bounds& bounds,
+                 std::string unit, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = read_vector(table, key.name, bounds, unit, into.*member);
+                 }
+               });
+  }
+  /// Bits of a list of whole numbers, as those of buttons.
+  Schema& bits(std::string name, std::uint32_t T::*member, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = read_bits(table, key.name);
+                 }
+               });
+  }
+  /// Keys of this same table that set a member's members.
+  template <class U>
+  Schema& keys_of(U T::*member, const Schema<U>& schema) {
+    return check([member, &schema](Table& table, T& into) { schema.read(table, into.*member); });
+  }
+  /// A table within this one, whose keys another schema describes.
+  template <class U>
+  Schema& table(std::string name, U T::*member, const Schema<U>& schema, std::string description) {
+    return add(std::move(name), std::move(description),
+               [member, &schema](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   Table inner = table.table(key.name);
+                   schema.read(inner, into.*member);
+                 }
+               });
+  }
+  /// A key with a form of its own. @param read  is called if the key stands there or is required
+  Schema& custom(std::string name, std::string description,
+                 std::function<void(Table& table, const std::string& key, T& into)> read) {
+    return add(std::move(name), std::move(description),
+               [read = std::move(read)](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   read(table, key.name, into);
+                 }
+               });
+  }
+  /// What no key can see alone; by Table::reject.
+  Schema& check(std::function<void(Table& table, T& value)> check) {
+    keys_.push_back({{}, [check = std::move(check)](Table& table, const KeyDescription&, T& into) {
+                       check(table, into);
+                     }});
+    return *this;
+  }
+
+  /// The key that was added last must be there.
+  Schema& required() {
+    keys_.back().description.required = true;
+    return *this;
+  }
+  /// What holds if the key that was added last is left out, where no value says it: "none".
+  Schema& otherwise(std::string words) {
+    keys_.back().description.otherwise = std::move(words);
+    return *this;
+  }
+
+  /// The key that was added last is read only if the members so far say so; elsewhere it is not
+  /// known.
+  Schema& only_if(std::function<bool(const T&)> applies) {
+    keys_.back().read = [applies = std::move(applies), read = std::move(keys_.back().read)](
+                            Table& table, const KeyDescription& key, T& into) {
+      if (applies(into)) {
+        read(table, key, into);
+      }
+    };
+    return *this;
+  }
+
+  /// Problems are noted in the table.
+  void read(Table& table, T& into) const {
+    for (const Key& key : keys_) {
+      if (!key.description.name.empty()) {
+        table.describe(key.description);
+      }
+      key.read(table, key.description, into);
+    }
+  }
+  T read(Table& table) const {
+    T value{};
+    read(table, value);
+    return value;
+  }
+
+ private:
+  using Reader = std::function<void(Table&, const KeyDescription&, T&)>;
+  struct Key {
+    KeyDescription description;
+    Reader read;
+  };
+  Schema& add(std::string name, std::string description, Reader read) {
+    keys_.push_back({{std::move(name), std::move(description), "", false}, std::move(read)});
+    return *this;
+  }
+
+  std::vector<Key> keys_;
+};
+
+}  // namespace haptrial
