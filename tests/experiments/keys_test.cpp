@@ -10,8 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <sstream>
-#include <stdexcept>
 
 #include "core/base/files/file_text.h"
 #include "experiments/studies/registry.h"
@@ -27,10 +25,6 @@ using testing::Not;
 
 TEST(KeysTest, EveryKeyHasItsWordsAndNoOthersAreThere) {
   EXPECT_THAT(mistakes_of_key_words(), IsEmpty());
-}
-
-TEST(KeysTest, ALineThatDescribesNoKeyIsRefused) {
-  EXPECT_THROW(add_key_words("fields.NAME.calm: how calm it is"), std::invalid_argument);
 }
 
 /// With HAPTRIAL_WRITE_PAGES=1 in the environment the page is written anew.

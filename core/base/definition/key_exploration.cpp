@@ -133,7 +133,10 @@ void KeyExploration::ask(KnownKey key) {
 
 void KeyExploration::describe(std::string_view table, std::string_view key,
                               const std::string& words, const std::string& otherwise) {
-  described_[path_of(table, key)] = words;
+  std::string& known = described_[path_of(table, key)];
+  if (known.find(words) == std::string::npos) {
+    known += known.empty() ? words : "; " + words;  // kinds of one table may share a key
+  }
   if (!otherwise.empty()) {
     note_default(table, key, otherwise);
   }

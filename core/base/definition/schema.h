@@ -135,6 +135,24 @@ class Schema {
                  }
                });
   }
+  /// Three numbers of any length above 0, which the member keeps.
+  Schema& direction(std::string name, Eigen::Vector3d T::*member, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = read_any_direction(table, key.name);
+                 }
+               });
+  }
+  /// A whole number that may be computed, as that of a random stream.
+  Schema& seed(std::string name, std::uint64_t T::*member, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = read_seed(table, key.name);
+                 }
+               });
+  }
   /// Bits of a list of whole numbers, as those of buttons.
   Schema& bits(std::string name, std::uint32_t T::*member, std::string description) {
     return add(std::move(name), std::move(description),

@@ -32,8 +32,11 @@ void fill_in_table(toml::table& table, const toml::table& defaults) {
 
 }  // namespace
 
-Table::Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node)
-    : document_(std::move(document)), node_(std::move(node)) {}
+Table::Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node,
+             const NumberSource* numbers)
+    : document_(std::move(document)), node_(std::move(node)), numbers_(numbers) {}
+
+Table Table::with(const NumberSource& numbers) const { return {document_, node_, &numbers}; }
 
 Table Table::parse(std::string_view text, std::string_view file_name) {
   return parse(std::vector<NamedText>{{std::string(text), std::string(file_name)}});
@@ -177,7 +180,7 @@ Table Table::table(std::string_view key) {
   }
   auto child = std::make_shared<Node>(Node{inner, node_->full(key), {}, {}, node_->full_name(key)});
   document_->nodes.push_back(child);
-  return Table(document_, child);
+  return Table(document_, child, numbers_);
 }
 
 std::vector<Table> Table::tables(std::string_view key) {
@@ -185,7 +188,7 @@ std::vector<Table> Table::tables(std::string_view key) {
   if (exploration() != nullptr) {
     auto child = std::make_shared<Node>(Node{nullptr, node_->full(key) + "[]", {}, {}});
     document_->nodes.push_back(child);
-    tables.push_back(Table(document_, child));
+    tables.push_back(Table(document_, child, numbers_));
     return tables;
   }
   if (node_->table == nullptr) {
@@ -212,7 +215,7 @@ std::vector<Table> Table::tables(std::string_view key) {
                                              {},
                                              fmt::format("{}.{}", node_->full_name(key), i + 1)});
     document_->nodes.push_back(child);
-    tables.push_back(Table(document_, child));
+    tables.push_back(Table(document_, child, numbers_));
   }
   return tables;
 }

@@ -13,6 +13,7 @@
 namespace haptrial {
 
 class KeyExploration;
+class NumberSource;
 class Table;
 
 /// A file's text and its name as sentences say it.
@@ -92,6 +93,15 @@ class Table {
   void otherwise(std::string_view key, double value) const;
   void otherwise(std::string_view key, std::string_view value) const;
 
+  /// The same table with texts that may stand for its numbers, and for those of its tables.
+  /// @param numbers  outlives what is read from it
+  Table with(const NumberSource& numbers) const;
+  const NumberSource* numbers() const { return numbers_; }  // null: no text may stand for a number
+  /// The number that a text within `key` stands for; nothing, with the problem noted, if it has
+  /// none or is out of bounds.
+  std::optional<double> worth(std::string_view key, std::string_view text, const Bounds& bounds,
+                              std::string_view unit);
+
   /// A required table within this one; an absent one is noted and reads as empty without further
   /// problems.
   Table table(std::string_view key);
@@ -150,7 +160,8 @@ class Table {
  private:
   struct Document;
   struct Node;
-  Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node);
+  Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node,
+        const NumberSource* numbers = nullptr);
   void note(unsigned line, std::string_view problem);
   void refuse(std::string_view key, std::string_view found, std::string_view allowed);
   void note_unknown_keys() const;
@@ -165,6 +176,7 @@ class Table {
   std::vector<T> array(std::string_view key, const std::string& allowed);
   std::shared_ptr<Document> document_;
   std::shared_ptr<Node> node_;
+  const NumberSource* numbers_{nullptr};
 };
 
 }  // namespace haptrial

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <functional>
 
+#include "core/base/definition/number_source.h"
 #include "core/base/definition/table.h"
 #include "core/base/definition/table_internal.h"
 #include "core/base/definition/table_words_internal.h"
+#include "core/base/error.h"
 #include "core/base/text/nearest.h"
 
 namespace haptrial {
@@ -69,7 +71,30 @@ std::optional<T> Table::get(std::string_view key, std::string_view allowed, bool
   return value;
 }
 
+std::optional<double> Table::worth(std::string_view key, std::string_view text,
+                                   const Bounds& bounds, std::string_view unit) {
+  std::optional<double> value;
+  try {
+    value = numbers_ == nullptr ? std::nullopt : numbers_->value_of(text);
+  } catch (const InputError& error) {
+    reject(key, fmt::format("is \"{}\": {}", text, error.what()));
+    return std::nullopt;
+  }
+  if (!value) {
+    reject(key, fmt::format("the text \"{}\"", text), words(bounds, unit));
+  } else if (!within(*value, bounds)) {
+    reject(key, fmt::format("{} (\"{}\")", *value, text), words(bounds, unit));
+    return std::nullopt;
+  }
+  return value;
+}
+
 double Table::number(std::string_view key, const Bounds& bounds, std::string_view unit) {
+  if (numbers_ != nullptr) {
+    if (const auto text = whole_text(key)) {
+      return worth(key, *text, bounds, unit).value_or(fallback(bounds));
+    }
+  }
   const std::string allowed = words(bounds, unit);
   if (exploration() != nullptr) {
     tell(key, "number", allowed, unit);

@@ -3,16 +3,34 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema.h"
+#include "core/control/pd_controller.h"
 #include "core/scene/field.h"
-#include "core/scene/read/field_reader.h"
 
 namespace haptrial::scene {
+
+// Bounds of quantities that many fields have.
+inline constexpr Bounds kPlaceBounds{-1.0, 1.0};             // [m]
+inline constexpr Bounds kLengthBounds{0.0, 1.0, true};       // [m]
+inline constexpr Bounds kForceBounds{-100.0, 100.0};         // [N]
+inline constexpr Bounds kStrengthBounds{0.0, 100.0};         // [N]
+inline constexpr Bounds kStiffnessBounds{0.0, 1e5};          // [N/m]
+inline constexpr Bounds kDampingBounds{0.0, 1e4};            // [N·s/m]
+inline constexpr Bounds kDurationBounds{0.0, 3600.0, true};  // [s]
+inline constexpr Bounds kFadeBounds{0.0, 60.0};              // [s]
+inline constexpr Bounds kFilterBounds{0.0, 1e5, true};       // [Hz]
+
+/// What the bounds of a field's keys may depend on.
+struct FieldSetting {
+  double rate{1000.0};  // of the servo loop [Hz]
+  double limit{10.0};   // of the field [N]
+};
 
 /// One kind of [fields]: what its `type` says, and how its keys are read.
 struct KindOfField {
   std::string word;
-  FieldKind (*read)(const FieldReader&);  // problems are noted in the table
-  double fade{0.05};                      // fade_in and fade_out if none are given >= 0 [s]
+  FieldKind (*read)(Table& table, const FieldSetting& setting);  // problems are noted in the table
+  double fade{0.05};  // fade_in and fade_out if none are given >= 0 [s]
 };
 
 /// Every kind that read_field() knows. Call before threads are started.
@@ -21,5 +39,16 @@ const std::vector<KindOfField>& kinds_of_field();
 /// Adds a kind of a program's own; its read() gives RegisteredParameters.
 /// @throws std::invalid_argument for a word that is taken
 void add_kind_of_field(const KindOfField& kind);
+
+// Keys that many kinds of fields and objects have.
+
+/// stiffness and damping
+const Schema<control::PdGains>& field_gains_schema();
+/// limit
+const Schema<Field>& field_limit_schema();
+/// fade_in and fade_out
+const Schema<Field>& field_fade_schema();
+inline constexpr const char* kNormal =
+    "Direction across a plane or a texture's waves; of a wall or half space out of it";
 
 }  // namespace haptrial::scene

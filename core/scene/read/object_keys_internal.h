@@ -5,15 +5,15 @@
 #include "core/contact/objects/moving_objects.h"
 #include "core/contact/proxy/proxy.h"
 #include "core/scene/field.h"
-#include "core/scene/read/field_reader.h"
+#include "core/scene/read/field_kinds.h"
 
 namespace haptrial::scene {
 
-/// [limit], [fade_in], [fade_out]
-void read_limits(const FieldReader& read, Field& field);
-/// [centre], [turn]
-contact::ObjectPose read_pose(const FieldReader& read);
-/// [friction]; a static coefficient below the dynamic one is noted
-contact::Friction read_contact_friction(const FieldReader& read);
+/// limit, fade_in and fade_out
+void read_limits(Table& table, Field& field);
+/// centre and turn
+contact::ObjectPose read_pose(Table& table);
+/// friction; a static coefficient below the dynamic one is noted
+contact::Friction read_contact_friction(Table& table);
 
 }  // namespace haptrial::scene

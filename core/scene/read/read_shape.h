@@ -3,8 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/read/number_source.h"
 #include "core/scene/shape/shape.h"
+
+namespace haptrial {
+class Table;
+}
 
 namespace haptrial::scene {
 
@@ -21,12 +24,12 @@ struct Region {
 ///     sphere       centre, radius
 ///     box          centre, size, turn (optional)       turn: axis times angle [rad]
 ///     cylinder     centre, axis, radius, length (optional; else endless)
-Region read_region(Table& table, std::string name, const NumberSource& source = {});
+Region read_region(Table& table, std::string name);
 
 /// Every table of [regions].
-std::vector<Region> read_regions(Table& regions, const NumberSource& source = {});
+std::vector<Region> read_regions(Table& regions);
 
 /// The keys of a shape without its `type`. @param kind  one of the words above
-Shape read_shape(Table& table, const std::string& kind, const NumberSource& source);
+Shape read_shape(Table& table, const std::string& kind);
 
 }  // namespace haptrial::scene

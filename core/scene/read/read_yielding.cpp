@@ -6,7 +6,6 @@
 
 #include "core/base/error.h"
 #include "core/deformable/touch/tissue.h"
-#include "core/scene/read/field_reader.h"
 #include "core/scene/read/object_keys_internal.h"
 
 namespace haptrial::scene {
@@ -15,67 +14,129 @@ namespace {
 constexpr Bounds kYoungBounds{0.0, 1e9, true};  // [Pa]
 constexpr double kDecay = 10.0;                 // of springs [1/s]
 
-deformable::Inclusion read_inclusion(Table& table, std::string name, const NumberSource& source) {
-  const FieldReader read{table, source};
-  return {std::move(name), read.place("centre"), read.number("radius", {0.0, 1.0}, "m"),
-          read.number("young", kYoungBounds, "Pa")};
+const Schema<deformable::Inclusion>& inclusion_schema() {
+  using I = deformable::Inclusion;
+  static const auto schema =
+      Schema<I>()
+          .vector("centre", &I::centre, kPlaceBounds, "m",
+                  "Centre of a ball of another stiffness, from the body's origin")
+          .required()
+          .number("radius", &I::radius, {0.0, 1.0}, "m",
+                  "Radius of a ball of another stiffness; 0: it is not there")
+          .required()
+          .number("young", &I::young, kYoungBounds, "Pa",
+                  "Young's modulus of a ball of another stiffness")
+          .required();
+  return schema;
 }
 
-deformable::Tissue read_tissue(const FieldReader& read) {
-  deformable::Tissue tissue;
-  tissue.young = read.number("young", kYoungBounds, "Pa");
-  tissue.poisson = read.number("poisson", {0.0, deformable::kMostPoisson}, "");
-  if (read.table.has("inclusions")) {
-    Table inclusions = read.table.table("inclusions");
-    for (const std::string& name : inclusions.keys()) {
-      Table own = inclusions.table(name);
-      tissue.inclusions.push_back(read_inclusion(own, name, read.source));
-    }
+const Schema<deformable::Tissue>& tissue_schema() {
+  using T = deformable::Tissue;
+  static const auto schema =
+      Schema<T>()
+          .number("young", &T::young, kYoungBounds, "Pa", "Young's modulus of the body")
+          .required()
+          .number("poisson", &T::poisson, {0.0, deformable::kMostPoisson}, "",
+                  "Poisson's ratio of the body")
+          .required()
+          .check([](Table& table, T& tissue) {
+            if (!table.has("inclusions")) {
+              return;
+            }
+            Table inclusions = table.table("inclusions");
+            for (const std::string& name : inclusions.keys()) {
+              Table own = inclusions.table(name);
+              tissue.inclusions.push_back(inclusion_schema().read(own));
+              tissue.inclusions.back().name = name;
+            }
+          });
+  return schema;
+}
+
+void read_constants(Table& table, const std::string& key, deformable::SpringTissue& springs) {
+  const Eigen::Vector3d constants = read_vector(table, key, {0.0, 1e6}, "J");
+  springs.constants = {constants[0], constants[1], constants[2]};
+  if (!(springs.constants.length > 0.0)) {
+    table.reject(key, fmt::format("[{}, {}, {}] J", constants[0], constants[1], constants[2]),
+                 "a number above 0 for the edges, and at least 0 for faces and tetrahedra");
   }
-  return tissue;
 }
 
-deformable::SpringTissue read_springs(const FieldReader& read) {
+const Schema<deformable::SpringTissue>& spring_tissue_schema() {
+  using S = deformable::SpringTissue;
+  static const auto schema =
+      Schema<S>()
+          .number("density", &S::density, {0.0, 1e5, true}, "kg/m³", "Density of a body of springs")
+          .required()
+          .number("decay", &S::decay, {0.0, 1e4}, "1/s",
+                  "Rate at which a free motion of a body of springs dies down: exp(-decay t)");
+  return schema;
+}
+
+deformable::SpringTissue read_springs(Table& table) {
   deformable::SpringTissue springs;
-  if (read.table.has("calibrated")) {
-    read.table.text("calibrated");
+  springs.decay = kDecay;
+  table.describe({"calibrated",
+                  "File of constants of springs that haptrial deform calibrate made, beside the "
+                  "definition",
+                  "needed, or constants", false});
+  if (table.has("calibrated")) {
+    table.text("calibrated");
   } else {
-    const Eigen::Vector3d constants = read.vector("constants", {0.0, 1e6}, "J");
-    springs.constants = {constants[0], constants[1], constants[2]};
-    if (!(springs.constants.length > 0.0)) {
-      read.table.reject("constants",
-                        fmt::format("[{}, {}, {}] J", constants[0], constants[1], constants[2]),
-                        "a number above 0 for the edges, and at least 0 for faces and tetrahedra");
-    }
+    table.describe({"constants",
+                    "Constants of every edge, face and tetrahedron of a body of springs", "",
+                    true});
+    read_constants(table, "constants", springs);
   }
-  springs.density = read.number("density", {0.0, 1e5, true}, "kg/m³");
-  springs.decay = read.number_or(kDecay, "decay", {0.0, 1e4}, "1/s");
+  spring_tissue_schema().read(table, springs);
   return springs;
+}
+
+const Schema<deformable::TouchOptions>& touch_schema() {
+  using T = deformable::TouchOptions;
+  static const auto schema =
+      Schema<T>()
+          .number("tool_radius", &T::radius, {0.0, 0.05}, "m",
+                  "Radius of the ball that stands for the hand; 0: a point")
+          .number("spring", &T::stiffness, {0.0, kStiffnessBounds.high, true}, "N/m",
+                  "Stiffness of the spring between the hand and the ball that presses a body that "
+                  "gives way");
+  return schema;
+}
+
+/// What the body is made of.
+void read_material(Table& table, DeformableObjectParameters& p) {
+  table.describe({"model",
+                  "What a body that gives way is made of: elements that rest on every tick, or "
+                  "springs that move",
+                  "elements", false});
+  if (!table.has("model") || table.choice("model", {"elements", "springs"}) != "springs") {
+    p.tissue = tissue_schema().read(table);
+    return;
+  }
+  p.springs = read_springs(table);
+  table.describe({"rate",
+                  "Motions of a body of springs a second, if it moves less often than it is felt",
+                  "the loop's", false});
+  p.rate = table.has("rate") ? table.number("rate", {0.0, 1e5, true}, "Hz") : 0.0;
 }
 
 }  // namespace
 
 Field read_yielding(Table& table, std::string name, const deformable::SharedFeltMesh& mesh,
-                    const NumberSource& source,
                     std::shared_ptr<const deformable::SpringConstants> calibrated) {
-  const FieldReader read{table, source};
   Field field;
   field.name = std::move(name);
-  read_limits(read, field);
+  read_limits(table, field);
   DeformableObjectParameters p;
   p.mesh = mesh;
-  if (table.has("model") && table.choice("model", {"elements", "springs"}) == "springs") {
-    p.springs = read_springs(read);
+  read_material(table, p);
+  if (p.springs) {
     p.springs->calibrated = std::move(calibrated);
-    p.rate = table.has("rate") ? read.number("rate", {0.0, 1e5, true}, "Hz") : 0.0;
-  } else {
-    p.tissue = read_tissue(read);
   }
-  p.pose = read_pose(read);
-  p.tool.radius = read.number_or(p.tool.radius, "tool_radius", {0.0, 0.05}, "m");
-  p.tool.stiffness =
-      read.number_or(p.tool.stiffness, "spring", {0.0, kStiffnessBounds.high, true}, "N/m");
-  p.tool.friction = read_contact_friction(read);
+  p.pose = read_pose(table);
+  touch_schema().read(table, p.tool);
+  p.tool.friction = read_contact_friction(table);
   if (mesh && !p.springs && p.tissue.young > 0.0) {
     try {
       deformable::check_tissue(*mesh, p.tissue);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/random.h"
 #include "core/psychometric/procedure/staircase.h"
 #include "core/record/read/session_reader.h"
@@ -24,6 +24,24 @@ using namespace haptrial::protocols;
 
 namespace {
 
+const Schema<SpringsDefinition>& springs_schema() {
+  using D = SpringsDefinition;
+  static const auto schema =
+      Schema<D>()
+          .number("standard", &D::standard, {50.0, 1000.0}, "N/m",
+                  "Stiffness of the spring that others are compared with")
+          .required()
+          .number("difference", &D::difference, {1.0, 500.0}, "N/m",
+                  "Stiffness by which the other spring exceeds the standard in the first trial")
+          .required()
+          .number("factor", &D::factor, {1.01, 4.0}, "1",
+                  "Factor by which an answer divides or multiplies the difference")
+          .required()
+          .number("interval", &D::interval, {0.2, 10.0}, "s", "Time for which each spring is felt")
+          .required();
+  return schema;
+}
+
 std::unique_ptr<Definition> read_springs(Table& root, std::string_view file_name) {
   auto d = std::make_unique<SpringsDefinition>();
   read_common(root, file_name, *d);
@@ -32,10 +50,7 @@ std::unique_ptr<Definition> read_springs(Table& root, std::string_view file_name
   d->design.trials = static_cast<int>(design.integer("trials", 1, 1000));
   d->design.break_after = 0;
   Table table = root.table("springs");
-  d->standard = table.number("standard", {50.0, 1000.0}, "N/m");
-  d->difference = table.number("difference", {1.0, 500.0}, "N/m");
-  d->factor = table.number("factor", {1.01, 4.0}, "1");
-  d->interval = table.number("interval", {0.2, 10.0}, "s");
+  springs_schema().read(table, *d);
   check_common(root, *d);
   return d;
 }

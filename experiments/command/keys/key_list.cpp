@@ -10,8 +10,6 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <sstream>
-#include <stdexcept>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -156,12 +154,6 @@ std::string trimmed(std::string_view text) {
              : std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
 }
 
-/// The lines that a program of one's own has added.
-std::string& own_words() {
-  static std::string lines;
-  return lines;
-}
-
 /// A key that has words already gets these behind them.
 void add_words(std::map<std::string, Words>& all, std::string_view rest) {
   while (!rest.empty()) {
@@ -182,7 +174,6 @@ void add_words(std::map<std::string, Words>& all, std::string_view rest) {
 std::map<std::string, Words> read_words() {
   std::map<std::string, Words> all;
   add_words(all, key_words());
-  add_words(all, own_words());
   return all;
 }
 
@@ -238,17 +229,6 @@ std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
 }
 
 }  // namespace
-
-void add_key_words(std::string_view lines) {
-  std::istringstream stream{std::string(lines)};
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.empty() && std::count(line.begin(), line.end(), '|') != 2) {
-      throw std::invalid_argument(fmt::format(
-          "add_key_words: '{}' describes no key; allowed: PATH | DEFAULT | MEANING", line));
-    }
-    own_words() += line + '\n';
-  }
-}
 
 std::vector<KnownKey> keys_of(const Study& study) {
   const std::string text =

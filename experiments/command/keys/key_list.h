@@ -10,12 +10,6 @@ namespace haptrial::experiments {
 
 class Study;
 
-/// Adds what the keys of a program's own kinds are, for key_sections(): lines "PATH | DEFAULT |
-/// MEANING", as "fields.NAME.width | | distance at which ...". DEFAULT stays empty if the reader
-/// states it.
-/// @throws std::invalid_argument for a line of another form
-void add_key_words(std::string_view lines);
-
 /// Every key of a definition of a study, each once: what tables share is under one of them, and
 /// keys that vary over people are "number or { median, spread }". The readers say what is there.
 std::vector<KnownKey> keys_of(const Study& study);

@@ -122,23 +122,6 @@ analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
   return names;
 }
 
-/// The axis that a procedure states, whatever its kind.
-void take_axis(Table& root, psychometric::Axis& axis) {
-  if (!root.has("procedure")) {
-    return;
-  }
-  Table procedure = root.table("procedure");
-  if (procedure.has("scale")) {
-    const std::string scale = procedure.choice("scale", {"linear", "log10", "decibel"});
-    axis.scale = scale == "log10"     ? psychometric::Scale::kLog10
-                 : scale == "decibel" ? psychometric::Scale::kDecibel
-                                      : psychometric::Scale::kLinear;
-  }
-  if (procedure.has("origin")) {
-    axis.origin = procedure.number("origin", {}, "");
-  }
-}
-
 }  // namespace
 
 PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
@@ -169,9 +152,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
                   : track.kind == "adjustment" ? AnalysisKind::kAdjustment
                                                : AnalysisKind::kPsychometric;
   defaults.guess = guess_of(d);
-  if (track.staircase) {
-    defaults.axis = track.staircase->axis;
-  }
+  defaults.axis = track.axis;
   if (std::ranges::all_of(d.tracks, [&](const auto& each) { return each.falls == track.falls; })) {
     defaults.falls = track.falls;
   }
@@ -188,7 +169,6 @@ analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
     const auto definition = protocols::trials_protocol().read(copy, "", nullptr);
     scripted = dynamic_cast<const protocols::TrialsDefinition&>(*definition).script.has_value();
     defaults = plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition));
-    take_axis(copy, defaults.axis);
   } catch (const InputError&) {
     defaults = {};
   }

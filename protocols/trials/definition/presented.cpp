@@ -15,8 +15,7 @@
 namespace haptrial::protocols {
 namespace {
 
-std::vector<scene::Field> read_felt_objects(Table& table, const Names& names,
-                                            const TrialsDefinition& d) {
+std::vector<scene::Field> read_felt_objects(Table& table, const TrialsDefinition& d) {
   std::vector<scene::Field> objects;
   for (const std::string& name : table.keys()) {
     const auto object = std::ranges::find(d.objects, name, &TrialObject::name);
@@ -26,40 +25,38 @@ std::vector<scene::Field> read_felt_objects(Table& table, const Names& names,
       own.reject("device", "is missing; name the device whose tool feels the body of springs");
     }
     objects.push_back(known && object->yields
-                          ? scene::read_yielding(own, name, object->felt, names, object->constants)
-                          : scene::read_solid(own, name, known ? object->body : nullptr, names));
+                          ? scene::read_yielding(own, name, object->felt, object->constants)
+                          : scene::read_solid(own, name, known ? object->body : nullptr));
   }
   return objects;
 }
 
 /// Fields, and behind them the objects, which are felt as fields.
-void read_what_is_felt(Table& root, const Names& names, const TrialsDefinition& d,
-                       Presented& presented) {
+void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presented) {
   DeviceOf devices;
   std::vector<scene::Field> objects;
   if (root.has("objects")) {
     Table table = root.table("objects");
     devices = devices_of(table, d.hands);
-    objects = read_felt_objects(table, names, d);
+    objects = read_felt_objects(table, d);
   }
   if (root.has("fields")) {
     Table table = root.table("fields");
     devices.merge(devices_of(table, d.hands));
-    presented.fields = scene::read_fields(table, d.rate, names, objects);
+    presented.fields = scene::read_fields(table, d.rate, objects);
   }
   presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
   presented.felt = felt_by(presented.fields, devices, d.hands);
   presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
 }
 
-void read_all_regions(Table& root, const Names& names, const TrialsDefinition& d,
-                      Presented& presented) {
+void read_all_regions(Table& root, const TrialsDefinition& d, Presented& presented) {
   if (!root.has("regions")) {
     return;
   }
   Table table = root.table("regions");
   const DeviceOf devices = devices_of(table, d.hands);
-  presented.regions = scene::read_regions(table, names);
+  presented.regions = scene::read_regions(table);
   for (const scene::Region& region : presented.regions) {
     const auto own = devices.find(region.name);
     presented.region_devices.push_back(own == devices.end() ? 0 : own->second);
@@ -87,14 +84,15 @@ std::vector<std::string> sights_of(const Presented& presented, const Names& name
 
 }  // namespace
 
-Presented read_presented(Table& root, const Names& names, const TrialsDefinition& d,
+Presented read_presented(Table& document, const Names& names, const TrialsDefinition& d,
                          RandomStream* random) {
+  Table root = document.with(names);
   Presented presented;
-  read_what_is_felt(root, names, d, presented);
-  read_all_regions(root, names, d, presented);
+  read_what_is_felt(root, d, presented);
+  read_all_regions(root, d, presented);
   if (root.has("looks")) {
     Table table = root.table("looks");
-    presented.looks = read_looks(table, names);
+    presented.looks = read_looks(table);
   }
   std::vector<std::string> fields, regions;
   add_names(presented.fields, fields);
@@ -103,7 +101,6 @@ Presented read_presented(Table& root, const Names& names, const TrialsDefinition
   const StageSource source{
       fields,
       regions,
-      names,
       [&names](const std::string& text) { return names.word(text); },
       random,
       root.has("sounds") ? sound::cue_names(root.table("sounds")) : std::vector<std::string>{},

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/definition/number_source.h"
 #include "core/base/formula/labels.h"
-#include "core/scene/read/number_source.h"
 #include "protocols/trials/language/variables.h"
 
 namespace haptrial {
@@ -28,7 +28,7 @@ namespace haptrial::protocols {
 ///     [places]
 ///     start  = [0.0, 0.02, 0.0]                     # [m]
 ///     target = ["0.06 * cos($angle)", 0.0, "-0.06 * sin($angle)"]
-class Names final : public scene::NumberSource {
+class Names final : public NumberSource {
  public:
   /// Reads [variables] and [places], both of which may be left out. Problems are noted.
   void read(Table& root);
@@ -61,8 +61,6 @@ class Names final : public scene::NumberSource {
   /// Notes formulas with unknown names or circles. Once everything is declared.
   void check(Table& root) const;
 
- protected:
-  bool takes_texts() const override { return true; }
   std::optional<double> value_of(std::string_view text) const override;
   std::optional<Eigen::Vector3d> vector_of(std::string_view text) const override;
 

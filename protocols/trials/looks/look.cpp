@@ -4,9 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/random.h"
-#include "core/scene/read/number_source.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -19,35 +18,45 @@ constexpr Bounds kDot{0.0, 0.05, true};  // [m]
 constexpr long kFewestDots = 10, kMostDots = 20000;
 constexpr double kNearest = 0.5;  // a dot comes no nearer than half-way to the eyes
 
-Look read_look(Table& table, const std::string& name, const scene::NumberSource& source) {
+const Schema<RandomDots>& random_dots_schema() {
+  using D = RandomDots;
+  static const auto schema =
+      Schema<D>()
+          .number("width", &D::width, kSize, "m", "Width of a bar of random dots")
+          .required()
+          .number("height", &D::height, kSize, "m", "Height of a bar of random dots")
+          .required()
+          .number("step", &D::step, kStep, "m",
+                  "Depth of a bar of random dots before its background")
+          .number("noise", &D::noise, kNoise, "",
+                  "Standard deviation of a dot's depth, as a share of the step")
+          .number("dot", &D::diameter, kDot, "m", "Diameter of a dot")
+          .custom("centre", "Centre of a bar of random dots",
+                  [](Table& table, const std::string& key, D& dots) {
+                    const Eigen::Vector3d centre = read_vector(table, key, kCentre, "m");
+                    dots.centre = {centre.x(), centre.y(), centre.z()};
+                  })
+          .otherwise("0, 0, 0")
+          .integer("dots", &D::count, kFewestDots, kMostDots,
+                   "Number of random dots on the whole screen");
+  return schema;
+}
+
+Look read_look(Table& table, const std::string& name) {
   Look look{name, {}};
-  RandomDots& dots = look.dots;
+  table.describe({"type", "Kind of what is seen: a bar of random dots", "", true});
   table.choice("type", {"random_dots"});
-  dots.width = source.number(table, "width", kSize, "m");
-  dots.height = source.number(table, "height", kSize, "m");
-  const auto number = [&](const char* key, const Bounds& bounds, const char* unit, double& value) {
-    value = table.has(key) ? source.number(table, key, bounds, unit) : value;
-  };
-  number("step", kStep, "m", dots.step);
-  number("noise", kNoise, "", dots.noise);
-  number("dot", kDot, "m", dots.diameter);
-  if (table.has("centre")) {
-    const Eigen::Vector3d centre = source.vector(table, "centre", kCentre, "m");
-    dots.centre = {centre.x(), centre.y(), centre.z()};
-  }
-  if (table.has("dots")) {
-    dots.count = static_cast<std::int32_t>(table.integer("dots", kFewestDots, kMostDots));
-  }
+  random_dots_schema().read(table, look.dots);
   return look;
 }
 
 }  // namespace
 
-std::vector<Look> read_looks(Table& looks, const scene::NumberSource& source) {
+std::vector<Look> read_looks(Table& looks) {
   std::vector<Look> all;
   for (const std::string& name : looks.keys()) {
     Table table = looks.table(name);
-    all.push_back(read_look(table, name, source));
+    all.push_back(read_look(table, name));
   }
   return all;
 }

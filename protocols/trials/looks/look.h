@@ -11,10 +11,6 @@ namespace haptrial {
 class Table;
 }
 
-namespace haptrial::scene {
-class NumberSource;
-}
-
 namespace haptrial::protocols {
 
 /// A random-dot stereogram of an upright bar before a background: its edges are where the depth of
@@ -42,7 +38,7 @@ struct Look {
 ///     type           "random_dots"
 ///     width, height  of the bar [m]; these and what follows, but [dots], may be formulas
 ///     [centre]       in W [m]; [step], [dot] [m]; [noise] share of the step; [dots] their number
-std::vector<Look> read_looks(Table& looks, const scene::NumberSource& source);
+std::vector<Look> read_looks(Table& looks);
 
 /// From where the screen is seen.
 struct TwoEyes {

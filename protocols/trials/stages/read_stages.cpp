@@ -10,7 +10,6 @@
 #include "core/base/definition/table.h"
 #include "core/base/definition/table_vector.h"
 #include "core/base/random.h"
-#include "core/scene/read/number_source.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -75,7 +74,7 @@ class StageReader {
     return table_.has(key) ? table_.texts(key) : std::vector<std::string>{};
   }
   double number(Table& table, const char* key, const Bounds& bounds, const char* unit) {
-    return source_.numbers.number(table, key, bounds, unit);
+    return table.number(key, bounds, unit);
   }
 
   std::string word(const std::string& text) const {

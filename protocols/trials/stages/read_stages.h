@@ -12,10 +12,6 @@ class RandomStream;
 class Table;
 }  // namespace haptrial
 
-namespace haptrial::scene {
-class NumberSource;
-}
-
 namespace haptrial::protocols {
 
 /// A stage as a definition states it.
@@ -27,11 +23,10 @@ struct NamedStage {
   Stage stage;
 };
 
-/// What the stages of a definition may name, and where their numbers come from.
+/// What the stages of a definition may name.
 struct StageSource {
   std::vector<std::string> fields;   // by index
   std::vector<std::string> regions;  // likewise
-  const scene::NumberSource& numbers;
   /// The word that a text such as "$field" stands for; "null" is no field. Null: texts stand for
   /// themselves.
   std::function<std::string(const std::string&)> word;

@@ -10,7 +10,6 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/definition/table_vector.h"
-#include "core/scene/read/number_source.h"
 #include "protocols/trials/definition/question.h"
 #include "protocols/trials/definition/trials_definition.h"
 
@@ -88,8 +87,7 @@ subject::Probe read_contour(Table& table) {
 
 subject::Probe read_palpation(Table& table) {
   subject::Palpate palpate;
-  const std::vector<Eigen::Vector3d> places =
-      scene::NumberSource{}.vectors(table, "at", {-1.0, 1.0}, "m");
+  const std::vector<Eigen::Vector3d> places = read_vectors(table, "at", {-1.0, 1.0}, "m");
   palpate.count = places.size();
   std::copy_n(places.begin(), std::min(places.size(), subject::Palpate::kMost),
               palpate.places.begin());
@@ -178,7 +176,7 @@ Adaptation read_adaptation(Table& table, const std::vector<std::string>& stages)
   Adaptation adaptation;
   adaptation.stage = table.text("stage");
   check_stage(table, "stage", adaptation.stage, stages);
-  adaptation.field = scene::NumberSource{}.matrix(table, "matrix", {-1000.0, 1000.0}, "N·s/m");
+  adaptation.field = read_matrix(table, "matrix", {-1000.0, 1000.0}, "N·s/m");
   adaptation.rates.fast = read_rate(table, "fast", adaptation.rates.fast);
   adaptation.rates.slow = read_rate(table, "slow", adaptation.rates.slow);
   return adaptation;

@@ -1,4 +1,5 @@
 #include "core/scene/read/read_field.h"
+#include "core/base/definition/number_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,15 +61,16 @@ std::map<std::string, Field> by_name(const std::vector<Field>& fields) {
   return found;
 }
 
-std::vector<Field> read(const std::string& text, const NumberSource& source = {}) {
+std::vector<Field> read(const std::string& text, const NumberSource* source = nullptr) {
   Table document = Table::parse(text, "x.toml");
-  Table fields = document.table("fields");
-  std::vector<Field> found = read_fields(fields, kRate, source);
+  Table plain = document.table("fields");
+  Table fields = source != nullptr ? plain.with(*source) : plain;
+  std::vector<Field> found = read_fields(fields, kRate);
   document.finish();
   return found;
 }
 
-std::string told(const std::string& line, const NumberSource& source = {}) {
+std::string told(const std::string& line, const NumberSource* source = nullptr) {
   return test::message_of([&] { read("[fields]\n" + line + "\n", source); });
 }
 
@@ -198,8 +200,6 @@ class Variables final : public NumberSource {
  public:
   double level{0.0};
 
- protected:
-  bool takes_texts() const override { return true; }
   std::optional<double> value_of(std::string_view text) const override {
     return text == "$level"    ? std::optional(level)
            : text == "-$level" ? std::optional(-level)
@@ -222,7 +222,7 @@ TEST(ReadFieldTest, TextsAreWorthWhatTheSourceSays) {
   Variables variables;
   for (const double level : {0.02, 0.5}) {  // as in two trials
     variables.level = level;
-    const auto all = by_name(read(kWithVariables, variables));
+    const auto all = by_name(read(kWithVariables, &variables));
     const auto& spring = std::get<SpringParameters>(all.at("a").kind);
     EXPECT_EQ(spring.gains.stiffness, level);
     EXPECT_EQ(spring.to.y(), level);
@@ -238,7 +238,7 @@ TEST(ReadFieldTest, TextsAreWorthWhatTheSourceSays) {
 TEST(ReadFieldTest, ValuesOfVariablesAreHeldToTheSameBounds) {
   Variables variables;
   variables.level = 5.0;
-  const std::string told = test::message_of([&] { read(kWithVariables, variables); });
+  const std::string told = test::message_of([&] { read(kWithVariables, &variables); });
   EXPECT_THAT(told, HasSubstr("fields.b.radius is 5 (\"$level\"); allowed: a number above 0 and at "
                               "most 1 [m]"));
   EXPECT_THAT(told, HasSubstr("fields.a.to is the text \"$start\""));
@@ -247,9 +247,9 @@ TEST(ReadFieldTest, ValuesOfVariablesAreHeldToTheSameBounds) {
 
 TEST(ReadFieldTest, ATextWithoutAWorthIsAMistake) {
   const Variables variables;
-  EXPECT_THAT(told("a = { type = \"constant\", force = [0, \"$nothing\", 0] }", variables),
+  EXPECT_THAT(told("a = { type = \"constant\", force = [0, \"$nothing\", 0] }", &variables),
               HasSubstr("fields.a.force is the text \"$nothing\""));
-  EXPECT_THAT(told("a = { type = \"constant\", force = \"$nothing\" }", variables),
+  EXPECT_THAT(told("a = { type = \"constant\", force = \"$nothing\" }", &variables),
               HasSubstr("fields.a.force is the text \"$nothing\""));
 }
 
@@ -287,8 +287,7 @@ TEST(ReadRegionTest, MistakesGetTheirSentence) {
 
 /// Places by their names, and one number.
 class NamedPlaces final : public NumberSource {
- protected:
-  bool takes_texts() const override { return true; }
+ public:
   std::optional<double> value_of(std::string_view text) const override {
     return text == "$x" ? std::optional(0.05) : std::nullopt;
   }
@@ -301,16 +300,17 @@ class NamedPlaces final : public NumberSource {
 
 TEST(ReadFieldTest, APathTakesPlacesNumbersAndNames) {
   const std::string rest = ", duration = 1.0, stiffness = 900.0, damping = 10.0 }";
+  const NamedPlaces places;
   const auto points = [&](const std::string& list) {
     const auto fields =
-        read("[fields]\na = { type = \"path\", points = " + list + rest + "\n", NamedPlaces{});
+        read("[fields]\na = { type = \"path\", points = " + list + rest + "\n", &places);
     return std::get<PathParameters>(fields.front().kind).points;
   };
   const std::vector<Vector3d> expected{{0.01, 0.0, 0.0}, {0.02, 0.0, 0.0}};
   EXPECT_EQ(points("[\"$start\", \"$goal\"]"), expected);
   EXPECT_EQ(points("[[0.01, 0, 0], [\"$x\", 0, 0]]")[1], Vector3d(0.05, 0.0, 0.0));
   const auto said = [&](const std::string& list) {
-    return told("a = { type = \"path\", points = " + list + rest, NamedPlaces{});
+    return told("a = { type = \"path\", points = " + list + rest, &places);
   };
   EXPECT_THAT(said("[[0, 0, 0], [0, 0]]"), HasSubstr("a list of places, [[x, y, z], …]"));
   EXPECT_THAT(said("[[0, 0, 0], [0, 0, 0]]"), HasSubstr("fields.a.points go nowhere"));

@@ -8,7 +8,6 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/scene/read/number_source.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -16,10 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-StageSource source() {
-  static const scene::NumberSource numbers;
-  return {{"guide", "floor"}, {"start"}, numbers, nullptr, nullptr};
-}
+StageSource source() { return {{"guide", "floor"}, {"start"}, nullptr, nullptr}; }
 
 /// The stages of a text; what is wrong with it goes to `problems`.
 std::vector<NamedStage> stages_of(const std::string& text, std::vector<std::string>& problems,
