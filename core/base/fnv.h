@@ -14,7 +14,7 @@ class Fnv1a {
     }
     return *this;
   }
-  /// Its eight bytes, the lowest first.
+  /// Adds the number's eight bytes, the lowest first.
   constexpr Fnv1a& add(std::uint64_t number) noexcept {
     for (int byte = 0; byte < 8; ++byte) {
       mix(number >> (8 * byte) & 0xffU);

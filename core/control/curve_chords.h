@@ -22,7 +22,7 @@ struct alignas(64) ChordPack : Chords {
   double stray[kRun];  // no point of the node is farther from its chord [m]; NaN: no such node
 };
 
-/// What a search is about at one moment.
+/// A search's question at one moment.
 struct ChordQuery {
   double x, y, z;                // the point [m]
   double low, high;              // arcs of interest [m]
@@ -30,7 +30,7 @@ struct ChordQuery {
   double bound;                  // what is not nearer than this is of no interest [m]
 };
 
-/// What eight chords are to the point.
+/// Distances of eight chords to the point.
 struct ChordLooks {
   alignas(64) double square[kRun];  // of the distance [m²]
   alignas(64) double along[kRun];   // nearest place, 0 at a chord's begin and 1 at its end

@@ -33,7 +33,7 @@ const Schema<CurveFollowing>& curve_following_schema() {
 
 namespace {
 
-/// Where to begin: on a curve that the cache does not hold, at the segment that the tool would be
+/// Segment to begin at: on a curve that the cache does not hold, the one that the tool would be
 /// beside were the curve straight and evenly sampled from here on, so that nothing is read in vain.
 std::size_t likely_segment(const SampledCurve& curve, std::size_t segment,
                            const Eigen::Vector3d& tool) noexcept {

@@ -42,16 +42,16 @@ class CurveTracker {
   /// The nearest place of the whole curve, however far from the place before.
   const CurvePlace& start(const Eigen::Vector3d& tool) noexcept;
   const CurvePlace& start_at(double arc) noexcept;  // held at the ends [m]
-  /// Where `tool` is not finite the place stays as it is.
+  /// Moves the place to the curve's point for `tool`; if that is not finite, the place stays.
   const CurvePlace& follow(const Eigen::Vector3d& tool) noexcept;
 
   const CurvePlace& place() const noexcept { return place_; }
   const SampledCurve& curve() const noexcept { return *curve_; }
 
  private:
-  /// What the last look beyond `step` showed, so that it need not be made on every tick: as seen
-  /// from `tool` and about `arc`, places within `step` were no nearer than `near`, those beyond it
-  /// no nearer than `far`.
+  /// Result of the last look beyond `step`, so that it need not be made on every tick: as seen from
+  /// `tool` and about `arc`, places within `step` were no nearer than `near`, those beyond it no
+  /// nearer than `far`.
   struct Clearance {
     Eigen::Vector3d tool{Eigen::Vector3d::Zero()};
     double arc{0.0};

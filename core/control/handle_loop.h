@@ -4,7 +4,7 @@
 
 namespace haptrial::control {
 
-/// What lies between a spring and damper in software and the hand, along one axis.
+/// The part of the loop between a spring and damper in software and the hand, along one axis.
 struct HandleLoop {
   double handle_mass{0.22};  // of the bare handle, m_h > 0 [kg]
   double rate{1000.0};       // of the loop, 1 / T > 0 [Hz]

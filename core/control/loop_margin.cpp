@@ -40,7 +40,7 @@ std::string ticks_in_words(int ticks) {
 }
 
 BareHandle bare_handle(const control::PdGains& gains, const control::HandleLoop& loop) {
-  // Where a spring has no damper, the guard's own takes its place.
+  // For a spring without a damper the guard's own takes its place.
   const double calming =
       control::damping_of_bare_handle(std::numeric_limits<double>::infinity(), loop);
   return {std::min(gains.damping, calming), stiffness_of_bare_handle(calming, loop)};

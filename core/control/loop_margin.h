@@ -7,7 +7,7 @@
 
 namespace haptrial::control {
 
-/// What a spring and damper ask of the hand, from the bare handle to a heavy one, with forces that
+/// Demand of a spring and damper on the hand, from the bare handle to a heavy one, with forces that
 /// come one to three ticks late.
 struct LoopMargin {
   std::string name;  // of the table in the definition

@@ -171,7 +171,7 @@ class SampledCurve::Search {
     take(looks.square[best], index * kRun + best, looks.along[best]);
   }
 
-  /// Where the window begins or ends within the strip.
+  /// Scans the part of a strip in which the window begins or ends.
   void scan_part_of_strip(std::size_t index) noexcept {
     const Strip& s = curve_.strips_[index];
     for (std::size_t c = 0; c < kRun; ++c) {
@@ -260,7 +260,7 @@ void SampledCurve::fill_strips(std::span<const Vector3d> points) noexcept {
   }
 }
 
-/// Where strip `strip` begins; the curve's last point beyond them all.
+/// Start of strip `strip`; the curve's last point beyond them all.
 Vector3d SampledCurve::strip_boundary(std::size_t strip) const noexcept {
   return strip < strips_.size() ? point(strip * kRun) : point(size_ - 1);
 }

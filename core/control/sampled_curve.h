@@ -30,8 +30,8 @@ struct ArcWindow {
 /// Which places of a curve a search is about.
 struct CurveQuery {
   ArcWindow window;
-  /// Where to begin. The answer does not depend on it but where several places are equally near;
-  /// near the answer it saves most of the time.
+  /// Segment to begin at. The answer depends on it only if several places are equally near; near
+  /// the answer it saves most of the time.
   std::size_t from_segment{0};
   double below{std::numeric_limits<double>::infinity()};  // only places nearer than this [m]
   /// A stretch known to hold no place that is nearer than `below`: it need not be looked at.

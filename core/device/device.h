@@ -9,7 +9,7 @@
 
 namespace haptrial::device {
 
-/// What a device can do, for the session file and for checks before a session.
+/// Abilities of a device, for the session file and for checks before a session.
 struct DeviceInfo {
   std::string name;
   double max_force{12.0};          // sustained [N]

@@ -4,8 +4,8 @@
 
 namespace haptrial::device {
 
-/// What a force is meant to do, so that what it does beyond that can be told. The default: nothing
-/// but what a resting object does, which gives back at most what it was given.
+/// Purpose of a force, so that any excess can be told. The default is a resting object, which gives
+/// back at most what it was given.
 struct ForceIntent {
   Eigen::Vector3d drive{
       Eigen::Vector3d::Zero()};                   // velocity of what the force pulls to, in W [m/s]

@@ -6,7 +6,7 @@
 
 namespace haptrial::device {
 
-/// What a virtual device's handle is attached to: it moves the handle under the motors' force.
+/// Load on a virtual device's handle: it moves the handle under the motors' force.
 class HandlePhysics {
  public:
   virtual ~HandlePhysics() = default;

@@ -23,7 +23,7 @@ struct RegisteredDevice {
 const std::vector<RegisteredDevice>& own_devices();
 /// @throws std::invalid_argument for a name that is taken or has other characters
 void add_own_device(const RegisteredDevice& device);
-/// What --device takes without a file: the program's own devices, then added ones.
+/// Names that --device takes without a file: the program's own devices, then added ones.
 std::vector<std::string> device_names();
 /// The one that NAME or NAME:SETTING asks for; null if there is none.
 const RegisteredDevice* own_device(const std::string& choice);

@@ -25,7 +25,7 @@ double sign_of(std::span<const int> keys, int plus, int minus) {
 
 }  // namespace
 
-/// Where points of W are in a picture.
+/// Map from points of W to a picture.
 struct PointerHand::Screen {
   Screen(const Camera& camera, int width, int height)
       : eye(camera.eye),

@@ -9,7 +9,7 @@
 
 namespace haptrial::device {
 
-/// What the pointer of a window and the keys that are held say at one picture.
+/// A window's pointer, and the keys that are held, at one picture.
 struct PointerInput {
   Eigen::Vector2d pixel{Eigen::Vector2d::Zero()};  // from the window's top left corner [px]
   double wheel{0.0};                               // steps since the window opened, up > 0

@@ -23,7 +23,8 @@ class ReplayDevice final : public Device {
   ReplayDevice(std::vector<PointState> hand, double rate, const DeviceInfo& recorded = {},
                std::vector<std::size_t> starts = {});
 
-  /// Its name is "replay of NAME"; simulated, for nobody is there.
+  /// Description of the device; it is named "replay of NAME", and is simulated, for nobody is
+  /// there.
   const DeviceInfo& info() const noexcept override { return info_; }
   /// @returns false after the last state; trouble() then says so.
   bool read(DeviceReading& reading) noexcept override;

@@ -42,7 +42,7 @@ class VirtualDevice final : public Device {
   bool read(DeviceReading& reading) noexcept override;
   bool write(const Eigen::Vector3d& force) noexcept override;
 
-  /// What the hand on the handle does beside moving it, until the next call. Servo thread.
+  /// Sets buttons, pedal and orientation of the handle until the next call. Servo thread.
   /// @param pedal  0 to 1
   void hold(std::uint32_t buttons, double pedal, const Eigen::Quaterniond& orientation) noexcept {
     held_.buttons = buttons;

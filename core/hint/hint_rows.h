@@ -26,7 +26,7 @@ struct HintRow {
   double limit_speed{0.0};  // likewise [m/s]
 };
 
-/// What is safe at [from, to) from a structure, a row of /hint_limits.
+/// Safe values at [from, to) from a structure, a row of /hint_limits.
 struct HintLimitRow {
   std::int32_t limit{0};  // from 0
   std::string structure;

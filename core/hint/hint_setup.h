@@ -16,7 +16,7 @@ class Table;
 
 namespace haptrial::hint {
 
-/// What a hint is about: more force than safe near a structure; a faster tip; bone that other bone
+/// Reason of a hint: more force than safe near a structure; a faster tip; bone that other bone
 /// hides is removed.
 enum class HintKind : std::uint8_t { kForce, kSpeed, kHidden };
 inline constexpr std::array kAllHintKinds{HintKind::kForce, HintKind::kSpeed, HintKind::kHidden};
@@ -30,7 +30,7 @@ constexpr std::uint8_t bit(HintKind kind) noexcept {
 /// The condition of trials with hints: "hints on".
 inline constexpr const char* kHints = "hints";
 
-/// What a definition says of hints. They are recorded in all trials and shown in some.
+/// Hints of a definition. They are recorded in all trials and shown in some.
 struct HintSetup {
   std::string file;                      // with safe limits, beside the definition; may be empty
   std::array<bool, kHintKinds> kinds{};  // that are given

@@ -22,7 +22,7 @@ struct HintTick {
   Eigen::Vector3d eye{Eigen::Vector3d::Zero()};  // in W [m]
 };
 
-/// What a tick did to a voxel. Likewise.
+/// Change of a voxel on a tick. Likewise.
 struct HintVoxel {
   enum class What : std::uint8_t { kRemoved, kCut, kCrumb };  // by a burr; by the cut plane; dust
   std::uint64_t sequence{0};

@@ -13,7 +13,7 @@
 
 namespace haptrial::hint {
 
-/// What a participant sees of hints at an instant.
+/// Hints that a participant sees at an instant.
 struct HintsNow {
   std::uint8_t kinds{0};      // bit() of each
   std::int8_t structure{-1};  // as HintWatch::structure()
@@ -46,7 +46,7 @@ class HintsBeside {
 
   // Servo thread: no allocation, lock or wait (but SteppedHints, on a simulated clock).
 
-  /// What was done to a voxel on the tick that after_tick() tells next.
+  /// Adds a change of a voxel on the tick that after_tick() tells next.
   virtual void voxel(const HintVoxel& voxel) noexcept = 0;
   virtual void after_tick(const HintTick& tick) noexcept = 0;
   HintsNow now() const noexcept { return now_.load(std::memory_order_relaxed); }

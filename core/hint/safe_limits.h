@@ -7,7 +7,7 @@
 
 namespace haptrial::hint {
 
-/// What nearly all experts stayed below at [from, to) from a structure.
+/// Values that nearly all experts stayed below at [from, to) from a structure.
 struct SafeInterval {
   double from{0.0}, to{0.0};  // distance of the removed voxel [m]
   double force{0.0};          // of the burr on bone [N]

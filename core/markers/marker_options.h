@@ -14,7 +14,7 @@ class Schema;
 
 namespace haptrial::markers {
 
-/// What [markers] of a definition says. Codes are of the first of their kind; the others count on.
+/// Options of [markers] in a definition. Codes are of the first of their kind; the others count on.
 struct MarkerOptions {
   bool used{false};    // a session records its markers
   std::string serial;  // a serial line, such as /dev/ttyUSB0; empty: none
@@ -24,7 +24,7 @@ struct MarkerOptions {
   int interval{11};
   int stage{21};
   int response{101};
-  /// What is sent on the serial line; onsets of one tick in this order.
+  /// Onsets that are sent on the serial line; those of one tick in this order.
   std::vector<record::MarkerOf> send{record::MarkerOf::kStage, record::MarkerOf::kResponse,
                                      record::MarkerOf::kInterval, record::MarkerOf::kTrial};
 };
@@ -32,7 +32,7 @@ struct MarkerOptions {
 /// The keys of [markers].
 const Schema<MarkerOptions>& marker_schema();
 
-/// What a code stands for.
+/// Meaning of a code.
 struct MarkerMeaning {
   record::MarkerOf what{record::MarkerOf::kTrial};
   std::int16_t index{0};  // as Onset::index

@@ -28,7 +28,7 @@ struct SentOnset {
 /// the other ways do not wait for it.
 class MarkerThread {
  public:
-  /// Where onsets go, beside the serial line.
+  /// Outputs of onsets beside the serial line.
   struct MarkerOutputs {
     SerialLine* serial{nullptr};                    // null: none
     std::function<bool(const TimedOnset&)> stream;  // @returns whether it was taken; empty: none
@@ -41,7 +41,7 @@ class MarkerThread {
   MarkerThread(const MarkerThread&) = delete;
   MarkerThread& operator=(const MarkerThread&) = delete;
 
-  /// What was sent since the last call, in the order of sending. Any one thread.
+  /// Onsets that were sent since the last call, in the order of sending. Any one thread.
   std::vector<SentOnset> take_sent();
   /// Waits until everything that was put has been sent. @returns whether it has. Any thread.
   bool wait_until_sent(std::chrono::milliseconds longest) const;

@@ -45,7 +45,7 @@ struct TimedOnset {
   bool over{false};           // no onset: the pass has ended
 };
 
-/// What begins on one tick, to be handed over at once. Servo thread: no allocation, lock or throw.
+/// Onsets of one tick, to be handed over at once. Servo thread: no allocation, lock or throw.
 class TickOnsets {
  public:
   static constexpr std::size_t kMost = Onsets::kMost + 2;  // and the trial, and its first stage

@@ -22,7 +22,7 @@ struct EmgParameters {
   double stimulus{2e-3};    // artefact of a stimulus pulse, peak [V]
 };
 
-/// What was put into a signal: the truth that a detector is held against.
+/// A discharge that was put into a signal: the truth that a detector is held against.
 struct Planted {
   enum class Kind : std::uint8_t { kBurst, kTrain, kResponse, kArtefact } kind{Kind::kBurst};
   std::uint64_t first{0};  // sample, from 0

@@ -4,7 +4,7 @@
 
 namespace haptrial::nerve {
 
-/// What a tool does to a nerve at one tick.
+/// Effect of a tool on a nerve at one tick.
 struct Exposure {
   double distance{1.0};  // from the tool's surface to the nerve [m]; 0 or below: contact
   double force{0.0};     // of the tool on the bone [N]
@@ -28,7 +28,7 @@ struct ExposureParameters {
   double trains{0.2};        // a second for each kelvin above [1/s/K]
 };
 
-/// What a nerve does at one tick.
+/// Events of a nerve at one tick.
 struct NerveEvents {
   bool burst{false};   // a short discharge begins
   bool train{false};   // a long regular one begins

@@ -35,7 +35,7 @@ struct NerveEvent {
   bool artefact{false};
 };
 
-/// What one channel shows and sounds like.
+/// Display and sound of one channel.
 struct ChannelState {
   double threshold{0.0};   // now [V]
   bool tone{false};        // an event goes on

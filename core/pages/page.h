@@ -6,7 +6,7 @@
 
 namespace haptrial::pages {
 
-/// What is done with one screenful.
+/// Kind of an item of a page.
 enum class ItemKind {
   kRead,     // read, and gone on from
   kConsent,  // accepted or declined: choices 0 and 1

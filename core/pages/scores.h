@@ -40,8 +40,8 @@ struct Score {
   double value{0.0};
 };
 
-/// What a page's answers come to: of known questionnaires their scores, and every item that is
-/// answered by a number. Items without an answer, and answers that are none, have no score.
+/// Scores of a page's answers: of known questionnaires, and of every item that is answered by a
+/// number. Items without an answer, and answers that are none, have no score.
 std::vector<Score> scores_of(const Page& page, const std::vector<GivenAnswer>& answers);
 
 }  // namespace haptrial::pages

@@ -16,7 +16,7 @@ class HandOver {
   std::uint8_t writing() const noexcept { return writing_; }  // writer's to fill
   std::uint8_t reading() const noexcept { return reading_; }  // reader's to look at
 
-  /// What the writer filled is the newest, and the writer gets another slot.
+  /// Publishes the slot that the writer filled as the newest; the writer gets another slot.
   void publish() noexcept {
     writing_ = handed_.exchange(writing_ | kNew, std::memory_order_acq_rel) & kIndex;
   }

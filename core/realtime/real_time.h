@@ -6,7 +6,7 @@
 
 namespace haptrial::realtime {
 
-/// What the system granted to a thread that asked for real-time treatment.
+/// Real-time treatment that the system granted to a thread that asked for it.
 struct RealTimeStatus {
   bool fifo{false};           // SCHED_FIFO: ordinary threads do not delay this one
   bool memory_locked{false};  // no page that is in memory now will be paged out

@@ -18,7 +18,7 @@ struct Tick {
   double dt;             // the nominal period 1 / rate [s]; what really passed is in time_ns
 };
 
-/// What a servo loop does once a period.
+/// The task of a servo loop once a period.
 class ServoTask {
  public:
   virtual ~ServoTask() = default;

@@ -14,9 +14,9 @@ struct StiffnessBound {
   double damping{0.0};    // B: bound of the force over the velocity [N·s/m]
 };
 
-/// Of the field at `which` in a scene; reliefs steepen the surface that they lie on and are counted
-/// there. For a field that is not passive K and B hold for what it makes of place and velocity;
-/// what it gives over time is its purpose.
+/// Bound on the field at `which` in a scene; reliefs steepen the surface that they lie on and are
+/// counted there. For a field that is not passive K and B hold for its forces from place and
+/// velocity; the energy that it gives over time is its purpose.
 StiffnessBound steepness(const std::vector<Field>& fields, std::size_t which);
 
 /// The damping of device and hand with which a sampled passive field never gives out energy,

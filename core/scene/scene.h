@@ -60,8 +60,8 @@ class Scene {
   /// How a body that gives way is touched; null for any other field. @param field  below size()
   const deformable::BodyTouch* touch(std::size_t field) const noexcept;
 
-  /// What the conservative fields that act store if the hand is at p, with their weights of the
-  /// last tick [J]. Not for a scene with a field whose force is not minus a gradient.
+  /// Energy that the conservative fields that act store if the hand is at p, with their weights of
+  /// the last tick [J]. Not for a scene with a field whose force is not minus a gradient.
   double energy(const Eigen::Vector3d& p) noexcept;
 
  private:

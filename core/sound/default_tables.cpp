@@ -5,8 +5,8 @@
 namespace haptrial::sound {
 namespace {
 
-/// What `haptrial spectrum` found in a recording of a drill that runs, whose burr and load are not
-/// known (docs/algorithms/drill-sound.md).
+/// Peaks that `haptrial spectrum` found in a recording of a drill that runs, whose burr and load
+/// are not known (docs/algorithms/drill-sound.md).
 constexpr std::array kRecorded{Peak{406.9, 0.00113, 8.1},   Peak{817.2, 0.00264, 23.7},
                                Peak{2264.3, 0.03169, 36.0}, Peak{3395.0, 0.00915, 60.1},
                                Peak{4536.5, 0.00654, 66.6}, Peak{5642.5, 0.00832, 65.6},

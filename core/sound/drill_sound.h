@@ -12,7 +12,7 @@ class Table;
 
 namespace haptrial::sound {
 
-/// What a drill does, as far as it can be heard. Plain data.
+/// Audible state of a drill. Plain data.
 struct DrillState {
   Burr burr{Burr::kCutting};
   double speed{0.0};      // of its full speed, 0 (off) to 1

@@ -29,7 +29,7 @@ class Harmonics {
   /// @throws std::invalid_argument for other numbers.
   Harmonics(double rate, const RandomStream& stream, double glide = 0.01);
 
-  /// Where the lines go from now on.
+  /// Sets the targets of the lines from now on.
   /// @param pitch     every frequency is multiplied by it >= 0
   /// @param loudness  every amplitude, and the noise, is multiplied by it >= 0
   void aim(const Spectrum& spectrum, double pitch, double loudness) noexcept;

@@ -102,7 +102,7 @@ class Finder {
     return lowest;
   }
 
-  /// Where the power falls to half on one side, in bins from the top.
+  /// Place at which the power falls to half on one side, in bins from the top.
   double half(std::size_t top, int side) const {
     const double level = 0.5 * (power_[top] + floor_[top]);
     std::size_t i = top;

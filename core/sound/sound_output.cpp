@@ -8,7 +8,7 @@
 namespace haptrial::sound {
 namespace {
 
-/// What a drilling session may do instead.
+/// Adds to the error the alternative of a drilling session.
 [[noreturn]] void offer_file(const RunError& error) {
   throw RunError(std::string(error.what()) +
                  "; the session's sound can be written to a WAV file instead");

@@ -26,7 +26,7 @@ class SoundOutput {
   SoundOutput(const SoundOutput&) = delete;
   SoundOutput& operator=(const SoundOutput&) = delete;
 
-  /// What the drill does from now on. Servo thread: no allocation, lock, wait or throw.
+  /// Sets the state of the drill from now on. Servo thread: no allocation, lock, wait or throw.
   void set(const DrillState& drill) noexcept { latest_.write(drill); }
 
   /// As CardPlayer has them. Any thread.

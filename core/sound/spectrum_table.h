@@ -55,10 +55,10 @@ struct SpectrumTable {
   const Kind& of(Burr burr) const { return kinds[static_cast<std::size_t>(burr)]; }
   Kind& of(Burr burr) { return kinds[static_cast<std::size_t>(burr)]; }
 
-  /// What a burr that presses with `force` [N] gives off: between two levels what lies between
-  /// them, outside the nearest. A burr without levels sounds as the other one does, a drill
-  /// without a level in the air as its lightest contact, and the other way round.
-  /// Servo thread: no allocation, lock or throw.
+  /// Spectrum of a burr that presses with `force` [N]: between two levels interpolated, outside the
+  /// nearest. A burr without levels sounds as the other one does, a drill without a level in the
+  /// air as its lightest contact, and the other way round. Servo thread: no allocation, lock or
+  /// throw.
   Spectrum at(Burr burr, bool contact, double force) const noexcept;
 };
 
@@ -73,7 +73,7 @@ std::string to_toml(const SpectrumTable& table);
 SpectrumTable read_spectrum_table(const std::filesystem::path& file);
 SpectrumTable parse_spectrum_table(std::string_view text, std::string_view file_name);
 
-/// What is used where no file is given. All levels of the vibration and all but one of the sound
+/// Table that is used if no file is given. All levels of the vibration and all but one of the sound
 /// are stand-ins, as their `measured` says: the source prints its spectra without numbers.
 SpectrumTable default_sound();
 SpectrumTable default_vibration();

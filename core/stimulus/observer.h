@@ -8,7 +8,7 @@
 
 namespace haptrial::stimulus {
 
-/// What the devices of a session apply to the hands, in their order, in W [N].
+/// Forces that the devices of a session apply to the hands, in their order, in W [N].
 class Forces {
  public:
   Forces(const Eigen::Vector3d& only) noexcept : all_(&only, 1) {}  // implicit: of one device

@@ -7,7 +7,7 @@
 
 namespace haptrial::stimulus {
 
-/// What the participant has been told to do in this pass.
+/// Instruction to the participant in this pass.
 enum class Instruction : std::uint8_t {
   kRest,       // no task
   kHoldPlane,  // keep the device in the plane against its force (haptic training)
@@ -18,9 +18,9 @@ enum class Instruction : std::uint8_t {
   kReproduce,  // move along the learnt path and apply the learnt pattern (free test)
 };
 
-/// What a participant who follows a path is to see at one instant: a view (shown.h). Written whole
-/// by the servo thread each tick; read by the renderer and by a virtual subject, so both see the
-/// same. Source: Morris 2006, §4.2.4, Figure 24.
+/// Picture of a participant who follows a path, at one instant: a view (shown.h). Written whole by
+/// the servo thread each tick; read by the renderer and by a virtual subject, so both see the same.
+/// Source: Morris 2006, §4.2.4, Figure 24.
 struct Presentation {
   Eigen::Vector3d tool{Eigen::Vector3d::Zero()};  // device position in W [m]
   bool show_trajectory{false};   // the spatial trajectory of the block and the tool on it
@@ -39,7 +39,7 @@ struct Presentation {
   bool engaged() const noexcept { return instruction != Instruction::kRest; }
 };
 
-/// What is shown of a path; nothing of it but the tool if nothing or something else is shown.
+/// The path's part of a view; nothing but the tool if nothing or something else is shown.
 inline Presentation presentation_of(const Shown& shown) noexcept {
   if (const auto* seen = shown.as<Presentation>()) {
     return *seen;

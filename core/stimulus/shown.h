@@ -8,8 +8,9 @@
 
 namespace haptrial::stimulus {
 
-/// What a participant is shown at one instant: a value of a type that the protocol owns, its view.
-/// The screen, pictures and virtual participants get it whole; who draws a protocol knows its type.
+/// The participant's picture at one instant: a value of a type that the protocol owns, its view.
+/// The screen, pictures and virtual participants get it whole; the code that draws a protocol knows
+/// its type.
 ///
 /// A view is plain data of at most kRoom bytes with `bool engaged() const`: whether the participant
 /// has something to do. Servo thread: copying neither allocates nor throws.

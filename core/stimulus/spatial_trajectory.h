@@ -46,7 +46,7 @@ class SpatialTrajectory {
   double speed() const noexcept { return speed_; }               // [m/s]
   double duration() const noexcept { return length_ / speed_; }  // of one pass [s]
 
-  /// Where the ideal tool is `time` seconds after the start of the pass; rests at both ends.
+  /// State of the ideal tool `time` seconds after the start of the pass; it rests at both ends.
   /// Servo thread.
   PointState at(double time) const noexcept;
 

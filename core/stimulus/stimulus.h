@@ -7,7 +7,7 @@
 
 namespace haptrial::stimulus {
 
-/// What one block teaches: a path for the hand and the force to be applied along it.
+/// Lesson of one block: a path for the hand and the force to be applied along it.
 struct Stimulus {
   SpatialTrajectory path;
   ForcePattern force;

@@ -13,7 +13,7 @@
 
 namespace haptrial::stream {
 
-/// What the streams say of themselves.
+/// Names and descriptions of the streams.
 struct LslOptions {
   std::string library{"liblsl.so"};  // a name that the loader searches for, or a path
   std::string study;                 // name of the experiment

@@ -11,7 +11,7 @@
 
 namespace haptrial::stream {
 
-/// What one row has for a side stream.
+/// Part of one row for a side stream.
 struct SideSample {
   std::uint64_t sequence{0};       // of its tick
   double after{0.0};               // that tick >= 0 [s]

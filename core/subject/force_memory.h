@@ -6,8 +6,8 @@
 
 namespace haptrial::subject {
 
-/// What a curve of forces looks like to somebody: an estimate and its variance at each knot.
-/// Knots are equally spaced over the pass.
+/// A person's memory of a curve of forces: an estimate and its variance at each knot. Knots are
+/// equally spaced over the pass.
 struct ForceProfile {
   static constexpr int kKnots = 256;
   std::array<double, kKnots> force{};     // [N]

@@ -6,7 +6,7 @@
 
 namespace haptrial::subject {
 
-/// What the nervous system asks of the hand for the next step.
+/// Command of the nervous system to the hand for the next step.
 struct HandCommand {
   double press{0.0};                               // motor command, downward > 0 [N]
   bool holds_posture{false};                       // keep the height stiffly, or yield to the guide

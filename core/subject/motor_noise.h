@@ -7,9 +7,9 @@
 
 namespace haptrial::subject {
 
-/// What a hand does that nobody asked for: noise in proportion to the force that is produced
-/// (Jones, Hamilton and Wolpert 2002), and physiological tremor, a resonance near 9 Hz driven by
-/// white noise. One step a tick. Servo thread.
+/// Involuntary force of a hand: noise in proportion to the force that is produced (Jones, Hamilton
+/// and Wolpert 2002), and physiological tremor, a resonance near 9 Hz driven by white noise. One
+/// step a tick. Servo thread.
 class MotorNoise {
  public:
   MotorNoise(const SubjectParameters& person, double step, RandomStream random) noexcept;

@@ -8,8 +8,8 @@
 
 namespace haptrial::subject {
 
-/// What newtons a bar height means to somebody: a belief about the logarithm of the scale, 0 where
-/// it is right. Only force felt while a bar is seen calibrates it.
+/// A person's scale from bar height to newtons: a belief about the logarithm of the scale, 0 if it
+/// is right. Only force felt while a bar is seen calibrates it.
 class BarCalibration {
  public:
   BarCalibration(const SubjectParameters& person, RandomStream& random) noexcept;

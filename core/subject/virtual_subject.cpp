@@ -147,16 +147,16 @@ double VirtualSubject::intended_press(const Presentation& seen, double dt) noexc
 }
 
 double VirtualSubject::oppose() const noexcept {
-  // What is felt, and a push back to the plane. With the delay of the senses the push must stay
-  // below the posture's own stiffness, or it would oscillate.
+  // Force that is felt, and a push back to the plane. With the delay of the senses the push must
+  // stay below the posture's own stiffness, or it would oscillate.
   constexpr double kPushBack = 100.0;  // [N/m]
   const Sensed& sensed = delayed(person_.haptic_delay);
   return sensed.felt + kPushBack * sensed.hand.y();
 }
 
 double VirtualSubject::hold_back(double press, double dt) noexcept {
-  // Where the device saturates the handle gives way: the hand eases off at once and takes its time
-  // to trust again. Shares of the intended press per second.
+  // A handle whose device saturates gives way: the hand eases off at once and takes its time to
+  // trust again. Shares of the intended press per second.
   constexpr double kEaseOff = 5.0;
   constexpr double kTrust = 1.0;
   const bool gives_way = delayed(person_.haptic_delay).saturated;

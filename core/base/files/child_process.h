@@ -30,7 +30,7 @@ struct Pipe {
   Descriptor from, to;
 };
 
-/// What a program is started with: these, the environment, and no other descriptor of this process.
+/// A program to start: it gets these, the environment, and no other descriptor of this process.
 struct Program {
   std::vector<std::string> words;  // its name, found along PATH, and its arguments
   std::filesystem::path folder{};  // in which it runs; empty: that of this process

@@ -145,7 +145,7 @@ const Known* known_by(const std::string& wanted) {
   return nullptr;
 }
 
-/// Its name and its usual names.
+/// Name and usual names of a structure.
 std::vector<std::string> forms_of(const Known& known) {
   std::vector<std::string> forms{known.name};
   const std::string_view others = known.others;

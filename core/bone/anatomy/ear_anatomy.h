@@ -8,7 +8,7 @@
 
 namespace haptrial::bone {
 
-/// What differs from one temporal bone to the next; lengths in millimetres.
+/// Differences from one temporal bone to the next; lengths in millimetres.
 struct EarVariation {
   double scale{1.0};        // of everything
   double cells{15.0};       // how far they reach from the antrum

@@ -8,7 +8,7 @@
 
 namespace haptrial::bone {
 
-/// What differs from one mandible to the next; lengths in millimetres.
+/// Differences from one mandible to the next; lengths in millimetres.
 struct JawVariation {
   double scale{1.0};   // of everything
   double spread{0.0};  // of the rami, to each side

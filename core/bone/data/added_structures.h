@@ -18,7 +18,7 @@ namespace haptrial::bone {
 struct MeshStructure {
   std::string name;            // as structure_named() takes it
   std::filesystem::path file;  // .stl, .obj or .ply
-  /// Its axes are RAS and not LPS; by default what the file says ("SPACE=RAS", as 3D Slicer
+  /// The file's axes are RAS and not LPS; by default as the file says ("SPACE=RAS", as 3D Slicer
   /// writes), else LPS.
   std::optional<bool> ras;
 };

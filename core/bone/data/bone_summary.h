@@ -9,7 +9,7 @@
 
 namespace haptrial::bone {
 
-/// What a bone holds of one structure.
+/// Voxels, volume and surface of one structure in a bone.
 struct StructureSummary {
   std::uint8_t label;
   std::size_t voxels;
@@ -24,8 +24,8 @@ struct BoneSummary {
   std::size_t voxels{0};
   double volume{0.0};  // [m3]
   Eigen::AlignedBox3d box;
-  /// Of the outside [m2]: faces between full and empty voxels, by 3/2, the mean of |x| + |y| + |z|
-  /// over all directions that a surface can have.
+  /// Area of the outside [m2]: faces between full and empty voxels, by 3/2, the mean of |x| + |y| +
+  /// |z| over all directions that a surface can have.
   double surface{0.0};
 };
 

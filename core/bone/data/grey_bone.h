@@ -9,7 +9,7 @@
 
 namespace haptrial::bone {
 
-/// What turns numbers of a CT into bone.
+/// The levels that turn the numbers of a CT into bone.
 struct GreyLevels {
   double threshold;  // from here on it is bone
   double dense;      // from here on its density is 1; above `threshold`
@@ -31,7 +31,7 @@ struct GreyHistogram {
   double width{1.0};  // of a bin > 0
 };
 
-/// What an import found of the numbers of a grey volume.
+/// Findings of an import about the numbers of a grey volume.
 struct GreyFindings {
   GreyHistogram histogram;
   double suggested;                // threshold, by find_threshold()

@@ -13,7 +13,7 @@ namespace haptrial::bone {
 /// Slicer ("Segment0_LabelValue", "Segment0_Name"). Names that nobody gave stay empty.
 std::vector<Structure> structures_in(const std::map<std::string, std::string>& keys);
 
-/// What a file of names says of the labels of a volume.
+/// Names and colours that a file gives to the labels of a volume.
 struct LabelTable {
   std::vector<Structure> structures;         // by label; names that nobody gave stay empty
   std::map<std::string, std::string> names;  // from those of the volume to those that are known

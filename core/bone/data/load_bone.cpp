@@ -32,7 +32,7 @@ constexpr double kThreshold = 300.0;          // [HU]
 constexpr double kDense = 1500.0;             // [HU]
 constexpr double kAirBelow = -500.0;          // a CT in Hounsfield units has values down here [HU]
 
-/// What the steps of an import share.
+/// State that the steps of an import share.
 struct Import {
   std::string name;
   const LoadOptions& options;
@@ -380,7 +380,7 @@ Eigen::Affine3d patient_frame(const UprightVolume& volume) {
   return X_PB;
 }
 
-/// What lies beside the scan.
+/// Adds the structures of the files beside the scan.
 void add_structures(const Import& job, const Eigen::Affine3d& X_PB, BoneModel& model) {
   const LabelTable table =
       job.options.label_file.empty() ? LabelTable{} : read_label_table(job.options.label_file);

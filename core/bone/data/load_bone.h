@@ -15,7 +15,7 @@
 
 namespace haptrial::bone {
 
-/// What the numbers of a volume are.
+/// Meaning of the numbers of a volume.
 enum class VolumeKind {
   kAuto,    // labels where the file says so, or holds few different small whole numbers
   kLabels,  // each number names a structure
@@ -27,8 +27,8 @@ struct LoadOptions {
   /// Edge of the voxels > 0 [m]. Default: 0.5 mm for grey volumes; labels keep their own where it
   /// is the same along every axis, else the smallest.
   std::optional<double> spacing;
-  /// Of grey volumes, in the file's numbers: 300 in Hounsfield units; where the numbers are
-  /// something else it must be given, or asked for by `find_threshold`.
+  /// The least number of a grey volume that is bone: 300 in Hounsfield units; for other units it
+  /// must be given, or asked for by `find_threshold`.
   std::optional<double> threshold;
   bool find_threshold{false};        // by the histogram (Otsu 1979, three classes)
   std::optional<double> dense;       // the number of bone with density 1 > threshold; 1500 HU

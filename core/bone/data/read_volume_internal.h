@@ -7,7 +7,7 @@
 /// The readers, one for each library. They run in a process of their own: see read_volume().
 namespace haptrial::bone {
 
-/// What the format of a file that names no unit of length ends in.
+/// End of the format's name for a file that names no unit of length.
 inline constexpr const char* kNoUnit = ", without a unit of length, so in mm";
 
 SourceVolume read_nrrd(const std::filesystem::path& file, const Room& room);

@@ -107,7 +107,7 @@ BigArray<float> resample_straight(const UprightVolume& volume, const geometry::V
   return values;
 }
 
-/// What voxels as coarse as the grid's can hold, at the volume's own places.
+/// The volume without detail that is finer than the grid's voxels, at the volume's own places.
 BigArray<float> smoothed(const UprightVolume& volume, double spacing) {
   BigArray<float> values = volume.components[0];
   for (int axis = 0; axis < 3; ++axis) {

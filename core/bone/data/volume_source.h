@@ -15,7 +15,7 @@
 
 namespace haptrial::bone {
 
-/// What a file says about the volume in it, in metres and in the frame of the patient (LPS: x to
+/// A file's description of the volume in it, in metres and in the frame of the patient (LPS: x to
 /// the left, y to the back, z up).
 struct VolumeHead {
   std::array<std::int32_t, 3> size{0, 0, 0};  // voxels along i, j, k, i fastest

@@ -91,7 +91,7 @@ Eigen::Vector3d image_of(const BurrShape& shape, const Eigen::Vector3d& at) {
                                     : Eigen::Vector3d(-at.x(), -at.y(), at.z());
 }
 
-/// Where a sample pushes: inwards. @param at  in units of the reach
+/// Direction in which a sample pushes: inwards. @param at  in units of the reach
 Eigen::Vector3d inwards(const BurrShape& shape, const Eigen::Vector3d& at) {
   return shape.is_ball() ? Eigen::Vector3d(-at.normalized())
                          : Eigen::Vector3d(-shape.nearest(shape.reach() * at).normal);

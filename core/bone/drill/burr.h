@@ -34,14 +34,14 @@ struct BurrParameters {
   BurrDimensions dimensions() const noexcept { return {form, diameter, length, narrow_diameter}; }
 };
 
-/// What a burr still removes of what it removed when it was new, 1 down to 0, after a volume V of
-/// bone: W / (W + V), with its wear volume W. Divisions and sums only, so that every machine has
-/// the same bits. Servo thread. @param removed  >= 0 [m^3]
+/// Share of its first removal rate that a burr still has, 1 down to 0, after a volume V of bone: W
+/// / (W + V), with its wear volume W. Divisions and sums only, so that every machine has the same
+/// bits. Servo thread. @param removed  >= 0 [m^3]
 double sharpness(const BurrParameters& burr, double removed) noexcept;
 
-/// What a ball of this kind and size does unless told otherwise: samples 0.25 mm apart, or 28 over
-/// the diameter where that is less; a cutting burr has a higher rate, a higher falloff and a
-/// stronger pull along the bone. Source: Morris 2006, §3.2.3.6.
+/// Default parameters of a ball of this kind and size: samples 0.25 mm apart, or 28 over the
+/// diameter if that is less; a cutting burr has a higher rate, a higher falloff and a stronger pull
+/// along the bone. Source: Morris 2006, §3.2.3.6.
 BurrParameters default_burr(BurrKind kind, double diameter);
 /// The same of another shape, which has at most as many samples as a ball.
 /// @throws std::invalid_argument as BurrShape does.

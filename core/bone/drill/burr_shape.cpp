@@ -125,7 +125,7 @@ void BurrShape::measure() {
 void BurrShape::fill_with_balls() {
   constexpr int kBalls = 9;
   const auto room = [this](double z) { return -nearest({0.0, 0.0, z}).distance; };
-  /// Where the widest ball is that touches an end on the axis.
+  /// Centre of the widest ball that touches an end on the axis.
   const auto outermost = [&](double side) {
     double outer = half_length_;
     double inner = 0.0;

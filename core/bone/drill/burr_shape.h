@@ -70,8 +70,8 @@ class BurrShape {
     double z;        // [m]
     double lateral;  // component of the normal across the axis, 0 to 1; of a flat end its edge's
   };
-  /// Its meridian from the tip to the other end: a polyline for each smooth part, with the arcs in
-  /// `steps` chords.
+  /// The shape's meridian from the tip to the other end: a polyline for each smooth part, with the
+  /// arcs in `steps` chords.
   std::vector<std::vector<OutlinePoint>> outline(int steps) const;
 
  private:

@@ -40,7 +40,7 @@ constexpr std::array<std::uint64_t, 256> spread_bits() {
   return spread;
 }
 
-/// What a box of voxels, both ends in it, holds of bone.
+/// Bone in a box of voxels, both ends included.
 Held held_in(const BoneVolume::View& view, const std::array<std::int32_t, 3>& low,
              const std::array<std::int32_t, 3>& high) noexcept {
   std::array<std::int32_t, 3> from = low;
@@ -91,7 +91,7 @@ Held held_in(const BoneVolume::View& view, const std::array<std::int32_t, 3>& lo
   return all ? Held::kAll : Held::kNothing;
 }
 
-/// What the voxels hold that a cell of the burr may reach.
+/// Bone in the voxels that a cell of the burr may reach.
 class CellBoxes {
  public:
   CellBoxes(const BoneVolume::View& view, const kernel::Placement& at) noexcept
@@ -324,7 +324,7 @@ void Drill::leave_soft(const BoneVolume& volume, Contact& contact, kernel::Sums&
   contact.kept = kept;
 }
 
-/// What takes bone at one sample after the other.
+/// Takes bone at one sample after the other.
 class Drill::Taking {
  public:
   Taking(Drill& drill, BoneVolume& volume, double rate) noexcept

@@ -13,8 +13,8 @@
 
 namespace haptrial::bone {
 
-/// Where a burr is immersed in a bone, summed over its samples. Vectors are in the frame in which
-/// the burr's pose was given; those of several bones add up in one frame.
+/// Immersion of a burr in a bone, summed over its samples. Vectors are in the frame in which the
+/// burr's pose was given; those of several bones add up in one frame.
 struct Contact {
   std::int32_t samples{0};                            // that lie in bone
   double volume{0.0};                                 // theirs [m^3]
@@ -42,7 +42,7 @@ struct EmptiedVoxel {
   std::uint8_t label;
 };
 
-/// What one tick took out of one bone.
+/// Bone that one tick removed from one bone.
 struct Removal {
   double amount{0.0};  // sum of the densities taken; times the volume of a voxel is volume
   double volume{0.0};  // [m^3]

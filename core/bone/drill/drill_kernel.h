@@ -6,7 +6,7 @@
 // the same bits come out of all of them.
 namespace haptrial::bone::kernel {
 
-/// Where a burr is in a grid, in fixed point: a sample at (x, y, z) of Burr::Arrays lies in voxel
+/// Pose of a burr in a grid, in fixed point: a sample at (x, y, z) of Burr::Arrays lies in voxel
 /// base + floor((turn (x, y, z) + offset) / 2^shift).
 struct Placement {
   std::int32_t turn[3][3];
@@ -58,7 +58,8 @@ struct Range {
 /// @returns how many were kept
 using TouchBurr = std::int32_t (*)(const Cloud&, const Range&, const Placement&, const Bricks&,
                                    Hit* hits, std::int32_t room, Sums& sums);
-/// Where samples lie. @param range  at most kMostFound @param address  theirs, in order
+/// Finds the voxels in which samples lie. @param range  at most kMostFound @param address  theirs,
+/// in order
 using FindBurr = void (*)(const Cloud&, const Range&, const Placement&, const Bricks&,
                           std::int32_t* address);
 constexpr std::int32_t kMostFound = 64;

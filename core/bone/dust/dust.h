@@ -14,8 +14,8 @@ namespace haptrial::bone {
 
 struct DustState;
 
-/// Where all that was deposited is, in solid voxels. The parts add up to `deposited` exactly: each
-/// is a whole number of 2^-20 voxels.
+/// Account of all that was deposited, in solid voxels. The parts add up to `deposited` exactly:
+/// each is a whole number of 2^-20 voxels.
 struct DustBalance {
   double deposited{0.0};
   double lying{0.0};  // in cells, moving or at rest
@@ -45,7 +45,7 @@ class Dust {
 
   /// Catches up with the bones as they are now: what was removed, came, went or moved since.
   void follow(std::span<const DustBone> bones);
-  /// Where tools are during the steps to come.
+  /// Sets the places of the tools during the steps to come.
   void place(const DustTools& tools);
   /// Puts dust around a burr, into cells that a straight line from its centre reaches.
   void deposit(const DustDeposit& deposit);
@@ -60,7 +60,7 @@ class Dust {
 
   /// The dust of the cell around a point of W, in solid voxels; 0 outside the region.
   double amount_at(const Eigen::Vector3d& p_W) const noexcept;
-  /// What a full cell holds, in solid voxels.
+  /// Content of a full cell, in solid voxels.
   double capacity() const noexcept;
   /// Seconds of one step: cell / fall_speed.
   double step_time() const noexcept;

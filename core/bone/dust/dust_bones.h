@@ -9,7 +9,7 @@
 
 namespace haptrial::bone {
 
-/// What the dust knows of the bones: its own replica of each, and where each is.
+/// The dust's own replica of each bone, and the bone's pose.
 class DustBones {
  public:
   struct Change {

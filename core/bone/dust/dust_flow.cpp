@@ -1,4 +1,4 @@
-// What happens in a step: amounts fall, then flow where they stand too steep.
+// One step of the dust: amounts fall, then flow where they stand too steep.
 
 #include <algorithm>
 
@@ -19,7 +19,7 @@ constexpr int direction_of(int step) {
   return DustGrid::direction(s[0], s[1], s[2]);
 }
 
-/// What is woken around a cell that has all its neighbours in its own block.
+/// Steps to the cells that are woken around a cell that has all its neighbours in its own block.
 constexpr std::array<int, 18> steps_around() {
   std::array<int, 18> steps{};
   for (int i = 0; i < 18; ++i) {

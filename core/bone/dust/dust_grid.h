@@ -107,7 +107,7 @@ class DustGrid {
   }
 
  private:
-  /// Where a step in a direction leads from each place in a block.
+  /// Target of a step in a direction, from each place in a block.
   struct Step {
     std::uint16_t place;   // in the block there
     std::uint16_t around;  // which of the blocks around that is

@@ -31,7 +31,7 @@ inline constexpr std::int64_t kWorthPlacing = 1 << 10;  // less that is held wai
 struct DustState {
   using Ref = DustGrid::Ref;
   static constexpr Ref kNone = DustGrid::kNone;
-  // Of a cell. Passages are found when they are asked for, until the bone around changes.
+  // Marks of a cell. Passages are found when they are asked for, until the bone around changes.
   static constexpr std::uint32_t kQueued = 1U << 0;      // waits to be looked at
   static constexpr std::uint32_t kTool = 1U << 1;        // within a tool
   static constexpr std::uint32_t kStays = 1U << 2;       // within a tool that was just placed

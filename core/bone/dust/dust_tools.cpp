@@ -1,4 +1,4 @@
-// What tools do to dust: they make it, push it and suck it in.
+// Effects of tools on dust: they make it, push it and suck it in.
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +70,7 @@ bool DustState::in_water(const Eigen::Vector3d& p_W) const {
   return water.radius > 0.0 && (p_W - water.centre).squaredNorm() <= water.radius * water.radius;
 }
 
-/// What rests there may flow from now on.
+/// Dust that rests in the water may flow from now on.
 void DustState::wake_in(const DustWater& water) {
   const Eigen::Vector3d extent = Eigen::Vector3d::Constant(water.radius);
   const auto [low, high] = cells_around({water.centre - extent, water.centre + extent});

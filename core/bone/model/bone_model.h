@@ -9,7 +9,7 @@
 
 namespace haptrial::bone {
 
-/// What a label stands for.
+/// Name and properties of the structure that a label stands for.
 struct Structure {
   std::string name;                               // "bone", "facial nerve", ...; "" for none
   std::array<double, 3> colour{0.9, 0.87, 0.78};  // red, green, blue, 0 to 1

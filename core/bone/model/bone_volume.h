@@ -44,7 +44,7 @@ class BoneVolume {
     return origins_[static_cast<std::size_t>(brick)];
   }
 
-  /// Where a voxel is kept; 0 where there is no brick, or outside the grid. Any thread.
+  /// Address of a voxel; 0 if there is no brick, or outside the grid. Any thread.
   std::int32_t address(const Voxel& voxel) const noexcept;
   /// The voxel at an address in a brick above 0. Any thread.
   Voxel voxel_at(std::int32_t address) const noexcept;
@@ -54,7 +54,7 @@ class BoneVolume {
     return std::atomic_ref<float>(densities_[address]).load(std::memory_order_relaxed);
   }
   float density(const Voxel& voxel) const noexcept { return density(address(voxel)); }
-  /// What the voxel had before anything was removed, from 0 to 1, cut off to 1/255. Any thread.
+  /// Density of a voxel before anything was removed, from 0 to 1, cut off to 1/255. Any thread.
   float original(std::int32_t address) const noexcept {
     return originals_.empty()
                ? 1.0F

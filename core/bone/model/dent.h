@@ -20,7 +20,7 @@ struct Dent {
   double radius{0.0};                              // r of the ball [m]
 
   double width() const noexcept { return std::sqrt(12.5 * radius * std::abs(depth)); }
-  /// What it moves, before and after; empty for no dent.
+  /// Box around all that the dent moves, before and after; empty for no dent.
   Eigen::AlignedBox3d bounds() const noexcept {
     Eigen::AlignedBox3d box;
     if (depth != 0.0) {

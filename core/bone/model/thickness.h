@@ -10,7 +10,7 @@
 
 namespace haptrial::bone {
 
-/// What counts as bone, and how far to look for its other side.
+/// Criterion for bone, and how far to look for its other side.
 struct ThicknessParameters {
   double limit{10e-3};                         // thicker bone counts as this thick > 0 [m]
   int reach{2};                                // of the smoothed gradient, in voxels, 1 to 4

@@ -6,7 +6,7 @@
 
 namespace haptrial::bone {
 
-/// What a step of tidying changed.
+/// Changes by one step of tidying.
 struct Tidied {
   std::size_t parts{0};   // that went, or holes that were filled
   std::size_t voxels{0};  // of them

@@ -36,7 +36,7 @@ struct WorldParameters {
 /// Reads `capacity`, `smallest_piece`, `moves_per_tick` and `split_initial`.
 WorldParameters read_world_parameters(Table& table);
 
-/// What happened to the pieces in a tick.
+/// An event of the pieces in a tick.
 struct WorldEvent {
   enum class Kind {
     kBorn,    // `piece` can be moved by itself from now on; its seeds are BoneWorld::seeds(piece)
@@ -59,7 +59,7 @@ struct EmptiedIn {
   bool by_cut{false};  // by the cut plane, without any force
 };
 
-/// Where a tool meets bone.
+/// Contact of a tool with bone.
 struct PieceTouch {
   int piece{0};
   Voxel voxel{Voxel::Zero()};
@@ -122,7 +122,7 @@ class BoneWorld {
   /// The volume in the making that bone of a piece is moving to; null where there is none.
   const BoneVolume* leaving(int piece) const noexcept;
   int parent(int piece) const noexcept { return at(piece).parent; }
-  /// What a volume's bone is told to belong to: one in the making is its parent's until its birth.
+  /// Piece that callers are told for a volume: one in the making is its parent's until its birth.
   int known_as(int piece) const noexcept { return is_born(piece) ? piece : parent(piece); }
   /// Whether a piece is the bone itself, or joined with it: that lies in a holder, and no hand
   /// carries it.
@@ -131,7 +131,7 @@ class BoneWorld {
 
   /// Carries on what search() has offered. Once a tick, before the tick's drilling.
   void step() noexcept;
-  /// What the last step() (and split_at, crumble_at since) did.
+  /// Events of the last step() (and of split_at and crumble_at since).
   std::span<const WorldEvent> events() const noexcept { return {events_.data(), event_count_}; }
   /// One voxel of everything that a piece was born with.
   std::span<const Voxel> seeds(int piece) const noexcept { return at(piece).seeds; }
@@ -197,7 +197,7 @@ class BoneWorld {
     std::array<Voxel, kMaxAnchors> anchors;
     std::atomic<bool> on{false};
   };
-  /// What goes to and fro. Whose turn it is owns it.
+  /// A message between the two threads; the thread whose turn it is owns it.
   struct Offer {
     int from{0};
     int to{0};

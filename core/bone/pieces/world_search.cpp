@@ -39,8 +39,8 @@ std::vector<std::int32_t> small_part(const BoneVolume& volume, const Voxel& seed
 
 }  // namespace
 
-/// What does not hang together with the bone from the start, as an ossicle that ligaments hold or a
-/// speck of a coarse scan, has not been cut off: it stays with the bone.
+/// Islands that do not hang together with the bone from the start, as an ossicle that ligaments
+/// hold or a speck of a coarse scan, have not been cut off: they stay with the bone.
 void BoneWorld::note_islands() {
   Piece& bone = at(0);
   bone.occupancy.follow(*bone.volume);

@@ -12,7 +12,7 @@ namespace haptrial::record {
 
 inline constexpr Phase kDrillingPhase{"drilling"};
 
-/// What a drilling session records beside the tables of every session (docs/session-file.md). Each
+/// Records of a drilling session beside the tables of every session (docs/session-file.md). Each
 /// type is a row of one table.
 
 /// One servo tick, a row of /tool; its sequence numbers are those of /samples. Goes through a block
@@ -73,7 +73,7 @@ struct BoneRow {
   double spacing{0.0};                              // [m]
 };
 
-/// What a label of a bone stands for, a row of /structures.
+/// Meaning of a label of a bone, a row of /structures.
 struct StructureRow {
   std::int32_t bone{0};
   std::int32_t label{0};

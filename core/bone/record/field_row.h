@@ -14,7 +14,7 @@ struct OpeningRow {
   Eigen::Vector3d place{Eigen::Vector3d::Zero()};  // in B [m]
 };
 
-/// What the field was like up to the end of a pass, since the bone was new, a row of /field.
+/// Clearness of the field up to the end of a pass, since the bone was new, a row of /field.
 struct FieldRow {
   std::int32_t pass{0};      // row of /trials
   double bled{0.0};          // [m3]

@@ -16,7 +16,8 @@ const Table<SecondHandRow>& table_of<SecondHandRow>() {
        4096,
        RowsOf::kEachTick,
        {"sequence"},
-       // Of its own: made anew beside other tables it would have no row for their ticks.
+       // The table has a group of its own: made anew beside other tables it would have no row for
+       // their ticks.
        "second_hand",
        5},
       {T::column("sequence", &R::sequence, "1", "tick number, as in /samples"),

@@ -58,7 +58,7 @@ class Bleeding {
   /// Those that began on this tick.
   std::span<const Opening> begun() const noexcept { return std::span(openings_).subspan(before_); }
   std::size_t openings() const noexcept { return openings_.size(); }
-  /// What flowed on this tick.
+  /// Blood that flowed on this tick.
   std::span<const DustDeposit> deposits() const noexcept { return deposits_; }
 
  private:

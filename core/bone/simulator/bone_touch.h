@@ -10,8 +10,8 @@
 
 namespace haptrial::bone {
 
-/// What a hand feels of bones that another hand works on, with the tool that the other one holds:
-/// a burr in bone, burr and suction at soft tissue, a plate against the bone; nothing is taken,
+/// Contact of a hand, with the tool that the other hand holds, with bones that the other hand works
+/// on: a burr in bone, burr and suction at soft tissue, a plate against the bone; nothing is taken,
 /// torn or fixed. A tool that is in bone at first is not felt before it has been free. Servo
 /// thread: no allocation, lock, wait or throw after construction.
 class BoneTouch {

@@ -13,7 +13,7 @@
 
 namespace haptrial::bone {
 
-/// What runs beside the servo thread: the search for separate parts, and dust.
+/// Threads that run beside the servo thread: the search for separate parts, and dust.
 class Companions {
  public:
   virtual ~Companions() = default;

@@ -9,7 +9,7 @@
 
 namespace haptrial::bone {
 
-/// What there is to see of the tube in the other hand.
+/// Drawn state of the tube in the other hand.
 struct TubeView {
   bool shown{false};
   Eigen::Vector3d tip{Eigen::Vector3d::Zero()};  // in W [m]
@@ -18,8 +18,8 @@ struct TubeView {
   bool rinses{false};
 };
 
-/// What there is to see of a drilling beside the bone itself, which the screen follows by itself:
-/// a view (core/stimulus/shown.h).
+/// Drawn state of a drilling beside the bone itself, which the screen follows by itself: a view
+/// (core/stimulus/shown.h).
 struct DrillingView {
   bool shown{false};
   Eigen::Vector3d tip{Eigen::Vector3d::Zero()};  // of the tool, in the scene's W [m]

@@ -26,8 +26,8 @@ class Shafts {
   std::vector<std::unique_ptr<FeltPart>> parts_;  // by tool; null where nothing is felt
 };
 
-/// What holds the burrs: which way it turns them, and what each of them has removed. Servo thread:
-/// no allocation, lock or throw after construction.
+/// The holder of the burrs: the direction in which it turns them, and the bone that each has
+/// removed. Servo thread: no allocation, lock or throw after construction.
 class Handpiece {
  public:
   explicit Handpiece(std::span<const ToolSpec> tools);
@@ -41,7 +41,7 @@ class Handpiece {
 
   /// A burr took bone. @param volume  >= 0 [m^3]
   void take(int tool, double volume) noexcept;
-  /// What a tool still removes of what it removed when it was new; 1 of one that is no burr.
+  /// Share of its first removal rate that a tool still has; 1 if it is no burr.
   double sharpness(int tool) const noexcept;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace haptrial::bone {
 
-/// Where a ball is immersed in any piece of bone, summed, in W: for feeling only. Servo thread: no
+/// Immersion of a ball in any piece of bone, summed, in W: for feeling only. Servo thread: no
 /// allocation, lock or throw.
 Contact touch_pieces(Drill& drill, const BoneWorld& world, const ToolState& tool) noexcept;
 

@@ -26,7 +26,7 @@ struct TubeParameters {
   double outer_radius() const noexcept { return 1.4 * radius; }  // [m]
 };
 
-/// What the other hand does on one tick. In W.
+/// Input of the other hand on one tick, in W.
 struct TubeInput {
   ToolState tool;
   bool sucks{false};

@@ -25,7 +25,7 @@
 
 namespace haptrial::bone {
 
-/// What a button, pedal or key can be for; a tick is given a bit for each that is held.
+/// Function of a button, pedal or key; a tick is given a bit for each that is held.
 enum class Function : std::uint8_t {
   kPower,         // the burr turns, the suction sucks
   kNextTool,      // these act when they go down
@@ -59,7 +59,7 @@ struct SimulatorParameters {
   BleedingParameters bleeding{};                    // of the bone's structures
 };
 
-/// What happens on one tick. All in W.
+/// Input of one tick, all in W.
 struct SimulatorInput {
   ToolState tool;
   std::uint32_t functions{0};  // bit(Function) of those held
@@ -70,7 +70,7 @@ struct SimulatorInput {
 
 enum class HandMode : std::uint8_t { kTool, kCameraMove, kCameraTurn, kCarry };
 
-/// What came of a tick.
+/// Output of one tick.
 struct SimulatorOutput {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the bone on the tool [N]
   Eigen::Vector3d drag{Eigen::Vector3d::Zero()};   // the part of it that the turning teeth give [N]
@@ -122,7 +122,7 @@ class Simulator {
                               std::span<const RecordedSplit> recorded = {});
   const SimulatorOutput& output() const noexcept { return output_; }
 
-  /// What the last tick emptied: first by the burr, then by the cut plane.
+  /// Voxels that the last tick emptied: first by the burr, then by the cut plane.
   std::span<const EmptiedIn> emptied() const noexcept { return emptied_; }
   /// Soft tissue that was torn on the last tick, in the bone's frame.
   std::span<const Tear> tears() const noexcept { return soft_.tears(); }
@@ -165,8 +165,8 @@ class Simulator {
   double cut_so_far() const noexcept { return cut_; }          // by the cut plane [voxels]
   /// Sum of all densities now; not the servo thread while it ticks. [voxels]
   double amount_left() const noexcept;
-  /// Of which density every voxel has, in which piece: the same for the same bone, however it is
-  /// laid out in memory. Likewise.
+  /// Checksum of the density of every voxel and of its piece: the same for the same bone, however
+  /// it is laid out in memory. Likewise.
   std::uint64_t checksum() const noexcept;
 
  private:

@@ -29,8 +29,8 @@ class RodsOfTool {
   std::size_t count_{0};
 };
 
-/// What of a tool another one can meet: within a burr, but for its edges, and what holds it; a tube
-/// or a probe. None of plates, planes and grips.
+/// The parts of a tool that another tool can meet: within a burr, but for its edges, and its
+/// holder; a tube or a probe. Plates, planes and grips have no such parts.
 RodsOfTool rods_of(const ToolSpec& tool, const BurrShape* shape, const ToolState& state) noexcept {
   RodsOfTool rods;
   const Eigen::Vector3d& tip = state.tip.position;

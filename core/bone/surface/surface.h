@@ -154,7 +154,7 @@ class Surface {
   std::vector<std::int32_t> free_vertices_;
   std::vector<std::int32_t> free_quads_;
 
-  // What the update at hand uses; kept for the room.
+  // Field of the update at hand; kept for its memory.
   CellField field_;
   std::vector<Voxel> changed_voxels_;  // filled or emptied
   std::vector<Voxel> worn_voxels_;     // of which more or less is left

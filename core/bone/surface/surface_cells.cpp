@@ -77,8 +77,8 @@ constexpr float kThinShare = 0.5F;  // of the way there, or what is thin gets to
 constexpr float kNearWay = 1.1F;    // a way that a bump or the surface itself may have [voxels]
 constexpr float kFar = 1.4F;        // less than the 1.5 of a sheet of one voxel
 
-/// What is added to the wide slope where other things close by outweigh the surface in it: the
-/// less it agrees with the cell's own corners, the more of what lies nearer.
+/// Addition to the wide slope if other things close by outweigh the surface in it: the less it
+/// agrees with the cell's own corners, the more of the nearer slope.
 Eigen::Vector3f nearer_slopes(const Eigen::Vector3f& wide, const Eigen::Vector3f& slope,
                               const Eigen::Vector3f& step) {
   constexpr float kAgrees = 0.5F;  // cosine from which on the wide slope is enough

@@ -51,13 +51,12 @@ class CellField {
     std::size_t vertices{0};
     std::size_t quads{0};  // between a cell's first voxel and the next along each axis
   };
-  /// What the cells have.
   Count count() const noexcept;
   /// Bit b is the cell's corner (b & 1, b >> 1 & 1, b >> 2): whether it is filled.
   unsigned corners(int i, int j, int k) const noexcept;
   /// Works out the sums; needed before place(). @param remains  as it was read
   void smooth(const RemainingFraction& remains) noexcept;
-  /// Where the smoothed field of a cell is half full, and its direction there.
+  /// Place at which the smoothed field of a cell is half full, and its direction there.
   /// @param normal  outwards, of unit length
   /// @returns the place from the cell's middle, each coordinate from -0.5 to 0.5 [voxels]
   Eigen::Vector3f place(int i, int j, int k, unsigned corners,

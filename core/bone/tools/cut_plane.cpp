@@ -57,7 +57,7 @@ void CutPlaneTool::begin(const BoneWorld& world, const CutPlane& plane) noexcept
 }
 
 void CutPlaneTool::step(BoneWorld& world, int most) noexcept {
-  // What was split off a piece since begin(), or is being so, lay where the piece did.
+  // Volumes that were split off a piece since begin(), or are being so, lay where the piece did.
   const auto volumes_of = [&](int wanted) {
     PieceSet volumes = 0;
     for (int i = 0; i < world.pieces(); ++i) {

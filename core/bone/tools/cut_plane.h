@@ -50,7 +50,7 @@ class CutPlaneTool {
   void step(BoneWorld& world, int most = 2000) noexcept;
   /// By the last step(), in order.
   std::span<const EmptiedIn> emptied() const noexcept { return {emptied_.data(), count_}; }
-  /// What the cut has removed so far.
+  /// Bone that the cut has removed so far.
   const Removed& removed() const noexcept { return removed_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace haptrial::bone {
 
-/// Where a plate feels for bone, in the plate's frame P.
+/// Place at which a plate feels for bone, in the plate's frame P.
 struct PlateSample {
   Eigen::Vector3d point;   // on the surface, pushed out along the normal [m]
   Eigen::Vector3d normal;  // of the surface, outwards, unit length
@@ -50,7 +50,7 @@ class PlateModel {
   std::vector<PlateSample> samples_;
 };
 
-/// What a plate feels.
+/// Contact of a plate with bone.
 struct PlateContact {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};   // on the plate, in W [N]
   Eigen::Vector3d torque{Eigen::Vector3d::Zero()};  // about P's origin, in W [N m]

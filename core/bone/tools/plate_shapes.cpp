@@ -41,7 +41,7 @@ void check_shape(const PlateShape& shape) {
   }
 }
 
-/// Where bars leave hole i, as unit vectors, with the numbers of the two points in their middle.
+/// Unit vectors along which bars leave hole i, with the numbers of the two points in their middle.
 struct Bar {
   Vector2d along;
   double half;      // from the hole to the middle of the bar

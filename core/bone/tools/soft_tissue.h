@@ -111,7 +111,7 @@ class SoftTissue {
   /// and feels nothing until it is out of the structure.
   Eigen::Vector3d feel(Touch& touch, const Eigen::Vector3d& c_B, double radius,
                        bool sucks) const noexcept;
-  /// What tore on the last tick.
+  /// Tears of the last tick.
   std::span<const Tear> tears() const noexcept { return {tears_.data(), tear_count_}; }
   /// To the nearest soft surface, negative within; infinite where none is near [m].
   double distance(const Eigen::Vector3d& p_B) const noexcept;

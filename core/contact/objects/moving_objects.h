@@ -9,13 +9,13 @@
 
 namespace haptrial::contact {
 
-/// Where an object is: from its frame O, that of its mesh, to the world W.
+/// Pose of an object: from its frame O, that of its mesh, to the world W.
 struct ObjectPose {
   Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};  // of O in W, of unit length
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};               // p_WO [m]
 };
 
-/// What one object does to the tool on a tick, in the world frame W.
+/// Contact of one object with the tool on a tick, in the world frame W.
 struct ObjectContact {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool; the object feels its negative [N]
   Eigen::Vector3d proxy{Eigen::Vector3d::Zero()};  // where the object feels it [m]

@@ -38,7 +38,7 @@ class Slide {
     const double push = arc_.distance - arc_.depth * cosine;
     return std::min(std::hypot(arc_.depth * sine, rest) - friction_ * push, push);
   }
-  /// Where it first rests or leaves; 0: nowhere.
+  /// Angle at which the move first rests or leaves; 0: nowhere.
   double end() const {
     constexpr double kShorter = 0.75, kNothing = 1e-9;
     double sliding = 1.0, resting = 1.0;

@@ -27,7 +27,8 @@ struct Arc {
   double depth;           // of the goal from the edge
   bool rubbed;            // with friction
 
-  /// Where the two tangents meet, and where the second ends, on the way to the direction `to`.
+  /// Point at which the two tangents meet; the second ends there too, on the way to the direction
+  /// `to`.
   Eigen::Vector3d corner(const Eigen::Vector3d& to) const noexcept {
     return nearest + 0.5 * slid(to) * along + distance / (1.0 + from.dot(to)) * (from + to);
   }

@@ -64,7 +64,7 @@ double NearTriangles::listed_part(const Sweep& sweep, double length) const noexc
   if ((from + sweep.move).squaredNorm() <= within * within) {
     return 1.0;
   }
-  // Where it leaves the ball.
+  // Distance at which the move leaves the ball.
   const double along = from.dot(sweep.move) / length;
   const double root = std::sqrt(along * along + inside);
   const double ahead = along > 0.0 ? inside / (root + along) : root - along;
@@ -83,7 +83,7 @@ bool NearTriangles::list_around(const Sweep& sweep) noexcept {
 
 namespace {
 
-/// Where a list has its middle: it reaches farther ahead than behind.
+/// Middle of a list: it reaches farther ahead than behind.
 Eigen::Vector3d middle_ahead(const Sweep& sweep, double reach) {
   constexpr double kLead = 0.6;
   const double length = sweep.move.norm();
@@ -176,7 +176,7 @@ bool NearTriangles::meets_listed(const Sweep& sweep, int i, double end, SweepHit
   return met;
 }
 
-/// What is met first of the candidates that are tested one after the other.
+/// First hit among the candidates that are tested one after the other.
 struct NearTriangles::FirstMet {
   const Sweep& sweep;
   double length;  // of the move [m]
@@ -207,7 +207,7 @@ void NearTriangles::test(const PartedTriangles::Candidate& candidate, FirstMet& 
   }
   first.hit = first.met ? sooner(first.hit, here, first.length, first.sweep.skin.thickness) : here;
   first.met = true;
-  // What is farther away stops it no sooner.
+  // Candidates that are farther away stop it no sooner.
   first.limit = std::min(first.limit, first.hit.t + first.sweep.skin.rest() / first.length);
 }
 

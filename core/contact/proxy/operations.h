@@ -6,8 +6,8 @@
 
 namespace haptrial::contact {
 
-/// What a renderer did since it was started: the same on every machine, other than its time. Plain
-/// integers of the thread that renders.
+/// Counted operations of a renderer since it was started: the same on every machine, other than its
+/// time. Plain integers of the thread that renders.
 struct Operations {
   std::uint64_t ticks{0};
   std::uint64_t sweeps{0};            // straight ways of a proxy, each against all triangles

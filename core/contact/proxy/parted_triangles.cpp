@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 using geometry::larger;
 using geometry::smaller;
 
-/// What single precision rounds away from a sum of a dozen numbers of size 1: less than this.
+/// Bound of the rounding error, in single precision, of a sum of a dozen numbers of size 1.
 constexpr double kRounded = 4e-6;
 /// An axis is turned by the rounding to single precision: a corner comes before its plane by less
 /// than this part of how far the corner is.

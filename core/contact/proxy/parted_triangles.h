@@ -46,7 +46,7 @@ class PartedTriangles {
     Fours p, v;                 // the same, in units of the list's reach
     Four apart;                 // what has to be between a plane and the move
 
-    /// Where it passes nearest to a place.
+    /// Point of each triangle that is nearest to a place.
     Fours beside(const Fours& place) const noexcept;
   };
   /// @param from, move  within the reach around the middle [m]

@@ -89,9 +89,9 @@ void each_of_up_to_three(int count, const bool& sure, Visit visit) {
   }
 }
 
-/// What a few planes push with, about, and whether that seems to hold the proxy: none pulls, and no
-/// other plane refuses where it ends. Told by the products of their normals alone; of planes that
-/// are nearly parallel nothing is told.
+/// Approximate forces of a few planes, and whether they seem to hold the proxy: none pulls, and no
+/// other plane refuses where it ends. Only the products of their normals decide; planes that are
+/// nearly parallel stay undecided.
 class Pushes {
  public:
   static constexpr int kMost = PlaneSet::kMost;

@@ -12,7 +12,7 @@ namespace haptrial::contact {
 /// rounding of what defines it: 2^-22 rad.
 inline constexpr double kParallel = 0x1p-44;
 
-/// What holds the proxy: it stays where normal · (x - point) >= level.
+/// A plane that holds the proxy: it stays where normal · (x - point) >= level.
 struct ContactPlane {
   Eigen::Vector3d normal;   // a unit vector, towards the proxy
   Eigen::Vector3d point;    // on the triangle [m]
@@ -24,7 +24,7 @@ struct ContactPlane {
   double height(const Eigen::Vector3d& x) const noexcept { return normal.dot(x - point) - level; }
 };
 
-/// Where planes let the proxy go.
+/// Place up to which planes let the proxy go.
 struct PlaneSolution {
   Eigen::Vector3d move;      // of the proxy [m]
   Eigen::Vector3d residual;  // from the goal to where the move ends: what the planes push with [m]

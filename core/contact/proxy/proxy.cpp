@@ -33,7 +33,7 @@ const ProxyOptions& checked(const ProxyOptions& options) {
   return options;
 }
 
-/// What the proxy touches does not stop a move that leads off its plane.
+/// Planes that the proxy touches do not stop a move that leads off them.
 bool leads_off(const ContactPlane& plane, const Vector3d& move) {
   return plane.normal.dot(move) >= 0.0;
 }
@@ -47,7 +47,7 @@ std::uint64_t work_of(const Operations& o, double radius) noexcept {
          kList * o.lists + kLongSweep * o.long_sweeps;
 }
 
-/// What holds for one tick.
+/// State of one tick.
 struct Proxy::Tick {
   Vector3d goal;
   Skin skin;
@@ -108,7 +108,7 @@ bool Proxy::go(Tick& tick, const Vector3d& move) noexcept {
     if (planes_.has(before_[i]) || leads_off(before_[i], move)) {
       continue;  // the move heeds it
     }
-    // What held the proxy a moment ago most often still does; then it is not moved at all.
+    // Triangles that held the proxy a moment ago most often still do; then it is not moved at all.
     met = near_.meets(sweep, before_[i].slot, hit) && hit.t * length <= 2.0 * tick.least &&
           !hit.plane.curved;
     hit.t = 0.0;

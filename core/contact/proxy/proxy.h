@@ -24,7 +24,7 @@ struct Friction {
 
 enum class ContactState : std::uint8_t { kFree, kStick, kSlip };  // without friction: free or slip
 
-/// Where the proxy ended on a tick and what holds it there.
+/// End of the proxy on a tick, and the planes that hold it there.
 struct ProxyState {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // of the proxy, object frame [m]
   /// From the tool along the surfaces' normals: what the surfaces push with, over the stiffness.
@@ -53,8 +53,8 @@ struct ProxyOptions {
   bool arcs{true};
 };
 
-/// What operations cost, in exact tests of a triangle against a point: counted, not timed, so that
-/// a path gives the same proxy on every machine.
+/// Cost of operations, in exact tests of a triangle against a point: counted, not timed, so that a
+/// path gives the same proxy on every machine.
 /// @param radius  of the proxy [m]
 std::uint64_t work_of(const Operations& operations, double radius) noexcept;
 

@@ -9,7 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where a move enters a hull with its skin, and through which plane; -1: it begins inside.
+/// Distance at which a move enters a hull with its skin, and the plane that it passes; -1: it
+/// begins inside.
 struct Entry {
   double t{-1.0};
   int plane{-1};

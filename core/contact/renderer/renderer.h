@@ -34,7 +34,7 @@ struct RendererOptions {
   double unit{1.0};           // of the body's lengths, that tells how deep 1 mm is > 0 [m]
 };
 
-/// What a renderer answers on a tick, in the object's frame.
+/// Force and contact of a renderer on a tick, in the object's frame.
 struct Contact {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};   // on the tool [N]
   Eigen::Vector3d proxy{Eigen::Vector3d::Zero()};   // where the tool would be; it, if free [m]
@@ -59,7 +59,8 @@ class Renderer {
   /// One tick. @param tool  [m]; not finite: zero force
   /// @param period  since the tick before > 0 [s]
   virtual const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;
-  /// What the ticks since the last start() took; those of a tool that is not finite take nothing.
+  /// Operations of the ticks since the last start(); those of a tool that is not finite take
+  /// nothing.
   virtual const Operations& operations() const noexcept = 0;
 };
 

@@ -30,8 +30,8 @@ using SharedBody = std::shared_ptr<const FeltBody>;
 /// times. Any thread. @throws InputError as ContactSurface does
 SharedBody felt_body(geometry::Mesh mesh);
 
-/// Where a tool that is to be free at `p` is put: there, or, inside a closed body, just outside of
-/// it. Servo thread. @param p  in the body's frame [m]  @param radius  of the tool [m]
+/// Place for a tool that is to be free at `p`: there, or, inside a closed body, just outside of it.
+/// Servo thread. @param p  in the body's frame [m] @param radius  of the tool [m]
 Eigen::Vector3d free_place(const FeltBody& body, const Eigen::Vector3d& p, double radius) noexcept;
 
 }  // namespace haptrial::contact

@@ -14,8 +14,8 @@ struct DeadbandParameters {
   double keepalive{0.05};      // longest silence > 0 [s]
 };
 
-/// What the partner goes by while nothing comes: the tool goes on evenly, for a while at most, and
-/// the force holds. Both sides compute it from the message sent last.
+/// Expected state of the partner while nothing comes: the tool goes on evenly, for a while at most,
+/// and the force holds. Both sides compute it from the message sent last.
 /// @param since  the message [s]; a tool that is not heard of for longer than `most` stands still
 Partner expected(const Partner& sent, double since, double most) noexcept;
 
@@ -33,9 +33,9 @@ class Deadband {
   /// A tick. @param news  a message goes in any case
   /// @returns whether it needs a message; sent() then counts as sent.
   bool due(const Partner& now, double dt, bool news = false) noexcept;
-  /// What the last message says.
+  /// Content of the last message.
   const Partner& sent() const noexcept { return sent_; }
-  /// What the partner has without loss, of the last tick.
+  /// State of the partner without loss, of the last tick.
   Partner held() const noexcept { return expected(sent_, since_, p_.keepalive); }
 
   std::uint64_t ticks() const noexcept { return ticks_; }

@@ -41,7 +41,7 @@ class EnergyTank {
                         double share = 1.0) noexcept;
   /// A tick at which no force may act. Parameters as those of limit().
   void let_go(const Eigen::Vector3d& moved, double received) noexcept;
-  /// What really acts until the next tick, where something after limit() changed it.
+  /// Sets the force that acts until the next tick, if something after limit() changed it.
   void acts(const Eigen::Vector3d& force) noexcept { force_ = force; }
 
   double level() const noexcept { return level_; }  // [J]; below 0 for a tick or a few

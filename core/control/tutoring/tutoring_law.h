@@ -14,7 +14,7 @@ struct TutoringGains {
   double force_share{1.0};  // of the partner's force that is played, 0 to 1
 };
 
-/// What one side knows of the other.
+/// One side's knowledge of the other.
 struct Partner {
   PointState tool;                                 // in W
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of its world on its tool, in W [N]
@@ -30,13 +30,13 @@ struct Partner {
 Eigen::Vector3d coupling_force(const TutoringGains& gains, const PointState& partner,
                                const PointState& own, const GainShares& shares = {}) noexcept;
 
-/// Who leads, seen from one side.
+/// Shares of the lead, seen from one side.
 struct Lead {
   double partner{1.0};    // the partner's authority over this side, 0 to 1
   double felt_back{0.0};  // of the coupling that is felt where this side leads, 0 to 1
 };
 
-/// What one side feels:
+/// Force that one side feels:
 ///
 ///     (1 - a) f_own + a s f_partner + max(a, felt_back) f_coupling
 ///

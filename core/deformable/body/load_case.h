@@ -22,8 +22,8 @@ struct NodalForce {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // [N]
 };
 
-/// What holds a body and what acts on it, all at once.
-/// Source: Morris 2006, §5.3.2 ("a known set of loads").
+/// Held vertices of a body and the loads on it, all at once. Source: Morris 2006, §5.3.2 ("a known
+/// set of loads").
 struct LoadCase {
   std::string name;
   std::vector<Hold> holds;         // each vertex at most once

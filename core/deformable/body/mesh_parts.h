@@ -13,7 +13,7 @@ namespace haptrial::deformable {
 using Edge = std::array<std::int32_t, 2>;  // lower vertex first
 using Face = std::array<std::int32_t, 3>;
 
-/// What tetrahedra share, each once, in ascending order of the vertices.
+/// Edges and faces that tetrahedra share, each once, in ascending order of the vertices.
 struct MeshParts {
   std::vector<Edge> edges;
   std::vector<Face> faces;    // every face; an outer one by the right hand with its normal outwards

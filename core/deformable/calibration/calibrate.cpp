@@ -96,7 +96,7 @@ void anneal(const CalibrationProblem& problem, const SpringParameters& parameter
   }
 }
 
-/// What NLopt calls back.
+/// Context of NLopt's callback.
 struct DescentCall {
   const CalibrationProblem& problem;
   const SpringParameters& parameters;

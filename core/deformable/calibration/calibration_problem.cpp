@@ -149,7 +149,7 @@ CalibrationProblem::CalibrationProblem(SpringBody body, std::vector<CalibrationL
 
 namespace {
 
-/// What one load adds.
+/// Contribution of one load.
 struct LoadAnswer {
   double error{};
   SpringConstants gradient;

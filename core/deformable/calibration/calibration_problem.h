@@ -30,8 +30,8 @@ struct CalibrationError {
   SpringConstants gradient;     // of the mean by each spring's constant [m/J], if asked for
 };
 
-/// What springs with certain constants do under loads whose answers are known.
-/// Source: Morris 2006, §5.3.2 (errata: the mean over loads).
+/// Error of springs with certain constants under loads whose answers are known. Source: Morris
+/// 2006, §5.3.2 (errata: the mean over loads).
 class CalibrationProblem {
  public:
   /// @throws InputError as check_load(), for no load, or a reference of another length than the
@@ -48,7 +48,7 @@ class CalibrationProblem {
   CalibrationError error(const SpringConstants& constants, bool with_gradient,
                          int threads = 1) const;
 
-  /// Where the vertices rest under a load [m]; empty if they do not.
+  /// Rest positions of the vertices under a load [m]; empty if they do not rest.
   std::vector<Eigen::Vector3d> rest(const SpringConstants& constants, std::size_t load) const;
 
  private:

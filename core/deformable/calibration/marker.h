@@ -19,7 +19,7 @@ struct Marker {
 Marker marker_at(const geometry::TetMesh& body, const Eigen::Vector3d& rest,
                  const Eigen::Vector3d& moved);
 
-/// Where a body with vertices at `positions` has the marker [m].
+/// Place of the marker in a body with vertices at `positions` [m].
 Eigen::Vector3d place_of(const Marker& marker, std::span<const Eigen::Vector3d> positions);
 
 }  // namespace haptrial::deformable

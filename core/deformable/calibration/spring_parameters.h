@@ -14,7 +14,7 @@ enum class SpringKind { kLength, kArea, kVolume };
 inline constexpr std::array kSpringKinds{SpringKind::kLength, SpringKind::kArea,
                                          SpringKind::kVolume};
 
-/// What a parameter has in a spring's constant.
+/// Share of a parameter in a spring's constant.
 struct ParameterShare {
   std::int32_t parameter;
   double weight;
@@ -41,7 +41,7 @@ class SpringParameters {
   /// By the logarithms what `by_constant` is by the springs' constants.
   std::vector<double> gradient(std::span<const double> logarithms,
                                const SpringConstants& by_constant) const;
-  /// What the parameters have in the constant of one spring.
+  /// Shares of the parameters in the constant of one spring.
   std::span<const ParameterShare> shares(SpringKind kind, std::size_t spring) const;
 
  private:

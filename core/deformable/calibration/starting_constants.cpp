@@ -16,7 +16,7 @@ struct Entry {
 /// The forces on the free vertices with one parameter 1 and the others 0, by parameter.
 using Columns = std::vector<std::vector<Entry>>;
 
-/// What acts from outside on the vertices that are free, load after load.
+/// Forces that act from outside on the free vertices, load after load.
 std::vector<double> acting_forces(const CalibrationProblem& problem) {
   std::vector<double> all;
   for (const CalibrationLoad& load : problem.loads()) {

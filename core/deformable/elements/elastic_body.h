@@ -13,7 +13,7 @@
 
 namespace haptrial::deformable {
 
-/// What a body is made of and how its elements take it.
+/// Material of a body and the formulation of its elements.
 struct Elasticity {
   std::vector<Material> materials{{}};
   std::vector<std::uint8_t> material_of{};  // of each tetrahedron; empty: the first for all
@@ -24,7 +24,7 @@ struct Elasticity {
 /// The density of each tetrahedron's material [kg/m³].
 std::vector<double> densities(const Elasticity& elasticity, std::size_t tetrahedra);
 
-/// What one tetrahedron bears.
+/// Stress state of one tetrahedron.
 struct TetState {
   Eigen::Matrix3d gradient;  // F
   Eigen::Matrix3d stress;    // Cauchy [Pa]; of the linear law the stress of small strains
@@ -45,7 +45,7 @@ class ElasticBody {
   const PatchLayout& patches() const;
   std::span<const double> masses() const;  // by vertex: a quarter of its tetrahedra's [kg]
 
-  /// What rounding alone leaves of forces that balance [N], as a norm over all vertices.
+  /// Rounding error alone of forces that balance [N], as a norm over all vertices.
   double rounding_force() const;
 
   /// The first tetrahedron that `u` turns inside out or flat; -1: none.

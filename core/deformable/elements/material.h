@@ -15,7 +15,7 @@ struct Material {
   double density{1000.0};  // > 0 [kg/m³]
 };
 
-/// What resists a change of form and a change of volume:
+/// Resistance to a change of form and to a change of volume:
 ///
 ///     shear = E / (2 (1 + nu)),  bulk = E / (3 (1 - 2 nu))
 struct Moduli {

@@ -62,11 +62,11 @@ struct StaticSolver::Impl {
   const ElasticBody& body;
   StaticOptions options;
   BlockMatrix matrix;
-  // Of the load:
+  // Vectors of the load:
   Fields fields;
   std::vector<std::uint8_t> held;  // of the system
   std::optional<LinearSystem> system;
-  // Of where the body is:
+  // Vectors of the body's positions:
   Vectors u;
   Vectors elastic;
   Vectors unbalanced;
@@ -106,7 +106,7 @@ void StaticSolver::Impl::begin(const LoadCase& load) {
   result = {};
 }
 
-/// What is left of load and elastic forces on the free vertices, and its norm.
+/// Residual of load and elastic forces on the free vertices, and its norm.
 void StaticSolver::Impl::balance(double share) {
   unbalanced.resize(u.size());
   double squares = 0;

@@ -15,7 +15,7 @@ constexpr std::size_t kDense = 64;  // points at most that are solved for at onc
 
 using Block = Eigen::Map<const Matrix3d>;
 
-/// What a level needs beside its matrix.
+/// Data of a level beside its matrix.
 struct GridLevel {
   const BlockMatrix* matrix{};
   std::vector<Matrix3d> inverse;  // of the diagonal blocks; 0: held

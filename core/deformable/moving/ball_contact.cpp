@@ -141,7 +141,7 @@ void BallContact::look_at(const SpringMotion& motion, std::int32_t number, const
   }
 }
 
-/// Where there is no room for another place, the farthest one gives way.
+/// If there is no room for another place, the farthest one gives way.
 void BallContact::add(const Place& place, double distance) noexcept {
   std::size_t to = count_;
   if (count_ == kMostPlaces) {

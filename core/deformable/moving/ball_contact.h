@@ -58,7 +58,7 @@ class BallContact {
     return samples_.samples[static_cast<std::size_t>(place.sample)];
   }
   const SurfaceSamples& samples() const noexcept { return samples_; }
-  /// Where a sample is in a body that moves, and in one at rest [m].
+  /// Place of a sample in a body that moves, and in one at rest [m].
   Eigen::Vector3d where(const SpringMotion& motion, std::int32_t sample) const noexcept;
   Eigen::Vector3d at_rest(std::int32_t sample) const noexcept;
   double radius() const noexcept { return radius_; }                // now [m]

@@ -10,7 +10,7 @@
 
 namespace haptrial::deformable {
 
-/// What a body of springs is made of.
+/// Properties of a body of springs.
 struct SpringTissue {
   UniformConstants constants;                         // everywhere the same [J]
   std::shared_ptr<const SpringConstants> calibrated;  // of each spring, instead; null: none

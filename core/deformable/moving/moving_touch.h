@@ -46,7 +46,7 @@ class MovingTouch final : public BodyTouch {
   int steps() const noexcept { return steps_; }  // on a tick
   /// The last force without a tetrahedron inside out [N].
   double upright_force() const noexcept { return upright_; }
-  /// What the hand gave in this contact and did not get back [J].
+  /// Energy that the hand gave in this contact and did not get back [J].
   double balance() const noexcept { return account_.balance(); }
 
  private:

@@ -126,8 +126,8 @@ void SlowBody::find_near(const Vector3d& centre, double reach) noexcept {
                     begin + static_cast<std::ptrdiff_t>(count));
 }
 
-/// What the ball pressed on the last tick, by vertices; some may be there more than once. Friction
-/// stays in what is free.
+/// Finds the loads of the ball on the last tick, by vertices; some may be there more than once.
+/// Friction stays in the free part.
 void SlowBody::find_loads() noexcept {
   const BallContact& ball = touch_.ball();
   load_count_ = 0;

@@ -18,7 +18,7 @@ namespace haptrial::deformable {
 
 inline constexpr int kMostWindow = 50;  // [ticks]
 
-/// Where the tool was on the ticks of a window.
+/// Tool's path over the ticks of a window.
 struct BodyPath {
   std::uint64_t generation{0};
   bool starts{false};                             // the body is put to rest first, the tool to from

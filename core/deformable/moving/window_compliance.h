@@ -20,7 +20,7 @@ class WindowCompliance {
   /// Takes up to some seconds. @param time  τ > 0 [s]
   WindowCompliance(const MovingBody& body, double time);
 
-  /// What forces on the vertex w do to v [m/N]; zero where one of them is held or cannot be
+  /// Displacement of v per force on the vertex w [m/N]; zero if one of them is held or cannot be
   /// touched. Any thread.
   Eigen::Matrix3f block(std::int32_t v, std::int32_t w) const noexcept {
     const std::int32_t row = place_[static_cast<std::size_t>(v)];

@@ -86,7 +86,7 @@ void read_session(Table& table, SetupLoad& load) {
   load.touches = table.integer_or("touches", 5, 1, 1000);
 }
 
-/// What a load gives is in files of its name.
+/// Answers of a load are in files of its name.
 bool names_files(const std::string& name) {
   return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '_' || c == ' ';

@@ -14,7 +14,7 @@
 
 namespace haptrial::deformable {
 
-/// What a body is made from: exactly one of mesh, tetrahedra and block.
+/// Source of a body: exactly one of mesh, tetrahedra and block.
 struct BodySource {
   std::filesystem::path mesh;                      // surface, to be filled with voxels; empty: none
   std::filesystem::path tetrahedra;                // TetGen's .node with .ele; empty: none
@@ -30,7 +30,7 @@ struct NamedMaterial {
   std::string region;  // of the tetrahedra whose middles it has; empty: of all others
 };
 
-/// What acts on a region.
+/// Force on a region.
 struct RegionForce {
   std::string region;
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // in sum, equal on its vertices [N]

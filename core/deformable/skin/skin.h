@@ -44,7 +44,7 @@ class Skin {
   std::size_t lost_frames() const { return lost_frames_; }
 
  private:
-  /// What one frame gives to one vertex.
+  /// Weight of one frame for one vertex.
   struct Vote {
     double weight;
     std::array<double, 3> offset;  // in the frame, times the weight [m]

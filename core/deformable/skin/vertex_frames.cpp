@@ -32,7 +32,7 @@ double share_across(const Vector3d& edge, const Vector3d& unit) {
   return length > 0 ? (edge - edge.dot(unit) * unit).norm() / length : 0.0;
 }
 
-/// What surrounds a vertex of the surface.
+/// Neighbourhood of a vertex of the surface.
 struct Around {
   std::vector<std::int32_t> faces;
   std::set<std::int32_t> ends;  // of surface edges

@@ -23,11 +23,11 @@ struct Equilibrium {
   std::size_t inverted{};  // tetrahedra whose volume is not above 0
 };
 
-/// Where springs balance a load: a minimum of their energy less the forces' work, by Newton's
-/// method on the exact Hessian (spring_tangent.h), damped where that is not positive definite,
-/// with a line search. kSettled only where the Hessian at the end is positive definite;
-/// kUnstable where it is not or where the search leaves the numbers; kNotInTime after the
-/// iterations. Source: Morris 2006, §5.3.2 ("elastic forces precisely negate the applied forces").
+/// Positions at which springs balance a load: a minimum of their energy less the forces' work, by
+/// Newton's method on the exact Hessian (spring_tangent.h), damped while that is not positive
+/// definite, with a line search. kSettled only if the Hessian at the end is positive definite;
+/// kUnstable if it is not or if the search leaves the numbers; kNotInTime after the iterations.
+/// Source: Morris 2006, §5.3.2 ("elastic forces precisely negate the applied forces").
 /// @param start  where the search begins, held vertices aside (vertices); empty: at rest
 /// @throws InputError for what check_load() refuses.
 Equilibrium equilibrium(const SpringBody& body, const LoadCase& load,

@@ -190,7 +190,7 @@ bool BallTouch::settle(const Vector3d& tool) noexcept {
 /// Those that are sampled; the nearest point of all faces if the centre is inside of the body.
 void BallTouch::find_places(const Vector3d& centre) noexcept {
   count_ = 0;
-  // What was outside stays outside until it can have come to a face.
+  // A ball that was outside stays outside until it can have come to a face.
   const bool clear = clear_ > (centre - clear_at_).norm() + stirred_;
   if (clear || !take_nearest(centre)) {
     count_ = 0;
@@ -273,7 +273,7 @@ void BallTouch::take_samples(const Vector3d& centre) noexcept {
   }
 }
 
-/// Where there is no room for another place, the farthest one gives way; that is told if the ball
+/// If there is no room for another place, the farthest one gives way; that is told if the ball
 /// touches it.
 void BallTouch::add_place(const Place& place) noexcept {
   if (count_ < kMostPlaces) {
@@ -290,7 +290,7 @@ void BallTouch::add_place(const Place& place) noexcept {
   }
 }
 
-/// What a force on a near vertex does to every near one; fetched once a tick.
+/// Response of every near vertex to a force on a near vertex; fetched once a tick.
 const Compliance::Block* BallTouch::column(std::int32_t near) noexcept {
   Compliance::Block* column = &columns_[at(near) * kMostNear];
   if (column_at_[at(near)] != tick_) {
@@ -302,7 +302,7 @@ const Compliance::Block* BallTouch::column(std::int32_t near) noexcept {
   return column;
 }
 
-/// What a force of 1 N along each place's normal does to every near vertex.
+/// Computes the response of every near vertex to a force of 1 N along each place's normal.
 void BallTouch::respond() noexcept {
   for (int c = 0; c < count_; ++c) {
     const Place& place = places_[static_cast<std::size_t>(c)];

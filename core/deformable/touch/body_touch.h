@@ -25,7 +25,7 @@ struct VertexForce {
   Eigen::Vector3f force{Eigen::Vector3f::Zero()};  // [N]
 };
 
-/// What did not go as it should since the body was made, in ticks.
+/// Counts of irregularities since the body was made, in ticks.
 struct TouchCounts {
   std::uint64_t contact{};      // in contact
   std::uint64_t inverted{};     // a tetrahedron would be inside out: the force stays below that
@@ -49,7 +49,7 @@ class BodyTouch {
 
   /// Puts the tool to a point, and the body to rest.
   virtual void start(const Eigen::Vector3d& tool) noexcept = 0;
-  /// What was felt of the same body before goes on, if it moves; any other body begins at rest.
+  /// Contact with the same body before goes on, if it moves; any other body begins at rest.
   virtual void adopt(const BodyTouch&, const Eigen::Vector3d& tool) noexcept { start(tool); }
   /// One tick. @param tool  [m]; not finite: zero force  @param period  > 0 [s]
   virtual const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;

@@ -38,7 +38,7 @@ class Compliance {
 
   std::span<const Eigen::Vector3d> rest() const noexcept { return rest_; }  // (places) [m]
 
-  /// What a force on a touched place does to a place [m/N].
+  /// Response of a place to a force on a touched place [m/N].
   const Block& block(std::int32_t place, std::int32_t touched) const noexcept {
     return blocks_[static_cast<std::size_t>(place) * touched_ + static_cast<std::size_t>(touched)];
   }
@@ -83,7 +83,7 @@ class Compliance {
   BigArray<Block> blocks_;  // (places x touched)
 };
 
-/// What a Compliance takes [bytes]: what stays, and at most while it is made.
+/// Memory of a Compliance [bytes]: what stays, and at most while it is made.
 struct ComplianceMemory {
   double kept{};
   double most{};

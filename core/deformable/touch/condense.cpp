@@ -42,7 +42,7 @@ class Condenser {
     }
   }
 
-  /// What eliminating `inner` leaves to the vertices around them.
+  /// Front that remains for the vertices around `inner` after eliminating those.
   Front without(std::vector<std::int32_t> inner) {
     std::vector<Front> halves;
     if (inner.size() > kLeaf) {

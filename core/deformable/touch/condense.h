@@ -19,8 +19,8 @@ namespace haptrial::deformable {
 Eigen::MatrixXd condensed(const BlockMatrix& stiffness, std::span<const Eigen::Vector3d> at,
                           std::span<const std::uint8_t> held, std::span<const std::int32_t> kept);
 
-/// What unit forces on the outermost vertices do to them and to those below, which keep the outer
-/// ones apart from the rest of the body [m/N].
+/// Response of the outermost vertices, and of those below that keep them apart from the rest of the
+/// body, to unit forces on the outermost [m/N].
 struct SurfaceInverse {
   Eigen::MatrixXf outer;  // (3 outer x 3 outer)
   Eigen::MatrixXf below;  // (3 below x 3 outer)

@@ -15,7 +15,7 @@
 namespace haptrial::deformable {
 namespace {
 
-/// What the machine can give to a program that asks now [bytes].
+/// Memory that the machine can give to a program that asks now [bytes].
 double free_memory() {
   std::ifstream file("/proc/meminfo");
   std::string word;

@@ -101,7 +101,8 @@ std::vector<double> shares_in_ball(const HapticMesh& mesh, const Vector3d& centr
       shares[t] = share_in_ball(corners, centre, radius);
     }
   }
-  // Of the whole voxel: its five tetrahedra keep their volume together, as those of one material.
+  // The whole voxel counts: its five tetrahedra keep their volume together, as those of one
+  // material.
   for (std::size_t first = 0; first + kTetsOfVoxel <= shares.size(); first += kTetsOfVoxel) {
     const std::span own(shares.data() + first, kTetsOfVoxel);
     double sum = 0.0;

@@ -19,7 +19,7 @@ struct Inclusion {
   bool operator==(const Inclusion&) const = default;
 };
 
-/// What a body is made of.
+/// Material and voxels of a body.
 struct Tissue {
   double young{};          // E > 0 [Pa]
   double poisson{};        // 0 <= nu <= kMostPoisson

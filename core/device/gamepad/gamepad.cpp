@@ -13,7 +13,7 @@ namespace {
 enum Axis : std::size_t { kX, kY, kRightX, kRightY, kLeftTrigger, kRightTrigger, kPad };
 constexpr std::array<int, 7> kCodes{ABS_X, ABS_Y, ABS_RX, ABS_RY, ABS_Z, ABS_RZ, ABS_HAT0X};
 
-// What a pipe does not state: as most drivers have it.
+// Range of a stick if the file, a pipe, does not state it: as most drivers have it.
 constexpr InputFile::Range kStick{-32768, 32767};
 constexpr InputFile::Range kTrigger{0, 255};
 constexpr InputFile::Range kDirection{-1, 1};

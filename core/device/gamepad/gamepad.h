@@ -17,7 +17,7 @@ class Schema;
 
 namespace haptrial::device {
 
-/// Where a game controller is, and how it is used.
+/// Path and use of a game controller.
 struct GamepadParameters {
   std::string input;       // file of the input device; empty: there is none
   double dead_zone{0.12};  // share of a stick's or a trigger's way that counts as rest, 0 to 0.9
@@ -31,8 +31,8 @@ std::vector<std::string> find_gamepads(const std::string& folder = "/dev/input/b
 /// The keys of [gamepad].
 const Schema<GamepadParameters>& gamepad_schema();
 
-/// What a game controller says, as the kernel names its parts (Linux gamepad specification). At
-/// rest all is 0.
+/// State of a game controller, with the kernel's names of its parts (Linux gamepad specification).
+/// At rest all is 0.
 struct GamepadState {
   Eigen::Vector2d move{Eigen::Vector2d::Zero()};  // left stick: right, up, each -1 to 1
   double depth{0.0};                              // right trigger less left one, -1 to 1
@@ -58,7 +58,7 @@ class Gamepad {
 
   /// Any one thread: wait-free.
   GamepadState state() noexcept;
-  /// What happened since the last call. Any thread but the servo thread.
+  /// Changes since the last call. Any thread but the servo thread.
   std::vector<InputChange> take_changes() { return reader_.take_changes(); }
   const std::string& input() const { return reader_.path(); }
 

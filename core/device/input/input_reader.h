@@ -22,7 +22,7 @@ struct InputChange {
 /// second.
 class InputReader {
  public:
-  /// What is made of a device. After the constructor both are called on the reading thread.
+  /// Callbacks of the reader's user. After the constructor both are called on the reading thread.
   struct Use {
     std::string table;  // as InputFile has it
     /// Checks one that was opened. @throws InputError if it does not do
@@ -37,7 +37,7 @@ class InputReader {
   InputReader(const InputReader&) = delete;
   InputReader& operator=(const InputReader&) = delete;
 
-  /// What happened since the last call. Any thread but the servo thread.
+  /// Changes since the last call. Any thread but the servo thread.
   std::vector<InputChange> take_changes();
   const std::string& path() const { return path_; }
 

@@ -10,9 +10,9 @@
 
 namespace haptrial::device {
 
-/// What an input device's records (struct input_event, as the kernel or a pipe delivers them) say
-/// about its absolute axes and its buttons. Values count once their report has ended. If the kernel
-/// had to drop records, the rest of that report is ignored, too.
+/// State of an input device's absolute axes and buttons, from its records (struct input_event, as
+/// the kernel or a pipe delivers them). Values count once their report has ended. If the kernel had
+/// to drop records, the rest of that report is ignored, too.
 class InputReports {
  public:
   /// Records in any pieces, in their order.

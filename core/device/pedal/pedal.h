@@ -14,7 +14,7 @@ class Schema;
 
 namespace haptrial::device {
 
-/// Where an analog pedal is, and what its axis means.
+/// Path of an analog pedal, and the meaning of its axis.
 struct PedalParameters {
   std::string input;               // file of the input device; empty: there is no pedal
   int axis{0};                     // the kernel's number
@@ -44,7 +44,7 @@ class Pedal {
 
   /// 0 to 1. Servo thread: wait-free.
   double depth() noexcept;
-  /// What happened since the last call. Any thread but the servo thread.
+  /// Changes since the last call. Any thread but the servo thread.
   std::vector<Change> take_changes() { return reader_.take_changes(); }
   const std::string& input() const { return reader_.path(); }
 

@@ -62,7 +62,7 @@ constexpr std::array<const char*, 23> kErrors{
     "the device refused a value",
     "the device's automatic control is not running"};
 
-/// What the maker says that a device gives, by the number of its system type [N].
+/// Greatest force of a device according to its maker, by the number of its system type [N].
 struct Model {
   int type;
   const char* name;

@@ -47,9 +47,9 @@ class Bvh {
   /// as neighbours share a search.
   void closest(std::span<const Eigen::Vector3d> points, std::span<ClosestPoint> answers) const;
 
-  /// Where a ray meets the surface. A ray through an edge or corner counts as one that passes
-  /// beside it by an infinitesimal step, the same for every triangle: a closed mesh is entered as
-  /// often as it is left, and never crossed at a seam.
+  /// Nearest point at which a ray meets the surface. A ray through an edge or corner counts as one
+  /// that passes beside it by an infinitesimal step, the same for every triangle: a closed mesh is
+  /// entered as often as it is left, and never crossed at a seam.
   std::optional<RayHit> nearest_hit(const Ray& ray) const;
   /// Every crossing in order of t; `hits` is cleared first, its memory used again.
   void all_hits(const Ray& ray, std::vector<RayHit>& hits) const;

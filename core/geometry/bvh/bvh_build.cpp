@@ -26,7 +26,7 @@ constexpr std::uint32_t kTurned = 256;
 // on the number of threads, so that the tree does not.
 constexpr std::uint32_t kLarge = 16384;
 
-/// What the tree is made from, in the frame.
+/// Triangles from which the tree is built, in the frame.
 struct Material {
   const Mesh& mesh;
   std::vector<Four> vertices;

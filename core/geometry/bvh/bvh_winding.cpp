@@ -26,7 +26,7 @@ double solid_angle(const Corners& corners, const Eigen::Vector3d& point) {
   return 2.0 * std::atan2(volume, level);
 }
 
-/// What a child adds to its parent.
+/// Contribution of a child to its parent.
 struct Cluster {
   Eigen::Vector3d area_vector{Eigen::Vector3d::Zero()};
   Eigen::Vector3d moment{Eigen::Vector3d::Zero()};  // centroids times areas

@@ -11,7 +11,7 @@
 #include "core/geometry/mesh/mesh.h"
 #include "core/geometry/mesh/work.h"
 
-/// What the readers of mesh files share. Inside core/geometry only.
+/// Functions that the readers of mesh files share. Inside core/geometry only.
 namespace haptrial::geometry::reading {
 
 /// Text that came from a file, short and printable, in quotes.

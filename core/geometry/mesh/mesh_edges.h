@@ -8,7 +8,7 @@
 
 #include "core/geometry/mesh/mesh.h"
 
-/// What works with the edges of a mesh shares.
+/// Functions on the edges of a mesh.
 namespace haptrial::geometry {
 
 /// A side of a triangle: 3 triangle + c runs from its corner c to the next.

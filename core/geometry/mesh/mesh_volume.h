@@ -4,8 +4,8 @@
 
 namespace haptrial::geometry {
 
-/// Of the region that a closed, oriented mesh bounds, negative where faces look inwards; for any
-/// other mesh the integral of x·n / 3 about the middle of its box [m³].
+/// Volume of the region that a closed, oriented mesh bounds, negative if faces look inwards; for
+/// any other mesh the integral of x·n / 3 about the middle of its box [m³].
 double signed_volume(const Mesh& mesh);
 
 }  // namespace haptrial::geometry

@@ -10,7 +10,7 @@
 
 namespace haptrial::geometry {
 
-/// What a mesh is. Triangles that repeat a corner take no part in what is said of edges.
+/// Properties of a mesh. Triangles that repeat a corner do not count in the figures of edges.
 /// Self-intersections are not looked for.
 struct MeshReport {
   std::size_t vertices{0};

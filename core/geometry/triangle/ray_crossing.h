@@ -23,7 +23,7 @@ class RayCrossing {
 
   explicit RayCrossing(const Ray& ray);
 
-  /// Where the whole line meets the triangle.
+  /// Point at which the whole line meets the triangle.
   std::optional<Crossing> operator()(const Corners& corners) const;
 
  private:

@@ -35,7 +35,7 @@ DistanceMap make_distance_map(const Bvh& bvh, const VoxelSolid& solid,
                               const DistanceMapOptions& options = {},
                               const WorkReport& report = {});
 
-/// What the map takes [bytes].
+/// Memory that the map takes [bytes].
 double distance_map_memory(const VoxelGrid& grid, const DistanceMapOptions& options);
 
 }  // namespace haptrial::geometry

@@ -97,7 +97,8 @@ class Crosser {
     return count;
   }
 
-  /// Where the line meets the triangle's plane, to rounding; within the triangle's own range.
+  /// Height at which the line meets the triangle's plane, to rounding; within the triangle's own
+  /// range.
   double height_at(const Eigen::Vector2d& point) const {
     const auto weight = [&](int i, int j) {
       const Eigen::Vector2d a = flat_[i] - point;

@@ -285,8 +285,8 @@ TetMesh tetrahedralize(const VoxelSolid& solid) {
 }
 
 double tetrahedralizing_memory(const VoxelGrid& grid, std::size_t inside) {
-  // Where no two voxels touch each has eight corners of its own, but a grid has few more points
-  // than voxels.
+  // If no two voxels touch, each has eight corners of its own, but a grid has few more points than
+  // voxels.
   const double points =
       static_cast<double>(grid.size[0] + 1.0) * (grid.size[1] + 1.0) * (grid.size[2] + 1.0);
   const double vertices = std::min(8.0 * static_cast<double>(inside), points);

@@ -30,8 +30,8 @@ struct TetMesh {
 void tetrahedralize(const VoxelSolid& solid, TetMesh& mesh);
 TetMesh tetrahedralize(const VoxelSolid& solid);
 
-/// What tetrahedralize() takes for so many inside voxels: at most, with every voxel apart, and
-/// beside them the bits of the grid [bytes].
+/// Memory that tetrahedralize() takes for so many inside voxels: at most, with every voxel apart,
+/// and beside them the bits of the grid [bytes].
 double tetrahedralizing_memory(const VoxelGrid& grid, std::size_t inside);
 
 }  // namespace haptrial::geometry

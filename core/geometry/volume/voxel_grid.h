@@ -35,7 +35,7 @@ struct VoxelGrid {
   }
 };
 
-/// What a voxel is to a solid, by its centre.
+/// Position of a voxel relative to a solid, by its centre.
 enum class VoxelLabel : std::uint8_t {
   kOutside = 0,
   kInside = 1,

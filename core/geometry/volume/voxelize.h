@@ -7,7 +7,7 @@
 
 namespace haptrial::geometry {
 
-/// What makes the centre of a voxel an inside one.
+/// Rule by which the centre of a voxel is an inside one.
 enum class InsideRule {
   kParity,   // a ray from it leaves the mesh an odd number of times; for closed meshes
   kWinding,  // the generalized winding number is above one half; for any mesh. Where it is a

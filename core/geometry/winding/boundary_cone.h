@@ -11,7 +11,7 @@
 
 namespace haptrial::geometry {
 
-/// What an open mesh lacks: with these triangles every edge is run along as often one way as the
+/// The triangles that close an open mesh: with them every edge is run along as often one way as the
 /// other, whatever the mesh is like, so that the winding number of both together is a whole number
 /// everywhere. Each loop of the boundary gets a fan of triangles around its own middle.
 struct BoundaryCone {

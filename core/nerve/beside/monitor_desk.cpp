@@ -6,7 +6,7 @@
 namespace haptrial::nerve {
 namespace {
 
-/// Where the rows since `count` begin in a list that keeps the last ones of `all`.
+/// Index at which the rows since `count` begin in a list that keeps the last ones of `all`.
 std::size_t begin_of(std::uint64_t count, std::uint64_t all, std::size_t kept) {
   const std::uint64_t first = all - kept;
   return static_cast<std::size_t>(std::clamp(count, first, all) - first);

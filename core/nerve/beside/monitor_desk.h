@@ -11,7 +11,7 @@
 
 namespace haptrial::nerve {
 
-/// What a technician asks: of a channel, or of the probe.
+/// A technician's request for a channel or for the probe.
 struct MonitorOrder {
   enum class What { kThreshold, kMute, kSearch, kStimulus } what{What::kThreshold};
   std::size_t channel{0};  // not of kStimulus
@@ -20,14 +20,14 @@ struct MonitorOrder {
   double current{0.0};    // of the probe's pulses [A]
 };
 
-/// What a technician sees of the probe.
+/// State of the probe that a technician sees.
 struct MonitorProbe {
   double current{0.0};                   // of the next pulse [A]
   std::optional<std::size_t> searching;  // the channel
   std::optional<FoundThreshold> found;   // by the last search
 };
 
-/// What a technician sees of a channel.
+/// State of a channel that a technician sees.
 struct MonitorChannel {
   std::string name;
   std::string nerve;
@@ -58,7 +58,7 @@ struct MonitorColumn {
   float high{0.0f};
 };
 
-/// What lies between the thread that makes electromyograms and pages that show them. Any thread but
+/// Buffer between the thread that makes electromyograms and pages that show them. Any thread but
 /// the servo's: it locks.
 class MonitorDesk {
  public:
@@ -87,7 +87,7 @@ class MonitorDesk {
 
   // Pages.
 
-  /// What came since two counts, which a first call gives as 0.
+  /// Columns and events since two counts, which a first call gives as 0.
   View since(std::uint64_t column, std::uint64_t event) const;
   void ask(const MonitorOrder& order);
 

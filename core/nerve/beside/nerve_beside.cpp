@@ -145,7 +145,7 @@ void ThreadedNerves::show(const NerveTick& tick, bool heard) {
                         seconds, heard);
 }
 
-/// What the technician asked for.
+/// Carries out the technician's requests.
 void ThreadedNerves::obey() {
   if (!listeners_.desk || !simulation_) {
     return;

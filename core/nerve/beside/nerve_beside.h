@@ -15,7 +15,7 @@
 
 namespace haptrial::nerve {
 
-/// Who else gets what a monitor makes.
+/// Further receivers of the monitor's output.
 struct NerveListeners {
   std::shared_ptr<MonitorDesk> desk;  // a technician's; may be null
   std::shared_ptr<NerveVoice> voice;  // of a sound card; may be null
@@ -31,7 +31,7 @@ class NerveBeside {
   virtual bool tone() const noexcept = 0;
   /// Whether the participant hears the monitor from now on. Any thread.
   virtual void let_hear(bool heard) noexcept = 0;
-  /// What was made since the last call. Session's thread.
+  /// Rows since the last call. Session's thread.
   virtual record::NerveRows take() = 0;
   /// Ticks that found no room. Any thread.
   virtual std::uint64_t dropped() const noexcept = 0;

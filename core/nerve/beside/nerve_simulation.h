@@ -45,7 +45,7 @@ class NerveSimulation {
   bool muted(std::size_t channel) const noexcept { return muted_[channel]; }
   /// The electromyogram of the last tick [V].
   std::span<const float> samples(std::size_t channel) const noexcept { return samples_[channel]; }
-  /// What was put in and found since the rows were cleared.
+  /// Discharges and events since the rows were cleared.
   record::NerveRows& rows() noexcept { return rows_; }
   /// Events of the last tick, among rows().
   std::span<const record::NerveEventRow> ended() const noexcept;

@@ -11,7 +11,7 @@
 
 namespace haptrial::nerve {
 
-/// What a tick of the monitor sounds like.
+/// Sound of a tick of the monitor.
 struct VoiceTick {
   std::array<float, kMostSamples> raw{};     // of all audible channels [V]
   std::array<float, kMostChannels> tones{};  // frequencies [Hz]; 0: none

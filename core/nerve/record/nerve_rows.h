@@ -30,7 +30,7 @@ struct EmgRow {
   std::array<double, kEmgChannels> channels{};  // [V]
 };
 
-/// What a monitor took for one event, a row of /nerve_events.
+/// A detected event, a row of /nerve_events.
 struct NerveEventRow {
   enum class Kind : std::uint8_t { kBurst, kTrain, kResponse, kArtefact };
   std::uint64_t sequence{0};  // of the tick at which the monitor closed it
@@ -54,8 +54,8 @@ struct NerveThresholdRow {
   Cause cause{Cause::kStart};
 };
 
-/// What was put into the electromyograms, a row of /nerve_discharges: the truth that events are
-/// held against.
+/// A discharge that was put into the electromyograms, a row of /nerve_discharges: the truth that
+/// events are held against.
 struct NerveDischargeRow {
   std::uint64_t sequence{0};  // of the tick on which it began
   std::int32_t channel{0};    // -1: all
@@ -67,7 +67,7 @@ struct NerveDischargeRow {
   double current{0.0};    // of the pulse that it answers to [A]; 0: none
 };
 
-/// What a technician made of the probe, and its pulses, a row of /nerve_stimuli.
+/// A technician's setting of the probe, or a pulse of it, a row of /nerve_stimuli.
 struct NerveStimulusRow {
   enum class Kind : std::uint8_t { kSet, kPulse, kSearch, kFound, kOutOfRange };
   std::uint64_t sequence{0};  // of the tick

@@ -12,7 +12,8 @@
 
 namespace haptrial::nerve {
 
-/// What a tick did to every nerve: goes from the servo thread to where electromyograms are made.
+/// Effects of a tick on every nerve: goes from the servo thread to the thread that makes
+/// electromyograms.
 struct NerveTick {
   struct OfNerve {
     float distance{NerveDistances::kFar};  // of the tool's surface [m]

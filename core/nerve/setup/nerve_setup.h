@@ -24,7 +24,7 @@ struct WatchedNerve {
   std::vector<std::string> channels;   // muscles, at least one
 };
 
-/// What a definition says of a nerve monitor. A model to train with: its figures are chosen.
+/// Nerve monitor of a definition. A model to train with: its figures are chosen.
 struct NerveSetup {
   std::vector<WatchedNerve> nerves;  // with kMostChannels channels in all at most
   MonitorParameters monitor;         // rate aside, which follows from the loop's

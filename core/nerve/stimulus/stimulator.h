@@ -23,7 +23,7 @@ struct FoundThreshold {
   bool out_of_range{false};  // answered to the weakest pulse, or not to the strongest
 };
 
-/// What a technician makes of the probe's pulses: sets their current, or lets a search find the
+/// The probe's pulses under a technician's control: sets their current, or lets a search find the
 /// least one that a channel answers. An answer to a pulse that comes while another event of the
 /// channel goes on could not be told from it: the search waits for a pulse in quiet. The thread
 /// that makes electromyograms; allocates rows.

@@ -7,7 +7,7 @@ class Schema;
 
 namespace haptrial::network {
 
-/// What a network does to messages on one way.
+/// Effects of a network on messages in one direction.
 struct ChannelConditions {
   double delay{0.0};        // least [s]
   double jitter{0.0};       // mean of what comes on top, exponentially distributed [s]

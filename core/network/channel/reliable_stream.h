@@ -10,14 +10,14 @@
 
 namespace haptrial::network {
 
-/// Who has something for the other side that must not be lost, and who takes it. Servo thread.
+/// Source and receiver of data that must not be lost. Servo thread.
 class ReliablePayload {
  public:
   virtual ~ReliablePayload() = default;
   /// @param room  for what comes next
   /// @returns how many of its bytes were used; 0: there is nothing, or it does not fit
   virtual std::size_t give(std::span<std::byte> room) noexcept = 0;
-  /// What one give() of the other side wrote: each once, in their order.
+  /// Receives the bytes that one give() of the other side wrote: each once, in their order.
   virtual void take(std::span<const std::byte> bytes) noexcept = 0;
 };
 
@@ -29,7 +29,7 @@ class ReliableStream {
  public:
   ReliableStream();
 
-  /// What came with a message.
+  /// Takes the stream's part of a message that came.
   void hear(const StreamPart& part) noexcept;
   /// Hands over what has come, as far as nothing is missing before it.
   void deliver(ReliablePayload& freight) noexcept;

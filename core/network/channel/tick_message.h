@@ -31,7 +31,7 @@ struct TurnState {
   bool operator==(const TurnState&) const = default;
 };
 
-/// What a message carries of a stream of which nothing may be lost (network::ReliableStream).
+/// A message's part of a stream that may lose nothing (network::ReliableStream).
 struct StreamPart {
   static constexpr std::size_t kMost = 192;     // bytes of a chunk
   static constexpr std::size_t kBeyond = 1024;  // chunks that may come while one is missing
@@ -45,7 +45,7 @@ struct StreamPart {
   bool operator==(const StreamPart&) const = default;
 };
 
-/// What one side of a shared session tells the other of a tick.
+/// Message of one side of a shared session to the other about a tick.
 struct TickMessage {
   std::uint64_t sequence{0};  // from 1, one more each message
   std::int64_t sent_ns{0};    // clock of the sender

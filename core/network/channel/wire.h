@@ -13,7 +13,7 @@ struct Arrived {
   std::int64_t time_ns{0};
 };
 
-/// What a network did, as one end saw it.
+/// Counts of a network's effects, as one end saw them.
 struct WireCounts {
   std::uint64_t sent{0};
   std::uint64_t accepted{0};
@@ -26,7 +26,7 @@ struct WireCounts {
   bool operator==(const WireCounts&) const = default;
 };
 
-/// Who takes what arrives. Servo thread.
+/// Receiver of messages that arrive. Servo thread.
 class Listener {
  public:
   virtual ~Listener() = default;
@@ -41,7 +41,7 @@ class Wire {
 
   /// Once a tick, first of all. @returns the own clock [ns]
   virtual std::int64_t tick() noexcept = 0;
-  /// What has arrived since the last call, oldest first.
+  /// Hands over the messages that have arrived since the last call, oldest first.
   virtual void receive(Listener& listener) noexcept = 0;
   virtual void send(const TickMessage& message) noexcept = 0;
   /// Whether the other end is known to be closed, so that nothing will come any more.

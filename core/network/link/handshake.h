@@ -11,14 +11,15 @@
 
 namespace haptrial::network {
 
-/// What two sides have after they have shown each other that they know the secret.
+/// Keys of two sides that have shown each other that they know the secret.
 struct LinkKeys {
   std::array<unsigned char, 32> send{};
   std::array<unsigned char, 32> receive{};
   std::uint64_t session{0};  // both the same; new each time
 };
 
-/// What each tells the other beside: it is shown to come from who knows the secret.
+/// Terms that each side tells the other beside: they are shown to come from a side that knows the
+/// secret.
 struct LinkTerms {
   std::uint16_t port{0};                  // for datagrams
   std::array<unsigned char, 32> study{};  // checksum of what both must have alike

@@ -6,8 +6,9 @@
 
 namespace haptrial::network {
 
-/// What both sides of a link know and nobody else: the text of a small file that each keeps for
-/// itself. It never goes into a file of results, a log or a message. Its memory is wiped.
+/// The secret that both sides of a link know and nobody else: the text of a small file that each
+/// keeps for itself. The secret never goes into a file of results, a log or a message, and its
+/// memory is wiped.
 class Secret {
  public:
   static constexpr std::size_t kLeast = 16;  // characters

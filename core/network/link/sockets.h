@@ -25,7 +25,7 @@ class Socket {
   int fd_{-1};
 };
 
-/// Where the other side is: "name:port" or "address:port", IPv4 or "[IPv6]:port".
+/// Address of the other side: "name:port" or "address:port", IPv4 or "[IPv6]:port".
 struct Address {
   sockaddr_storage storage{};
   socklen_t size{0};

@@ -44,8 +44,8 @@ class CoupledSide {
   /// A tick, after what arrived before it was heard. Without a link the force is zero.
   Output step(const Own& own, std::int64_t now_ns, double dt) noexcept;
 
-  /// What the partner's world and the coupling really do until the next tick, where something after
-  /// step() changed it.
+  /// Sets the force of the partner's world and the coupling that acts until the next tick, if
+  /// something after step() changed it.
   void acts(const Eigen::Vector3d& force) noexcept { tank_.acts(force - played_); }
 
   /// How much of the own world the hand feels, 0 to 1: the own lead where there is a link. A hand

@@ -15,7 +15,7 @@ class PassBarrier {
  public:
   static constexpr std::uint32_t kPhases = 16;  // of a trial at most
 
-  /// What is to be done at a tick.
+  /// Action of a side at a tick.
   enum class Step : std::uint8_t {
     kWait,      // the other side is not there yet
     kRun,       //

@@ -8,7 +8,7 @@
 
 namespace haptrial::network {
 
-/// What keeps a coupling over a delay from swinging up.
+/// Method that keeps a coupling over a delay from swinging up.
 enum class Passivity : std::uint8_t {
   kNone,  // nothing: right where only one side feels the other
   kTank,  // control::EnergyTank

@@ -22,9 +22,9 @@ struct Track;
 /// are noted.
 std::optional<PsychometricParameters> read_expectation(Table& procedure, const Axis& axis);
 
-/// What the track will find if people are as expected, in a sentence: estimate with bias and
-/// standard deviation, and trials. Of a staircase exactly, by its Markov chain; of PEST and psi
-/// from 500 simulated tracks; of listed levels nothing, for there is no estimate but a fit.
+/// Sentence about the result to expect of the track if people are as expected: estimate with bias
+/// and standard deviation, and trials. It is exact for a staircase, by its Markov chain; PEST and
+/// psi take 500 simulated tracks; listed levels give nothing, for there is no estimate but a fit.
 /// @returns nothing without an expectation, or if it cannot be said
 std::optional<std::string> predicted(const Track& track);
 

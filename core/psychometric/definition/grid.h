@@ -11,7 +11,7 @@ namespace haptrial::psychometric {
 
 struct Track;
 
-/// Where a track finds its keys: in its own table, or else in that of its procedure.
+/// Tables with the keys of a track: its own, or else that of its procedure.
 struct TrackKeys {
   Table& track;
   Table& procedure;

@@ -27,7 +27,7 @@ namespace {
 constexpr double kMostPairs = 1e7;
 constexpr std::size_t kMostOutcomes = 64;
 
-/// What stands beside a grid, which has a table of its own then.
+/// Reads the levels that stand beside a grid, which has a table of its own then.
 std::vector<double> read_levels(Table& all, const std::string& name) {
   if (!all.is_table(name)) {
     return read_grid(all, name);

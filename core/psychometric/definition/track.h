@@ -46,7 +46,7 @@ struct Track {
   std::string lesson() const;
   /// Whether an outcome is one of these.
   bool learns(double outcome) const noexcept;
-  /// What is presented if a level is asked for: rounded, within the range.
+  /// Level that is presented if a level is asked for: rounded, within the range.
   double applied(double asked) const noexcept;
   Level applied(const Level& asked) const;
   /// Those that it sets, in the order of a level's dimensions.

@@ -8,7 +8,8 @@
 
 namespace haptrial::psychometric {
 
-/// What a psychometric function is, stated once for procedures, fits, observers and predictions.
+/// Parameters of a psychometric function, stated once for procedures, fits, observers and
+/// predictions.
 struct PsychometricParameters {
   Sigmoid sigmoid{Sigmoid::kLogistic};
   Axis axis{};            // x of a level

@@ -25,8 +25,8 @@ double quotient(const double (&pairs)[N][2], double x) noexcept {
   return top / bottom;
 }
 
-// Of erf(x) / x below 0.46875, of exp(x^2) erfc(x) up to 4, and beyond: Cody 1969, Mathematics of
-// Computation 23. The exponential is that of the density.
+// Coefficients of erf(x) / x below 0.46875, of exp(x^2) erfc(x) up to 4, and beyond: Cody 1969,
+// Mathematics of Computation 23. The exponential is that of the density.
 constexpr double kNear[][2] = {{1.85777706184603153e-1, 1.0},
                                {3.16112374387056560, 2.36012909523441209e1},
                                {1.13864154151050156e2, 2.44024637934444173e2},

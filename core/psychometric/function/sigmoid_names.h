@@ -7,7 +7,7 @@
 
 namespace haptrial::psychometric {
 
-/// What a name says of a psychometric function.
+/// Form of a psychometric function that a name stands for.
 struct SigmoidForm {
   Sigmoid sigmoid{Sigmoid::kLogistic};
   bool logarithmic{false};  // acts on the logarithm of the level: weibull, logn

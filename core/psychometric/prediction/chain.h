@@ -9,7 +9,7 @@
 
 namespace haptrial::psychometric {
 
-/// Where a state goes with each answer, found when it is first asked for.
+/// Next state after each answer, found when it is first asked for.
 class Chain {
  public:
   struct Answer {

@@ -14,7 +14,7 @@ struct StaircasePrediction {
   double trials_deviation;
 };
 
-/// What a staircase gives, exactly: its track is a Markov chain over level, counts of answers,
+/// Exact prediction of a staircase: its track is a Markov chain over level, counts of answers,
 /// direction and number of reversals, and the first two moments of the sum of the chosen reversals
 /// (or levels) are carried along with the probability of each state, trial by trial, until it
 /// stops. Answers are independent of each other, and levels are applied as they are asked for.

@@ -8,10 +8,10 @@
 
 namespace haptrial::psychometric {
 
-/// What is presented on a trial: one number for each dimension of the stimulus, most often one.
+/// Stimulus of a trial: one number for each dimension, most often one.
 using Level = std::vector<double>;
 
-/// What a trial gave.
+/// Outcome of a trial.
 struct Outcome {
   double answer;  // which outcome (0, 1, ...; of two, 1 is "correct" or "yes"), or a number given
   Level applied;  // the level that was really presented: quantised, limited by the device

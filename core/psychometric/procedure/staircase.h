@@ -21,7 +21,7 @@ class Staircase final : public Procedure {
   void report(double answer, const Level& applied) override;
   bool finished() const override { return stopped(parameters_, state_); }
   std::vector<Estimate> estimates() const override;
-  /// Where the last steps balance, if one wrong answer makes a step.
+  /// Probability at which the last steps balance, if one wrong answer makes a step.
   std::optional<double> target() const override;
   std::optional<LevelRange> range() const override {
     return LevelRange{parameters_.low, parameters_.high};

@@ -60,7 +60,7 @@ StaircaseStep weighted_step(double target, double down);
 /// @throws std::invalid_argument unless down >= 1 and both sizes are above 0
 double balance_of(int down, const StaircaseStep& step);
 
-/// Where a track stands; no memory beyond this.
+/// State of a track; it needs no memory beyond this.
 struct StaircaseState {
   double x{0.0};  // the next level [axis]
   int right{0};   // answers since the last step

@@ -23,8 +23,8 @@ std::size_t place_of(const std::vector<QuestDimension>& dimensions, std::size_t 
   return cell % dimensions[dimension].values.size();
 }
 
-/// Where a posterior's distribution is `share`: each value stands for what lies around it, up to
-/// halfway to its neighbours; nothing lies beyond the first and the last.
+/// Value at which a posterior's distribution is `share`: each value stands for what lies around it,
+/// up to halfway to its neighbours; nothing lies beyond the first and the last.
 double quantile_of(const std::vector<double>& values, const std::vector<double>& shares,
                    double share) {
   const std::size_t last = values.size() - 1;

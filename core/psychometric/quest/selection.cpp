@@ -14,7 +14,7 @@ constexpr double kTie = 1e-15;          // [nat]
 constexpr double kLeastWeight = 1e-20;  // smaller ones count as this: none is a denormal number
 constexpr double kLeftOut = 1e-8;       // at most what the cells that are not summed have together
 
-/// What is known of an entropy [nat].
+/// Bounds of an entropy [nat].
 struct Estimate {
   double value{0.0};
   double error{0.0};

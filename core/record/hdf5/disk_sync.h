@@ -24,7 +24,7 @@ class DiskSync {
 
   /// The next sync begins now, or when the present one has ended.
   void soon();
-  /// What the system said when a sync failed; empty while none did.
+  /// The system's message when a sync failed; empty while none did.
   std::string failure() const;
 
   /// Whether the path still leads to the file, as of the last look (one before each sync).
@@ -46,7 +46,7 @@ class DiskSync {
   std::thread thread_;
 };
 
-/// Where the file of a descriptor is, seen from a path.
+/// Place of the file of a descriptor, seen from a path.
 DiskSync::Place place_of(int descriptor, const std::filesystem::path& path) noexcept;
 
 }  // namespace haptrial::record

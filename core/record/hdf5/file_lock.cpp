@@ -31,7 +31,7 @@ bool still_there(int descriptor, const std::filesystem::path& file) {
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
-/// Of the lock that another description of the file has; nothing if it cannot be asked.
+/// Type of the lock that another description of the file has; nothing if it cannot be asked.
 std::optional<int> lock_type_of(int descriptor) {
   struct flock whole = whole_file();
   const bool asked = descriptor >= 0 && fcntl(descriptor, F_OFD_GETLK, &whole) == 0;

@@ -7,7 +7,7 @@
 /// Handles of HDF5. Inside core/record only; hdf5.h stays in the source.
 namespace haptrial::record::h5 {
 
-/// What HDF5 or the system said, in words; the callers add the file.
+/// Message of HDF5 or of the system; the callers add the file.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -6,7 +6,7 @@
 
 #include "core/record/hdf5/hdf5_handle.h"
 
-/// What the sources of hdf5_layer.h share; for those only.
+/// Declarations that the sources of hdf5_layer.h share; for those only.
 namespace haptrial::record::h5 {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));

@@ -21,7 +21,7 @@ SessionInfo get_info(const h5::Id& file);
 
 /// The same as rows of /attributes: kind is the name, text the value; `time_ns` is unused.
 std::vector<EventRow> info_rows(const SessionInfo& info);
-/// What the rows say; fields that none names stay as they are by default.
+/// Session's facts from its rows; fields that none names stay as they are by default.
 SessionInfo info_of(const std::vector<EventRow>& rows);
 
 }  // namespace haptrial::record

@@ -27,7 +27,7 @@ class TableWriter {
   static TableWriter go_on(const h5::Id& file, const TableSchema& schema, int level,
                            EnsureSpace ensure_space);
 
-  /// Where the next rows go: rows [used(), used() + room()) of the chunk; then say how many.
+  /// Buffer of the next rows: rows [used(), used() + room()) of the chunk; then say how many.
   BytePlanes& planes() { return planes_; }
   std::size_t used() const { return used_; }
   std::size_t room() const { return planes_.capacity() - used_; }

@@ -7,7 +7,7 @@
 
 namespace haptrial::record {
 
-/// What a session's link to a partner did at one tick, a row of /link. The own hand is in /samples.
+/// State of a session's link to a partner at one tick, a row of /link. The own hand is in /samples.
 /// Messages are numbered from 1 on either side, so that `heard` is a row of the partner's file: the
 /// one whose `sent` it is.
 struct LinkRow {

@@ -104,11 +104,11 @@ class SessionReader {
                std::span<const ColumnTarget> targets) const;
 
   std::vector<std::string> table_names() const;  // that the file has
-  /// What the file itself says of one of them, for tables that this program does not know.
+  /// The file's own description of a table, for tables that this program does not know.
   std::unique_ptr<const TableDescription> description(const std::string& table) const;
 
   std::vector<TimingRow> timing() const;  // of all runs together, in ascending order
-  /// What the loop counted, as it was written; none in a file before schema version 4.
+  /// Counts of the loop, as they were written; none in a file before schema version 4.
   std::vector<RunRow> runs() const;
   std::vector<BegunRow> begun() const;  // likewise
   /// Reads every chunk of every table: one that cannot be inflated, or has fewer rows than the

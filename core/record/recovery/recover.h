@@ -9,7 +9,7 @@
 
 namespace haptrial::record {
 
-/// What recover_session() found.
+/// Result of recover_session().
 struct Recovery {
   std::uint64_t file_bytes{0};
   std::uint64_t samples{0};

@@ -63,7 +63,8 @@ class Plan {
         ticks_.add(sample.sequence);
       }
     }
-    // Of what the session had: a table that it may have had and has no rows of says nothing.
+    // Only tables that the session had count: one that it may have had and has no rows of says
+    // nothing.
     const TableList had = rows_.tables();
     for (const RecoveredTable& table : rows_.own) {
       const bool counts = std::find(had.begin(), had.end(), &table.table()) != had.end();
@@ -152,7 +153,7 @@ class Plan {
   std::uint64_t dropped_passes_{0};
 };
 
-/// What came of the samples on their way to the new file.
+/// Result of the samples on their way to the new file.
 struct Written {
   std::uint64_t samples{0}, missing{0}, next{0};
   std::int64_t last_time{0};
@@ -252,7 +253,7 @@ std::optional<std::string> wrong_in(const TableDescription& table, const Session
   return std::nullopt;
 }
 
-/// What does not fit between the rows of a file that has all its chunks; nothing if all does.
+/// Contradiction between the rows of a file that has all its chunks; nothing if all agree.
 std::optional<std::string> wrong_between_rows(const SessionReader& reader,
                                               const TableList& tables) {
   std::uint64_t next = 0;

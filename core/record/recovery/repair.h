@@ -15,7 +15,7 @@ namespace haptrial::record {
 std::optional<std::string> what_is_wrong(const std::filesystem::path& partial,
                                          const TableList& tables);
 
-/// What a repair kept.
+/// Rows and chunks that a repair kept.
 struct Repair {
   std::string told;                 // a sentence: what was wrong, what was kept
   std::uint64_t dropped_rows{0};    // of /samples, that nothing could go on behind

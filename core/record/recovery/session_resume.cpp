@@ -57,7 +57,7 @@ void sum_up_runs(const SessionReader& reader, Resumed& found) {
   found.ended = !found.runs.empty() && found.runs.back().state == RunState::kEnded;
 }
 
-/// Where an undamaged file goes on.
+/// State from which an undamaged file goes on.
 Resumed examine(const SessionReader& reader) {
   Resumed found;
   found.info = reader.info();

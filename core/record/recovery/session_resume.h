@@ -19,7 +19,7 @@ struct OpenPass {
   std::uint64_t last_sample{0};
 };
 
-/// What a session file held when writing it went on. The session first adds a row for each open
+/// Contents of a session file when writing it went on. The session first adds a row for each open
 /// pass (status aborted), and goes on with next_sequence and the time after last_time_ns.
 struct Resumed {
   SessionInfo info;

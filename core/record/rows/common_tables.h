@@ -4,8 +4,8 @@
 
 namespace haptrial::record {
 
-/// What a session of any protocol may have beside the tables of every session: answers, further
-/// devices, what became of trials, markers.
+/// Tables that a session of any protocol may have beside those of every session: answers, further
+/// devices, outcomes of trials, markers.
 const TableList& common_tables();
 
 /// `tables` and after them those of `more` that are not among them.

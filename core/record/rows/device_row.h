@@ -17,7 +17,7 @@ struct DeviceRow {
   std::int32_t buttons{0};                            // bit i: button i is pressed
 };
 
-/// Of a session with several devices.
+/// The table exists in sessions with several devices.
 template <>
 const Table<DeviceRow>& table_of<DeviceRow>();
 

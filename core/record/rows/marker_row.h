@@ -8,11 +8,11 @@
 
 namespace haptrial::record {
 
-/// What begins at a marker.
+/// Event that begins at a marker.
 enum class MarkerOf : std::uint8_t { kTrial, kInterval, kStage, kResponse };
 const char* name_of(MarkerOf what) noexcept;
 
-/// Where a marker went.
+/// Output that a marker went to.
 enum class MarkerWay : std::uint8_t {
   kNone,    // nowhere: a simulated session, or nothing is connected
   kSerial,  // a serial line

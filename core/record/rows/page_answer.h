@@ -11,7 +11,7 @@ namespace haptrial::record {
 /// When a page was shown.
 enum class PageTime : std::uint8_t { kBefore, kAfterBlock, kAfter };
 
-/// Where an answer to a page was given.
+/// Place at which an answer to a page was given.
 enum class AnsweredAt : std::uint8_t { kWindow, kConsole, kTerminal, kVirtual };
 
 /// An answer to an item of a page, a row of /answers; in files whose definition has pages.

@@ -8,7 +8,7 @@
 
 namespace haptrial::record {
 
-/// What an answer was given with.
+/// Means by which an answer was given.
 enum class ResponseSource : std::uint8_t { kNone, kKey, kButton, kPlace, kPointer, kPedal };
 
 /// One answer, a row of /responses; in files whose protocol asks something.

@@ -26,7 +26,7 @@ constexpr const char* name_of(RunState state) noexcept {
   return "running";
 }
 
-/// What the loop of one run counted so far, a row of /runs; the last row of a run counts.
+/// Counts of the loop of one run so far, a row of /runs; the last row of a run counts.
 struct RunRow {
   std::int32_t run{1};            // from 1
   std::uint64_t first_sample{0};  // sequence number of its first tick
@@ -35,7 +35,8 @@ struct RunRow {
   RunState state{RunState::kRunning};
 };
 
-/// What is known of a pass when it begins, a row of /begun: what a kill in mid-pass would lose.
+/// Facts of a pass that are known when it begins, a row of /begun: a kill in mid-pass would lose
+/// them.
 struct BegunRow {
   std::int32_t row{0};  // that it gets in /trials
   PassRow pass;         // without its samples and its status

@@ -12,7 +12,7 @@
 
 namespace haptrial::record {
 
-/// What the participant's hand is going through within a pass.
+/// Part of a pass that the participant's hand is in.
 enum class Stage : std::uint8_t { kIdle, kApproach, kWait, kRun, kReturn };
 
 /// One servo tick: a row of /samples. Trivially copyable; goes through the block log.
@@ -29,7 +29,7 @@ struct Sample {
   bool saturated{false};  // the force limit was reached
 };
 
-/// What a pass is for within its trial: a word of the protocol, as /trials has it.
+/// Purpose of a pass within its trial: a word of the protocol, as /trials has it.
 class Phase {
  public:
   static constexpr std::size_t kBytes = 16;
@@ -104,15 +104,16 @@ struct TimingRow {
   std::uint64_t compute_count{0};
 };
 
-/// What the loop counted over the whole session; attributes of /timing.
+/// Counts of the loop over the whole session; attributes of /timing.
 struct TimingSummary {
   std::uint64_t ticks{0};     // ticks that the loop ran: rows that /samples must have
   std::uint64_t overruns{0};  // ticks that began after their period had passed
   std::uint64_t dropped{0};   // records that the loop could not hand over
 };
 
-/// Who takes part; root attributes participant_*. Texts as the study's form has them; whatever was
-/// not asked stays empty. There is no field for a name, nor for the experimenter's.
+/// The participant of a session; root attributes participant_*. Texts are those of the study's
+/// form; a text that was not asked for stays empty. There is no field for a name, nor for the
+/// experimenter's.
 struct Participant {
   std::string identifier;
   std::string handedness;  // "right", "left", ...

@@ -19,7 +19,7 @@ class Sink {
     static_cast<void>(pass);
     static_cast<void>(row);
   }
-  /// Of a table of the protocol, of answers or of devices after the first.
+  /// Takes rows of a table of the protocol, of answers or of devices after the first.
   virtual void rows(const Rows& rows) { static_cast<void>(rows); }
   virtual void samples(std::span<const Sample> samples) { static_cast<void>(samples); }
   virtual void end_pass(const PassRow& pass) { static_cast<void>(pass); }

@@ -8,7 +8,7 @@
 
 namespace haptrial::record {
 
-/// What a member of a row is in memory. A bool or an enumeration takes one byte; a name is as many
+/// Type of a row's member in memory. A bool or an enumeration takes one byte; a name is as many
 /// characters as its column, the last one 0.
 enum class MemberType : std::uint8_t {
   kBool,

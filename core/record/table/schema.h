@@ -33,7 +33,7 @@ struct TableSchema {
   std::size_t row_bytes() const;
   /// The same with chunks of another length.
   TableSchema with_chunks(std::size_t rows) const { return {name, description, rows, columns}; }
-  /// Where the column starts within a row [bytes].
+  /// Offset of the column within a row [bytes].
   /// @throws std::invalid_argument when there is none of this name.
   std::size_t offset(std::string_view column) const;
 };

@@ -13,7 +13,7 @@
 
 namespace haptrial::record {
 
-/// What the rows of a table belong to; writer, check and recovery keep them together with it.
+/// Owner of the rows of a table; writer, check and recovery keep them together with it.
 enum class RowsOf : std::uint8_t {
   kSession,    // nothing else: a row stands for itself
   kEachTick,   // exactly one row for each row of /samples; the column `sequence` numbers it
@@ -73,7 +73,7 @@ class TableDescription {
   void unpack(const std::vector<std::uint8_t>& packed, void* rows) const;
   /// Whether all columns with words hold words of theirs.
   bool fits(const BytePlanes& planes, std::size_t count, std::int64_t version) const;
-  /// Of a packed row: the columns of TableHead::order, and one column of integers.
+  /// Key of a packed row: the columns of TableHead::order, and one column of integers.
   std::vector<std::int64_t> key(const std::uint8_t* row) const;
   std::int64_t integer(const std::uint8_t* row, const char* column,
                        std::int64_t version = kSchemaVersion) const;

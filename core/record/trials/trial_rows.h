@@ -20,8 +20,8 @@ struct VariableRow {
   std::string word;                                        // empty: it is a number
 };
 
-/// What a procedure asked for and what came of it, a row of /levels; of a level with several
-/// dimensions a row each.
+/// Level that a procedure asked for, and its outcome, a row of /levels; a level with several
+/// dimensions has a row for each.
 struct LevelRow {
   std::int32_t pass{0};  // row of /trials
   std::string track;     // the definition's name for it
@@ -44,7 +44,7 @@ struct StageRow {
   double most{std::numeric_limits<double>::quiet_NaN()};  // of what is required; NaN: nothing is
 };
 
-/// What a virtual participant had adapted to a field by the end of a pass, in shares of the field
+/// Adaptation of a virtual participant to a field by the end of a pass, in shares of the field
 /// (core/subject/perceiver/two_rate.h); a row of /adaptation. A resumed session goes on from it.
 struct AdaptationRow {
   std::int32_t pass{0};  // row of /trials

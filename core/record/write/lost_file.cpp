@@ -1,4 +1,4 @@
-// What a writer does when its file is deleted, moved or replaced under it.
+// Recovery of a writer whose file is deleted, moved or replaced under it.
 #include <fcntl.h>
 #include <sys/sendfile.h>
 #include <sys/stat.h>
@@ -28,7 +28,7 @@ bool link_back(int descriptor, const fs::path& path) {
   return linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
 }
 
-/// Where an open file is now; empty if it was deleted.
+/// Path of an open file now; empty if it was deleted.
 fs::path present_path(int descriptor) {
   struct stat file {};
   std::error_code error;
@@ -98,8 +98,8 @@ void SessionWriter::Impl::put_back() {
                     "everything that was recorded");
 }
 
-/// Its folder may have been deleted or renamed with it. Where none can be made, the recording goes
-/// to the folder of temporary files.
+/// The folder may have been deleted or renamed with the file. If none can be made, the recording
+/// goes to the folder of temporary files.
 void SessionWriter::Impl::make_folder_again() {
   const fs::path folder = folder_of(partial);
   std::error_code error;

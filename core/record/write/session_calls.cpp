@@ -58,7 +58,7 @@ void SessionWriter::append(std::span<const Sample> rows) {
   impl_->guarded([&] {
     TableWriter& table = *impl_->samples;
     bool finished_chunk = false;
-    // What the ticks did is there before they are, whenever the process is killed.
+    // Rows of the ticks are in the file before the ticks are, whenever the process is killed.
     if (impl_->live && rows.size() >= table.room()) {
       impl_->write_own();
     }
@@ -236,7 +236,7 @@ void SessionWriter::discard() {
   if (impl_->finished) {
     throw std::invalid_argument(impl_->final_path.string() + ": the session was closed before");
   }
-  // What HDF5 still holds of a new session need not reach the disk.
+  // Data of a new session that HDF5 still holds need not reach the disk.
   if (!impl_->resumed) {
     impl_->divert_file();
   }

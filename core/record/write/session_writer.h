@@ -97,7 +97,7 @@ class SessionWriter {
   void add_response(const ResponseRow& row) { add_at_once(Rows(std::span(&row, 1))); }
   /// Trials of the study that this run has planned, earlier runs' included.
   void set_planned(std::int32_t trials);
-  /// What the loop counted so far in this run: a row of /runs where something new is to be told.
+  /// Notes the loop's counts so far in this run: a row of /runs if something new is to be told.
   void note_counts(const TimingSummary& so_far);
   /// Once, when the loop has ended. @param summary  of this run: what was counted before a resume()
   /// is added in the counts of the session.

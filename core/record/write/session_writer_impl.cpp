@@ -164,8 +164,8 @@ void SessionWriter::Impl::give_up(const std::string& why) {
   throw RunError(failure);
 }
 
-/// What a row of /trials refers to is on its way to the disk before the row is, whenever the
-/// process is killed.
+/// Rows that a row of /trials refers to are on their way to the disk before that row is, whenever
+/// the process is killed.
 void SessionWriter::Impl::write_before_trials() {
   samples->write_unfinished();
   for (Own& each : own) {

@@ -19,7 +19,7 @@
 #include "core/record/write/read_back.h"
 #include "core/record/write/session_writer.h"
 
-/// What session_writer.cpp and session_resume.cpp share; for those only.
+/// Declarations that session_writer.cpp and session_resume.cpp share; for those only.
 namespace haptrial::record {
 
 struct SessionWriter::Impl {
@@ -73,9 +73,9 @@ struct SessionWriter::Impl {
   void go_on();  // opens the file and its tables
   void start_syncing();
 
-  /// What the thread that syncs found. @throws h5::Error when the disk refused
+  /// Takes over the result of the thread that syncs. @throws h5::Error when the disk refused
   void heed_disk();
-  /// Where the file was deleted, moved or replaced, it is put back, or saved under another name.
+  /// Puts back a file that was deleted, moved or replaced, or saves it under another name.
   /// @throws RunError that names the other name
   void put_back();
   void make_folder_again();

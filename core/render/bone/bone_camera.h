@@ -28,7 +28,7 @@ struct StereoPair {
   std::optional<double> convergence;  // distance without disparity > 0 [m]; else the target's
 };
 
-/// What the vertex shader needs: from W to the eye, and from there to the clip space of OpenGL.
+/// Transforms for the vertex shader: from W to the eye, and from there to the clip space of OpenGL.
 struct EyeView {
   Eigen::Matrix4d view;
   Eigen::Matrix4d projection;

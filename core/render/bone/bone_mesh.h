@@ -34,7 +34,7 @@ class BoneMesh {
 
   const geometry::Mesh* mesh() const noexcept { return mesh_.get(); }
   const std::vector<Eigen::AlignedBox3d>& slabs() const noexcept { return slabs_; }
-  /// Its colour is the constant value of attribute 2.
+  /// Draws the mesh; the constant value of attribute 2 is its colour.
   void draw() const;
 
  private:

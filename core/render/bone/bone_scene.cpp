@@ -49,7 +49,7 @@ bool is_same(const EyeView& a, const EyeView& b) {
   return a.view == b.view && a.projection == b.projection;
 }
 
-/// Where the grains of all cells may be.
+/// Adds the boxes of pixels in which the grains of all cells may be.
 void add_pixels_of(std::span<const bone::DustQuad> dust, const Eigen::Matrix4d& to_clip,
                    const EyeArea& area, std::vector<PixelBox>& parts) {
   constexpr double kAround = 1.1;  // times a cell's size
@@ -64,7 +64,7 @@ void add_pixels_of(std::span<const bone::DustQuad> dust, const Eigen::Matrix4d& 
   }
 }
 
-/// What of a frame's tools casts shadows, in W.
+/// Shadow casters among a frame's tools, in W.
 std::vector<Capsule> capsules_of(const BoneFrame& frame) {
   std::vector<Capsule> all;
   for (const SceneMesh& mesh : frame.meshes) {
@@ -87,7 +87,7 @@ Eigen::AlignedBox3d bounds_of(const std::array<bone::Dent, 2>& dents) {
   return dents[0].bounds().merged(dents[1].bounds());
 }
 
-/// Where the shader has dents.
+/// Locations of the shader's dents.
 struct DentUniforms {
   std::array<int, 2> place, out;
   int label;
@@ -241,7 +241,7 @@ void BoneScene::Impl::draw_meshes(const BoneFrame& frame, const EyeView& view, b
   }
 }
 
-/// What of each eye's picture is not as the kept one has it.
+/// Parts of each eye's picture that differ from the kept one.
 std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
                                                      const std::vector<EyeView>& views, int width,
                                                      int height) {

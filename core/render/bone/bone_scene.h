@@ -53,7 +53,7 @@ struct BoneFrame {
   std::vector<bone::DustQuad> blood;  // likewise
 };
 
-/// What the last draw() did.
+/// Figures of the last draw().
 struct BoneFrameFigures {
   std::size_t triangles{0};  // of the bones, alive
   std::size_t drawn{0};      // of them sent to OpenGL, for all eyes

@@ -91,9 +91,8 @@ void main() {
   result = vec4(colour.rgb * (sum / count), colour.a);
 })";
 
-/// What capsules take of a pixel's light, as a factor: a shadow of a lamp beside the eye, sharp
-/// where they touch and soft far from them, and the light that they keep off close by.
-/// measures: the way to the lamp, strength.
+/// Share of a pixel's light that capsules leave, as a factor: a shadow of a lamp beside the eye,
+/// sharp where they touch and soft far from them, and the light that they keep off close by.
 constexpr const char* kShadowShader = R"(
 out vec4 result;
 uniform vec4 from[4];  // and radius

@@ -23,7 +23,7 @@ class BoneStills {
   BoneStills& operator=(const BoneStills&) = delete;
 
   std::size_t count() const noexcept { return stills_->size(); }
-  /// Where a still lies in a picture: left, top, width, height [px].
+  /// Place of a still in a picture: left, top, width, height [px].
   static Eigen::Vector4d place_of(const Image& still, int width, int height);
   /// Draws one over what is there. @param number  from 0, below count()
   /// @param left  of the part of the framebuffer that holds the picture [px]

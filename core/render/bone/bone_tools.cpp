@@ -76,7 +76,7 @@ constexpr double kGroove = 0.16;
 constexpr double kTwist = 0.7;  // of a blade, over the radius along the axis [rad]
 constexpr int kRound = kBlades * kStations;
 
-/// What is left of the radius at a station around the axis, where grooves are as deep as can be.
+/// Rest of the radius at a station around the axis, where grooves are as deep as can be.
 double groove_at(int station, bool clockwise) {
   const double into = static_cast<double>(station % kStations) / (kStations - 1);
   return kGroove * (clockwise ? into : 1.0 - into);
@@ -185,7 +185,7 @@ std::vector<Capsule> burr_shadow(double diameter, double shaft_diameter, double 
 
 namespace {
 
-/// Where the handle of a burr begins, which has room for it.
+/// Start of a burr's handle, which has room for it.
 double handle_begins(const BurrLook& look, const bone::BurrShape& shape) {
   const double thick = kHandleThickness * look.shaft_diameter;  // twice its radius
   const double wanted = look.shaft_length > 0.0 ? shape.half_length() + look.shaft_length

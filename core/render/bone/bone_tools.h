@@ -19,7 +19,7 @@ geometry::Mesh burr_mesh(double diameter, double shaft_diameter, double length);
 /// @param clockwise  seen from the handle: the blades' sharp sides face the way it turns
 geometry::Mesh cutting_burr_mesh(double diameter, double shaft_diameter, double length,
                                  bool clockwise);
-/// What of such a burr keeps light off: the ball, the shaft and the handle.
+/// Parts of such a burr that keep light off: the ball, the shaft and the handle.
 std::vector<Capsule> burr_shadow(double diameter, double shaft_diameter, double length);
 
 /// A burr of any shape with its shaft and handle.

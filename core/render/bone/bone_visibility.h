@@ -13,7 +13,7 @@
 
 namespace haptrial::render {
 
-/// What a visibility pass looks at: a surface as it was at an instant.
+/// Input of a visibility pass: a surface as it was at an instant.
 struct VisibilityJob {
   std::uint32_t id{0};               // of the bone
   std::uint64_t generation{0};       // tells results of older jobs
@@ -52,7 +52,7 @@ class VisibilityWorker {
 
   /// Does not wait for a pass; a job of the same bone that has not begun is replaced.
   void submit(VisibilityJob job);
-  /// What was finished since the last call.
+  /// Results that were finished since the last call.
   std::vector<VisibilityResult> take();
   /// Waits until every job is finished.
   void wait();

@@ -177,7 +177,8 @@ void Painter::polyline(std::span<const Eigen::Vector2d> points, double width,
   gl_.uniform1i(masked_uniform_, 0);
 }
 
-/// What is drawn next leaves its largest coverage in the mask instead of colour on the screen.
+/// Shapes that are drawn next leave their largest coverage in the mask instead of colour on the
+/// screen.
 void Painter::begin_mask(const Rectangle& box) {
   gl_.bind_texture(GL_TEXTURE_2D, 0);  // a texture is not read while it is drawn into
   gl_.bind_framebuffer(GL_FRAMEBUFFER, mask_framebuffer_);

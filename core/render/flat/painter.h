@@ -38,7 +38,7 @@ class Painter {
 
   /// A rectangle, its corners rounded with `radius` [px].
   void fill(const Rectangle& box, double radius, const Colour& colour);
-  /// Its outline, `width` [px] wide, half of that on either side of the edge.
+  /// Draws the outline of a box, `width` [px] wide, half of that on either side of the edge.
   void outline(const Rectangle& box, double radius, double width, const Colour& colour);
   void disc(const Eigen::Vector2d& centre, double radius, const Colour& colour);
   void circle(const Eigen::Vector2d& centre, double radius, double width, const Colour& colour);

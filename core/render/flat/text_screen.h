@@ -19,7 +19,7 @@ struct PageScale {
   std::vector<std::string> numbers{};  // at the ticks, one for each; empty: none
 };
 
-/// What a participant reads between passes, and how it is answered.
+/// A text that a participant reads between passes, and how it is answered.
 struct TextPage {
   std::string title;
   std::string body;                        // line breaks end paragraphs

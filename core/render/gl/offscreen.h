@@ -25,7 +25,7 @@ class OffscreenContext {
   int width() const noexcept;   // [px]
   int height() const noexcept;  // [px]
 
-  /// What was drawn so far; makes itself current. @throws RunError when drawing failed.
+  /// Picture that was drawn so far; makes itself current. @throws RunError when drawing failed.
   Image read();
 
  private:

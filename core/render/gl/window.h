@@ -67,7 +67,7 @@ class Window {
   void poll();
   /// Shows what was drawn and comes back when the display has it: with refresh lock, at a refresh.
   void swap();
-  /// What was drawn and not yet swapped. @throws RunError when OpenGL reports an error.
+  /// Picture that was drawn and not yet swapped. @throws RunError when OpenGL reports an error.
   Image read();
 
   bool close_asked() const;            // by the window's button

@@ -11,7 +11,7 @@
 
 namespace haptrial::render {
 
-/// What is left of a thing for a look inside: the points p with normal · p <= offset.
+/// The part of a thing that a look inside leaves: the points p with normal · p <= offset.
 struct Cut {
   Eigen::Vector3d normal;
   double offset;  // [m]

@@ -9,14 +9,14 @@
 
 namespace haptrial::render {
 
-/// Where an eye's picture lies in the layer's [px].
+/// Area of an eye's picture in the layer's [px].
 struct EyeArea {
   int left{0};
   int width{0};
   int height{0};
 };
 
-/// What a tool takes light away with: all within `radius` of the segment [m].
+/// A part of a tool that takes light away: all within `radius` of the segment [m].
 struct Capsule {
   Eigen::Vector3d from{0.0, 0.0, 0.0};
   Eigen::Vector3d to{0.0, 0.0, 0.0};

@@ -33,7 +33,7 @@ class ForcePanel {
   /// @param now  curves are drawn up to here [s]
   void draw(double now);
 
-  /// Where a time [s] and a force [N] are in the picture [px].
+  /// Place of a time [s] and a force [N] in the picture [px].
   Eigen::Vector2d to_pixels(double time, double force) const;
 
  private:

@@ -37,7 +37,7 @@ class TrialDisplay {
   /// below zero or not finite is an empty bar and one beyond full scale a full one.
   void draw(const stimulus::Presentation& presentation);
 
-  /// Where a point p_W [m] is in the picture [px].
+  /// Place of a point p_W [m] in the picture [px].
   Eigen::Vector2d to_pixels(const Eigen::Vector3d& point) const;
   /// The point p_W of the xz plane that a pixel shows; y is 0 [m].
   Eigen::Vector3d to_world(const Eigen::Vector2d& pixel) const;

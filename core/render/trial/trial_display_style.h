@@ -42,7 +42,7 @@ struct TrialDisplayStyle {
   Colour applied_colour{0x1f / 255.0, 0xa8 / 255.0, 0x6b / 255.0};
   Colour saturation_colour{0xd5 / 255.0, 0x5e / 255.0, 0x00 / 255.0};
 
-  // What a marker and its bars need between the trajectory and the picture's edges [px].
+  // Room that a marker and its bars need between the trajectory and the picture's edges [px].
   double room_above() const;
   double room_below() const;
   double room_beside() const;

@@ -7,20 +7,20 @@
 
 namespace haptrial::scene {
 
-/// What holds for every law of a scene, whatever its kind.
+/// Settings of every law of a scene, whatever its kind.
 struct Setting {
   double limit{10.0};   // of the field's force, > 0 [N]
   double rate{1000.0};  // of the servo loop, 1 / T > 0 [Hz]
 };
 
-/// What a surface field tells the fields that lie on it.
+/// A surface field's message to the fields that lie on it.
 struct SurfaceTouch {
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // away from the material
   double pressing{0.0};                              // normal force >= 0, 0 without contact [N]
   double closing_speed{0.0};                         // into the material, along the normal [m/s]
 };
 
-/// What a law is given on a tick.
+/// Input of a law on a tick.
 struct Felt {
   PointState hand;                       // finite
   double time{0.0};                      // since the field was switched on [s]
@@ -28,7 +28,7 @@ struct Felt {
   control::GainShares shares{};          // of its gains, which the law uses
 };
 
-/// What a protocol can read of a field after a tick, to end a stage or to know what was felt.
+/// State of a field after a tick that a protocol can read, to end a stage or to know what was felt.
 struct FieldState {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the hand, limited and faded [N]
   /// The part of `force` whose course in time is itself the stimulus: a vibration, a tap, a pulse,

@@ -6,7 +6,7 @@
 
 namespace haptrial::scene {
 
-/// What lies behind a plane: its inside is where normal · (p - point) < 0.
+/// The half of space behind a plane: its inside is where normal · (p - point) < 0.
 struct HalfSpace {
   Eigen::Vector3d point{Eigen::Vector3d::Zero()};    // on the plane [m]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // away from the inside; any length above 0

@@ -24,14 +24,15 @@ struct CavityParameters {
   std::vector<double> margins;                        // theirs >= 0 [m]
 };
 
-/// What a virtual surgeon knows of a bone before the first cut, and a rater of a drilled one.
+/// Knowledge of a virtual surgeon about a bone before the first cut, and of a rater about a drilled
+/// one.
 /// @param X_WB  pose of the bone
 /// @throws InputError where the bone has no structure of a name that the cavity gives.
 DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
                          const CavityParameters& cavity);
 
-/// Of each voxel of a bone (grid.count()): how deep below the first bone of its column it lies,
-/// where it is plain bone that the cavity asks to be removed; -1 elsewhere. [m]
+/// Depth of each voxel of a bone (grid.count()) below the first bone of its column, if it is plain
+/// bone that the cavity asks to be removed; -1 elsewhere.
 /// @param floor  of the columns: cavity_floor(), or as far as a burr reaches
 std::vector<float> cavity_depths(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
                                  const DrillingChart& chart, const std::vector<float>& floor);

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// What the arms of both virtual drillers share.
+/// Functions that the arms of both virtual drillers share.
 namespace haptrial::subject {
 
 inline constexpr double kStiffness = 300.0;  // of the arm about where it wants to be [N/m]

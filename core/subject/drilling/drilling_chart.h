@@ -8,9 +8,9 @@
 
 namespace haptrial::subject {
 
-/// What can be known of a bone and of the cavity that is asked for, before anything is drilled: a
-/// chart of columns that run into the bone, in the scene's frame W. A place is (u, v, w): along the
-/// chart's axes, w the depth along `inward` [m].
+/// Knowledge of a bone and of the cavity that is asked for, before anything is drilled: a chart of
+/// columns that run into the bone, in the scene's frame W. A place is (u, v, w): along the chart's
+/// axes, w the depth along `inward` [m].
 struct DrillingChart {
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 

@@ -15,7 +15,7 @@ class Table;
 
 namespace haptrial::subject {
 
-/// What a virtual hand is to drill, and how. Places are the device's, in W.
+/// Task of a virtual hand that drills, and its manner. Places are the device's, in W.
 struct DrillingHandParameters {
   Eigen::Vector3d start{0.0, 0.03, 0.0};              // over the middle of the region [m]
   Eigen::Vector3d inward{-Eigen::Vector3d::UnitY()};  // into the bone, unit length

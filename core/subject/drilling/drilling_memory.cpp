@@ -156,7 +156,7 @@ bool DrillingMemory::choose(const BoutChoice& choice, const Eigen::Vector2d& now
         continue;
       }
       const double way = std::hypot(i * chart_.cell - now.x(), j * chart_.cell - now.y());
-      // What would fill a stroke comes before what is left over from strokes.
+      // Bone that would fill a stroke comes before rests of strokes.
       const double scant = choice.bite - std::min(choice.bite, static_cast<double>(to_go(column)));
       const double cost = choice.evenness * (static_cast<double>(height_[column]) + 2.0 * scant) +
                           kNearby * (1.0 - 0.7 * choice.evenness) * way;

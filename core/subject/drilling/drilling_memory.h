@@ -24,9 +24,9 @@ struct BoutChoice {
   double undercut{0.0};  // share of bouts
 };
 
-/// What somebody who drills has in mind: how deep the bone goes down in each column, from what was
-/// seen at first and from where the burr has been since; and how far it is to go. Not from the bone
-/// itself. Nothing but construction and begin_burr() allocates.
+/// A driller's mental picture: how deep the bone goes down in each column, from the first sight and
+/// from the burr's places since; and how far it is to go. Not from the bone itself. Nothing but
+/// construction and begin_burr() allocates.
 class DrillingMemory {
  public:
   explicit DrillingMemory(const DrillingChart& chart);
@@ -40,7 +40,8 @@ class DrillingMemory {
   void sweep(const Eigen::Vector3d& place) noexcept;
   /// The deepest that its centre may go at a place. [m]
   double limit(const Eigen::Vector2d& place) const noexcept;
-  /// Where its centre touches what stands there; 1 where there is no bone. [m]
+  /// Depth at which the burr's centre touches the bone that stands at a place; 1 if there is no
+  /// bone. [m]
   double touch(const Eigen::Vector2d& place) const noexcept;
   /// Over all that stands between two places. [m]
   double over(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const noexcept;

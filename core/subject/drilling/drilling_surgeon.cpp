@@ -177,7 +177,7 @@ void DrillingSurgeon::listen(const bone::DrillingView& seen, const Eigen::Vector
   begin(Doing::kWithdraw);
 }
 
-/// What it drills ends if it is too fast, or hidden; with less force it goes on.
+/// Drilling ends if the tip is too fast, or hidden; with less force it goes on.
 void DrillingSurgeon::heed(const bone::DrillingView& seen, double dt) noexcept {
   if (now().heeding.notice(seen.hints, dt) && doing_ == Doing::kBout) {
     now().memory.end_bout(bout_);
@@ -212,7 +212,7 @@ bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
 
 void DrillingSurgeon::next_bout(const bone::DrillingView& seen) noexcept {
   Procedure& p = now();
-  // What the rough burr leaves is for the fine one.
+  // Bone that the rough burr leaves is for the fine one.
   const double share = p.careful && !fine_ ? kRoughShare : 1.0;
   const bool enough = p.memory.left() < 1.0 - share * p.skill.completeness;
   const BoutChoice choice{p.skill.evenness, p.skill.stroke_length, p.skill.bite,

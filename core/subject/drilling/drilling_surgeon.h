@@ -24,7 +24,7 @@ struct SurgeonBurr {
   double radius{3e-3};  // > 0 [m]
 };
 
-/// What a virtual surgeon is given.
+/// Parameters of a virtual surgeon.
 struct SurgeonParameters {
   double skill{0.5};  // of the group, 0 to 1
   SkillSpread spread;

@@ -9,8 +9,8 @@
 
 namespace haptrial::subject {
 
-/// What a virtual surgeon makes of hints. Each that appears is heeded or not, by chance; one that
-/// is heeded acts after the reaction time, once, and what it changed wears off again:
+/// Reaction of a virtual surgeon to hints. Each that appears is heeded or not, by chance; one that
+/// is heeded acts after the reaction time, once, and its effect wears off again:
 ///
 ///     force   lightness * 0.6, at least 0.3
 ///     speed   pace      * 0.7, at least 0.4

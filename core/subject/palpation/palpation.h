@@ -21,7 +21,7 @@ struct Palpate {
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const Palpate& palpate);
 
-/// Where a palpation is at a time.
+/// State of a palpation at a time.
 struct PalpationStep {
   std::size_t place{0};  // towards which, or at which
   double moved{0.0};     // of the way to it, 0 to 1

@@ -19,14 +19,14 @@ struct Contour {
   double force{1.0};       // on it > 0 [N]
 };
 
-/// Where a hand that follows a contour means to go next. The surface's normal is taken from the
-/// force that is felt; where nothing is felt any more, behind an edge, it is turned on in the
-/// direction of the loop until something is. Servo thread: no allocation, lock, I/O or throw.
+/// Next target of a hand that follows a contour. The surface's normal is taken from the force that
+/// is felt; while nothing is felt, behind an edge, it is turned on in the direction of the loop
+/// until something is. Servo thread: no allocation, lock, I/O or throw.
 class ContourFollower {
  public:
   void begin(const Contour& contour, const Eigen::Vector3d& at) noexcept;
 
-  /// What the arm is to do on a tick.
+  /// Target of the arm on a tick.
   struct Step {
     Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // [m/s]
     Eigen::Vector3d push{Eigen::Vector3d::Zero()};      // [N]

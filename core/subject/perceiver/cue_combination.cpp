@@ -8,7 +8,7 @@ double weight_of(const Cue& a, const Cue& b) noexcept {
   if (a.spread == b.spread) {
     return 0.5;
   }
-  // Of the ratio alone, so that neither tiny nor infinite spreads overflow.
+  // The ratio alone counts, so that neither tiny nor infinite spreads overflow.
   const double ratio = a.spread / b.spread;
   return 1.0 / (1.0 + ratio * ratio);
 }

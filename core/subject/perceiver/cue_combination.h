@@ -2,7 +2,7 @@
 
 namespace haptrial::subject {
 
-/// What one sense says of a quantity.
+/// One sense's estimate of a quantity.
 struct Cue {
   double estimate{0.0};  // [unit of the quantity]
   double spread{1.0};    // sigma > 0, its standard deviation [same unit]

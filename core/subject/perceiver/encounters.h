@@ -10,9 +10,8 @@
 
 namespace haptrial::subject {
 
-/// What went through the hand in an interval, as physical quantities: f is the force on the hand,
-/// p and v its position and velocity; in contact |f| is above contact_force, moving |v| above
-/// moving_speed.
+/// The hand's contacts in an interval, as physical quantities: f is the force on the hand, p and v
+/// its position and velocity; in contact |f| is above contact_force, moving |v| above moving_speed.
 ///
 ///     force       mean of |f| over the greater half of the time in contact (upper_mean.h)
 ///     stiffness   -slope of n·f over n·p in the longest contact, n the axis along which f acts

@@ -4,7 +4,7 @@
 
 namespace haptrial::subject {
 
-/// What is judged, with its unit.
+/// The quantity that is judged, with its unit.
 enum class Quantity {
   kForce,       // held through the push [N]
   kStiffness,   // [N/m]
@@ -33,7 +33,7 @@ struct SenseParameters {
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const SenseParameters& parameters);
 
-/// What the hand met in an interval, without noise.
+/// The hand's contacts in an interval, without noise.
 struct ContactEpisode {
   double amount{0.0};  // of the quantity; of compliance its inverse, the stiffness [unit]
   double force{0.0};   // F that it was felt by >= 0 [N]

@@ -24,7 +24,7 @@ class LevelObserver {
   LevelObserver(const SenseParameters& senses, Quantity quantity, const Exploration& exploration,
                 const JudgementParameters& judgement, std::uint64_t session_seed);
 
-  /// What the hand would meet.
+  /// Contacts that the hand would have at a level.
   ContactEpisode met(double level) const noexcept;
   /// How a level is felt in an interval with this noise.
   double percept(double level, const FeltNoise& noise) const noexcept;

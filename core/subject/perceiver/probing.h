@@ -72,7 +72,7 @@ class ExplorationController {
   HandCommand command(const PointState& hand, double dt,
                       const Eigen::Vector3d& felt = Eigen::Vector3d::Zero()) noexcept;
 
-  /// Where the arm means the hand to be; for a press the place where it began. In W.
+  /// Position that the arm aims at; for a press the place where it began. In W.
   const PointState& desired() const noexcept { return desired_; }
   double time() const noexcept { return time_; }  // since begin() [s]
 
@@ -83,7 +83,7 @@ class ExplorationController {
     Eigen::Vector3d free{Eigen::Vector3d::Zero()};          // no feedback along it; unit or zero
     bool keeps_place{false};
   };
-  /// What the hand senses on a tick.
+  /// Sensations of the hand on a tick.
   struct Now {
     const PointState& hand;
     const Eigen::Vector3d& felt;  // [N]

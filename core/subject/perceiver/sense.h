@@ -28,8 +28,8 @@ class Sense {
   void feel(const Eigen::Vector3d& force, const PointState& hand, double dt) noexcept {
     encounters_.feel(force, hand, dt);
   }
-  /// What is felt so far [unit of the quantity]. A force near nothing can be felt below 0; free air
-  /// has stiffness 0 and infinite compliance.
+  /// Percept so far [unit of the quantity]. A force near nothing can be felt below 0; free air has
+  /// stiffness 0 and infinite compliance.
   double percept() const noexcept;
   ContactEpisode met() const noexcept { return encounters_.met(quantity_); }  // without noise
   Quantity quantity() const noexcept { return quantity_; }

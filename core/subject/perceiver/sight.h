@@ -25,7 +25,7 @@ class Sight {
   /// The standard deviation at a noise: straight lines between those that are known, the outermost
   /// ones beyond them [m].
   double spread_at(double noise) const noexcept;
-  /// What is seen of a size. @param deviate  standard normal
+  /// Visual estimate of a size. @param deviate  standard normal
   Cue see(double size, double noise, double deviate) const noexcept;
 
  private:

@@ -13,9 +13,9 @@ constexpr std::size_t kPack = 8;
 
 constexpr int kMostTensions = 34;
 
-/// What the kernel keeps of eight clusters (or of as many as there are lanes). The middle's edges
-/// are 01, 02, 03, 12, 13 and 23; a neighbour's spokes go from its apex to the corners of the
-/// middle's face. Both are subtracted anew where they pull, as that costs less than to keep them.
+/// The kernel's data of eight clusters (or of as many as there are lanes). The middle's edges are
+/// 01, 02, 03, 12, 13 and 23; a neighbour's spokes go from its apex to the corners of the middle's
+/// face. Both are subtracted anew where they pull, as that costs less than to keep them.
 struct Cluster {
   Vectors point[4], force[4], apex[4];
   Vectors back[4];  // the volume's force on the apex

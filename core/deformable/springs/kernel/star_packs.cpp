@@ -270,8 +270,8 @@ struct Constants {
   double measure, pull;
 };
 
-/// What the kernel multiplies by. Edges: 1 / (2 L0²) and k / L0². Faces, whose measure is the
-/// square of the doubled area: 1 / (8 A0²) and k / (8 A0²). Tetrahedra: 6 V0 and k / (6 V0)².
+/// Factors of the kernel. Edges: 1 / (2 L0²) and k / L0². Faces, whose measure is the square of the
+/// doubled area: 1 / (8 A0²) and k / (8 A0²). Tetrahedra: 6 V0 and k / (6 V0)².
 Constants constants_of(const SpringBody& body, const ClusterPart& part, std::int32_t number) {
   const auto i = static_cast<std::size_t>(number);
   if (part.vertices == 2) {

@@ -36,7 +36,7 @@ struct SpringPacks {
 /// what the order of tetrahedra offers; the rest are singles.
 SpringPacks pack_springs(const SpringBody& body);
 
-/// What an edge, face or tetrahedron is to a cluster.
+/// Role of an edge, face or tetrahedron in a cluster.
 struct ClusterPart {
   int vertices;                // 2, 3 or 4
   std::array<int, 4> corners;  // of the cluster

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where a coordinate lies between two nodes of an axis.
+/// Place of a coordinate between two nodes of an axis.
 struct AxisPlace {
   int low, high;
   double share;  // of `high`

@@ -10,7 +10,7 @@
 
 namespace haptrial::deformable {
 
-/// What a node has in the value of a vertex.
+/// Weight of a node in the value of a vertex.
 struct NodeShare {
   std::int32_t used;  // place of the node in SpringGrid::used()
   double weight;
@@ -30,7 +30,7 @@ class SpringGrid {
   const std::vector<std::int32_t>& used() const { return used_; }
   Eigen::Vector3d place(std::size_t used) const;  // of a used node [m]
 
-  /// What the used nodes have in the value of a vertex; the weights sum to 1, and some may be 0.
+  /// Weights of the used nodes in the value of a vertex; they sum to 1, and some may be 0.
   std::array<NodeShare, 8> shares(std::size_t vertex) const;
 
  private:

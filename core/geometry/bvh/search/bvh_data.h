@@ -1,6 +1,6 @@
 #pragma once
 
-// What a Bvh is made of; between bvh.cpp, its builder and the kernels.
+// Arrays of a Bvh; between bvh.cpp, its builder and the kernels.
 
 #include <Eigen/Core>
 #include <cstddef>

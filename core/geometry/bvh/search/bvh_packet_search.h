@@ -52,7 +52,8 @@ class PacketSearch {
     error_ = search_error(reach);
   }
 
-  /// What was nearest to the points before is on the surface, so no point is farther from it.
+  /// The triangle that was nearest to the points before is on the surface, so no point is farther
+  /// from it.
   void bound_by_neighbours() {
     Number least = Lanes::all(kUnbounded);
     const Number px = Lanes::load(p_[0]), py = Lanes::load(p_[1]), pz = Lanes::load(p_[2]);
