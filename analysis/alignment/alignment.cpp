@@ -39,7 +39,7 @@ void check(const CurveView& curve) {
 
 constexpr const char* kBadValue = "a value is not finite or too large";
 
-/// What a curve's values are multiplied by before they meet in single precision.
+/// Factors of a curve's values before they meet in single precision.
 struct Scales {
   double force, slope;
   double limit;  // largest |scaled value|
@@ -98,7 +98,7 @@ Walker start_of_walk(const AlignmentPair& pair, Alignment& result) {
   return walker;
 }
 
-/// Where the sweep finds the values, and the walk the bits, of a row, a column and a pair.
+/// Places of the values for the sweep, and of the bits for the walk, of a row, a column and a pair.
 struct Layout {
   std::size_t lanes;
   int vector_shift;   // a vector holds 2^vector_shift rows: `lanes` for one pair, 1 for a batch

@@ -1,4 +1,4 @@
-// What a path costs, summed in double precision.
+// Cost of a path, summed in double precision.
 
 #include "analysis/alignment/cost.h"
 #include "analysis/alignment/kernels/error.h"

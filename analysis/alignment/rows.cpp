@@ -188,8 +188,8 @@ struct Search {
     }
   }
 
-  /// What later rows may read before the first cell of this one. Nothing lies after the last: the
-  /// rows that the memory held before ended no later.
+  /// Puts infinity before the row's first cell, where later rows may read. Nothing lies after the
+  /// last: the rows that the memory held before ended no later.
   static void close(double* values, std::size_t first) {
     std::fill(values + first - kLead, values + first, kInfinity);
   }

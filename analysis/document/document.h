@@ -14,7 +14,7 @@ struct Drawing {
   std::string svg;
 };
 
-/// What a report says, apart from how it is written down: plain texts, nothing escaped.
+/// Content of a report, apart from how it is written down: plain texts, nothing escaped.
 struct Document {
   struct Heading {
     int level{2};  // 2 or 3; the title is 1

@@ -175,7 +175,7 @@ set tmargin 3
 set rmargin 4
 )";
 
-// What a complete file of the kind ends with.
+// Whether a file ends as a complete one of its kind does.
 bool ends_with(const fs::path& file, const std::string& ending) {
   const std::string text = file_text(file);
   const auto tail = text.substr(text.size() - std::min<std::size_t>(text.size(), 16));

@@ -10,7 +10,7 @@
 
 namespace haptrial::exchange {
 
-/// What the definitions of two sessions differ in; binding changes make them two studies.
+/// Differences between the definitions of two sessions; binding changes make them two studies.
 using CompareDefinitions = std::function<DefinitionChanges(const record::SessionInfo& first,
                                                            const record::SessionInfo& second)>;
 

@@ -15,7 +15,7 @@ namespace haptrial::exchange {
 
 using Levels = std::vector<std::pair<std::string, std::string>>;  // value, meaning
 
-/// What a column of an exported table means.
+/// Meaning of a column of an exported table.
 struct ColumnDoc {
   std::string name;
   std::string unit;  // "" for a text or a pure number

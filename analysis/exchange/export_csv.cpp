@@ -196,7 +196,7 @@ void add_rows(OwnTable& own, const ExportSession& session, const record::Session
   });
 }
 
-/// What belongs to passes, and answers to pages; ticks and what a session has from the beginning
+/// Tables of passes, and of answers to pages; ticks and facts that a session has from the beginning
 /// are too much for a table.
 std::vector<OwnTable> own_tables(const std::vector<ExportSession>& sessions,
                                  const record::TableList& tables) {

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What stands in the file, on one line and short enough for a sentence.
+/// Text of the file, on one line and short enough for a sentence.
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string result(cut_text(text, kLongest));

@@ -16,7 +16,8 @@ class NewFolder {
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
 
-  /// Where to make the file of this name, "sub-01/beh/x.tsv"; its folders are made. Any thread.
+  /// Path at which to make the file of this name, "sub-01/beh/x.tsv"; its folders are made. Any
+  /// thread.
   std::filesystem::path place(const std::filesystem::path& name) const;
   /// @throws RunError when the disk is full.
   void write(const std::filesystem::path& name, std::string_view text) const;

@@ -17,7 +17,7 @@ namespace {
 using record::LinkRow;
 using record::Sample;
 
-/// What adds up over the ticks of a pass.
+/// Sums over the ticks of a pass.
 struct Sums {
   std::vector<double> delays;  // [s]
   double apart{0.0};           // squares [m^2]

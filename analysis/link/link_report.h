@@ -7,7 +7,7 @@
 
 namespace haptrial::analysis::link {
 
-/// What the link between two hands did in a study, by network and by participant.
+/// Report of the link between two hands in a study, by network and by participant.
 Document link_report(const LinkStudy& study);
 
 /// A row for each led pass, in SI units; `subject` and `trial` are those of the study's own tables.

@@ -8,7 +8,8 @@
 namespace haptrial::analysis {
 namespace {
 
-/// Where the lower tail of a beta distribution is `probability`. GSL's inverse may not converge.
+/// Quantile of a beta distribution: its lower tail there is `probability`. GSL's inverse may not
+/// converge.
 double beta_quantile(double a, double b, double probability) {
   return find_root([&](double x) { return beta_tails(a, b, x, 1.0 - x).lower - probability; }, 0.0,
                    1.0);

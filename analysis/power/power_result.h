@@ -28,7 +28,7 @@ struct TestCount {
   std::size_t made{0};  // replications in which it could be made
 };
 
-/// What the replications of a cell gave.
+/// Counts of the replications of a cell.
 struct CellCounts {
   std::size_t replications{0};
   std::map<std::string, TestCount> tests;      // by name
@@ -54,7 +54,7 @@ struct PowerKey {
   std::optional<double> none;  // without an effect; nothing: it makes none
 };
 
-/// What a simulation of power found. Every participant is simulated.
+/// Result of a simulation of power. Every participant is simulated.
 struct PowerResult {
   std::string title;  // of the experiment
   std::string watch;  // the test

@@ -12,7 +12,7 @@ namespace haptrial::analysis {
 std::string share_words(const TestCount& count);
 /// "compatible with its level", "rejects too often", "rejects too seldom", "not known".
 std::string level_words(Level level);
-/// What rejections of the watched test are: "power", or that they are none, with the true rate.
+/// Word for rejections of the watched test: "power", or that they are none, with the true rate.
 std::string verdict(const PowerResult& result);
 /// 0.0123 ± 0.0004, with the Monte Carlo standard error.
 std::string mean_words(const RunningMean& mean);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-/// What the sources of the Python module share; pybind11 is in no other header of ours.
+/// Functions that the sources of the Python module share; pybind11 is in no other header of ours.
 namespace haptrial::python {
 
 namespace py = pybind11;

@@ -20,7 +20,7 @@ using analysis::AlignmentOptions;
 using analysis::ScoreParameters;
 using Lists = std::vector<std::span<const double>>;
 
-/// What a batch of alignments found; paths go to Python without a copy, when they are asked for.
+/// Results of a batch of alignments; paths go to Python without a copy, when they are asked for.
 class Alignments {
  public:
   Alignments(std::vector<Alignment> found, double seconds)

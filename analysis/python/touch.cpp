@@ -42,7 +42,7 @@ class SoftTouch {
 
   deformable::BallTouch& felt() { return ball_; }
 
-  /// Where the vertices that can be touched are now [m].
+  /// Present positions of the vertices that can be touched [m].
   std::vector<Eigen::Vector3d> vertices() const {
     std::vector<std::int32_t> place_of(body_->mesh().tets.vertices.size(), -1);
     std::vector<Eigen::Vector3d> at;
@@ -68,7 +68,7 @@ class SoftTouch {
   deformable::BallTouch ball_;
 };
 
-/// What a tool feels along a way, tick by tick.
+/// Forces on a tool along a way, tick by tick.
 template <class Touch>
 py::dict follow(Touch& touch, const Numbers& way, double period) {
   if (!(std::isfinite(period) && period > 0.0)) {

@@ -67,7 +67,7 @@ struct TrialFlag {
       reason;  // with the number: "97.0 % of the run at the force limit (flagged above 15 %)"
 };
 
-/// What is wrong with a trial, worst first; nothing where all that is known is in order.
+/// Faults of a trial, worst first; empty if all that is known is in order.
 std::vector<TrialFlag> flags_of(const TrialQuality& quality);
 
 /// The names of the flags, joined by ";".

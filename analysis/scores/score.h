@@ -16,8 +16,8 @@ struct ScoreValue {
   double value{0.0};  // finite; a pass without a value is left out
 };
 
-/// What an analysis computes from a session, beside the report of its protocol. It is one object
-/// without state, and lives as long as the program.
+/// A quantity that an analysis computes from a session, beside the report of its protocol. It is
+/// one object without state, and lives as long as the program.
 class Score {
  public:
   virtual ~Score() = default;

@@ -4,8 +4,8 @@
 
 namespace haptrial::analysis {
 
-// What the alignment kernels are compiled for. All of them give the same bits: the same operations
-// in the same order, none contracted (docs/algorithms/alignment.md).
+// Instruction sets of the alignment kernels. All of them give the same bits: the same operations in
+// the same order, none contracted (docs/algorithms/alignment.md).
 using haptrial::available_instruction_sets;
 using haptrial::best_instruction_set;
 using haptrial::InstructionSet;

@@ -11,7 +11,7 @@
 
 namespace haptrial::analysis::drilling {
 
-/// What may be wrong with a removal; bits.
+/// Possible faults of a removal; bits.
 enum Fault : std::uint8_t {
   kHiddenFault = 1,  // other bone hid it
   kForceFault = 2,   // more force than nearly all of experts' at this distance of this structure
@@ -19,7 +19,7 @@ enum Fault : std::uint8_t {
   kVitalFault = 8,   // of a vital structure
 };
 
-/// What experts did.
+/// Values of experts.
 struct Experts {
   std::vector<std::string> participants;    // each once
   bool simulated{false};                    // any of them
@@ -35,8 +35,7 @@ struct ExpertProcedure {
   std::vector<NearestRemoval> removals;  // of these structures
 };
 
-/// What feedback takes a procedure apart into: metrics near structures in the intervals of
-/// SafeOptions.
+/// Parts of a procedure for feedback: metrics near structures in the intervals of SafeOptions.
 ExpertProcedure expert_procedure(const Procedure& procedure, const SafeOptions& options,
                                  StudyBones& bones);
 

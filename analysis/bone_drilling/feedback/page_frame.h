@@ -11,7 +11,7 @@ namespace haptrial::analysis::drilling {
 /// A whole page of HTML that may load nothing from anywhere. @param body  HTML
 std::string whole_page(std::string_view title, bool simulated, std::string_view body);
 
-/// What must not be overlooked. @param text  is escaped
+/// A banner with a text that must not be overlooked. @param text  is escaped
 std::string banner(std::string_view text);
 std::string paragraph(std::string_view text);
 std::string heading(std::string_view text);

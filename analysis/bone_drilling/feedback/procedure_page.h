@@ -12,7 +12,7 @@ namespace haptrial::analysis::drilling {
 /// view.html as it stands in the source; built in.
 std::string_view view_html();
 
-/// What a page about one procedure is made from.
+/// Content of a page about one procedure.
 struct ProcedurePage {
   const Findings* findings{nullptr};
   const Experts* experts{nullptr};

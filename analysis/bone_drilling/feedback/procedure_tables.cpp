@@ -43,7 +43,7 @@ const SafeProfile* profile_named(const Experts& experts, const std::string& name
 
 constexpr double kMillilitres = 1e6;  // in a cubic metre
 
-/// What the burr warmed, and what bled, where there may be any.
+/// Lines about bone that the burr warmed, and about bleeding, where there may be any.
 std::vector<std::string> field_lines(const std::optional<record::FieldRow>& field) {
   std::vector<std::string> lines;
   if (field && field->hottest > 0.0) {

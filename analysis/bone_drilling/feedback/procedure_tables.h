@@ -24,7 +24,7 @@ std::string number_text(const std::optional<double>& value);
 
 /// Which vital structures were opened, and when; empty: none was.
 std::string injury_banners(const Findings& findings);
-/// What matters, in a few lines.
+/// The main points in a few lines.
 std::string summary_points(const Findings& findings, const Experts& experts);
 std::string metrics_table(const Findings& findings, const Experts& experts);
 /// By structure: what was removed near it, what of it hidden, too hard, too fast.

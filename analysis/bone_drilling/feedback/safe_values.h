@@ -41,7 +41,7 @@ struct SafeRange {
   double low{0.0}, median{0.0}, high{0.0};
 };
 
-/// What experts did at [low, high) from a structure.
+/// Values of experts at [low, high) from a structure.
 struct SafeBin {
   double low{0.0}, high{0.0};  // [m]
   std::size_t removals{0};

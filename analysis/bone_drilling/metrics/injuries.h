@@ -24,7 +24,7 @@ struct FirstTear {
   bool operator==(const FirstTear&) const = default;
 };
 
-/// What happened to a vital structure.
+/// Injury of a vital structure.
 struct Injury {
   std::string structure;
   std::uint8_t label{0};

@@ -33,7 +33,8 @@ class LiveMetrics {
   void add(std::span<const record::CameraRow> rows);
   void add(std::span<const record::SplitRow> rows);
 
-  /// What was done to the bone before the first of these rows, in an earlier run of the session.
+  /// Adds the bone that was removed before the first of these rows, in an earlier run of the
+  /// session.
   void add(const Procedure& earlier);
 
   /// All rows up to this tick have been given: measures them.

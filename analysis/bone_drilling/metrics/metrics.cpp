@@ -13,7 +13,7 @@
 namespace haptrial::analysis::drilling {
 namespace {
 
-/// What scalars are made from.
+/// Quantities from which scalars are computed.
 struct Parts {
   const Procedure& procedure;
   const ProcedureSummary& summary;

@@ -22,7 +22,7 @@ namespace haptrial::analysis::drilling {
 /// Which way the values of experts are expected to lie; kEither where nothing published says so.
 enum class Expected : std::uint8_t { kHigher, kLower, kEither };
 
-/// What a scalar metric is.
+/// Name, unit, title and expected direction of a scalar metric.
 struct MetricKind {
   std::string name;   // a column's: "visible_share"
   std::string unit;   // "1", "N", "mm3", ...

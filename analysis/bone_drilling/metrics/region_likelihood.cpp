@@ -18,7 +18,7 @@ struct Person {
   Counts counts;
 };
 
-/// What training leaves of a group: how many procedures, and how many of them removed a voxel.
+/// Counts of a group in training: how many procedures, and how many of them removed a voxel.
 struct Group {
   int procedures{0};
   Counts counts;
@@ -69,7 +69,7 @@ class Regions {
     fill_groups();
   }
 
-  /// Who is an expert, in the order of participants' names.
+  /// Whether each participant is an expert, in the order of their names.
   std::vector<bool> labels() const {
     std::vector<bool> experts;
     for (const auto& [name, person] : people_) {

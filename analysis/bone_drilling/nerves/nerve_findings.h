@@ -11,7 +11,7 @@ class SessionReader;
 
 namespace haptrial::analysis::drilling {
 
-/// What the monitor found of one nerve during a procedure.
+/// Counts of the monitor's events of one nerve during a procedure.
 struct NerveCounts {
   std::string nerve;
   int bursts{0};

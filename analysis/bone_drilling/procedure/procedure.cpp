@@ -132,8 +132,8 @@ class Loader {
     }
   }
 
-  /// Its number is in /procedures, unless the session was killed before the end of a pass: then
-  /// procedures have taken the bones in turn.
+  /// Number of a trial's bone. /procedures has it, unless the session was killed before the end of
+  /// a pass: then procedures have taken the bones in turn.
   std::size_t bone_of_trial(int trial, const std::vector<Pass>& passes) const {
     auto bone = static_cast<std::int64_t>(trial - 1) %
                 static_cast<std::int64_t>(std::max<std::size_t>(models_.size(), 1));

@@ -29,7 +29,7 @@ struct ProcedureTool {
   std::shared_ptr<const bone::BurrShape> shape{};  // of a burr that is no ball; else null
 };
 
-/// What the definition of a session says and its tables do not.
+/// Facts of a session that its definition has and its tables do not.
 struct ProcedureSetup {
   std::string group;  // of the participant
   /// X_WB, how a bone lies in the scene; null: B is W.

@@ -15,7 +15,7 @@ namespace {
 using hint::HintKind;
 using HintRowWords = std::vector<std::string>;
 
-/// What the hints of some procedures of one condition add up to.
+/// Sum over the hints of some procedures of one condition.
 struct HintSum {
   std::size_t procedures{0};
   double minutes{0.0};  // of drilling

@@ -11,7 +11,7 @@
 
 namespace haptrial::analysis::drilling {
 
-/// What hints changed in one quantity.
+/// Change of one quantity by hints.
 struct HintEffect {
   std::string name;  // "hint_rate", or a metric's
   std::string title;

@@ -8,8 +8,8 @@
 
 namespace haptrial::analysis::drilling {
 
-/// What monitors found, in a report: events by nerve and condition, train time, reactions, and how
-/// well the monitor itself did. Nothing where nothing was watched.
+/// Adds the findings of monitors to a report: events by nerve and condition, train time, reactions,
+/// and how well the monitor itself did. Nothing where nothing was watched.
 /// @param simulated  the participants are programs
 void add_nerve_section(Document& document, const std::vector<NerveProcedure>& procedures,
                        bool simulated);

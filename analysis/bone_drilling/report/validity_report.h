@@ -7,7 +7,7 @@
 
 namespace haptrial::analysis::drilling {
 
-/// What a report of a study with simulated participants or raters says wherever it says a result.
+/// Words with which a report of a study with simulated participants or raters marks each result.
 extern const char* const kRehearsal;
 
 /// The whole report. @param drawings  outlive the document

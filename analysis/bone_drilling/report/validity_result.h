@@ -21,7 +21,7 @@ struct StudyPicture {
   std::filesystem::path png;
 };
 
-/// What the sessions of a study gave.
+/// Results of a study from its sessions.
 struct ValidityResult {
   std::string title;
   std::vector<ProcedureSummary> procedures;

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What every session gave, what its nerve monitor found, and its hints.
+/// Results, nerve monitor and hints of every session.
 struct Sessions {
   std::vector<ProcedureSummary> procedures;
   std::vector<NerveProcedure> nerves;

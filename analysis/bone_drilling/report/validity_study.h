@@ -19,7 +19,7 @@ namespace haptrial::analysis::drilling {
 struct ValidityStudy {
   std::string title{"Construct validity"};
   std::vector<std::filesystem::path> files;  // sessions, in the order of reports
-  /// What the definition of a session says; called from several threads at once.
+  /// Reads a session's definition; called from several threads at once.
   std::function<ProcedureSetup(const record::SessionReader&)> setup;
   ValidityPlan plan;
   MetricOptions metrics;

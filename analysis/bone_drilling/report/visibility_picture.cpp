@@ -19,7 +19,7 @@ bone::Voxel voxel_of(const geometry::VoxelGrid& grid, std::size_t index) {
           static_cast<int>(index / (x * y))};
 }
 
-/// What is drawn in a voxel: removed ones by whether they were seen, else a structure's label.
+/// Drawn content of a voxel: a removed one by whether it was seen, else a structure's label.
 struct Drawn {
   std::vector<std::uint16_t> kinds;  // (voxels) 0: nothing
   static constexpr std::uint16_t kSeenKind = 256;
@@ -87,7 +87,7 @@ void add_side(const geometry::VoxelGrid& grid, const bone::Voxel& voxel, int axi
   triangles.push_back({{corners[2], corners[3], corners[0]}, colour, 1});
 }
 
-/// Where a section is.
+/// Place of a section.
 struct Layer {
   int up{2};           // axis of the grid
   bool upwards{true};  // the axis itself points up, not its opposite

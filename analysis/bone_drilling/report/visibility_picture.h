@@ -10,7 +10,7 @@
 
 namespace haptrial::analysis::drilling {
 
-/// What was removed, and whether it was seen. Source: Morris 2006, §3.5.1.
+/// Removed voxels, and whether they were seen. Source: Morris 2006, §3.5.1.
 struct SeenRemovals {
   const bone::BoneModel* bone{nullptr};
   std::span<const std::uint32_t> removed;  // as ProcedureSummary has it

@@ -16,7 +16,7 @@ struct GivenValue {
   std::optional<double> value;  // none: not defined in this procedure
 };
 
-/// What it made of the values: each participant's mean with it less the mean without, in pairs.
+/// Each participant's mean with hints less the mean without, tested in pairs.
 struct WithWithout {
   std::size_t participants{0};  // with both
   Defined<TTest> test{Undefined{""}};

@@ -10,7 +10,7 @@ namespace haptrial::analysis::drilling {
 inline constexpr double kLowestScore = 1.0;
 inline constexpr double kHighestScore = 5.0;
 
-/// What a rater gave a procedure. Source: Morris 2006, §3.3.1.
+/// A rater's scores of a procedure. Source: Morris 2006, §3.3.1.
 struct Rating {
   std::string session;  // name of the file, as Procedure::session
   int procedure{1};     // number, as Procedure::number
@@ -32,14 +32,14 @@ std::vector<Rating> load_ratings(const std::filesystem::path& file);
 struct RatedItem {
   std::string session;
   int procedure{1};
-  /// Of what was done, not of who did it: items are put in order by it before they are shuffled, so
-  /// that codes do not depend on names.
+  /// Fingerprint of the procedure, not of its participant: items are put in order by it before they
+  /// are shuffled, so that codes do not depend on names.
   std::uint64_t fingerprint{0};
 
   bool operator==(const RatedItem&) const = default;
 };
 
-/// What a code stands for.
+/// Meaning of a code.
 struct KeyEntry {
   std::string code;  // "K7QM"
   RatedItem item;
@@ -47,7 +47,7 @@ struct KeyEntry {
   bool operator==(const KeyEntry&) const = default;
 };
 
-/// Who is behind the codes, and what the raters were told.
+/// Participants behind the codes, and the raters' instructions.
 struct RatingKey {
   bool halves{false};             // half points are allowed
   std::vector<KeyEntry> entries;  // in the order of the sheet, by code

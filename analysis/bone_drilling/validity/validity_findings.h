@@ -18,7 +18,7 @@
 
 namespace haptrial::analysis::drilling {
 
-/// Who is compared. Groups that are not among the experts are novices.
+/// Groups that are compared. Groups that are not among the experts are novices.
 struct ValidityPlan {
   std::vector<std::string> groups;         // in the order of reports
   std::vector<std::string> expert_groups;  // with surgical experience
@@ -90,7 +90,7 @@ struct RegionWay {
   Defined<Roc> roc{Undefined{""}};
 };
 
-/// What the study showed.
+/// Results of the study.
 struct Validity {
   ValidityPlan plan;
   std::vector<bool> expert;                   // (procedures)

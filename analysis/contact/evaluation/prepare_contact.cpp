@@ -163,7 +163,7 @@ Eigen::Isometry3d body_from_world(const PoseStream& path, const ForceStream& at_
   return result.registration->body_from_world;
 }
 
-/// Where samples touch the body, and how.
+/// Contact of samples with the body.
 struct Touch {
   std::vector<Vector3d> out, normal, force;
   std::vector<double> depth;
@@ -304,7 +304,7 @@ PoseStream overlapping(const PoseStream& path, const ForceStream& force) {
   return result;
 }
 
-/// What the recorder knew of the depth, at the samples' times, which are poses' times.
+/// Takes the recorder's own depths, at the samples' times, which are poses' times.
 void take_known_depth(const ContactRecording& recording, ContactSamples& samples) {
   if (recording.depth.empty()) {
     return;

@@ -10,7 +10,7 @@
 
 namespace haptrial::evaluation {
 
-/// What a renderer answers to an in-trajectory, and what it took.
+/// A renderer's forces for an in-trajectory, and their cost.
 struct RenderedContact {
   std::vector<Eigen::Vector3d> force;  // (n) on the tool [N]
   std::vector<Eigen::Vector3d> place;  // (n) of the contact; of the tool if nothing is felt [m]

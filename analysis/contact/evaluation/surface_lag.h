@@ -7,7 +7,7 @@
 
 namespace haptrial::evaluation {
 
-/// What a known body says about the direction of a force, at the poses' times.
+/// Direction of a force according to a known body, at the poses' times.
 struct SurfaceWay {
   std::vector<double> time;               // (n) increasing [s]
   std::vector<Eigen::Vector3d> normal;    // (n) unit length, frame W

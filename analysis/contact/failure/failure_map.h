@@ -30,7 +30,7 @@ struct FailureMap {
 /// a few seconds. Source: Morris 2006, §7.5 (Figure 65), as a map.
 std::vector<FailureMap> failure_maps();
 
-/// Its name, such as "proxy, friction 0.3" or "ruspini, sphere".
+/// Name of a map, such as "proxy, friction 0.3" or "ruspini, sphere".
 std::string name_of(const FailureMap& map);
 /// Outcomes over angle and depth, each with its colour and shape.
 analysis::Figure failure_figure(const FailureMap& map);

@@ -14,7 +14,7 @@ constexpr double kPeriod = 1e-3;   // [s]
 constexpr int kLowering = 400;     // ticks
 constexpr double kAbove = 0.001;   // of the plate, where it begins [m]
 
-/// What the contact does along the drag.
+/// Course of the contact along the drag.
 class Watch {
  public:
   void see(const Eigen::Vector3d& contact, bool force) {

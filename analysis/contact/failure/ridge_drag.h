@@ -31,9 +31,9 @@ inline constexpr std::array kRidgeOutcomes{RidgeOutcome::kRight, RidgeOutcome::k
                                            RidgeOutcome::kChatters};
 const char* name_of(RidgeOutcome outcome);
 
-/// Where the tool is [m, its x] when the contact leaves the foot, and when it comes to the top: by
-/// Coulomb's law with mu = tan phi, from the foot at x_f (for a tool of radius r shifted by
-/// -r tan(alpha / 2)), with the tool d behind the plate and flanks of angle alpha and height h,
+/// Places of the tool [m, its x] when the contact leaves the foot, and when it comes to the top: by
+/// Coulomb's law with mu = tan phi, from the foot at x_f (for a tool of radius r shifted by -r
+/// tan(alpha / 2)), with the tool d behind the plate and flanks of angle alpha and height h,
 ///
 ///     x - x_f > d tan(alpha + phi)
 ///     x - x_f > (h / sin alpha + d (sin alpha + mu cos alpha)) / (cos alpha - mu sin alpha)
@@ -42,7 +42,7 @@ const char* name_of(RidgeOutcome outcome);
 struct RidgeLaw {
   std::optional<double> leaves_foot, on_top;
 
-  /// Where it is when the contact is 5 % of the way up, as RidgeResult::left_foot [m].
+  /// Place of the tool when the contact is 5 % of the way up, as RidgeResult::left_foot [m].
   std::optional<double> seen() const {
     return leaves_foot ? std::optional(*leaves_foot + 0.05 * (*on_top - *leaves_foot))
                        : std::nullopt;

@@ -6,7 +6,7 @@
 
 namespace haptrial::evaluation {
 
-/// What a probe felt on a body, sample by sample, in the body's frame.
+/// Forces and motion of a probe on a body, sample by sample, in the body's frame.
 struct ContactSamples {
   std::vector<double> time;               // (n) increasing [s]
   std::vector<Eigen::Vector3d> position;  // (n) of the contact on the surface [m]

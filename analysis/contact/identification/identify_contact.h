@@ -24,7 +24,8 @@ struct IdentificationOptions {
   double level{0.95};  // of all intervals
 };
 
-/// What a contact is made of. An interval without bound says that the data do not fix the value.
+/// Identified parameters of a contact. An interval without bound says that the data do not fix the
+/// value.
 struct IdentifiedContact {
   std::size_t contact_samples{0};
   std::size_t slip_samples{0};

@@ -15,7 +15,7 @@ struct SensorMount {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};               // p_PS [m]
 };
 
-/// What the sensor says without contact:
+/// Reading of the sensor without contact:
 ///
 ///     F_S = R_WSᵀ w_W + b_S,   T_S = c_S x R_WSᵀ w_W + t_S
 ///

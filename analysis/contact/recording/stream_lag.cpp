@@ -35,7 +35,7 @@ Rows quick(const Rows& values, Eigen::Index width) {
   return result;
 }
 
-/// What a force may depend on, at even times.
+/// Quantities that a force may depend on, at even times.
 Rows pose_features(const PoseStream& pose, const std::vector<double>& times, double span) {
   const auto n = static_cast<Eigen::Index>(times.size());
   const auto moved = [&](double by) {

@@ -15,7 +15,7 @@ struct PoseStream {
   std::size_t size() const { return time.size(); }
 };
 
-/// What a force sensor S says over time.
+/// Readings of a force sensor S over time.
 struct ForceStream {
   std::vector<double> time;             // (n) increasing [s]
   std::vector<Eigen::Vector3d> force;   // (n) in S [N]

@@ -17,7 +17,7 @@ struct RegistrationOptions {
   Eigen::Isometry3d guess{Eigen::Isometry3d::Identity()};  // T_BW
 };
 
-/// Where a registered path lies relative to the mesh.
+/// Pose of a registered path relative to the mesh.
 struct Registration {
   Eigen::Isometry3d body_from_world;  // T_BW: contacts in W become contacts in the mesh's frame B
   std::vector<double> residuals;      // (n) signed distance - radius, positive outside [m]

@@ -8,7 +8,7 @@
 
 namespace haptrial::evaluation {
 
-/// What was evaluated, for titles.
+/// Names of the evaluated files, for titles.
 struct EvaluationNames {
   std::string recording, mesh;  // file names
   bool simulated{false};        // the recording is, and the report says so

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kDifference = 1e-5;  // of a direction: differences are right to 1e-10
 
-/// What grows out of the ellipsoid around a direction, as a Gaussian of the angle.
+/// A bump on the ellipsoid around a direction, as a Gaussian of the angle.
 struct Bump {
   Vector3d direction;
   double height;  // [m]
@@ -31,7 +31,7 @@ double ellipsoid(const Vector3d& d) {
   return 1.0 / Vector3d(d.x() / 0.050, d.y() / 0.034, d.z() / 0.036).norm();
 }
 
-/// Who shares a triangle with whom.
+/// Vertices that share a triangle, for each vertex.
 std::vector<std::vector<std::int32_t>> neighbours(const geometry::Mesh& mesh) {
   std::vector<std::vector<std::int32_t>> found(mesh.vertices.size());
   for (const geometry::Triangle& t : mesh.triangles) {
@@ -77,7 +77,7 @@ geometry::Mesh radial_mesh(const RadialBody& body, int frequency) {
 geometry::Mesh scanned_mesh(const RadialBody& body, const ScanOptions& options) {
   geometry::Mesh mesh = geometry::make_sphere(1.0, options.frequency);
   RandomStream random(options.seed, "scan");
-  // What is smoothed is the error: the shape keeps its curvature, as with a basis that knows it.
+  // The error is smoothed: the shape keeps its curvature, as with a basis that knows it.
   std::vector<double> error;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     error.push_back(options.noise * random.normal());

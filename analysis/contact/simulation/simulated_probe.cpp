@@ -16,7 +16,7 @@ constexpr double kGap = 0.008;      // of a probe in the air [m]
 constexpr double kSlowest = 0.001;  // friction turns round over this speed [m/s]
 constexpr double kHalfStep = 1e-4;  // for velocities [s]
 
-/// Where the hand is over the body: strokes over its back, head and sides.
+/// Direction of the hand over the body: strokes over its back, head and sides.
 Vector3d direction_at(double t) {
   const double along = 0.95 * std::sin(2.9 * t) + 0.25 * std::sin(0.61 * t + 1.0);
   const double across = 0.75 * std::sin(2.17 * t + 0.5) + 0.15 * std::sin(5.3 * t);

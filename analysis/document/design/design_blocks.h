@@ -7,8 +7,8 @@
 
 namespace haptrial::analysis {
 
-/// What was varied, whether it makes a difference, on ranks too, and the families of comparisons
-/// with p values after Holm: paragraphs and tables. @param unit  of differences; "": none
+/// Adds the factors, their tests, on ranks too, and the families of comparisons with p values after
+/// Holm: paragraphs and tables. @param unit  of differences; "": none
 void add_design_tests(Document& document, const DesignTable& table, const DesignTests& tests,
                       const std::string& unit);
 

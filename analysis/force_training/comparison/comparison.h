@@ -61,7 +61,8 @@ StudyComparison compare_studies(ScoredStudy first, ScoredStudy second,
 std::vector<std::string> comparison_lines(const StudyComparison& comparison);
 std::string comparison_json(const StudyComparison& comparison);
 
-/// What a reader must know before any number: scoring that differs, simulated participants.
+/// Warnings that a reader must know before any number: scoring that differs, simulated
+/// participants.
 std::vector<std::string> comparison_alarms(const StudyComparison& comparison);
 
 /// Writes comparison.json, comparison.html and the figure into a folder that exists, over what is

@@ -10,7 +10,8 @@
 
 namespace haptrial::analysis {
 
-/// What haptrial analyze left of a study: scores.csv and statistics.json of its folder.
+/// Results of a study that haptrial analyze has written: scores.csv and statistics.json of its
+/// folder.
 struct ScoredStudy {
   std::string name;      // of its definition, or of the table of imported curves
   bool own_pace{false};  // the participants set the pace, and forces were compared over the path

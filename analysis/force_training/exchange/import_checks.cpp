@@ -16,7 +16,7 @@ namespace {
 
 using analysis::number;
 
-// What a recording of a hand's force hardly leaves.
+// Bounds that a recording of a hand's force hardly leaves.
 constexpr double kLongest = 600.0;    // [s]
 constexpr double kShortest = 0.1;     // [s]
 constexpr double kSlowest = 10.0;     // [Hz]

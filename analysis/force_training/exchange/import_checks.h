@@ -10,7 +10,7 @@
 
 namespace haptrial::exchange {
 
-/// What a curve of a trial looks like.
+/// Figures of a curve of a trial.
 struct CurveLook {
   std::size_t rows{0};
   double duration{0.0};  // [s]
@@ -22,7 +22,7 @@ struct CurveLook {
   double peak() const;  // the largest magnitude [N]
 };
 
-/// What the curves of a trial look like together.
+/// Figures of the curves of a trial together.
 struct TrialLook {
   CurveLook target;
   CurveLook applied;

@@ -18,7 +18,7 @@ class ImportColumns {
   /// form.
   explicit ImportColumns(const std::vector<std::string>& given);
 
-  /// What the column is called; empty when no name was given.
+  /// Name that was given to the column; empty if none was.
   const std::string& given(const std::string& column) const;
   std::string name(const std::string& column) const;
   /// Whether the table has it; a column whose name was given is always looked for.

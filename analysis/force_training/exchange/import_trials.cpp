@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using analysis::CsvTable;
 using analysis::CurveColumns;
 
-/// What the rows of a table say about trials.
+/// Trials that the rows of a table describe.
 class TrialRows {
  public:
   TrialRows(const CurveStudy& study, const CsvTable& table)

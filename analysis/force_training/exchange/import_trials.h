@@ -31,7 +31,7 @@ class ImportedTrials {
   const std::vector<std::string>& factors() const { return factors_; }
   /// The curves of trials()[i]. Any thread. @throws InputError with file and line.
   virtual ImportedCurves curves(std::size_t i) const = 0;
-  /// Where they stand, for sentences about them.
+  /// Place of a trial's rows, for sentences about them.
   virtual std::string place(std::size_t i) const = 0;
 
  protected:

@@ -7,7 +7,7 @@
 
 namespace haptrial::analysis {
 
-/// What a study showed: design and exclusions, results, tests, pictures, quality, methods. Equal
+/// Report of a study: design and exclusions, results, tests, pictures, quality, methods. Equal
 /// input gives an equal document. @param drawings  outlive the document
 Document study_report(const StudyResult& study, const std::vector<Drawing>& drawings);
 

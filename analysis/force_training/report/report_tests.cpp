@@ -10,7 +10,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// What a side's participants have: "M = 1.977, SD = 0.6644" of their means.
+/// Mean of a side's participants: "M = 1.977, SD = 0.6644" of their means.
 std::string mean_of(const StudyStatistics& s, const std::string& side) {
   const auto found = std::find_if(s.summaries.begin(), s.summaries.end(),
                                   [&](const auto& each) { return each.condition == side; });
@@ -127,7 +127,7 @@ void add_effects(Document& document, const DesignTests& tests) {
   }
 }
 
-/// What only one factor within participants has.
+/// Adds the parts that only one factor within participants has.
 void add_repeated(Document& document, const StudyStatistics& s) {
   if (s.table.factors.size() != 1 || !s.table.factors[0].within || !s.repeated) {
     return;

@@ -11,7 +11,7 @@
 
 namespace haptrial::analysis {
 
-/// Where along its path a hand was, tick by tick.
+/// Places of a hand along its path, tick by tick.
 struct HandPlaces {
   std::vector<double> along;     // the path, as the time that it takes at its own speed [s]
   std::vector<double> distance;  // from the path, without the direction of the force, y [m]

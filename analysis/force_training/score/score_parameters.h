@@ -41,8 +41,8 @@ ScoreParameters read_score_parameters(Table& analysis);
 /// @param analysis  the table of that name in `root`
 ScoreParameters read_scoring(Table& root, Table& analysis);
 
-/// What the parameters are, in words and with units, for reports: name, value. Options of the
-/// alignment that are as published stay out.
+/// The parameters in words and with units, for reports: name, value. Options of the alignment that
+/// are as published stay out.
 std::vector<std::pair<std::string, std::string>> described(const ScoreParameters& parameters);
 
 /// @throws std::invalid_argument naming the parameter that breaks its bound.

@@ -16,7 +16,7 @@ namespace haptrial::analysis {
 std::string scores_csv(std::span<const TrialScore> scores,
                        std::span<const std::string> factors = {});
 
-/// What such a table holds.
+/// Content of such a table.
 struct ScoresTable {
   std::vector<std::string> factors;  // "condition" when the table has no column for each factor
   std::vector<TrialScore> scores;

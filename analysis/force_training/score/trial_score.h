@@ -35,8 +35,8 @@ struct TrialScore {
 
   TrialQuality quality{};  // how it was recorded
 
-  // Where an expert showed a path that was recalled without guidance; root mean squares over the
-  // run of distances in the plane at equal times.
+  // Errors of the path, if an expert showed a path that was recalled without guidance; root mean
+  // squares over the run of distances in the plane at equal times.
   std::optional<double> path_error{};  // of the recall from the path [m]
   std::optional<double> kept{};        // of the led hand from the expert's, in training [m]
 };

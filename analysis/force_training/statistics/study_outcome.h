@@ -80,7 +80,7 @@ struct StudyStatistics {
 
   StudyMixed mixed;  // all trials, the first condition as the reference
 
-  // What the design calls for, with participants as the unit: the report leads with these.
+  // Tests that the design calls for, with participants as the unit: the report leads with these.
   DesignTable table;
   DesignTests tests;
 

@@ -8,7 +8,7 @@
 
 namespace haptrial::analysis {
 
-/// What a study asks, besides its scores.
+/// Questions of a study besides its scores.
 struct StudyQuestions {
   AnalysisPlan plan{};
   std::vector<std::string> factors{"condition"};  // names, one for each of TrialScore::levels

@@ -20,7 +20,7 @@ void add_pooled_tests(StudyStatistics& study, std::span<const TrialScore> scores
   }
 }
 
-/// What is left of each score when the mean of its condition is taken away.
+/// Each score less the mean of its condition.
 Values residuals(const std::vector<Values>& groups) {
   Values all;
   for (const Values& group : groups) {

@@ -10,8 +10,8 @@ namespace haptrial::analysis {
 
 struct StudyResult;
 
-/// Who a participant is. A person is known by the identifier. A virtual subject is drawn from the
-/// seed, the identifier and the population: only all three together make the same one again.
+/// Identity of a participant. A person is known by the identifier. A virtual subject is drawn from
+/// the seed, the identifier and the population: only all three together make the same one again.
 struct Identity {
   std::string subject;  // identifier
   bool simulated{false};

@@ -22,7 +22,7 @@ struct ScoredPass {
   std::size_t pass{0};  // row of /trials
 };
 
-/// What one session file gives to a study.
+/// Recalls of one session file for a study.
 struct SessionRecalls {
   SessionSummary summary;
   std::vector<ScoredPass> scored;             // by trial

@@ -17,7 +17,7 @@ struct Exclusion {
   std::string reason;
 };
 
-/// What one session file holds besides its scores.
+/// Facts of one session file besides its scores.
 struct SessionSummary {
   std::string file;  // name without its folder
   record::SessionInfo info;

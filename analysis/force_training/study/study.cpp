@@ -54,7 +54,7 @@ void sort_by_subject(std::vector<Session>& sessions) {
   }
 }
 
-// Where a score came from.
+// Origin of a score.
 struct Origin {
   const Session* session{nullptr};
   const ScoredPass* pass{nullptr};

@@ -14,7 +14,7 @@ namespace haptrial::analysis {
 /// As many draws as reports take.
 inline constexpr std::size_t kPosteriorDraws = 999;
 
-/// What answers to adaptively chosen levels say of a function.
+/// Posterior of a function after answers to adaptively chosen levels.
 struct AdaptivePosterior {
   FittedParameters median;              // of each parameter
   CredibleInterval threshold;           // [axis]

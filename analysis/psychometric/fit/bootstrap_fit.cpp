@@ -65,7 +65,7 @@ std::vector<std::vector<std::vector<double>>> without_trials(
   return result;
 }
 
-/// What the resamples gave.
+/// Fits of the resamples.
 struct Drawn {
   std::vector<std::vector<double>> readings;  // (asked x resamples)
   std::vector<char> undetermined;             // (resamples)

@@ -61,7 +61,7 @@ struct BootstrappedFit {
 BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
                               std::span<const BootstrapTarget> asked, const FitBootstrap& how);
 
-/// What changes when a block is left out.
+/// Change of the fit when a block is left out.
 struct BlockInfluence {
   double threshold{0.0};  // threshold without the block - with it, in the coordinate
   double deviance{0.0};   // by how much the deviance falls

@@ -26,8 +26,8 @@ std::array<Marginal, kDimensions> marginals_of(const PsychometricPosterior::Mass
 
 double mean_of(const Marginal& marginal);
 
-/// Where the marginal's distribution function, linear within each step, is (1 - level) / 2 and
-/// (1 + level) / 2. @param level  inside (0, 1)
+/// Places at which the marginal's distribution function, linear within each step, is (1 - level) /
+/// 2 and (1 + level) / 2. @param level  inside (0, 1)
 CredibleInterval percentiles(const Marginal& marginal, double level);
 
 /// The smallest set of cells of the joint posterior that holds at least `level`, and its extent

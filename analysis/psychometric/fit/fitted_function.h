@@ -6,15 +6,15 @@
 
 namespace haptrial::analysis {
 
-/// What the lower asymptote is.
+/// Meaning of the lower asymptote.
 enum class Task : std::uint8_t {
   kYesNo,           // a parameter of its own
   kForcedChoice,    // known: the guess rate of the function, 1 / alternatives
   kEqualAsymptote,  // the lapse rate
 };
 
-/// What a fit finds. Threshold and width are on the axis of the function: with parameters_named()
-/// of a logarithmic sigmoid, in natural logarithms of the level, as in psignifit.
+/// Result of a fit. Threshold and width are on the axis of the function: with parameters_named() of
+/// a logarithmic sigmoid, in natural logarithms of the level, as in psignifit.
 struct FittedParameters {
   double threshold{0.0};
   double width{1.0};  // > 0

@@ -12,7 +12,7 @@ inline constexpr int kPlaces = 4;
 using Place = std::array<double, kPlaces>;
 using Square = std::array<Place, kPlaces>;
 
-/// What Newton's method needs of the logarithm of the likelihood at a place.
+/// Derivatives of the logarithm of the likelihood at a place, for Newton's method.
 struct Climb {
   bool possible{true};  // the likelihood is not 0
   Place slope{};
@@ -31,7 +31,7 @@ struct Blocks {
   Lanes x, right, wrong;
 };
 
-/// Where the likelihood is looked at.
+/// A place at which the likelihood is looked at.
 struct Spot {
   double threshold, rise, lapse, guess;
   bool tied;    // the guess rate is the lapse rate

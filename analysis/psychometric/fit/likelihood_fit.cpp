@@ -68,7 +68,7 @@ Place alone(const Climb& climb, const std::array<bool, kPlaces>& free) noexcept 
   return change;
 }
 
-/// What a step gains where the likelihood is a parabola.
+/// Gain of a step if the likelihood is a parabola.
 double promised(const Climb& climb, const Place& change) noexcept {
   double sum = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
@@ -261,7 +261,7 @@ bool LikelihoodFitter::Search::step(const LikelihoodFitter& fitter, Place& place
       climb = there;
       return true;
     }
-    // Where a parabola would have its top.
+    // The factor leads to the top of a parabola.
     part *= there.possible ? std::clamp(before / (before - after), 0.1, 0.7) : 0.5;
   }
   return false;

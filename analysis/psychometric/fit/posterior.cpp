@@ -65,7 +65,7 @@ std::vector<double> trapezoid_weights(std::span<const double> values) {
   return weights;
 }
 
-/// What depends on eta and the number of an answer, and the priors.
+/// Values that depend on eta and the number of an answer, and the priors.
 struct PsychometricPosterior::Table {
   std::size_t lanes;             // etas, filled up to whole groups
   std::vector<double> slope;     // (answers x lanes) 1 / (1 + j / v)
@@ -162,7 +162,7 @@ double PsychometricPosterior::log_density(const FittedParameters& p) const {
   return result;
 }
 
-/// What is at hand while one threshold's slice is filled.
+/// State while one threshold's slice is filled.
 struct PsychometricPosterior::Slice {
   std::vector<double> share, beyond;  // of each block, S and 1 - S
   Products products;

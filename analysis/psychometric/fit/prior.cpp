@@ -64,7 +64,7 @@ double PsychometricPrior::threshold(double value) const noexcept {
 
 double PsychometricPrior::width(double value) const noexcept {
   const double d = smallest_width_, s = largest_width_;
-  // Where the levels are two, 2 d lies above s.
+  // If the levels are two, 2 d lies above s.
   const double rise = 1.0 - cosine_fall((value - d) / d);
   const double drop = value < 2.0 * d ? 1.0 : cosine_fall((value - s) / (2.0 * s));
   const double integral = 0.5 * d + std::max(s - 2.0 * d, 0.0) + s;

@@ -39,7 +39,7 @@ class PsychometricPrior {
   /// @param beta         b >= 1. @throws std::invalid_argument naming it.
   PsychometricPrior(const StimulusRange& range, double width_scale, double beta);
 
-  /// Where the density can be above 0.
+  /// Range in which the density can be above 0.
   struct Border {
     double low{0.0};
     double high{1.0};

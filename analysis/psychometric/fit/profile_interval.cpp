@@ -12,7 +12,7 @@
 namespace haptrial::analysis {
 namespace {
 
-/// What both ends of an interval have in common.
+/// Inputs that both ends of an interval share.
 struct Profile {
   const LikelihoodFitter& fitter;
   std::span<const int> correct;
@@ -29,8 +29,8 @@ struct ProfileEnd {
   double log_likelihood{-HUGE_VAL};  // with this
 };
 
-/// Where sqrt(2 (l - profile)), which is nearly a line, is sqrt(c): Newton's method between what is
-/// known to lie inside and outside. @param way  -1 or +1
+/// End of the interval, where sqrt(2 (l - profile)), which is nearly a line, is sqrt(c): Newton's
+/// method between places that are known to lie inside and outside. @param way  -1 or +1
 ProfileEnd end_of(const Profile& p, double way) noexcept {
   constexpr int kMost = 60;
   constexpr double kClose = 1e-6;  // of the root

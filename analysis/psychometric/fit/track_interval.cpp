@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kFewest = 100;  // errors
 constexpr double kTail = 0.025;
 
-/// What a track's own estimate misses, and its deviation.
+/// Bias of a track's own estimate, and its deviation.
 struct TrackError {
   double error{0.0}, deviation{0.0};  // [axis]
 };

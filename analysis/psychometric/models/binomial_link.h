@@ -6,7 +6,7 @@
 
 namespace haptrial::analysis {
 
-/// What scoring needs of each row at its linear predictor.
+/// Quantities of each row, at its linear predictor, for scoring.
 struct BinomialRows {
   double log_likelihood{0.0};  // without binomial coefficients
   Eigen::VectorXd slope;       // (rows) d log-likelihood / d eta

@@ -35,7 +35,8 @@ struct BinomialModel {
 Defined<BinomialModel> binomial_regression(const BinomialData& data, BinomialLink link,
                                            double level = 0.95);
 
-/// Where a rising function of one predictor crosses 1/2, and how far from there to 3/4.
+/// Place at which a rising function of one predictor crosses 1/2, and the distance from there to
+/// 3/4.
 struct EqualityPoint {
   double point{0.0};  // -intercept / slope
   double point_error{0.0}, point_low{0.0}, point_high{0.0};
@@ -43,8 +44,8 @@ struct EqualityPoint {
   double jnd_error{0.0}, jnd_low{0.0}, jnd_high{0.0};
 };
 
-/// Of the line intercept + slope x, both sums of coefficients, for example of one condition;
-/// errors by the delta method.
+/// Equality point of the line intercept + slope x, both sums of coefficients, for example of one
+/// condition; errors by the delta method.
 /// @param intercept, slope  weights of the coefficients, as many as there are of these.
 /// Undefined where the slope is 0. @throws std::invalid_argument when the lengths differ.
 Defined<EqualityPoint> equality_point(const BinomialModel& model, BinomialLink link,

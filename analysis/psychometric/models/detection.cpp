@@ -24,7 +24,7 @@ struct Rate {
   double trials;
 
   double z() const { return normal_quantile(value); }
-  /// Of its normal quantile, by the delta method.
+  /// Variance of the rate's normal quantile, by the delta method.
   double variance() const {
     const double density = normal_density(z());
     return value * (1.0 - value) / (trials * density * density);

@@ -12,7 +12,7 @@ struct DetectionCounts {
   double correct_rejections{0.0};
 };
 
-/// What is done about rates of 0 and 1, whose normal quantile does not exist.
+/// Correction of rates of 0 and 1, whose normal quantile does not exist.
 enum class RateCorrection {
   kNone,       // the index is undefined then
   kLogLinear,  // (count + 1/2) / (trials + 1), always (Hautus 1995)

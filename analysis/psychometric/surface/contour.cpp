@@ -24,7 +24,7 @@ std::vector<double> even(const std::vector<double>& values, std::size_t count) {
   return steps;
 }
 
-/// Where a straight line from a to b has the level, from 0 to 1.
+/// Place of the level on a straight line from a to b, from 0 to 1.
 double where(double a, double b, double level) { return (level - a) / (b - a); }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace haptrial::analysis {
 /// A piece of a line, from the first point to the second: values of the two variables.
 using Segment = std::pair<std::pair<double, double>, std::pair<double, double>>;
 
-/// Where a function of two variables reaches a probability.
+/// Curve on which a function of two variables reaches a probability.
 struct Contour {
   double share{0.5};
   std::vector<Segment> middle;  // the posterior's median reaches it

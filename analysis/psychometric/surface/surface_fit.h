@@ -14,7 +14,7 @@ struct SurfaceTrial {
   std::size_t outcome{0};
 };
 
-/// What the answers say of one parameter.
+/// Estimate of one parameter from the answers.
 struct SurfaceParameter {
   std::string name;
   double mean{0.0};            // of the posterior

@@ -101,7 +101,7 @@ Look curve_look(std::size_t index) {
   return looks[index % looks.size()];
 }
 
-/// What is drawn of all curves, for the borders of blocks.
+/// Range of all drawn curves, for the borders of blocks.
 struct Extent {
   double low{0.0}, high{0.0};
   double last{1.0};

@@ -45,7 +45,7 @@ struct DrawnCurve {
   std::optional<ExponentialFit> fit;  // drawn over the curve's own cycles
 };
 
-/// Where a block begins on the axis of cycles.
+/// Start of a block on the axis of cycles.
 struct BlockStart {
   std::string block;
   double first_cycle{1.0};

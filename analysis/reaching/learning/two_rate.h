@@ -32,8 +32,8 @@ struct TwoRateModel {
 struct AdaptationTrial {
   double perturbation{0.0};  // f(n): 1 the field, 0 none or a catch trial, -1 the opposite field
   bool error_clamp{false};   // a channel holds the error at 0 and shows the adaptation itself
-  /// What was measured: x in a clamp (an adaptation index), error_scale e elsewhere. NaN: nothing,
-  /// as where the reach was not sound; it still counts as a trial.
+  /// Measured value: x in a clamp (an adaptation index), error_scale e elsewhere. NaN: nothing, as
+  /// where the reach was not sound; it still counts as a trial.
   double measured{std::numeric_limits<double>::quiet_NaN()};
 };
 using AdaptationSequence = std::vector<AdaptationTrial>;

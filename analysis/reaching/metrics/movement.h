@@ -6,7 +6,7 @@
 
 namespace haptrial::analysis {
 
-/// What counts as a movement.
+/// Criteria of a movement.
 ///
 /// Onset: from the first sample after the go signal that is faster than `search_from` of the peak
 /// speed, back to where the speed last rose above `onset_speed`. A twitch before the reach does not

@@ -14,7 +14,7 @@ struct MetricOptions {
   double direction_after{0.15};           // the direction is read so long after onset, > 0 [s]
 };
 
-/// What a reader should know before trusting the metrics; all false for a sound reach.
+/// Warnings that a reader should know before trusting the metrics; all false for a sound reach.
 struct ReachFlags {
   bool not_finite{false};       // a sample is not finite: nothing is defined
   bool no_onset{false};         // never faster than onset_speed after the go signal

@@ -13,7 +13,7 @@ struct Undefined {
   std::string because;
 };
 
-/// Where squares of the values overflow or vanish.
+/// Reason why values whose squares overflow or vanish have no statistic.
 inline const char* const kBeyondDouble = "the values are too large or too small to compute with";
 
 /// A statistic, or the reason why it does not exist: degenerate data never become a NaN in a table.

@@ -111,7 +111,7 @@ double normal_upper(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2);
 
 double in_unit(double p) { return std::clamp(p, 0.0, 1.0); }
 
-// Where a falling function of the noncentrality passes zero, above low.
+// Zero of a falling function of the noncentrality, above low.
 double falling_root(const std::function<double(double)>& f, double low, double width) {
   double high = low + width;
   while (f(high) > 0.0) {

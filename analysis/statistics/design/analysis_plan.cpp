@@ -63,7 +63,7 @@ std::string repeated_test(const std::vector<PlannedTest>& tests) {
   return "";
 }
 
-/// What is wrong with tests that can be read; empty where nothing is.
+/// Fault of tests that can be read; empty if there is none.
 std::string problem_with(const std::vector<PlannedTest>& tests) {
   for (const PlannedTest& test : tests) {
     if (test.a == test.b) {

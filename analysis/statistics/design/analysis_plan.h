@@ -19,7 +19,7 @@ struct PlannedTest {
   Tail tail{Tail::kTwoSided};
 };
 
-/// What the experimenter decided before the data. Source: Morris 2006, §4.4, for the shipped study.
+/// The experimenter's decisions before the data. Source: Morris 2006, §4.4, for the shipped study.
 struct AnalysisPlan {
   std::vector<PlannedTest> tests;
   std::string reference;  // the condition that the others are compared with; empty: the first

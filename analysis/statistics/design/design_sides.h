@@ -20,7 +20,7 @@ Cells cells_at(const DesignTable& table, std::size_t factor, std::size_t level);
 /// @throws InputError where several factors have a level of that name.
 Cells cells_of(const DesignTable& table, const std::string& side);
 
-/// What cells_of() knows: conditions, and the levels where there are several factors.
+/// Sides that cells_of() knows: conditions, and levels if there are several factors.
 std::vector<std::string> known_sides(const DesignTable& table);
 
 /// The values of two sides: pairs of the same participants, or different people.

@@ -15,8 +15,8 @@ struct Observation {
   double value{0.0};
 };
 
-/// What was varied. Within participants: somebody has several of its levels. Between: everybody has
-/// one.
+/// A factor of the study. Within participants: somebody has several of its levels. Between:
+/// everybody has one.
 struct Factor {
   std::string name;
   std::vector<std::string> levels;

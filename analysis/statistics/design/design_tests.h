@@ -34,7 +34,7 @@ inline constexpr const char* kUnadjusted = ", unadjusted";
 /// @param prefix  in front of each name: "planned: "
 std::vector<NamedTest> named_tests(const TestFamily& family, const std::string& prefix);
 
-/// What a study's design calls for, with participants as the unit.
+/// Tests that a study's design calls for, with participants as the unit.
 struct DesignTests {
   std::string design;                   // in words: "one factor within participants: condition"
   std::vector<std::string> incomplete;  // subjects without a value in each of their cells

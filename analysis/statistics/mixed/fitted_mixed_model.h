@@ -21,7 +21,7 @@ struct MixedModel {
   std::size_t observations{0};
   bool at_boundary{false};  // some variance is 0: the fit is that without its term
 
-  // What contrasts need. The parameters are the logarithms of variance_within and of the
+  // Matrices for contrasts. The parameters are the logarithms of variance_within and of the
   // positive variances' ratios to it.
   Eigen::MatrixXd root;                   // covariance of the coefficients = root root'
   std::vector<Eigen::MatrixXd> leverage;  // its slope by parameter m = root leverage[m] root'

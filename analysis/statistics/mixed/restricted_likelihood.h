@@ -22,7 +22,7 @@ class RestrictedLikelihood {
   RestrictedLikelihood(const Eigen::MatrixXd& columns, const Eigen::VectorXd& response,
                        const std::vector<Grouping>& terms);
 
-  /// What belongs to one rho. The coefficients are 1 + p, the intercept first.
+  /// The fit at one rho. The coefficients are 1 + p, the intercept first.
   struct Point {
     Eigen::VectorXd rho;           // (K)
     double criterion{0.0};         // but for the scaling of the columns

@@ -90,7 +90,7 @@ Step step_of(const Slopes& s, bool fisher) {
   return step;
 }
 
-/// Where a part of the step leads, if that is lower.
+/// Slopes after a part of the step, if the value there is lower.
 std::optional<Slopes> lower(const RestrictedLikelihood& likelihood, const Slopes& s,
                             const Step& step) {
   constexpr int kHalvings = 40;

@@ -92,7 +92,7 @@ void add_mean_squares(Intraclass& c, const Eigen::MatrixXd& ratings) {
   c.mean_square_raters = n * columns.squaredNorm() / (k - 1.0);
   c.mean_square_within = within.squaredNorm() / (n * (k - 1.0));
   c.mean_square_error = rest.squaredNorm() / ((n - 1.0) * (k - 1.0));
-  // What is left of equal numbers after their mean was taken away is rounding.
+  // Differences between equal numbers after their mean was subtracted are rounding.
   const double noise = 1e-28 * (ratings.array() - ratings.mean()).square().maxCoeff();
   for (double* square : {&c.mean_square_targets, &c.mean_square_raters, &c.mean_square_within,
                          &c.mean_square_error}) {

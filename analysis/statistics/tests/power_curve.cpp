@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMost = 1e7;  // participants
 
-// Where a rising curve reaches the power; above `most`, nothing.
+// Place at which a rising curve reaches the power; above `most`, nothing.
 Defined<double> reached(const PowerCurve& curve, double power, double low, double most,
                         const char* sentence) {
   double high = 2.0 * low;

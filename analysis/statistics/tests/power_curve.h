@@ -21,7 +21,7 @@ Defined<SampleSize> size_reaching(const PowerCurve& curve, double power, double 
 /// The effect likewise. Undefined above 100 standard deviations.
 Defined<double> effect_reaching(const PowerCurve& curve, double power);
 
-/// What is wrong with a plan, as a part of a sentence; empty: nothing.
+/// Fault of a plan, as a part of a sentence; empty: none.
 std::string problem_of_plan(double alpha, double n, double effect);
 std::string problem_of_power(double alpha, double power);
 

@@ -4,7 +4,7 @@
 
 namespace haptrial::analysis {
 
-/// What a repeated-measures or mixed analysis of variance asks.
+/// Question of a repeated-measures or mixed analysis of variance.
 enum class RepeatedTerm { kWithin, kInteraction, kBetween };
 
 /// Such an analysis that is planned: `n` is the size of each group, everybody is measured under

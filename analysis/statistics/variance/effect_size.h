@@ -35,8 +35,8 @@ Defined<EffectSize> cohens_dz(std::span<const double> a, std::span<const double>
 Defined<EffectSize> hedges_g(std::span<const double> a, std::span<const double> b,
                              double level = kDifferenceLevel);
 
-/// What d is to be multiplied with, Gamma(df / 2) / (sqrt(df / 2) Gamma((df - 1) / 2)); df > 1.
-/// Source: Hedges 1981, Journal of Educational Statistics 6.
+/// Factor for d, Gamma(df / 2) / (sqrt(df / 2) Gamma((df - 1) / 2)); df > 1. Source: Hedges 1981,
+/// Journal of Educational Statistics 6.
 double hedges_correction(double df);
 
 /// The share of variance of an effect beside its error, from its F: of any design. The interval

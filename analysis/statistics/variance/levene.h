@@ -6,7 +6,7 @@
 
 namespace haptrial::analysis {
 
-/// Where a group's deviations are measured from.
+/// Centre from which a group's deviations are measured.
 enum class Centre {
   kMean,    // Levene 1960; for symmetric data
   kMedian,  // Brown and Forsythe 1974; robust where they are skewed

@@ -22,8 +22,9 @@ struct WithinEffect {
   Defined<double> p_huynh_feldt{Undefined{"nothing was measured"}};  // the factor at most 1
 };
 
-/// What the repeated-measures and mixed analyses share: a participant's row of cell values becomes
-/// scores in orthonormal contrasts c of the cells; constant offsets of a participant drop out.
+/// Steps that the repeated-measures and mixed analyses share: a participant's row of cell values
+/// becomes scores in orthonormal contrasts c of the cells; constant offsets of a participant drop
+/// out.
 ///
 ///     y_i = C' x_i      effect: N |mean y|²      error: S = sum (y_i - mean y)(y_i - mean y)'
 namespace within {

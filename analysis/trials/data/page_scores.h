@@ -10,7 +10,7 @@
 
 namespace haptrial::analysis::trials {
 
-/// What a participant's answers to a page came to.
+/// Score of a participant's answers to a page.
 struct PageScore {
   std::string participant;
   std::string group;  // empty: the study has none

@@ -38,7 +38,7 @@ struct GivenAnswer {
   Word out_of_time{};               // "too fast" or "too slow"; empty: neither
 };
 
-/// What a variable of the definition was worth in a trial or in one of its intervals.
+/// Value of a variable of the definition in a trial or in one of its intervals.
 struct GivenVariable {
   Word name;
   int interval{0};          // from 1; 0: the whole trial
@@ -46,7 +46,7 @@ struct GivenVariable {
   Word word;
 };
 
-/// What a procedure asked for, and what was presented.
+/// Level that a procedure asked for, and the one that was presented.
 struct GivenLevel {
   Word track;
   Word variable;

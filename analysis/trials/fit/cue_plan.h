@@ -14,8 +14,8 @@ namespace haptrial::analysis::trials {
 /// Levels, as words, that tell some conditions from others, each by its factor.
 using FactorLevels = std::map<std::string, std::string>;
 
-/// What the comparison of cues may name. Empty lists: the definition could not be read, and nothing
-/// is checked.
+/// Names that the comparison of cues may use. Empty lists: the definition could not be read, and
+/// nothing is checked.
 struct CueNames {
   std::map<std::string, std::vector<std::string>> levels;  // of factors whose levels are stated
   std::vector<std::string> intervals;
@@ -46,7 +46,7 @@ struct CuePlan {
 std::optional<CuePlan> read_cue_plan(Table& analysis, const CueNames& names,
                                      const std::vector<std::string>& by, double guess);
 
-/// What a cue is called in tables: the levels of its conditions, "eye".
+/// Name of a cue in tables: the levels of its conditions, "eye".
 std::string name_of_cue(const FactorLevels& levels);
 
 }  // namespace haptrial::analysis::trials

@@ -33,7 +33,7 @@ struct FunctionReadings {
   bool open() const { return std::isinf(x.low) || std::isinf(x.high); }
 };
 
-/// Where the function reaches a share, with the interval of that level.
+/// Level at which the function reaches a share, with its interval.
 struct BandPoint {
   double share{0.5};  // S, lapses and guesses aside
   Estimated level;

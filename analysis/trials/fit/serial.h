@@ -10,8 +10,8 @@
 
 namespace haptrial::analysis::trials {
 
-/// What the trials of a participant say beside the level: change over the session, and dependence
-/// on the answer before.
+/// Effects in a participant's trials beside the level: change over the session, and dependence on
+/// the answer before.
 struct SerialEffects {
   std::string participant;
   std::size_t trials{0};

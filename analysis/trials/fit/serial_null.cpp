@@ -31,7 +31,7 @@ class Rerun {
     for (std::size_t i = 0; i < record_.trials.size(); ++i) {
       answer(i, false);
     }
-    // What is not finished goes on in the order of its trials.
+    // Tracks that are not finished go on in the order of their trials.
     for (std::size_t round = 1; round < kLongest && unfinished(); ++round) {
       for (std::size_t i = 0; i < record_.trials.size(); ++i) {
         answer(i, true);

@@ -27,9 +27,9 @@ struct SerialRecord {
   SerialFunctions functions;
 };
 
-/// What the coefficients are on average for somebody who has these functions, does not drift and
-/// does not repeat answers: levels that follow from the answers before pull them from 0. Their
-/// tracks are done anew, in the recorded order, their functions are fitted anew.
+/// Average coefficients of somebody who has these functions, does not drift and does not repeat
+/// answers: levels that follow from the answers before pull them from 0. Their tracks are done
+/// anew, in the recorded order, their functions are fitted anew.
 /// @param seed  of the answers
 /// @returns means of those of 25 sessions that have coefficients; not defined of fewer than eight
 SerialCoefficients serial_coefficients_by_chance(const SerialRecord& record,

@@ -78,7 +78,7 @@ void replay(TrackEstimate& track, const std::vector<psychometric::Level>& levels
   }
 }
 
-/// Where Student's t of the error gives an interval.
+/// Adds the interval that Student's t of the error gives.
 void add_student(psychometric::Estimate& e) {
   if (!e.interval && e.deviation && e.freedom && *e.freedom > 0.0) {
     const double half = t_quantile(0.975, *e.freedom) * *e.deviation;

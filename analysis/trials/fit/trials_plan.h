@@ -18,7 +18,7 @@ class Table;
 
 namespace haptrial::analysis::trials {
 
-/// What is computed from the answers.
+/// Kind of analysis of the answers.
 enum class AnalysisKind {
   kNone,            // trials, reaction times and quality alone
   kPsychometric,    // functions of the level: thresholds, slopes, Weber fractions
@@ -32,7 +32,7 @@ enum class AnalysisKind {
 /// Levels by the name of their factor, as tables show them.
 using StatedLevels = std::map<std::string, std::vector<std::string>>;
 
-/// What the rest of a definition says where [analysis] says nothing.
+/// Values of the rest of a definition that stand in for keys that [analysis] does not have.
 struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
   std::vector<std::string> factors;  // that [factors] varies, and "group" of several groups
@@ -51,7 +51,7 @@ struct PlanDefaults {
 /// 15 % intervals hold the truth (docs/algorithms/procedure-coverage.md).
 inline constexpr double kMostLapses = 0.2;
 
-/// What [analysis] of a definition states.
+/// Content of [analysis] in a definition.
 struct TrialsPlan {
   AnalysisKind kind{AnalysisKind::kNone};
   std::vector<std::string> by;  // factors whose levels are told apart

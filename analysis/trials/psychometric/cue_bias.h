@@ -12,9 +12,9 @@ namespace haptrial::analysis::trials {
 /// the geometric mean. Each is defined.
 using FunctionFits = std::span<const FunctionFit* const>;
 
-/// What the errors of fitted functions do to the comparison of one participant's cues with the best
-/// combination, in the mean. Fits of few answers are a little too steep, more so where levels are
-/// far apart; and the prediction bends.
+/// Effect of the errors of fitted functions on the comparison of one participant's cues with the
+/// best combination, in the mean. Fits of few answers are a little too steep, more so where levels
+/// are far apart; and the prediction bends.
 struct CueBias {
   double log_sd{0.0};  // log observed - log predicted standard deviation
   double weight{0.0};  // predicted - true weight of the first cue

@@ -67,7 +67,7 @@ LogSd geometric_mean(const std::vector<LogSd>& sds) {
   return mean;
 }
 
-/// What the comparison knows of one participant's conditions.
+/// Conditions of one participant in the comparison.
 class PersonalCues {
  public:
   PersonalCues(const TrialsData& data, const std::vector<AnsweredSeries>& series,
@@ -129,7 +129,7 @@ class PersonalCues {
  private:
   using Places = std::vector<std::size_t>;  // in fits_
 
-  /// What functions of these cues would show in these trials of somebody who combines best.
+  /// Prediction for somebody who combines these cues best in these trials.
   static void predict(const LogSd& first, const LogSd& second, const CueBias& bias,
                       CuePerson& made) {
     const bool known = std::isfinite(first.error) && std::isfinite(second.error);
@@ -231,7 +231,7 @@ class PersonalCues {
     return places;
   }
 
-  /// What a cue of the standard showed in a series, on the axis.
+  /// Level of the standard's cue in a series, on the axis.
   Defined<double> shown(const AnsweredSeries& series, const std::string& variable) const {
     double low = INFINITY, high = -INFINITY;
     for (const LevelTrial& each : series.trials) {
@@ -256,7 +256,7 @@ class PersonalCues {
     return low;
   }
 
-  /// Where a function is 1/2, on the axis, with its standard error; NaN: not known.
+  /// Point at which a function is 1/2, on the axis, with its standard error; NaN: not known.
   Known equality(const FunctionFit& fit) const {
     const psychometric::Axis& axis = plan_.function.axis;
     Known pse{axis.at(read_off(fit.function(plan_), {Reading::kLevelOfShare, 0.5})), kNotKnown};

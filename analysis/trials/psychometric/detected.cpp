@@ -84,7 +84,7 @@ namespace {
 
 constexpr double kNormal95 = 1.959963984540054;  // two-sided
 
-/// What was counted of a participant under a condition.
+/// Counts of a participant under a condition.
 struct Tally {
   std::map<std::string, std::vector<int>> answers;  // stimulus -> of each choice
   std::map<double, std::pair<int, int>> ratings;    // value -> of wrong and of right answers

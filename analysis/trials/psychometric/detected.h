@@ -11,7 +11,7 @@
 
 namespace haptrial::analysis::trials {
 
-/// What a participant detected under a condition.
+/// Detections of a participant under a condition.
 struct DetectedCondition {
   std::string participant;
   std::vector<std::string> levels;  // of the plan's factors
@@ -35,7 +35,7 @@ struct Confusions {
   std::vector<std::vector<int>> answers;  // (stimuli x choices of the question)
 };
 
-/// What a participant took things for under a condition.
+/// Identifications of a participant under a condition.
 struct IdentifiedCondition {
   std::string participant;
   std::vector<std::string> levels;  // of the plan's factors

@@ -8,7 +8,7 @@
 
 namespace haptrial::analysis::trials {
 
-/// Where the population's function crosses 1/2 under a condition.
+/// Point at which the population's function crosses 1/2 under a condition.
 struct PopulationPoint {
   std::string condition;
   Defined<EqualityPoint> point{Undefined{"nothing was fitted"}};  // on the axis

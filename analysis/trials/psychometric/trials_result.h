@@ -33,7 +33,7 @@ struct ParticipantTrials {
   std::map<std::string, double> at_limit;
 };
 
-/// What the sessions of a study gave.
+/// Results of a study's sessions.
 struct TrialsResult {
   std::string title;
   TrialsPlan plan;

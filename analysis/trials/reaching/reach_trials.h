@@ -14,7 +14,7 @@
 
 namespace haptrial::analysis::trials {
 
-/// What a definition states of the reach of one trial.
+/// Reach of one trial according to the definition.
 struct ReachWay {
   Eigen::Vector3d start{0.0, 0.0, 0.0};  // in W [m]
   Eigen::Vector3d target{0.0, 0.0, 0.0};

@@ -11,7 +11,7 @@ class Table;
 
 namespace haptrial::analysis::trials {
 
-/// What a definition has that the analysis of reaches may name.
+/// Names of a definition that the analysis of reaches may use.
 struct ReachingNames {
   std::vector<std::string> stages;
   std::vector<std::string> places;
@@ -32,7 +32,7 @@ enum class ReachQuantity : std::uint8_t {
 /// Which cycles of a block such a comparison takes.
 enum class ReachCycles : std::uint8_t { kAll, kFirst, kLast };
 
-/// What [analysis] of kind "reaching" states.
+/// Content of [analysis] of kind "reaching".
 struct ReachingPlan {
   std::string stage{"reach"};
   std::string start{"start"};    // a place

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSamePerturbation = 0.25;  // blocks that differ by less are alike
 constexpr double kLeastUnit = 1e-5;         // error below which a field disturbs nobody [m]
 
-/// Where reaches stand: number of the participant, of the block, and of the trial in the block.
+/// Index of a reach: number of the participant, of the block, and of the trial in the block.
 struct ReachIndex {
   std::size_t participant{0}, block{0}, place{0};
 };
@@ -187,7 +187,7 @@ std::optional<double> early_error(const StudyReach& reach) {
   return reach.kind == ReachKind::kPlain ? reach.turned(reach.error_at_150_ms) : std::nullopt;
 }
 
-/// What the field does before anything is learnt: mean early error of the first cycle in it [m].
+/// Effect of the field before anything is learnt: mean early error of the first cycle in it [m].
 double disturbance(const ReachingResult& result, const ReachCurve& early) {
   for (const ReachBlock& block : result.blocks) {
     if (std::abs(block.perturbation) > kSamePerturbation &&

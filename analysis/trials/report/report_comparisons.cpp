@@ -29,7 +29,7 @@ void add_quantity(Document& document, const Quantity& q) {
   add_design_tests(document, q.table, q.tests, q.unit);
 }
 
-/// Where the intervals of tracks come from, and why some have none.
+/// Adds the origin of the tracks' intervals, and why some have none.
 void add_interval_words(Document& document, const TrialsResult& result) {
   std::set<std::string> reasons;
   bool stated = false;

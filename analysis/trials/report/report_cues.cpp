@@ -21,7 +21,7 @@ constexpr Look kFirst{palette::kGreen, palette::kShort, 9, 2.0, 1.1};
 constexpr Look kSecond{palette::kOrange, palette::kMixed, 13, 2.0, 1.1};
 constexpr Look kOnePerson{palette::kGrey, palette::kSolid, 6, 1.5, 0.9};
 
-/// What is compared at each level, as the figures need it.
+/// Values that are compared at each level, as the figures need them.
 struct Drawn {
   std::string label;
   Number number;

@@ -295,7 +295,7 @@ std::string laid_out(const Json& value) {
   return value.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-/// What the report says, member by member.
+/// The report's results, member by member.
 class ResultsJson {
  public:
   ResultsJson(const TrialsResult& result, const JsonPieces::Take& take)

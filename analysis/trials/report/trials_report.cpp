@@ -87,7 +87,7 @@ std::string function_words(const TrialsPlan& plan) {
       percent(plan.threshold_at));
 }
 
-/// Where the intervals of functions come from.
+/// Origin of the intervals of functions.
 std::string interval_words(const TrialsResult& result) {
   const auto adaptive = [](const FunctionFit& fit) { return fit.adaptive; };
   std::string words;

@@ -8,7 +8,7 @@
 
 namespace haptrial::analysis::trials {
 
-/// What a report of a study with simulated participants says wherever it says a result.
+/// Words with which a report of a study with simulated participants marks each result.
 extern const char* const kSimulatedTrials;
 
 inline constexpr double kMillimetres = 1000.0;  // in a metre

@@ -10,7 +10,7 @@
 namespace haptrial::analysis::trials {
 namespace {
 
-/// What a quantity is called, and its value in a reach.
+/// Name of a quantity, and its value in a reach.
 struct Measure {
   const char* name;
   const char* title;
