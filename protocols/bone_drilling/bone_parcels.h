@@ -11,7 +11,7 @@
 
 namespace haptrial::protocols {
 
-/// What the side whose bone it is tells the other, parcel by parcel; within a stream of which
+/// Kind of a parcel that the side that owns the bone sends to the other; within a stream of which
 /// nothing is lost (network::ReliableStream). The first byte of a parcel says which of these it is.
 enum class BoneParcelKind : std::uint8_t {
   kBegin = 1,  // a pass
@@ -56,8 +56,8 @@ BoneSum sum_of(const BoneParcel& parcel) noexcept;
 /// Adds what a kSplit says. Allocates.
 void add_split(const BoneParcel& parcel, std::vector<bone::RecordedSplit>& splits);
 
-/// What is said of a bone after a tick of its simulator, from what was said before: a different
-/// number where anything else was done to it. Servo thread.
+/// Witness of a bone after a tick of its simulator, from the witness before: a different number if
+/// anything else was done to the bone. Servo thread.
 std::uint64_t witness_after(std::uint64_t before, const bone::Simulator& simulator) noexcept;
 
 /// Parcels that wait, in their order, without memory of their own elsewhere after the constructor.

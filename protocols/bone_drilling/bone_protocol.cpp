@@ -92,7 +92,7 @@ class DrillingOutputs {
   }
 
  private:
-  /// What is heard with the drill.
+  /// Mixes in the sounds that are heard with the drill.
   void mix(std::span<float> part) noexcept {
     if (nerves_) {
       nerves_->mix(part);

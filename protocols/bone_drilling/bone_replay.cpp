@@ -36,7 +36,7 @@ BoneDefinition definition_of(const record::SessionReader& reader) {
   }
 }
 
-/// What the second device gave, as it is recorded. @param rows  of it, on one tick
+/// Reading of the second device, as it is recorded. @param rows  of it, on one tick
 device::DeviceReading second_of(std::span<const record::DeviceRow> rows,
                                 const record::SecondHandRow& hand) {
   device::DeviceReading reading;
@@ -238,7 +238,7 @@ std::shared_ptr<BoneStage> BoneReplay::restore(int trial, std::int32_t bone, Rep
   return stage;
 }
 
-/// What the ticks of a pass are simulated with, and held against.
+/// State with which the ticks of a pass are simulated and compared.
 struct BoneReplay::Work {
   const std::shared_ptr<BoneStage>& stage;
   const Onlookers& onlookers;

@@ -20,7 +20,7 @@
 
 namespace haptrial::protocols {
 
-/// What simulating a procedure again gave.
+/// Result of simulating a procedure again.
 struct ReplayVerdict {
   int trial{0};
   int passes{0};
@@ -53,7 +53,8 @@ class BoneReplay {
   /// Called about every 500 ticks; what it throws ends the replay. @param tick  of the trial, from
   /// 0
   using Pulse = std::function<void(std::uint64_t tick)>;
-  /// What is seen on a tick. @param tick  of the trial, from 0 @param sequence  as in /samples
+  /// Callback with the view of a tick. @param tick  of the trial, from 0 @param sequence  as in
+  /// /samples
   using Watch =
       std::function<void(std::uint64_t tick, std::uint64_t sequence, const bone::DrillingView& seen,
                          const std::shared_ptr<const BoneStage>& stage)>;
@@ -70,7 +71,7 @@ class BoneReplay {
 
  private:
   [[noreturn]] void refuse_trial(int trial) const;
-  /// Who looks on.
+  /// Observers of a replay.
   struct Onlookers {
     const Watch& watch;
     const Pulse& pulse;

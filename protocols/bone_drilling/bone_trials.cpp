@@ -395,7 +395,7 @@ void BoneTrials::begin_attempt(const PlannedTrial& trial, bool anew) {
   set_up(std::move(stage), trial);
 }
 
-/// What goes beside a bone.
+/// Sets up the parts that go beside a bone.
 void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& trial) {
   const geometry::VoxelGrid& grid = stage->model->grid;
   const bone::CompanionParameters companions = companions_for(d_, grid);

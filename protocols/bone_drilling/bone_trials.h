@@ -44,7 +44,8 @@ class BoneTrials final : public Trials {
   void prepare(const PlannedTrial& trial, SessionFile& file) override;
   void begin_attempt(const PlannedTrial& trial, bool anew) override;
   MakeDrawing drawing() override;
-  /// Who drills sees what is drilled from the first tick on.
+  /// Whether a pass waits for the first picture: a participant sees the bone from the first tick
+  /// on.
   bool waits_for_picture() const override { return true; }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   void close_pass(SessionFile& file, std::int32_t row) override;

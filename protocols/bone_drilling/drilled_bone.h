@@ -10,7 +10,7 @@
 
 namespace haptrial::protocols {
 
-/// What a procedure took of one structure.
+/// Part of one structure that a procedure removed.
 struct RemovedPart {
   std::string structure;
   std::size_t voxels{0};

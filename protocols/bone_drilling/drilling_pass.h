@@ -21,7 +21,7 @@ namespace haptrial::protocols {
 /// the file. Servo thread.
 device::DeviceReading as_recorded(const device::DeviceReading& reading) noexcept;
 
-/// What a reading, as it is recorded, asks of the simulator.
+/// Turns recorded readings into inputs of the simulator.
 class DrillingInput {
  public:
   /// @throws std::invalid_argument for a handle without length or a scale not above 0.
@@ -36,11 +36,11 @@ class DrillingInput {
   Eigen::Quaterniond second_grip_;  // likewise, of the tube
 };
 
-/// What a participant is to see of a simulator.
+/// The participant's view of a simulator.
 bone::DrillingView view_of(const bone::Simulator& simulator,
                            const bone::SimulatorInput& input) noexcept;
 
-/// What a hand feels of the burr's shaking: neither drilled with nor recorded as contact. Servo
+/// Force of the burr's shaking on the hand: neither drilled with nor recorded as contact. Servo
 /// thread. @param vibration  null: it does not shake; nor does a tool that is no burr
 /// @param force  between burr and bone [N]
 Eigen::Vector3d shaking(sound::DrillVibration* vibration, const bone::Simulator& simulator,
@@ -72,7 +72,7 @@ class DrillingPass final : public Pass {
   PassState state() const noexcept override { return state_; }
   bool wants_attention() noexcept override;
 
-  /// Of this pass and those before it. Not the servo thread while it ticks.
+  /// Ticks of this pass and those before it. Not the servo thread while it ticks.
   std::uint64_t ticks() const noexcept { return ticks_; }
 
  private:

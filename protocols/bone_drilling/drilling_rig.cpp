@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAway = 0.015;  // from the bone, where a surgeon's hand begins [m]
 
-/// Where the hand is before anybody asks anything of it.
+/// Place of the hand before anybody asks anything of it.
 Eigen::Vector3d start_of(const BoneDefinition& d) {
   if (d.surgeon && !d.charts.empty()) {
     const subject::DrillingChart& chart = *d.charts.front();

@@ -17,8 +17,9 @@
 
 namespace haptrial::protocols {
 
-/// Where the servo thread leaves what happens to the bone; emptied by the session's thread. A cut
-/// empties CutPlaneTool::kMostEmptied voxels a tick at most: there is room for 1,024 such ticks.
+/// Logs of the bone's changes, filled by the servo thread and emptied by the session's thread. A
+/// cut empties CutPlaneTool::kMostEmptied voxels a tick at most: there is room for 1,024 such
+/// ticks.
 class DrillingLogs final : public TickLog {
  public:
   realtime::BlockLog<record::ToolRow> tool;
@@ -34,7 +35,7 @@ class DrillingLogs final : public TickLog {
 
   /// A row of /second_hand for every tick from now on, also between passes. Before the first tick.
   void watch_second() noexcept { two_hands_ = true; }
-  /// What the present tick says of the tube; taken by record(). Servo thread.
+  /// Sets the present tick's row of the tube; taken by record(). Servo thread.
   void set_second(const record::SecondHandRow& row) noexcept { second_row_ = row; }
 
   /// A row of /handpiece for every tick from now on, likewise.
@@ -46,10 +47,10 @@ class DrillingLogs final : public TickLog {
   /// @param pushed  force on the first hand's tool, in W [N]
   void set_tool_contact(const Eigen::Vector3d& pushed) noexcept { tool_contact_.force = pushed; }
 
-  /// What the present tick says of the tool in hand; taken by record(). Servo thread.
+  /// Sets the present tick's row of the tool in hand; taken by record(). Servo thread.
   void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
   const record::ToolRow& tool_now() const noexcept { return row_; }
-  /// What the present tick does to nerves; likewise.
+  /// Sets the present tick's effects on nerves; likewise.
   void set_nerves(const nerve::NerveTick& tick) noexcept { nerves_ = tick; }
   /// Gets every tick from the next one on, also between passes; null: nobody watches nerves.
   void watch_nerves(nerve::NerveBeside* beside) noexcept { beside_ = beside; }
@@ -76,14 +77,14 @@ class DrillingLogs final : public TickLog {
   nerve::NerveBeside* beside_{nullptr};
 };
 
-/// What the ticks of a pass leave in the logs. Servo thread.
+/// Log entries of a pass's ticks. Servo thread.
 class DrillingRows {
  public:
   /// Both outlive it.
   DrillingRows(const bone::Simulator& simulator, DrillingLogs& logs, double rate) noexcept
       : simulator_(simulator), logs_(logs), rate_(rate) {}
 
-  /// What the simulator's last tick did to the bone. @param speed  of the tool [m/s]
+  /// Logs the changes of the bone by the simulator's last tick. @param speed  of the tool [m/s]
   void log(std::uint64_t sequence, double speed) noexcept;
   /// A moving view is logged a hundred times a second at most, and where it comes to rest. Each
   /// tick of the pass.
@@ -104,7 +105,7 @@ class DrillingRows {
   std::uint64_t camera_logged_{0};  // sequence number of the last row
 };
 
-/// What the simulator's last tick did, for hints.
+/// Tells hints the changes by the simulator's last tick.
 void tell_hints(hint::HintsBeside& hints, std::uint64_t sequence, const bone::Simulator& simulator,
                 const bone::SimulatorInput& input) noexcept;
 

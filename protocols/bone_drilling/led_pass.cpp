@@ -88,7 +88,7 @@ bool LedPass::follow_step() noexcept {
   while (splits_ < inbox.size() && kind_of(inbox.at(splits_)) == BoneParcelKind::kSplit) {
     ++splits_;
   }
-  // What is separated on a tick is recorded by the tick: it is the only step of it.
+  // Bone that is separated on a tick is recorded by the tick: it is the only step of it.
   if (splits_ == inbox.size() || (splits_ > 0 && followed_ > 0)) {
     return false;
   }

@@ -17,7 +17,7 @@ namespace haptrial::protocols {
 /// the other side's pass was followed. Source: Morris 2006, §3.4.1.
 class LedPass final : public Pass {
  public:
-  /// What it works with; everything outlives the pass.
+  /// Parts that the pass works with; everything outlives the pass.
   struct Parts {
     bone::Simulator& simulator;
     bone::Companions& companions;  // that do not search for separate parts

@@ -14,8 +14,8 @@ namespace haptrial::protocols {
 /// Rows of /burrs: those of a definition's tools that are burrs.
 std::vector<record::BurrRow> burr_rows(std::span<const bone::ToolSpec> tools);
 
-/// What became of a bone up to now, once its companions have settled. Of what an earlier run of the
-/// session did, the dust is not among it.
+/// Row of a bone's procedure up to now, once its companions have settled. The dust of an earlier
+/// run of the session is not in it.
 /// @param pass  row of /trials
 /// @param bone  row of /bones
 record::ProcedureRow procedure_of(const BoneStage& stage, std::int32_t pass, std::int32_t bone);

@@ -14,7 +14,7 @@
 
 namespace haptrial::protocols {
 
-/// What the device gave on a tick, as it is recorded.
+/// Reading of the device on a tick, as it is recorded.
 device::DeviceReading reading_of(const record::Sample& sample, const record::ToolRow& tool);
 
 /// Empty where a part of a tool was pushed as in the record.
@@ -27,8 +27,8 @@ std::string difference(std::uint64_t sequence, const char* part, const Eigen::Ve
 std::string difference(const record::HandpieceRow& recorded, const bone::Simulator& simulator,
                        const Eigen::Vector3d& shaft);
 
-/// What the hand of a led session feels of a handpiece that another session works with, simulated
-/// again from its own readings and held against the session's /handpiece. Ticks on which the hand
+/// Force on the hand of a led session from a handpiece that another session works with, simulated
+/// again from its own readings and compared with the session's /handpiece. Ticks on which the hand
 /// waited for the bone, which have nothing in their rows, are left out.
 class ReplayedHandpiece {
  public:

@@ -47,7 +47,7 @@ void reject_frequencies(Table& root, const ForceDefinition& d) {
   }
 }
 
-/// What no table can see alone.
+/// Checks that no single table can make.
 void check_together(Table& root, const ForceDefinition& d) {
   const auto& known = protocols::training_conditions();
   Table design = root.table("design");

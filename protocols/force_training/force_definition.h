@@ -40,7 +40,7 @@ struct ForceDefinition : Definition {
   std::vector<std::string> margins() const override;
   std::vector<std::string> warnings() const override;
   double longest(int trials) const override;
-  /// What a square in the corner means, too, for those who may see one.
+  /// Instructions with the meaning of a square in the corner, for those who may see one.
   std::string instructions() const override { return texts.instructions + "\n" + texts.limit; }
 };
 

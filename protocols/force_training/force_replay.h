@@ -32,7 +32,7 @@ class ForceReplay {
 
   std::size_t passes() const { return passes_.size(); }
   const std::vector<stimulus::Presentation>& seen(std::size_t pass) const;
-  /// What the participant saw at one sample of a pass, without the forces.
+  /// Picture of the participant's screen at one sample of a pass, without the forces.
   render::Image trial_picture(std::size_t pass, std::size_t sample);
   /// A sentence where this program would draw another stimulus than the session's, so that the
   /// recorded one is shown; else empty.

@@ -23,7 +23,7 @@ class ForceTrials final : public Trials {
   std::span<const record::Phase> phases() const override;
   std::unique_ptr<Rig> virtual_rig() const override;
   std::vector<stimulus::Observer*> observers() override;
-  /// What an expert did, if there is one.
+  /// Tables of the expert, if there is one.
   record::TableList tables() const override;
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override { return expert_ ? expert_->dropped() : 0; }

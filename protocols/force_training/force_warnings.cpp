@@ -56,7 +56,7 @@ void warn_of_limit(const ForceDefinition& d, const char* key, double limit, Warn
   if (!d.trajectory.from.empty() && d.trajectory.points.empty()) {
     return;  // a recorded path that is not read
   }
-  // What leads the hand along the path takes part of the force: its drag and the friction.
+  // Guidance along the path takes part of the force: its drag and the friction.
   const double guidance = d.hand.damping * d.trajectory.speed + d.hand.coulomb_friction;
   const double left = std::sqrt(std::max(0.0, limit * limit - guidance * guidance));
   const double peak = std::max(d.force_pattern.base_max,

@@ -18,9 +18,9 @@ class AuxiliaryPage {
   using Events = std::function<std::string()>;
 
   virtual ~AuxiliaryPage() = default;
-  /// What its address ends with: letters a to z and '_', such as "assistant".
+  /// End of the page's address: letters a to z and '_', such as "assistant".
   virtual std::string_view name() const = 0;
-  /// What it is, for the terminal, such as "assistant's page".
+  /// Title of the page for the terminal, such as "assistant's page".
   virtual std::string_view title() const = 0;
   /// The page. Its scripts and styles carry nonce="NONCE"; it hears /NAME/events?token=T and posts
   /// to /NAME/ask with the header X-Haptrial-Token, as the console's own page does.

@@ -56,10 +56,10 @@ class DeviceSet {
   void go_over() noexcept;
   void resume() noexcept;
   bool may_begin() noexcept;
-  /// What is wrong, and with which device, from 0; kNone if nothing is.
+  /// Fault of a device and its number, from 0; kNone if there is none.
   device::Fault fault() const noexcept;
   std::size_t faulty() const noexcept;
-  /// What that device said of it when it began (Device::trouble()).
+  /// That device's own message when the fault began (Device::trouble()).
   const char* trouble() const noexcept { return trouble_; }
 
  private:

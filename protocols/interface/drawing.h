@@ -28,8 +28,8 @@ class Drawing {
     static_cast<void>(pixel);
     return std::nullopt;
   }
-  /// Where a hand in space is that pointer and keys move, in the device's workspace; asked after
-  /// each picture where the mouse is the device. Nothing if they move none.
+  /// Place of a hand in space that pointer and keys move, in the device's workspace; asked after
+  /// each picture if the mouse is the device. Nothing if they move none.
   virtual std::optional<device::HandPose> hand(const device::PointerInput& input) {
     static_cast<void>(input);
     return std::nullopt;

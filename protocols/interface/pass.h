@@ -16,7 +16,7 @@ namespace haptrial::protocols {
 
 inline constexpr std::size_t kMostDevices = 4;
 
-/// What the devices of a session said at one tick, in their order, in W.
+/// Readings of a session's devices at one tick, in their order, in W.
 class Readings {
  public:
   Readings(const device::DeviceReading& only) noexcept : all_(&only, 1) {}  // implicit: one device
@@ -31,13 +31,13 @@ class Readings {
   std::span<const device::DeviceReading> all_;
 };
 
-/// What one tick of a pass asks of one device.
+/// Output of one tick of a pass to one device.
 struct Drive {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool, in W [N]
   device::ForceIntent intent;                      // of the force
 };
 
-/// What one tick of a pass asks for.
+/// Output of one tick of a pass.
 struct PassOutput : Drive {  // of the first device
   stimulus::Shown shown;
   double target_force{0.0};  // [N]
@@ -59,7 +59,7 @@ class Pass {
   virtual void begin(std::uint64_t sequence) noexcept { static_cast<void>(sequence); }
   /// @param dt  since the previous tick [s]
   virtual PassOutput tick(const Readings& readings, double dt) noexcept = 0;
-  /// What the last tick() asks of the devices after the first, in their order.
+  /// Outputs of the last tick() to the devices after the first, in their order.
   virtual std::span<const Drive> others() const noexcept { return {}; }
   virtual PassState state() const noexcept = 0;
   /// Whether PassOutput::onsets says what begins when; else the stages of PassOutput do.
@@ -69,7 +69,7 @@ class Pass {
   virtual bool wants_attention() noexcept { return false; }
 };
 
-/// What a protocol records of every tick beside the samples, also between passes.
+/// Records of a protocol of every tick beside the samples, also between passes.
 class TickLog {
  public:
   virtual ~TickLog() = default;

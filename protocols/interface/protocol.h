@@ -26,12 +26,13 @@ class Protocol {
                                            const std::filesystem::path* folder) const = 0;
   /// Definition::margins() of the published parameters, if there are any.
   virtual std::vector<std::string> margins() const { return {}; }
-  /// What takes seconds, once all of the definition is known to be good. @param folder  of the file
+  /// Loads parts that take seconds, once all of the definition is known to be good. @param
+  /// folder  of the file
   virtual void load(Definition& definition, const std::filesystem::path& folder) const {
     static_cast<void>(definition);
     static_cast<void>(folder);
   }
-  /// What the passes of a trial can be for, each with its meaning: the words of /trials.
+  /// Purposes of the passes of a trial, each with its meaning: the words of /trials.
   virtual std::vector<std::pair<record::Phase, std::string>> phases() const = 0;
   /// The tables of a definition that only virtual participants use.
   virtual std::vector<std::string> virtual_tables() const { return {}; }
@@ -46,8 +47,8 @@ class Protocol {
   /// The trials of one session. @param definition  of this protocol; it and the place outlive them
   virtual std::unique_ptr<Trials> trials(const Definition& definition,
                                          const SessionPlace& place) const = 0;
-  /// What a session presents, in its order and in the definition's words; none where the protocol
-  /// has no such words. @param definition  of this protocol
+  /// Blocks that a session presents, in its order and in the definition's words; none if the
+  /// protocol has no such words. @param definition  of this protocol
   virtual std::vector<std::string> blocks(const Definition& definition,
                                           const SessionPlace& place) const {
     static_cast<void>(definition);

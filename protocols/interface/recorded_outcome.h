@@ -10,7 +10,7 @@
 
 namespace haptrial::protocols {
 
-/// What a session file holds of its trials.
+/// A session file's records of its trials.
 struct RecordedTrials {
   std::span<const record::PassRow> passes;
   std::span<const record::ResponseRow> responses;
@@ -20,7 +20,7 @@ struct RecordedTrials {
 /// Whether a pass is one of the trial.
 bool is_of(const record::PassRow& pass, const PlannedTrial& trial);
 
-/// What came of a trial that an earlier run, or the session that is replayed, presented; nothing if
+/// Outcome of a trial that an earlier run, or the session that is replayed, presented; nothing if
 /// it did not. The responses are those of the attempt that counts.
 /// @param last  the phase with which a trial is done
 std::optional<Outcome> recorded_outcome(const RecordedTrials& recorded, const PlannedTrial& trial,

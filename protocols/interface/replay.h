@@ -8,7 +8,7 @@
 
 namespace haptrial::protocols {
 
-/// What is asked of a recorded session: to go through a trial again.
+/// Request to go through a trial of a recorded session again.
 struct ReplayRequest {
   std::filesystem::path file;
   int trial{0};                 // from 1; 0: not said

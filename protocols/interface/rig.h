@@ -12,7 +12,7 @@ class MouseDevice;
 
 namespace haptrial::protocols {
 
-/// What a session drives: a device or more, and who holds them.
+/// Devices of a session, one or more, and the hands that hold them.
 class Rig {
  public:
   virtual ~Rig() = default;
@@ -30,9 +30,9 @@ class Rig {
   /// While a pass runs, often: what the virtual subject leaves to others than the servo thread.
   /// Session's thread. @throws InputError if it cannot go on
   virtual void attend() {}
-  /// Where the screen's pointer goes; null for any other device.
+  /// Device that the screen's pointer moves; null for any other device.
   virtual device::MouseDevice* mouse() { return nullptr; }
-  /// What moves that pointer in the mouse's place; null: nothing.
+  /// Controller that moves that pointer in the mouse's place; null: none.
   virtual device::Gamepad* gamepad() { return nullptr; }
   /// Whether somebody feels the forces.
   bool felt() { return !device().info().simulated && mouse() == nullptr; }

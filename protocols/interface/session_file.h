@@ -10,8 +10,8 @@
 
 namespace haptrial::protocols {
 
-/// What a protocol may write into the file of its session, and ask of it. Session's thread; what
-/// writes throws RunError if the file cannot be written.
+/// Access of a protocol to the file of its session. Session's thread; functions that write throw
+/// RunError if the file cannot be written.
 class SessionFile {
  public:
   virtual ~SessionFile() = default;
@@ -26,7 +26,7 @@ class SessionFile {
   virtual bool holds_stimulus(std::int32_t block) const = 0;
   virtual void event(const std::string& kind, const std::string& text) = 0;
 
-  /// Of earlier runs of the session.
+  /// Passes of earlier runs of the session.
   virtual const std::vector<record::PassRow>& earlier_passes() const = 0;
   /// Whether an earlier run ended during the trial without time to write what it held.
   virtual bool was_cut_short(const PlannedTrial& trial) const = 0;

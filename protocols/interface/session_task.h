@@ -30,13 +30,13 @@ struct PassResult {
   std::uint64_t reduced_ticks{0};  // with noticeably less than all of the damping
 };
 
-/// Where a resumed session goes on: what its first tick is to have.
+/// Start of a resumed session: number and time of its first tick.
 struct Origin {
   std::uint64_t sequence{0};
   std::int64_t time_ns{0};
 };
 
-/// What happens on every tick of a session:
+/// Task of every tick of a session:
 ///
 ///     devices -> envelopes -> pass -> envelopes -> devices, observers, logs
 ///
@@ -55,7 +55,7 @@ class SessionTask final : public realtime::ServoTask {
   enum class Leave : std::uint8_t { kNever, kAfterPassOrSlice };
   static constexpr std::uint64_t kSlice = 512;  // [ticks]
 
-  /// What a task works with; all of it outlives the task.
+  /// Parts that a task works with; all of it outlives the task.
   struct Parts {
     std::vector<DeviceSet::Arm> devices;  // 1 to kMostDevices
     control::HandleLoop loop{};           // of all of them
@@ -68,7 +68,7 @@ class SessionTask final : public realtime::ServoTask {
     markers::OnsetLog* onsets{nullptr};               // null: nobody is told what begins when
   };
   explicit SessionTask(const Parts& parts, Leave leave, Origin origin = Origin{});
-  /// Of one device.
+  /// A task with one device.
   SessionTask(device::Device& device, const device::EnvelopeLimits& limits, Log& log,
               std::vector<stimulus::Observer*> observers, Leave leave, TickLog* tick_log = nullptr)
       : SessionTask(Parts{.devices = {{&device, limits}},
@@ -81,7 +81,7 @@ class SessionTask final : public realtime::ServoTask {
   /// @param row  of /trials, for the samples
   void start(Pass& pass, std::int32_t row) noexcept;
   bool idle() const noexcept;
-  /// Of the last pass; call only when idle().
+  /// Result of the last pass; call only when idle().
   const PassResult& result() const noexcept { return result_; }
   /// Asks tick() to let ServoLoop::run return after the tick before `index`, once. Between runs.
   void leave_before(std::uint64_t index) noexcept { leave_before_ = index; }

@@ -4,8 +4,9 @@
 
 namespace haptrial::protocols {
 
-/// What two linked sessions work on: the world of the side that teaches; that of the other side
-/// follows it by what the one gives and the other takes. What the bytes are, the protocol knows.
+/// Simulation that two linked sessions share: the world of the side that teaches; that of the other
+/// side follows it by the bytes that one side gives and the other takes. The protocol knows the
+/// meaning of the bytes.
 class SharedSimulation : public network::ReliablePayload {
  public:
   /// Whether both sides know that the pass that was completed left them the same world, or have

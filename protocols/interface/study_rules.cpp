@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::string_view kVirtualDevice = "virtual";
 
-/// What participants read, on what, and how many are to come; where markers and sounds go; what is
-/// asked of the data.
+/// Keys of every study that may differ: participants' texts and display, and how many are to come;
+/// targets of markers and sounds; questions to the data.
 DefinitionRules of_every_study() {
   DefinitionRules rules;
   rules.free = {"texts",
@@ -31,7 +31,8 @@ DefinitionRules of_every_study() {
   return rules;
 }
 
-/// What a person's session leaves unused: the virtual device, its hand and virtual participants.
+/// Keys that a person's session leaves unused: the virtual device, its hand and virtual
+/// participants.
 DefinitionRules of_people(const Protocol& protocol) {
   DefinitionRules rules{.free = {"device", "hand"}};
   const std::vector<std::string> tables = protocol.virtual_tables();
@@ -39,8 +40,8 @@ DefinitionRules of_people(const Protocol& protocol) {
   return rules;
 }
 
-/// What every device's guidance reckons with: the damping that is felt and the envelope's holding
-/// force (read_common()) follow from it.
+/// Values that every device's guidance reckons with: the damping that is felt and the envelope's
+/// holding force (read_common()) follow from them.
 std::vector<BoundKey> felt_with_every_device() {
   return {{"device.velocity_window"},
           {"device.force_delay", "1"},

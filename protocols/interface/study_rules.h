@@ -12,10 +12,10 @@ class Protocol;
 /// Whose hand held the tool. If it was a person's, the tables of the virtual hand were not used.
 enum class Hand { kPerson, kVirtual };
 
-/// What may differ between the definitions of one study's sessions (docs/guide-experimenter.md).
+/// Differences that the definitions of one study's sessions may have (docs/guide-experimenter.md).
 DefinitionRules study_rules(const Protocol& protocol, Hand hand);
 
-/// What two sessions' definitions differ in: whether they are of one study.
+/// Differences between two sessions' definitions: whether they are of one study.
 DefinitionChanges study_changes(const Protocol& protocol, const record::SessionInfo& before,
                                 const record::SessionInfo& after);
 /// The same of a session that is about to be recorded. @param device  its name; the virtual one has

@@ -32,7 +32,7 @@ namespace haptrial::protocols {
 class SessionFile;
 class SharedSimulation;
 
-/// Where the trials of one session take place: what the runner tells a protocol.
+/// Place of a session's trials: the runner's message to a protocol.
 struct SessionPlace {
   std::string subject;            // identifier
   int participant{0};             // from 0
@@ -40,7 +40,8 @@ struct SessionPlace {
   int session{1};                 // of the participant, from 1
   std::uint64_t person_seed{0};   // of the participant, the same in every session
   std::uint64_t session_seed{0};  // of this session
-  // A virtual participant's; those of the two above, but where somebody else holds the device.
+  // Seeds of the hand that holds a virtual device; they differ from the participant's only when a
+  // partner leads.
   std::uint64_t hand_person_seed{0};
   std::uint64_t hand_session_seed{0};
   bool real{false};        // on a real clock: a person, or a rehearsal
@@ -62,14 +63,14 @@ void give_seeds(SessionPlace& place, std::string_view hand = {});
 /// How a trial ended.
 enum class TrialEnd : std::uint8_t { kCompleted, kSkipped, kAborted };
 
-/// What came of a trial: what the next one follows from.
+/// Outcome of a trial: the next one follows from it.
 struct Outcome {
   PlannedTrial trial;
   TrialEnd end{TrialEnd::kCompleted};
   std::vector<record::ResponseRow> responses;  // of its last attempt, in order
 };
 
-/// What is to become of a trial whose pass was aborted.
+/// Fate of a trial whose pass was aborted.
 enum class AfterAbort : std::uint8_t {
   kAsAsked,  // what experimenter and runner make of it
   kAgain,    // it is presented again
@@ -99,14 +100,14 @@ class Trials {
   /// Whether a resumed session presents trials again that an earlier run had to abort. Not where
   /// later trials followed from the abort.
   virtual bool presents_aborted_again() const { return false; }
-  /// Of every trial, in order. A trial is done when its last one was completed.
+  /// Phases of every trial, in order. A trial is done when its last one was completed.
   virtual std::span<const record::Phase> phases() const = 0;
 
   /// Virtual devices and virtual participant.
   virtual std::unique_ptr<Rig> virtual_rig() const = 0;
-  /// Who sees every tick beside the screen and the participant: for pictures, for sound.
+  /// Observers of every tick beside the screen and the participant: for pictures, for sound.
   virtual std::vector<stimulus::Observer*> observers() { return {}; }
-  /// What is recorded of every tick beside the samples; null: nothing.
+  /// Log of every tick beside the samples; null: none.
   virtual TickLog* tick_log() { return nullptr; }
   /// Hands over what its own logs hold. Called often; before the samples of the same ticks are
   /// handed over.
@@ -133,7 +134,7 @@ class Trials {
     static_cast<void>(trial);
     static_cast<void>(anew);
   }
-  /// What the participant's screen shows during the trial.
+  /// Drawing of the participant's screen during the trial.
   virtual MakeDrawing drawing() = 0;
   /// Whether a pass begins only when the screen has shown the first picture of drawing().
   virtual bool waits_for_picture() const { return false; }

@@ -103,7 +103,7 @@ void DefinedTrials::use_script() {
   sequence_.choose_by(*script_);
 }
 
-/// Its process begins with the first decision that a virtual participant leaves to it.
+/// Starts the script's process with the first decision that a virtual participant leaves to it.
 void DefinedTrials::use_decision_script() {
   std::function<void()> pulse;
   if (place_.pulse) {
@@ -244,7 +244,7 @@ bool DefinedTrials::comes_again(const std::vector<record::ResponseRow>& response
   });
 }
 
-/// What the procedure learns from a trial. A session that is resumed computes it from what is
+/// Value that the procedure learns from a trial. A session that is resumed computes it from what is
 /// recorded, so it follows from the responses alone.
 double DefinedTrials::outcome_of(const std::vector<record::ResponseRow>& responses) {
   if (current_.track < 0) {

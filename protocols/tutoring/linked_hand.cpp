@@ -131,7 +131,7 @@ void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, d
   share_lead(runs_ && partner_runs && turns_.together() && side_.linked(), dt);
   step(reading.tool, out.force, reading.buttons, dt);
   keep_within_envelope(out);
-  // What the link does is watched by the tank; the own world's part as it always is. A share that
+  // The tank watches the force of the link; the own world's part as it always is. A share that
   // changes puts energy into the own world's springs, or takes it out.
   const double share = side_.own_share();
   out.intent.push = share * out.intent.push + coupling_;

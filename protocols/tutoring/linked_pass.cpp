@@ -18,7 +18,7 @@ void LinkedPass::begin(std::uint64_t sequence) noexcept {
   inner_->begin(sequence);
 }
 
-/// What was seen last stays; nothing is felt.
+/// Holds the last view, without force.
 PassOutput LinkedPass::hold(const Readings& readings) const noexcept {
   PassOutput out = last_;
   static_cast<Drive&>(out) = {};

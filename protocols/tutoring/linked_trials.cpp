@@ -18,7 +18,7 @@ namespace {
 
 using network::PassBarrier;
 
-/// What an aborted trial may cost on a real clock before it is left.
+/// Attempts of an aborted trial on a real clock before it is left.
 constexpr int kMostAgain = 3;
 
 /// Everything is the protocol's own but when a pass begins and ends, and what the hand feels.
@@ -130,7 +130,7 @@ Pass& LinkedTrials::make_pass(PlannedTrial& trial, const record::Phase& phase) {
   const std::span<const record::Phase> all = phases();
   const auto at =
       static_cast<std::uint32_t>(std::find(all.begin(), all.end(), phase) - all.begin());
-  // What is simulated again from the file needs every tick of its pass, and a world that both work
+  // A pass that is simulated again from the file needs every tick, and a world that both sides work
   // on is the same only when both are through.
   const bool holds = inner_->tick_log() == nullptr || world_ != nullptr;
   pass_.emplace(inner_->make_pass(trial, phase), hand_, walked_ * PassBarrier::kPhases + at, holds,

@@ -18,7 +18,7 @@ struct TutorChoice {
 /// @throws InputError for another form
 TutorChoice read_tutor_choice(const std::string& text);
 
-/// What somebody did in one recorded run: the ticks of its stage `run`.
+/// A person's motion in one recorded run: the ticks of its stage `run`.
 struct ModelMotion {
   double rate{1000.0};  // [Hz]
   int trial{0};

@@ -243,7 +243,7 @@ bone::BoneModel load_source(const std::string& source, const BoneDefinition& d,
   return bone::load_bone(file, options);
 }
 
-/// Where a hand begins that only sees: in the middle of the first picture, in front of all bone.
+/// Start of a hand that only sees: in the middle of the first picture, in front of all bone.
 Eigen::Vector3d before_bones(const BoneDefinition& d) {
   constexpr double kBefore = 0.010;  // of the nearest bone; beyond the largest burr's radius [m]
   const Camera& camera = d.simulator.camera.start;

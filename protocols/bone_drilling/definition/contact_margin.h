@@ -27,8 +27,8 @@ double flat_bone_stiffness(const bone::BurrTool& burr, double force);
 /// is that of guidance (control/handle_loop.h) without damping in software, since bone has none.
 double stable_stiffness(const control::HandleLoop& loop, const control::HeldBy& hand);
 
-/// Of the burr under which bone is stiffest, with the definition's hand and virtual device; nothing
-/// without a burr.
+/// Margin for the burr under which bone is stiffest, with the definition's hand and virtual device;
+/// nothing without a burr.
 std::optional<ContactMargin> contact_margin(const BoneDefinition& definition);
 
 /// A sentence without a verdict: friction, which the law leaves out, holds a burr at rest beyond

@@ -14,8 +14,8 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// What the buttons of a device, the keys of the window and pedals are for. A USB pedal is a
-/// keyboard with few keys. Source: Morris 2006, §8.2.2.
+/// Functions of a device's buttons, the window's keys and pedals. A USB pedal is a keyboard with
+/// few keys. Source: Morris 2006, §8.2.2.
 struct Controls {
   std::array<std::uint32_t, bone::kFunctions> buttons{};  // by function: any of these, a bit each
   std::array<std::vector<int>, bone::kFunctions> keys{};  // by function: codes of the window

@@ -42,7 +42,7 @@ std::string named(const bone::BoneModel& bone) {
   return bone.name.empty() ? "the bone" : bone.name;
 }
 
-/// What to write instead.
+/// Advice on a better placement.
 std::string advice(const bone::BoneModel& bone) {
   const auto side = bone::ear_side(bone);
   if (!side) {

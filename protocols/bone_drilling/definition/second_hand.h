@@ -13,7 +13,7 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// What a second device is for: a tube that sucks and rinses. Source: Morris 2006, §3.2.8.
+/// Use of a second device: a tube that sucks and rinses. Source: Morris 2006, §3.2.8.
 struct SecondHandParameters {
   bone::TubeParameters tube;
   std::uint32_t suck{1};   // its buttons, a bit each: any of these

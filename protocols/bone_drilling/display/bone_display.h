@@ -34,7 +34,8 @@ class BoneDisplay {
   /// @param seen  of this stage; whatever moves beside it is taken as published
   void draw(const bone::DrillingView& seen);
   void set_quality(render::Quality quality) noexcept { scene_.set_quality(quality); }
-  /// What can be called up from now on; at first those of the stage. Null: nothing.
+  /// Sets the pictures that can be called up from now on; at first those of the stage. Null:
+  /// nothing.
   void set_stills(std::shared_ptr<const std::vector<render::Image>> stills);
   /// The camera of the last picture, or of one of its two.
   const Camera& camera() const { return frame_.camera; }

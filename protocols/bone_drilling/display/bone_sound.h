@@ -30,7 +30,7 @@ class ThicknessProbe {
   std::vector<bone::Voxel> voxels_;
 };
 
-/// What a drill sounds like at this instant.
+/// Audible state of a drill at this instant.
 sound::DrillState sound_of(const bone::DrillingView& seen, std::span<const bone::ToolSpec> tools,
                            double thickness) noexcept;
 

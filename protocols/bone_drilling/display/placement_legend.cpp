@@ -20,7 +20,7 @@ constexpr double kBar = 0.010;                           // the scale's bar [m]
 const render::Colour kInk{0.96, 0.96, 0.96};             // of words and arrows
 const render::Colour kWordPlate{0.05, 0.06, 0.08, 0.7};  // under words
 
-/// Where a point is seen [px].
+/// Pixel at which a point is seen [px].
 Eigen::Vector2d pixel_of(const Camera& camera, const Eigen::Vector3d& p_W, int width, int height) {
   const Eigen::Vector3d p = camera.pose().inverse() * p_W;
   const double scale = 0.5 * height / std::tan(0.5 * camera.field_of_view) / -p.z();
@@ -63,7 +63,7 @@ std::vector<std::optional<Eigen::Vector3d>> middles_in(const bone::BoneModel& mo
   return middles;
 }
 
-/// What is written and drawn over a picture.
+/// Words and lines over a picture.
 class Legend {
  public:
   Legend(const render::Gl& gl, const BoneDefinition& d, const bone::BoneModel& model)

@@ -20,7 +20,7 @@ class ReplayedHints {
  public:
   explicit ReplayedHints(const record::SessionReader& session);
 
-  /// What is seen on a tick, with its hints. The ticks of a trial in their order.
+  /// Adds the hints of a tick to its view. The ticks of a trial in their order.
   /// @param vital  names of the bone's structures, as DrillingView::hint_structure counts them
   bone::DrillingView with(bone::DrillingView seen, std::uint64_t sequence,
                           std::span<const std::string> vital);

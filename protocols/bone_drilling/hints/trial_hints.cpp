@@ -8,7 +8,7 @@
 namespace haptrial::protocols {
 namespace {
 
-/// What was drilled away before.
+/// Tells the watch the bone that was drilled away before.
 void tell_gone(const bone::BoneWorld& world, const geometry::VoxelGrid& grid,
                hint::HintWatch& watch) {
   for (int k = 0; k < grid.size[2]; ++k) {

@@ -25,14 +25,14 @@ class NervePage final : public AuxiliaryPage {
   /// {"stimulus": 0.5e-3}: the probe's current, 0.05 to 3 mA.
   void ask(const std::string& json) override;
 
-  /// Where the monitor shows what it does, and takes what is asked.
+  /// Buffer in which the monitor shows its output and takes requests.
   const std::shared_ptr<nerve::MonitorDesk>& desk() const { return desk_; }
 
  private:
   std::shared_ptr<nerve::MonitorDesk> desk_{std::make_shared<nerve::MonitorDesk>()};
 };
 
-/// What NervePage::ask() takes.
+/// Reads a request for NervePage::ask().
 /// @throws InputError
 nerve::MonitorOrder parse_nerve_order(const std::string& json);
 

@@ -11,7 +11,7 @@
 
 namespace haptrial::protocols {
 
-/// What a session's nerve monitor sounded like in one of its trials, from the session's file.
+/// Sound of a session's nerve monitor in one of its trials, from the session's file.
 class ReplayedNerves {
  public:
   /// @param card  samples a second of the sound [Hz]

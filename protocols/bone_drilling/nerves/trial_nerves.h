@@ -31,7 +31,7 @@ class TrialNerves {
 
   nerve::NerveBeside& beside() noexcept { return *beside_; }
   const nerve::NerveBeside& beside() const noexcept { return *beside_; }
-  /// What the tool in the present bone does to them.
+  /// Effects of the tool in the present bone on the nerves.
   nerve::NerveExposures* exposures() noexcept { return exposures_.get(); }
   /// Rows of /nerve_channels.
   std::span<const record::NerveChannelRow> channels() const noexcept { return channels_; }

@@ -14,7 +14,7 @@ std::unique_ptr<TrajectoryPass> make_pass(const std::string& condition, record::
                                           const stimulus::Stimulus& stimulus,
                                           const GuidanceParameters& parameters, std::int32_t block);
 
-/// What was presented at each sample of a recorded pass, by the rules of the pass itself.
+/// Presentation at each sample of a recorded pass, by the rules of the pass itself.
 /// @param samples  of this pass, in order, none missing.
 /// @param rate     of the servo loop [Hz]
 /// @param expert   the rows of these samples where there was an expert

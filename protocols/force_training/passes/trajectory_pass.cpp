@@ -178,7 +178,7 @@ Eigen::Vector3d TrajectoryPass::expert_place(double progress) const noexcept {
   return stimulus_.path.at(progress * stimulus_.path.duration()).position;
 }
 
-/// What the expert does: presses as hard as the pattern asks, so that the world pushes back.
+/// State of the expert, who presses as hard as the pattern asks, so that the world pushes back.
 control::Partner TrajectoryPass::expert() const noexcept {
   control::Partner expert;
   expert.tool = stimulus_.path.at(along_);
@@ -202,7 +202,7 @@ double TrajectoryPass::longest_run() const noexcept {
   return (guide_ ? 0.0 : played) + parameters_.run_timeout;
 }
 
-/// What the guide would give is faded out: its target goes over to where the tool is.
+/// Target of a guide that fades out: it goes over to where the tool is.
 PointState TrajectoryPass::released(const PointState& tool) noexcept {
   handover_.ask(run_lead() == RunLead::kWatched ? 0.0 : 1.0);
   const double share = handover_.step(dt_);
@@ -213,7 +213,7 @@ PointState TrajectoryPass::released(const PointState& tool) noexcept {
   return target;
 }
 
-/// What an expert's hand gives, in place of the push of the target force; a row of it.
+/// Plays the force of an expert's hand, in place of the push of the target force; a row of it.
 void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading) noexcept {
   const PointState& tool = reading.tool;
   const control::Partner model = expert();
@@ -308,7 +308,8 @@ stimulus::Presentation TrajectoryPass::presentation(const PassMoment& moment) co
     seen.self_paced = guide_.has_value();
     seen.direction = moment.direction;
     present(seen);
-    // What is not shown is not there: nobody who is presented with it can know more than a person.
+    // Values that are not shown are left out: nobody who is presented with the view can know more
+    // than a person.
     seen.target_force = seen.show_target_bar ? moment.target_force : 0.0;
     seen.applied_force = seen.show_applied_bar ? moment.applied_force : 0.0;
   } else if (moment.stage == Stage::kReturn) {

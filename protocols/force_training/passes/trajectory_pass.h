@@ -19,7 +19,7 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// What leads the hand during the run.
+/// Guidance of the hand during the run.
 enum class Guidance {
   kTrajectory,  // a target that moves along the path at its speed (§4.2.4)
   kCurve,       // the path itself, at the participant's own pace (§6.2)
@@ -43,7 +43,7 @@ struct GuidanceParameters {
   TutoringOptions tutoring{};       // of a playback
 };
 
-/// What leads the hand while the path runs.
+/// Leader of the hand while the path runs.
 enum class RunLead {
   kGuided,   // the guide, along the path
   kWatched,  // nothing: it is held at the start, and an expert is seen
@@ -51,7 +51,7 @@ enum class RunLead {
   kFree,     // nothing
 };
 
-/// What an expert did, tick by tick.
+/// Ticks of an expert's run.
 using ExpertLog = realtime::BlockLog<record::TutoringRow>;
 
 /// Reads a [guidance] table with its inner tables trajectory and plane, and curve where its `kind`
@@ -83,7 +83,7 @@ class TrajectoryPass : public Pass {
   TrajectoryPass(const stimulus::Stimulus& stimulus, const GuidanceParameters& parameters,
                  std::int32_t block);
 
-  /// Where rows of the expert's run go; outlives the pass. Without it they are not kept.
+  /// Sets the log for rows of the expert's run; it outlives the pass. Without it they are not kept.
   void record_expert(ExpertLog& log) noexcept { log_ = &log; }
 
   void begin(std::uint64_t sequence) noexcept final { sequence_ = sequence; }
@@ -92,8 +92,8 @@ class TrajectoryPass : public Pass {
   }
   PassOutput tick(const Readings& readings, double dt) noexcept final;
   PassState state() const noexcept final { return state_; }
-  /// What the participant sees at an instant: tick() shows it, and a replay shows it again. Before
-  /// the pass and after a fault, when the stage is idle, that is nothing. Servo thread.
+  /// The participant's view at an instant: tick() shows it, and a replay shows it again. Before the
+  /// pass and after a fault, when the stage is idle, that is nothing. Servo thread.
   stimulus::Presentation presentation(const PassMoment& moment) const noexcept;
   /// A guide along this pass's path, at its start; nothing where the path sets the pace.
   std::optional<CurveGuide> curve_guide() const;
@@ -106,7 +106,7 @@ class TrajectoryPass : public Pass {
   /// Completes what is seen during the run; tool, trajectory and progress are already there.
   virtual void present(stimulus::Presentation& presentation) const noexcept = 0;
 
-  /// Where the expert's tool is on the path. @param progress  0 to 1
+  /// Place of the expert's tool on the path. @param progress  0 to 1
   Eigen::Vector3d expert_place(double progress) const noexcept;
 
  private:

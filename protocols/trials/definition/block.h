@@ -12,7 +12,7 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// What a name is worth during a block, a trial or an interval.
+/// Value of a name during a block, a trial or an interval.
 struct GivenValue {
   std::string name;
   std::string formula;  // 0.5, 'curl', $level + 1
@@ -41,7 +41,7 @@ struct Block {
   std::optional<Probe> probe;
 };
 
-/// What a study presents, and in which order.
+/// Trials of a study, and their order.
 struct TrialDesign {
   int participants{1};
   int sessions{1};                                   // of each participant

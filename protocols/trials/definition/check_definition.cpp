@@ -85,7 +85,7 @@ void check_balance(Table& root, const Track& track, const Question& question) {
   }
 }
 
-/// What a track learns from, and what it could learn at best.
+/// Checks the answers that a track learns from, and the best that it could learn.
 void check_learning(Table& root, const TrialsDefinition& d, const Track& track) {
   if (!track.counts.empty()) {
     return;

@@ -11,15 +11,15 @@ class Table;
 
 namespace haptrial::protocols {
 
-// What the tables of a definition ask of each other. Problems are noted.
+// Checks between the tables of a definition. Problems are noted.
 
-/// What procedures set and what they learn from.
+/// Checks the values that procedures set, and the answers that they learn from.
 void check_procedures(Table& root, const TrialsDefinition& definition);
 
 /// A stage names fields, regions, looks and objects: each name stands for one thing.
 void check_object_names(Table& root);
 
-/// What stages show, and who names them.
+/// Checks the contents that stages show, and the names that refer to them.
 /// @param stages  of the first trial
 void check_stages(Table& root, const TrialsDefinition& definition,
                   const std::vector<NamedStage>& stages);

@@ -56,7 +56,7 @@ double push_at(const scene::Field& field, const Vector3d& p) {
   return 0.0;
 }
 
-/// Where a hand may be when a stage begins: in the regions that the stage before waits for, or
+/// Places of a hand when a stage begins: in the regions that the stage before waits for, or
 /// anywhere in the workspace.
 std::vector<Vector3d> places_before(const Presented& presented, std::size_t stage, double reach) {
   constexpr int kSteps = 20;  // to each side

@@ -8,7 +8,7 @@ namespace haptrial::protocols {
 struct Presented;
 struct TrialsDefinition;
 
-/// What the fields of the stages ask of the handle and of the hand on it
+/// Demands of the stages' fields on the handle and on the hand on it
 /// (docs/algorithms/every-hand.md).
 struct HandleWords {
   std::vector<std::string> lines;     // what lighter hands get less of; what begins around the hand

@@ -14,7 +14,7 @@
 namespace haptrial::protocols {
 namespace {
 
-/// Where a field brings a hand that does nothing; none: it leads nowhere.
+/// Place to which a field brings a hand that does nothing; none: it leads nowhere.
 std::optional<Eigen::Vector3d> end_of(const scene::FieldKind& kind) {
   if (const auto* spring = std::get_if<scene::SpringParameters>(&kind)) {
     return spring->to;

@@ -70,7 +70,7 @@ void add_names(const std::vector<Named>& named, std::vector<std::string>& to) {
   }
 }
 
-/// What a stage may show.
+/// Names of contents that a stage may show.
 std::vector<std::string> sights_of(const Presented& presented, const Names& names,
                                    const TrialsDefinition& d) {
   std::vector<std::string> sights{"hand", "interval_number"};

@@ -17,7 +17,7 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// What an interval consists of once every name has a value.
+/// Content of an interval once every name has a value.
 struct Presented {
   std::vector<scene::Field> fields;
   std::vector<std::uint64_t> felt;  // (devices) the fields that act on each, a bit each
@@ -27,7 +27,7 @@ struct Presented {
   std::vector<NamedStage> stages;
 };
 
-/// What is presented with the values that the names have. Problems are noted.
+/// Content of an interval with the values that the names have. Problems are noted.
 /// @param random  for durations; null: the shortest
 Presented read_presented(Table& root, const Names& names, const TrialsDefinition& definition,
                          RandomStream* random);

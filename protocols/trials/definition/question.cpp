@@ -27,7 +27,7 @@ std::uint32_t keys_of(Table& table, const char* key, KeyBits& bits) {
   return mask;
 }
 
-/// What answers may be given with.
+/// Means of answering.
 struct Means {
   KeyBits& keys;
   std::vector<std::string> regions;
@@ -143,7 +143,8 @@ void read_number(Table& table, Question& question, KeyBits& keys) {
   }
 }
 
-/// What an answer is told that comes too early or too late, and what follows.
+/// Reads the limits of an answer's time: the text after one that comes too early or too late, and
+/// the consequence.
 void read_limits(Table& table, Table& root, Question& question) {
   constexpr Bounds kLimit{0.0, 3600.0, true};
   if (table.has("too_fast")) {

@@ -44,7 +44,7 @@ inline constexpr std::size_t kMostTouched = 8;
 /// When an answer came.
 enum class Pace : std::uint8_t { kInTime, kTooFast, kTooSlow };
 
-/// What the participant is asked after the last interval.
+/// A question to the participant after the last interval.
 struct Question {
   std::string name;             // in /responses and in formulas
   std::string text;             // what is read

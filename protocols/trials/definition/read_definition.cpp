@@ -196,7 +196,7 @@ void read_all_objects(Table& root, TrialsDefinition& d) {
   }
 }
 
-/// What a session is planned by.
+/// Plans the definition's sessions.
 void plan(TrialsDefinition& d) {
   d.design.participants = d.order.participants;
   d.design.break_after = d.order.break_after;
@@ -207,7 +207,7 @@ void plan(TrialsDefinition& d) {
   d.design.repetitions = 1;
 }
 
-/// What ends a stage may be a key that answers no question.
+/// Gives a bit to each key that ends a stage: it may answer no question.
 void note_keys_of_stages(Table& root, KeyBits& keys) {
   if (!root.has("stages")) {
     return;

@@ -15,7 +15,7 @@ struct Interval;
 struct TrialsDefinition;
 using psychometric::Track;
 
-/// What one trial gives the names of a definition.
+/// Values of one trial for the names of a definition.
 struct TrialValues {
   int trial{1};
   std::size_t block{0};  // of the definition

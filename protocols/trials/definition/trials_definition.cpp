@@ -44,7 +44,7 @@ int TrialsDefinition::combinations(const Track& track, const Block& block) const
 
 namespace {
 
-/// Of the session that is asked for; the most of all sessions for 0.
+/// Count for the session that is asked for; the most of all sessions for 0.
 template <class Trials>
 int of_sessions(const TrialDesign& design, int session, Trials&& trials) {
   int most = 0;

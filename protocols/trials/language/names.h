@@ -16,8 +16,8 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// What the names of a definition are worth: its variables and places, and what the trial at hand
-/// gives them. Fields, regions and stages take their numbers from here. Session's thread.
+/// Values of the names of a definition: its variables and places, and those of the trial at hand.
+/// Fields, regions and stages take their numbers from here. Session's thread.
 ///
 ///     [variables]
 ///     jnd   = 0.08                                  # a number

@@ -27,7 +27,7 @@ struct RandomDots {
 };
 static_assert(std::is_trivially_copyable_v<RandomDots>);
 
-/// What a stage can show beside marks.
+/// A content of a stage beside marks.
 struct Look {
   std::string name;  // of the table [looks.NAME]
   RandomDots dots;

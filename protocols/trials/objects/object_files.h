@@ -12,7 +12,7 @@ class SessionReader;
 
 namespace haptrial::protocols {
 
-/// What a session file keeps of the meshes that are files, once they are loaded.
+/// Rows that a session file keeps of the meshes that are files, once they are loaded.
 std::vector<record::ObjectFileRow> object_files(const std::vector<TrialObject>& objects);
 
 /// Nothing for a session that was recorded without such files, or before they were kept.

@@ -7,8 +7,8 @@
 
 namespace haptrial::protocols {
 
-/// What keeps each rigid object among fields from shaking at the rate of the loop, or that nothing
-/// is proven of it, a line each; and that a body is a room.
+/// Lines about the means that keep each rigid object among fields from shaking at the rate of the
+/// loop, or that nothing is proven of it; and that a body is a room.
 /// @param rate  of the servo loop [Hz]  @param damping  of the hand of the definition [N·s/m]
 std::vector<std::string> words_of_solids(const std::vector<scene::Field>& fields, double rate,
                                          double damping);

@@ -17,7 +17,7 @@ void prepare_bodies(std::vector<scene::Field>& fields, double rate, bool real = 
 /// @throws InputError as deformable::steps_on_a_tick() and ticks_of_window()
 void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate);
 
-/// What the bodies among prepared fields cost and how stiff they are, a line each.
+/// Lines about the cost and the stiffness of the bodies among prepared fields.
 /// @param rate  of the servo loop [Hz]  @param damping  of the hand of the definition [N·s/m]
 std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields, double rate,
                                          double damping);

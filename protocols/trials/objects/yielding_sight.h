@@ -18,9 +18,9 @@ class YieldingSight {
   /// @param skin  null: the outer faces of the elements
   YieldingSight(SeenBody body, const contact::SharedBody& skin);
 
-  /// What rests on every tick lies as these forces press it; beyond the vertices that a Compliance
-  /// knows, those deeper than one element, nothing moves. What moves is where it was published
-  /// last.
+  /// Moves a body to its present shape: one that rests on every tick lies as these forces press it;
+  /// beyond the vertices that a Compliance knows, those deeper than one element, nothing moves. A
+  /// body that moves lies where it was published last.
   void update(std::span<const SeenForces::Force> forces);
 
   const std::vector<Eigen::Vector3d>& vertices() const { return skin_ ? fine_ : coarse_; }

@@ -11,7 +11,7 @@ class RandomStream;
 
 namespace haptrial::protocols {
 
-/// What an order of trials must keep to.
+/// A rule that an order of trials must keep to.
 struct OrderRule {
   std::string what;           // for messages: "condition", "catch"
   std::vector<int> values;    // (trials) of each trial, before it gets its place

@@ -9,7 +9,7 @@
 
 namespace haptrial::protocols {
 
-// What a pass that has ended leaves in the session file. The rows of out_of_time_rows() and
+// Rows of a pass that has ended for the session file. The rows of out_of_time_rows() and
 // stage_rows() name it by `row`, its own row in /trials.
 
 /// The answers that were given.

@@ -13,7 +13,7 @@ Mark mark_at(const Eigen::Vector3d& p, double radius) {
   return {{f.x(), f.y(), f.z()}, static_cast<float>(radius), 0};
 }
 
-/// Where a region is, and how large.
+/// Place and size of a region.
 Mark mark_of(const scene::Shape& shape) {
   if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) {
     return mark_at(sphere->centre, sphere->radius);

@@ -12,11 +12,11 @@ class Names;
 struct NamedStage;
 struct Presented;
 
-/// What a stage shows. @param seed  of its dots
+/// Content of a stage. @param seed  of its dots
 StageSight sight_of(const NamedStage& stage, const Presented& presented, const Names& names,
                     std::uint64_t seed);
 
-/// Where a place to touch is shown, and where a hand aims at: inside of it.
+/// Mark of a place to touch, which a hand aims at: inside of it.
 Mark mark_to_touch(const scene::Shape& shape, std::size_t device);
 
 }  // namespace haptrial::protocols

@@ -18,7 +18,7 @@
 namespace haptrial::protocols {
 namespace {
 
-/// What is read of a question: its text, and below it how each choice is given.
+/// Text of a question, and below it how each choice is given.
 std::string question_body(const Question& question, const TrialView& view) {
   if (question.types()) {
     return fmt::format("{}_", view.typed.data());
@@ -232,7 +232,7 @@ class TrialDrawing final : public Drawing {
     return sights_[i].get();
   }
 
-  /// Its surface, and over it the sides of its cells, so that what is pressed in shows from the
+  /// Draws the body's surface, and over it the sides of its cells, so that dents show from the
   /// front, too.
   void draw_body(YieldingSight& body, const SeenObject& seen,
                  std::span<const SeenForces::Force> pressed, const Part& part) {

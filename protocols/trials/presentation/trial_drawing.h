@@ -8,7 +8,7 @@
 
 namespace haptrial::protocols {
 
-/// What the participant sees of trials: marks and the hand, the number of the interval, questions
+/// Drawing of trials for the participant: marks and the hand, the number of the interval, questions
 /// with their choices, whether an answer was right. @param definition  outlives the drawing
 /// @param bodies  that give way; null: all are seen at rest
 MakeDrawing trial_drawing(const TrialsDefinition& definition,

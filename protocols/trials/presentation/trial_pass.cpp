@@ -24,7 +24,7 @@ void TrialPass::begin(std::uint64_t sequence) noexcept {
   begin_interval();
 }
 
-/// What was felt in the interval before does not jump.
+/// Keeps the sensation of the interval before, so that it does not jump.
 void TrialPass::go_on_feeling() noexcept {
   IntervalRun& run = setup_.intervals[interval_];
   for (std::size_t device = 0; interval_ > 0 && device < run.scenes.size(); ++device) {
@@ -141,7 +141,7 @@ void TrialPass::log_contacts(const IntervalRun& run, std::size_t device) noexcep
   }
 }
 
-/// What presses the seen bodies, of all devices together.
+/// Shows the forces on the seen bodies, of all devices together.
 void TrialPass::show_pressed(const IntervalRun& run, const StageSight& sight,
                              std::size_t devices) noexcept {
   for (std::size_t i = 0; i < std::min(sight.objects.size(), kMostSeenObjects); ++i) {

@@ -19,7 +19,7 @@
 
 namespace haptrial::protocols {
 
-/// Where the servo thread leaves the contacts that are recorded.
+/// Log of the servo thread for contacts that are recorded.
 using ContactLog = realtime::BlockLog<record::ContactRow>;
 
 /// A field of a scene that is an object of the definition, both from 0.
@@ -28,7 +28,7 @@ struct RecordedObject {
   std::int32_t object{0};
 };
 
-/// What is seen during a stage.
+/// Content of the screen during a stage.
 struct StageSight {
   std::vector<Mark> marks;
   std::vector<SeenObject> objects;
@@ -57,7 +57,7 @@ struct TouchedPlace {
   int region{-1};         // of the definition's [regions], in the order of their names
 };
 
-/// What is asked after the intervals.
+/// A question after the intervals.
 struct PresentedQuestion {
   const Question* question{nullptr};  // outlives the pass
   int right{-1};                      // choice, from 0; -1: none is known to be right
@@ -68,7 +68,7 @@ struct PresentedQuestion {
   StageSight sight{};                  // these places, and the hand
 };
 
-/// What was answered.
+/// An answer.
 struct Answer {
   bool given{false};
   int choice{-1};                                          // from 0
@@ -122,7 +122,7 @@ class TrialPass final : public Pass {
     return setup_.intervals[interval].machine;
   }
   std::size_t intervals_begun() const { return begun_; }
-  /// What a device felt in an interval.
+  /// Scenes of a device in an interval.
   std::span<const scene::Scene> scenes(std::size_t interval) const {
     return setup_.intervals[interval].scenes;
   }
@@ -132,7 +132,7 @@ class TrialPass final : public Pass {
   std::int32_t trial() const { return setup_.trial; }  // as the view has it
   std::uint64_t last_tick() const { return sequence_ - 1; }
   const std::vector<Answer>& answers() const { return answers_; }
-  /// What a question shows beside its text.
+  /// Content of the screen beside a question's text.
   const StageSight& question_sight(std::size_t question) const {
     return setup_.questions[question].sight;
   }

@@ -31,8 +31,8 @@ struct DotsShown {
 
 enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
 
-/// What a participant of trials sees at one instant; the drawing and the virtual participant take
-/// it from here.
+/// The participant's view of trials at one instant; the drawing and the virtual participant take it
+/// from here.
 struct TrialView {
   static constexpr std::size_t kMostMarks = 8;
   static constexpr std::size_t kTyped = 16;
@@ -58,7 +58,7 @@ struct TrialView {
 
   bool engaged() const noexcept { return interval > 0 || question > 0; }
   bool told() const noexcept { return verdict != Verdict::kNone || pace != Pace::kInTime; }
-  /// What a stage shows; at most kMostMarks marks. Servo thread: no allocation or throw.
+  /// Sets the content of a stage; at most kMostMarks marks. Servo thread: no allocation or throw.
   void show(std::span<const Mark> seen, std::span<const SeenObject> bodies, bool hand, bool number,
             const DotsShown& bar) noexcept {
     hand_shown = hand;

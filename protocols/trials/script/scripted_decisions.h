@@ -40,7 +40,7 @@ class ScriptedDecisions {
   /// @throws InputError where it gives no answer, or one that the question does not allow
   LeftDecision::Answer decide(const TrialToDecide& trial, const Question& question,
                               const LeftDecision::DecisionRequest& asked);
-  /// What was answered in a trial that counts; the script is told of it from then on.
+  /// Tells the script the answers in a trial that counts, from then on.
   void told(int trial, bool practice, std::span<const record::ResponseRow> responses);
 
  private:

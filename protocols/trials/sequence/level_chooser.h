@@ -16,13 +16,13 @@ struct LevelQuestion {
   const psychometric::Level& proposed;  // by the track's own procedure
 };
 
-/// Who may present other levels than the procedures ask for. Session's thread.
+/// A chooser of other levels than the procedures ask for. Session's thread.
 class LevelChooser {
  public:
   virtual ~LevelChooser() = default;
   /// @returns the level to ask for, with the dimensions of the proposed one
   virtual psychometric::Level choose(const LevelQuestion& question) = 0;
-  /// What the track's own procedure learns from a trial, too.
+  /// Tells the chooser an outcome that the track's own procedure learns from, too.
   virtual void told(const std::string& name, const psychometric::Outcome& outcome) = 0;
 };
 

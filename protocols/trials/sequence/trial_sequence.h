@@ -18,7 +18,7 @@ namespace haptrial::protocols {
 /// Added to the number of a trial of practice, which is no other's.
 inline constexpr int kPracticeNumbers = 1'000'000;
 
-/// Who takes part, as far as an order depends on it.
+/// The participant and session, as far as an order depends on them.
 struct SessionIdentity {
   int participant{0};  // from 0
   std::string group;
@@ -27,7 +27,7 @@ struct SessionIdentity {
   int session{1};  // from 1
 };
 
-/// Who comes to a session of a definition. @param place  with its seeds
+/// Identity of a session of a definition. @param place  with its seeds
 SessionIdentity identity_of(const TrialsDefinition& definition, const SessionPlace& place);
 
 /// One track in one combination of its factors.
@@ -56,7 +56,7 @@ class TrialSequence {
   /// @param definition  outlives the sequence
   TrialSequence(const TrialsDefinition& definition, const SessionIdentity& taker);
 
-  /// What follows; nothing at the end. The same until conclude() is called.
+  /// The next trial; nothing at the end. The same until conclude() is called.
   std::optional<NextTrial> next();
   /// @param presented  whether the trial was completed; else its level is asked for again
   /// @param outcome    for the procedure of its track; NaN: it learns nothing

@@ -23,7 +23,7 @@ struct NamedStage {
   Stage stage;
 };
 
-/// What the stages of a definition may name.
+/// Names that the stages of a definition may use.
 struct StageSource {
   std::vector<std::string> fields;   // by index
   std::vector<std::string> regions;  // likewise

@@ -19,14 +19,14 @@ struct Until {
   double hold{0.0};          // >= 0 [s]
 };
 
-/// What follows when a stage takes too long, or when too little was felt in it.
+/// Consequence of a stage that takes too long, or in which too little was felt.
 enum class Consequence : std::uint8_t {
   kGoOn,    // to the next stage; the record says so
   kRepeat,  // the interval, from its first stage
   kAbort,   // the trial; it is queued again
 };
 
-/// What must have happened in a stage: "did they press at all?"
+/// An event that must have happened in a stage: "did they press at all?"
 struct Requirement {
   enum class Of : std::uint8_t { kDepth, kForce, kSpeed };
   Of of{Of::kDepth};

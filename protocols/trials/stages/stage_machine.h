@@ -18,7 +18,7 @@ namespace haptrial::protocols {
 /// How a stage ended.
 enum class StageEnd : std::uint8_t { kUnderWay, kReached, kLate, kTooLittle };
 
-/// What came of a stage; ticks count from the first of the interval.
+/// Times of a stage; ticks count from the first of the interval.
 struct StageTimes {
   std::int64_t begin{-1};  // -1: not begun
   std::int64_t onset{-1};  // the first tick on which the tool was faster than onset_speed; -1: none
@@ -66,8 +66,8 @@ class StageMachine {
   std::size_t stage() const noexcept { return stage_; }
   double time_in_stage() const noexcept { return in_stage_; }  // [s]
   int repeats() const noexcept { return repeats_; }
-  /// Where the tool was missing when the last stage came to its time-out; -1: it was in all
-  /// regions.
+  /// Region in which the tool was missing when the last stage came to its time-out; -1: it was in
+  /// all regions.
   struct Outside {
     int region{-1};
     double distance{0.0};  // of the tool to the region [m]

@@ -25,7 +25,7 @@ struct TrialDevice;
 /// How virtual participants of trials take what they feel for an answer.
 enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kNearest, kMagnitude, kAdjust };
 
-/// What a hand does in a stage.
+/// Action of a hand in a stage.
 struct StageAction {
   std::string stage;
   std::size_t device{0};  // whose hand
@@ -40,7 +40,7 @@ struct Adaptation {
   std::string stage;  // of the reach that is learnt from
 };
 
-/// Who stands in for people in a dry run.
+/// The virtual participants of a dry run.
 struct ObserverPlan {
   subject::Quantity senses{subject::Quantity::kForce};
   std::string stage;  // in which it is felt; empty: throughout the interval

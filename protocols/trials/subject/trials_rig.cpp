@@ -130,7 +130,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     recalled_.reset();
   }
 
-  /// What is learnt if the reach ends with this tick: the pass may end before it is noticed.
+  /// Notes the adaptation if the reach ends with this tick: the pass may end before it is noticed.
   void note_learnt() noexcept {
     if (!adaptation_) {
       return;
@@ -214,7 +214,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     limb.prober.begin(probe, limb.state);
   }
 
-  /// What was felt of it is kept; a reach is learnt from.
+  /// Keeps the sensations of the stage, and learns from a reach.
   void leave_stage() noexcept {
     if (interval_ >= 0 && static_cast<std::size_t>(interval_) < kMostIntervals &&
         (felt_in_ < 0 || stage_ == felt_in_)) {
@@ -226,7 +226,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     stage_ = interval_ = -1;
   }
 
-  /// Of one hand what it feels; between two fingertips, or by eye, a size.
+  /// Percept of one hand; between two fingertips, or by eye, a size.
   double percept() const noexcept {
     const bool both = limbs_.size() > 1 && plan_.senses == subject::Quantity::kExtent;
     if (!both && !sight_) {

@@ -19,7 +19,7 @@ namespace haptrial::protocols {
 struct Question;
 struct TrialDevice;
 
-/// What a virtual participant carries from one trial to the next.
+/// State of a virtual participant that goes from one trial to the next.
 struct CarriedOver {
   int previous{-1};  // choice that was answered last, from 0; -1: none
   double fast{0.0};  // of the adaptation, in shares of the field
@@ -30,7 +30,7 @@ struct CarriedOver {
 /// several devices, a hand or fingertip at each.
 class TrialsRig final : public Rig {
  public:
-  /// What a participant has been told.
+  /// A participant's instructions.
   struct Briefing {
     const Definition* definition{nullptr};
     const ObserverPlan* plan{nullptr};
@@ -55,8 +55,8 @@ class TrialsRig final : public Rig {
   const LeftDecision* left() const { return left_.get(); }
   /// Goes on from what an earlier run of the session left. Session's thread, before the first pass.
   void recall(const CarriedOver& before);
-  /// What was learnt up to the end of the last pass, whether or not the participant has noticed
-  /// that it ended. Session's thread, between passes.
+  /// Adaptation up to the end of the last pass, whether or not the participant has noticed that it
+  /// ended. Session's thread, between passes.
   CarriedOver carried_over() const;
 
  private:
