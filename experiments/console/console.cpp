@@ -30,7 +30,7 @@ constexpr std::size_t kMaxBody = 4096;
 constexpr std::size_t kSilent = 256;  // connections that have said nothing
 const Seconds kLastWord(0.2);         // for a client that was cut off to take its answer
 
-/// What a worker is busy with; the library's handlers run inside it.
+/// Job of a worker; the library's handlers run inside it.
 struct Job {
   Connection& connection;
   bool refused{false};
@@ -364,7 +364,7 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
   });
 }
 
-/// What is asked by a body.
+/// Answers a request whose body asks for something.
 void Console::Implementation::take(httplib::Response& response,
                                    const std::function<void()>& action) {
   try {

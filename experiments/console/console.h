@@ -53,9 +53,9 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// What the experimenter opens; holds the token.
+  /// Address that the experimenter opens; it holds the token.
   std::string url() const;
-  /// What is opened for a page beside it; likewise. @param name  of the page
+  /// Address of a page beside it; likewise. @param name  of the page
   std::string side_url(std::string_view name) const;
   int port() const;
   const std::string& token() const;

@@ -11,7 +11,7 @@ namespace haptrial::experiments {
 /// @throws InputError also where it is not and `allow_remote` is false.
 bool check_console_address(const std::string& address, bool allow_remote);
 
-/// What the Host of a request may be: "127.0.0.1:8080" and, on loopback, "localhost:8080".
+/// Allowed Hosts of a request: "127.0.0.1:8080" and, on loopback, "localhost:8080".
 std::vector<std::string> console_hosts(const std::string& address, bool loopback, int port);
 
 }  // namespace haptrial::experiments

@@ -18,7 +18,7 @@ std::string make_token();
 /// In a time that does not tell how many characters were right.
 bool is_same_secret(const std::string& a, const std::string& b);
 
-/// What a request says of itself before its body is read; empty where it does not say.
+/// Head of a request before its body is read; empty fields were not sent.
 struct RequestHead {
   std::string method;
   std::string path;

@@ -6,7 +6,7 @@
 
 namespace haptrial::experiments {
 
-/// What a page asks at the moment, for those who answer it elsewhere than in the participant's
+/// A page's question at the moment, for those who answer it elsewhere than in the participant's
 /// window.
 struct AskedItem {
   int number{0};     // counts what was asked, from 1; 0: nothing is asked

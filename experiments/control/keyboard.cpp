@@ -27,7 +27,7 @@ namespace {
 constexpr char kEscape = '\x1b';
 constexpr int kPriority = 60;  // of SCHED_FIFO, below the servo thread's
 
-// What a signal handler needs to put the terminal back.
+// Settings with which a signal handler puts the terminal back.
 termios saved;
 std::atomic<int> saved_terminal{-1};
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -245,7 +245,8 @@ class Keyboard::Implementation {
     }
   }
 
-  /// What a page asks, so that it can be answered here: once by itself, and whenever Enter asks.
+  /// Shows a page's question, so that it can be answered here: once by itself, and whenever Enter
+  /// asks.
   void show_asked(const AskedItem& asked) {
     shown_ = asked.number;
     std::string lines = asked.title + (asked.title.empty() ? "" : "\n") + asked.text + "\n";

@@ -11,7 +11,7 @@ namespace haptrial::experiments {
 /// "idle", "approach", "wait", "run" or "return".
 const char* name_of(record::Stage stage);
 
-/// What the records of a running session say for the console. Session's thread.
+/// Status of a running session for the console, from its records. Session's thread.
 class LiveStatus {
  public:
   /// How late the ticks of these records were, against the earliest of all; keeps the last one.

@@ -14,11 +14,11 @@
 
 namespace haptrial::experiments {
 
-/// Who asks for something: what stands in the events of the session file.
+/// Source of a request, as the events of the session file name it.
 enum class RequestSource : std::uint8_t { kConsole, kTerminal, kWindow };
 const char* name_of(RequestSource by) noexcept;  // "console", "terminal", "window"
 
-/// What an experimenter asks of a running session, from the console or the keyboard.
+/// Request of an experimenter to a running session, from the console or the keyboard.
 enum class Request : std::uint8_t {
   kStart,          // leave a text screen or a pause
   kPause,          // after the present pass
@@ -32,7 +32,7 @@ enum class Request : std::uint8_t {
   kHandOver,       // gives it back
 };
 
-/// What a session shows of itself, about 20 times a second.
+/// Status of a session, sent about 20 times a second.
 struct SessionStatus {
   std::string subject;
   std::string
@@ -80,7 +80,8 @@ struct SessionStatus {
 /// Every member may be called from any thread but the servo thread.
 class SessionControl {
  public:
-  /// What an emergency stop does at once, before the session's thread takes the message.
+  /// Sets the action of an emergency stop, done at once, before the session's thread takes the
+  /// message.
   void on_emergency(std::function<void()> stop);
 
   void ask(Request request, RequestSource by = RequestSource::kConsole);

@@ -13,7 +13,7 @@
 
 namespace haptrial::experiments {
 
-/// What the experimenter asked for and has not come about yet.
+/// Requests of the experimenter that are not carried out yet.
 struct PendingRequests {
   bool start{false};  // go on before the time of a break has passed
   bool pause{false};
@@ -28,7 +28,7 @@ struct PendingRequests {
 /// session stands. Without a control it does nothing. Session's thread.
 class SessionController {
  public:
-  /// What a message does to the session at once.
+  /// Immediate actions of a message on the session.
   struct Actions {
     std::function<void()> break_off;  // the present pass
     std::function<void()> clear_fault;

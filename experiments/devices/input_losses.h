@@ -7,7 +7,7 @@
 
 namespace haptrial::experiments {
 
-/// What is to be recorded of an input device, and what an experimenter has to know of it.
+/// News of an input device: the event to record, and the sentence for the experimenter.
 struct InputNews {
   std::string event;   // "pedal_lost" or "pedal_back"
   std::string text;    // of the event

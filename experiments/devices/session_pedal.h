@@ -24,7 +24,7 @@ class SessionPedal {
   device::Pedal* pedal() { return pedal_.get(); }
   /// At the beginning: that a pedal would be used, and that none is named. Empty: all is well.
   const std::string& notice() const { return notice_; }
-  /// What happened since the last call.
+  /// News since the last call.
   std::vector<InputNews> take_news();
   /// At the end: how often it was lost; empty if at most once, which take_news() has said.
   std::string losses() const;

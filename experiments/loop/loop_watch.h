@@ -20,7 +20,7 @@ class LoopWatch {
   explicit LoopWatch(double rate_hz) : rate_hz_(rate_hz) {}
 
   void begin_pass(std::uint64_t ticks, std::uint64_t overruns);
-  /// What the loop has counted so far. @param now  never earlier than before
+  /// Takes the loop's counts so far. @param now  never earlier than before
   /// @returns a sentence when the last second of the pass was overloaded.
   std::optional<std::string> overloaded(Time now, std::uint64_t ticks, std::uint64_t overruns);
   /// @returns what record::too_many_overruns() says of the pass.

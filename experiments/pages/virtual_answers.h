@@ -8,9 +8,9 @@
 
 namespace haptrial::experiments {
 
-/// What a virtual participant answers, so that a dry run goes through every page: it consents,
-/// chooses at random, and is mostly right-handed. From a random stream of the item's own, so that
-/// the answer does not depend on what else was asked.
+/// Answer of a virtual participant, so that a dry run goes through every page: it consents, chooses
+/// at random, and is mostly right-handed. A random stream of the item's own decides, so that the
+/// answer does not depend on other items.
 /// @param session_seed  of the participant
 /// @param occasion      "before", "after block 2", …
 PageAnswer virtual_answer(const pages::Page& page, const pages::Item& item,

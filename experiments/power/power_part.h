@@ -13,7 +13,7 @@ namespace haptrial::experiments {
 std::string part_text(const PowerQuestion& question, const PowerUnit& unit,
                       const std::vector<Rehearsed>& replications);
 
-/// What a part holds.
+/// Reports in a part.
 /// @throws InputError for a part that is damaged, or of another definition, program or unit
 std::vector<Rehearsed> read_part(const std::filesystem::path& file, const PowerQuestion& question,
                                  const PowerUnit& unit);

@@ -44,7 +44,7 @@ std::vector<std::size_t> own_units(const PowerFolder& folder, const PowerShare& 
   return own;
 }
 
-/// What the threads of a process do with units, and what came of it.
+/// Work of a process's threads on units, and its results.
 class Filling {
  public:
   Filling(const PowerFolder& folder, const PowerQuestion& question, const PowerShare& share)

@@ -8,7 +8,7 @@
 
 namespace haptrial::experiments {
 
-/// What of the work a process does.
+/// Share of the work that a process does.
 struct PowerShare {
   int jobs{1};
   int part{1}, of{1};               // the units part - 1, part - 1 + of, …

@@ -11,7 +11,7 @@
 
 namespace haptrial::experiments {
 
-/// What follows a pass that was aborted: why it was is recorded and said; then somebody sees to the
+/// Handling of a pass that was aborted: the reason is recorded and said; then somebody sees to the
 /// cause, or the session ends, or the device recovers. After three in a row that nobody asked for
 /// the session pauses, since the fourth would go the same way. Session's thread.
 class AbortedPass {

@@ -8,9 +8,9 @@
 
 namespace haptrial::experiments {
 
-/// What an earlier run of a session recorded, asked trial by trial; of a new session nothing.
+/// Records of an earlier run of a session, asked trial by trial; a new session has none.
 
-/// What came of a trial: its last pass was completed, it was skipped, or every attempt was aborted;
+/// Outcome of a trial: its last pass was completed, it was skipped, or every attempt was aborted;
 /// nothing if it has none. @param last  phase of a trial
 std::optional<protocols::Outcome> outcome_of(const record::Resumed& before,
                                              const protocols::PlannedTrial& trial,
@@ -28,7 +28,7 @@ int finished_trials(const record::Resumed& before, const record::Phase& last);
 /// 0 where the trial has none.
 int attempts_of(const record::Resumed& before, const protocols::PlannedTrial& trial);
 
-/// What was answered to the same item on the same occasion.
+/// Earlier answer to the same item on the same occasion.
 std::optional<record::AnswerRow> answer_to(const record::Resumed& before,
                                            const record::AnswerRow& asked);
 

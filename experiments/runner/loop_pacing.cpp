@@ -59,7 +59,7 @@ void SessionPace::drive_until_idle() {
   }
 }
 
-/// What has come since the last call: records, pictures shown, messages.
+/// Collects records, shown pictures and messages since the last call.
 void SessionPace::collect() {
   const std::size_t count = p_.record.collect([this](std::span<const record::Sample> samples) {
     p_.controller.follow(samples, 1e9 / d_.rate);

@@ -22,8 +22,9 @@ class NextTrial {
   };
   explicit NextTrial(const Parts& parts) : p_(parts) {}
 
-  /// What was recorded is not presented again: its outcome goes into the same procedure, which
-  /// leads to the same trials. Pages that the earlier run left unanswered are asked on the way.
+  /// The next trial that is not recorded. The outcome of a recorded one goes into the same
+  /// procedure, which leads to the same trials. Pages that the earlier run left unanswered are
+  /// asked on the way.
   /// @param last  what came of the trial before; null at first
   /// @returns nothing at the end of the session, and where it was ended at a page
   std::optional<protocols::PlannedTrial> after(const protocols::Outcome* last);

@@ -521,7 +521,7 @@ void Session::give_up() noexcept {
   try {
     record_.give_up(task_);
   } catch (const std::exception&) {
-    // What stopped the session is the error to report; the writer keeps what it
+    // The error to report is the one that stopped the session; the writer keeps the rows that it
     // could.
   }
 }

@@ -157,7 +157,8 @@ void SessionMarkers::add(const TimedOnset& onset, MarkerWay way, std::int64_t wr
   rows_.push_back(std::move(row));
 }
 
-/// What an onset is to wait for; one that goes nowhere has a row all the same.
+/// Takes in an onset with the outputs that it waits for; one that goes nowhere has a row all the
+/// same.
 void SessionMarkers::take_in(const TimedOnset& onset) {
   if (onset.over) {
     return;

@@ -34,7 +34,7 @@ class SessionMarkers {
   SessionMarkers& operator=(const SessionMarkers&) = delete;
 
   bool used() const { return definition_.markers.used; }
-  /// What the experimenter has to know from the beginning: no sound card. Empty: nothing.
+  /// Notice that the experimenter has to see from the beginning: no sound card. Empty: nothing.
   const std::string& notice() const { return notice_; }
   /// Whether sounds are played, in a sentence; empty if the definition has none.
   std::string sound_state() const;

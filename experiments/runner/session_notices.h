@@ -17,8 +17,8 @@ namespace haptrial::experiments {
 /// "3 of 72 trials planned, and 1 for practice". @param defined  trials of the definition
 std::string planned_of(const protocols::Extent& extent, int defined);
 
-/// What a session says of itself while it runs: in the terminal, on the console, in the file.
-/// Session's thread.
+/// Messages of a session while it runs: in the terminal, on the console, in the file. Session's
+/// thread.
 class SessionNotices {
  public:
   /// All of them outlive the notices.
@@ -38,12 +38,12 @@ class SessionNotices {
   /// The pass that has just ended. @param watch  of it
   void note_overruns(const LoopWatch& watch);
 
-  /// What the pass that has just ended had of trouble that did not end it.
+  /// Notes trouble of the pass that has just ended, if it did not end the pass.
   void note_pass(const protocols::PassResult& result);
   /// At the end of the session. @param live, screen  null where there is none
   void note_troubles(const record::LiveFigures* live, const Screen* screen);
 
-  /// What is recorded where, and how many trials.
+  /// Says where the session is recorded, and how many trials it has.
   /// @param defined  trials of the whole session  @param over  of them, from earlier runs
   void say_plan(const protocols::Extent& extent, int defined, int over);
   /// @param how  "completed", "skipped", "aborted"

@@ -46,7 +46,7 @@ void check_same_tutor(const SessionRequest& request, const record::SessionReader
   }
 }
 
-/// What a resumed session must have in common with the one that is gone on with.
+/// Checks the facts that a resumed session must have in common with the one that is gone on with.
 void check_same_session(const SessionRequest& request, const record::SessionInfo& before) {
   const std::string partial = request.file.string() + ".partial";
   if (before.seed != request.seed) {
@@ -125,7 +125,7 @@ static record::TableList tables_of(const SessionRequest& request, const protocol
   return tables;
 }
 
-/// What its file may have already: the tables of the protocol, and those of any.
+/// Tables that its file may have already: those of the protocol, and those of any.
 static record::TableList possible_tables(const SessionRequest& request) {
   return record::with_tables(request.protocol->tables(), record::common_tables());
 }

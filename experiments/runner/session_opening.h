@@ -23,11 +23,11 @@ class MouseDevice;
 
 namespace haptrial::experiments {
 
-/// What a session opens before its first tick, each from the request alone.
+/// Parts that a session opens before its first tick, each from the request alone.
 
 record::SessionInfo session_info(const SessionRequest& request, const device::DeviceInfo& device);
 
-/// What the definition of a resumed session differs in from the one that `before` has.
+/// Differences between the definition of a resumed session and the one that `before` has.
 DefinitionChanges changes_since(const SessionRequest& request, const record::SessionInfo& before);
 
 /// Which run leads the hand, for the session's event "tutor": file, trial, mark and the file's
@@ -48,7 +48,7 @@ bool close_what_had_ended(const SessionRequest& request);
 /// The choice for each device; the last one holds for those that follow.
 std::vector<DeviceChoice> choices_of(const SessionRequest& request);
 
-/// Where somebody looks at the figures: at a console, or at the end; else null.
+/// Live figures if somebody looks at them: at a console, or at the end; else null.
 std::unique_ptr<record::LiveFigures> open_live(const SessionRequest& request);
 
 /// FILE.partial, which the session goes on with; empty for a new one.

@@ -65,7 +65,7 @@ bool SessionPages::show(const std::vector<std::string>& names, PageTime when, in
   return true;
 }
 
-/// What an earlier run answered stands; texts are shown again, as instructions are.
+/// Answers of an earlier run stand; texts are shown again, as instructions are.
 bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, PageTime when,
                              int block) {
   record::AnswerRow row;

@@ -23,7 +23,7 @@
 
 namespace haptrial::experiments {
 
-/// What a session writes and streams: the records of its servo thread, passes, answers, events,
+/// Record and streams of a session: the records of its servo thread, passes, answers, events,
 /// stimuli, frames and timing; everything that is recorded goes to one list of sinks. Session's
 /// thread. Every member throws RunError when the file cannot be written.
 class SessionRecord final : public protocols::SessionFile {
@@ -37,17 +37,17 @@ class SessionRecord final : public protocols::SessionFile {
                 const realtime::ServoLoop& loop, protocols::Trials& trials,
                 markers::OnsetLog& onsets, record::LiveFigures* live);
 
-  /// Where the servo thread leaves its records.
+  /// Log in which the servo thread leaves its records.
   protocols::SessionTask::Log& log() { return log_; }
   protocols::SessionTask::DeviceLog& device_log() { return device_log_; }
-  /// Of the first tick of this run.
+  /// Origin of the first tick of this run.
   protocols::Origin origin() const;
   std::uint64_t dropped() const;
   /// Why there are no streams though they were asked for, in a sentence; else empty.
   const std::string& notice() const { return notice_; }
   SessionMarkers& markers() { return markers_; }
 
-  /// What a resumed file holds; see earlier_run.h.
+  /// Contents of a resumed file; see earlier_run.h.
   const record::Resumed& earlier() const { return before_; }
   /// The first event, after rows for the passes during which an earlier run ended.
   void open(const std::string& text);
@@ -72,7 +72,7 @@ class SessionRecord final : public protocols::SessionFile {
   const record::PassRow& pass() const { return row_; }
   void end_pass(const protocols::PassResult& result);
 
-  /// What the servo thread has recorded since the last call, shown to `follow`.
+  /// Takes the records of the servo thread since the last call, and shows them to `follow`.
   /// @returns the number of records.
   using Follower = std::function<void(std::span<const record::Sample>)>;
   std::size_t collect(const Follower& follow);

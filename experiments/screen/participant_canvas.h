@@ -20,7 +20,7 @@ class Window;
 
 namespace haptrial::experiments {
 
-/// What the session's thread asks to be shown.
+/// Scene that the session's thread asks to be shown.
 struct Scene {
   std::uint64_t version{0};
   protocols::MakeDrawing make;  // empty: the page
@@ -46,7 +46,7 @@ class ParticipantCanvas {
   /// How fast the display takes pictures [s]; shows empty ones.
   double probe();
   void pressed(int key);
-  /// Where the window's pointer is over what is shown.
+  /// Position of the window's pointer over the picture.
   /// @param input  with pixel, wheel and buttons of that pointer
   ScreenPointer pointer(const device::PointerInput& input);
 

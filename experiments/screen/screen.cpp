@@ -98,7 +98,7 @@ struct Screen::Impl {
 
 namespace {
 
-/// What happens at a window, told once: keys, held keys, the pointer, the close button.
+/// Events at a window, told once: keys, held keys, the pointer, the close button.
 class WindowEvents {
  public:
   WindowEvents(render::Window& window, const ScreenCallbacks& callbacks)

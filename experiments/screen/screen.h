@@ -40,25 +40,27 @@ struct Flash {
   std::int64_t time_ns{0};  // when it was shown, as a frame's
 };
 
-/// What happens at the screen; called on its thread. They must not call back into the screen.
+/// Callbacks for events at the screen; called on its thread. They must not call back into the
+/// screen.
 struct ScreenCallbacks {
   std::function<void(const render::KeyPress&)> key;
   std::function<void(const ScreenPointer&)> pointer;  // when it or the view under it changed
   std::function<void()> closed;                       // the window's close button, once
-  /// What a game controller says now, in the place of the mouse; empty: there is none.
+  /// State of a game controller in the place of the mouse; empty: there is none.
   std::function<device::GamepadState()> pad;
   /// Keys that are held, when they change; one that was tapped between two pictures is among them
   /// once.
   std::function<void(const std::vector<int>&)> held;
 };
 
-/// What a key in the participant's window asks for where it may, as on the console's keyboard:
-/// Escape is the emergency stop, space and Enter go on, P pauses, R repeats, S skips, C clears.
+/// Request of a key in the participant's window, if keys are allowed there, as on the console's
+/// keyboard: Escape is the emergency stop, space and Enter go on, P pauses, R repeats, S skips, C
+/// clears.
 std::optional<Request> request_of(const render::KeyPress& press);
 
-/// What the participant looks at: a window or a full screen, drawn on a thread of its own at every
-/// refresh of the monitor. Where the display does not wait for a refresh, a timer sets the pace at
-/// the monitor's rate, or at kTimerRate where the monitor does not say.
+/// The participant's screen: a window or a full screen, drawn on a thread of its own at every
+/// refresh of the monitor. If the display does not wait for a refresh, a timer sets the pace at the
+/// monitor's rate, or at kTimerRate if the monitor does not say.
 ///
 /// The servo thread calls observe(); any other thread calls the rest.
 class Screen final : public stimulus::Observer {

@@ -14,7 +14,7 @@ class Table;
 
 namespace haptrial::experiments {
 
-/// What a definition says of the analysis of curves of force: its table [analysis].
+/// Analysis of curves of force in a definition: its table [analysis].
 struct CurveAnalysis {
   analysis::ScoreParameters scoring;
   analysis::AnalysisPlan plan;

@@ -15,7 +15,7 @@
 
 namespace haptrial::experiments {
 
-/// What is asked of a folder of sessions of one study.
+/// Request for the analysis of a folder of sessions of one study.
 struct AnalysisRequest {
   std::filesystem::path folder;  // of the sessions
   StudyFiles files;
@@ -52,7 +52,7 @@ class Study {
     static_cast<void>(resumed);
     return nullptr;
   }
-  /// What a definition asks for when a session has ended. @param file  finished
+  /// Does the work that a definition asks for when a session has ended. @param file  finished
   /// @param folder  of the definition. @returns lines for the terminal; never throws for what it
   /// cannot make, since the session is done
   virtual std::vector<std::string> after_session(const protocols::Definition& definition,
@@ -65,13 +65,13 @@ class Study {
   }
   /// Computes, and writes report, tables and figures. @returns lines for the terminal
   virtual std::vector<std::string> analyze(const AnalysisRequest& request) const = 0;
-  /// Its report for simulated participants, for the simulation of power.
+  /// The study's report for simulated participants, for the simulation of power.
   /// @param definition  its text; [power] may stand in a part, and so a file, of its own
   /// @param watched     name of the test whose power is asked for
   /// @throws InputError by default: it cannot be had
   virtual std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
                                                const std::string& watched) const;
-  /// What to do with the sessions of a dry run: "haptrial analyze DIR".
+  /// Command that goes on with the sessions of a dry run: "haptrial analyze DIR".
   virtual std::string next_step(const std::filesystem::path& folder) const {
     return "haptrial analyze " + folder.string();
   }

@@ -65,8 +65,8 @@ struct RosterGroup {
   int finished{0};  // with every session
 };
 
-/// Who has done what in a study, and who is next. It is read from the session files every time and
-/// kept nowhere.
+/// Participants of a study with their sessions, and the next session. It is read from the session
+/// files every time and kept nowhere.
 struct Roster {
   int sessions{1};  // of each participant
   std::uint64_t seed{1};
@@ -79,7 +79,7 @@ struct Roster {
   std::vector<std::string> remarks;  // sentences: files that cannot be read, numbers given twice
 };
 
-/// What a roster is made from.
+/// Request for a roster.
 struct RosterRequest {
   const protocols::Protocol* protocol{nullptr};
   const protocols::Definition* definition{nullptr};

@@ -62,7 +62,7 @@ class DrillingFigures final : public record::LiveFigures {
   std::string trouble_;  // of the session's thread
 };
 
-/// What the file held of the bone that the first pass after --resume goes on with.
+/// Procedure of the file on the bone that the first pass after --resume goes on with.
 std::shared_ptr<const Procedure> DrillingFigures::of_earlier_run(const record::PassRow& pass) {
   const fs::path resumed = std::exchange(resumed_, {});
   if (resumed.empty() || pass.practice || pass.attempt < 2) {

@@ -14,7 +14,8 @@ struct DrilledProcedure {
   analysis::drilling::LiveFigures figures;
 };
 
-/// Its figures for people: in rows, and in one line, "procedure 1: 1:05, drilling 0:40, ...".
+/// Figures of a procedure for people: in rows, and in one line, "procedure 1: 1:05, drilling 0:40,
+/// ...".
 record::LiveState state_of(const DrilledProcedure& procedure);
 
 }  // namespace haptrial::experiments

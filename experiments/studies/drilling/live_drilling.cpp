@@ -15,7 +15,7 @@ namespace haptrial::experiments {
 
 namespace drilling = analysis::drilling;
 
-/// What came with one call of add(samples), and the pass that began before it.
+/// Rows of one call of add(samples), and the pass that began before them.
 struct LiveDrilling::Batch {
   std::optional<record::PassRow> pass;
   std::shared_ptr<const bone::BoneModel> bone;

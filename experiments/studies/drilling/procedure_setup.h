@@ -8,7 +8,7 @@
 
 namespace haptrial::experiments {
 
-/// What metrics need of a definition; the group is empty.
+/// Facts of a definition for metrics; the group is empty.
 analysis::drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition);
 /// The same from the definition in a session file.
 analysis::drilling::ProcedureSetup procedure_setup(

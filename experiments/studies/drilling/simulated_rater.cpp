@@ -116,7 +116,7 @@ Roughness roughness_of(const DrillingChart& chart, const Floor& floor) {
   return {share * sum.all, share * sum.carved};
 }
 
-/// What is left of the bone of one procedure: its last one, where it was begun anew.
+/// Remaining bone of one procedure: its last one, if it was begun anew.
 std::vector<std::uint8_t> standing_after(const record::SessionReader& session,
                                          const bone::BoneModel& model, int trial) {
   std::vector<std::uint8_t> standing(model.labels.size());

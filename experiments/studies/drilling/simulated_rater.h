@@ -11,7 +11,7 @@
 
 namespace haptrial::experiments {
 
-/// What a look at a finished cavity tells, and nothing of how it came about.
+/// Visible result of a finished cavity, and nothing of how it came about.
 struct Outcome {
   double planned{0.0};    // bone that the cavity asks to be removed [m3]
   double complete{0.0};   // share of it that is gone

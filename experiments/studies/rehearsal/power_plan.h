@@ -21,7 +21,7 @@ struct VariedKey {
 /// How virtual participants take part.
 enum class PowerDepth : std::uint8_t { kResponses, kSessions };
 
-/// What a table [power] asks.
+/// Content of a table [power].
 struct PowerPlan {
   std::string definition;  // file, from the folder of this one; empty: it is this one
   std::string watch;       // a test of the report by its name

@@ -13,7 +13,7 @@ struct NamedNumber {
   double value{0.0};
 };
 
-/// What the report of one simulated study says.
+/// Report of one simulated study.
 struct Rehearsed {
   std::vector<NamedNumber> tests;     // p by which the report decides each test
   std::vector<NamedNumber> values;    // on the report's scale; that of a test has the test's name

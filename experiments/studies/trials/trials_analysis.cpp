@@ -98,7 +98,7 @@ std::map<std::string, std::vector<std::string>> stated_levels(const protocols::T
   return stated;
 }
 
-/// What the comparison of cues may name.
+/// Names that the comparison of cues may use.
 analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
   Table root = Table::parse(d.text, d.file_name);
   analysis::trials::CueNames names;

@@ -12,8 +12,8 @@ struct TrialsDefinition;
 
 namespace haptrial::experiments {
 
-/// What a definition of trials says of its analysis where [analysis] says nothing: the axis and
-/// unit of its procedure, the guess rate of its first question, its factors.
+/// Values of a definition of trials that stand in for keys that [analysis] does not have: the axis
+/// and unit of its procedure, the guess rate of its first question, its factors.
 analysis::trials::PlanDefaults plan_defaults(const protocols::TrialsDefinition& definition);
 
 /// The table [analysis] of a definition. Problems are noted.

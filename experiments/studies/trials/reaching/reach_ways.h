@@ -13,15 +13,15 @@ struct TrialsDefinition;
 
 namespace haptrial::experiments {
 
-/// What the definition says of each trial's reach: its places, the field that is learnt, and what
-/// acts in the stage, read anew with the values that the session recorded. Nothing for a trial that
-/// does not count.
+/// Reach of each trial according to the definition: its places, the field that is learnt, and the
+/// other fields that act in the stage, read anew with the values that the session recorded. Nothing
+/// for a trial that does not count.
 /// @throws InputError when the recorded values do not fit the definition.
 std::vector<std::optional<analysis::trials::ReachWay>> reach_ways(
     const protocols::TrialsDefinition& definition, const analysis::trials::TrialsData& data,
     const analysis::trials::ReachingPlan& plan);
 
-/// What the definition has that [analysis] of kind "reaching" may name.
+/// Names of the definition that [analysis] of kind "reaching" may use.
 analysis::trials::ReachingNames reaching_names(const protocols::TrialsDefinition& definition);
 
 }  // namespace haptrial::experiments
