@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a line at the left margin of an anonymous namespace names: a constant or a function.
+/// The name in a line at the left margin of an anonymous namespace: a constant or a function.
 std::optional<std::string> name_in(const std::string& line) {
   static const std::regex kConstant(
       "^(constexpr|const|inline|static)\\b[^=(]*?\\b(k[A-Z]\\w*)\\b.*");

@@ -1,4 +1,4 @@
-// What runs, records, shows and exports sessions knows protocols only through their interface.
+// Code that runs, records, shows and exports sessions knows protocols only through their interface.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

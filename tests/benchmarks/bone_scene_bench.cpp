@@ -27,7 +27,8 @@ constexpr int kWidth = 1280;
 constexpr int kHeight = 720;
 constexpr int kFrames = 15;  // of each kind
 
-/// Of all threads of this process: what a frame costs, whatever else the machine does.
+/// Processor time of all threads of this process: the cost of a frame, whatever else the machine
+/// does.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// A frame, or the median of some.

@@ -100,7 +100,7 @@ void time_updates(const char* name, const bone::BoneModel& model, const Eigen::V
       name, triangles, 1e3 * times[30], 1e3 * times.back(), 1e3 * idle);
 }
 
-/// What lies within 15 mm of a point.
+/// The part of a model within 15 mm of a point.
 bone::BoneModel part_of(bone::BoneModel model, const Eigen::Vector3d& middle) {
   const geometry::VoxelGrid& grid = model.grid;
   for (int k = 0; k < grid.size[2]; ++k) {

@@ -1,5 +1,5 @@
-// What dust costs, moving and at rest, and what a round of the sound's and the thickness's work
-// costs. One core; processor time of this thread.
+// Cost of dust, moving and at rest, and of a round of the sound's and the thickness's work. One
+// core; processor time of this thread.
 //
 //     bench_dust                   the figures
 //     bench_dust --picture FILE    instead, a pile in a drilled cavity that is cut open (.png)

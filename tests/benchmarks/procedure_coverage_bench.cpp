@@ -95,7 +95,7 @@ void print_count(const char* what, const haptrial::test::CoverageCount& c) {
              percent(c.open, c.observers));
 }
 
-/// What trouble does to the intervals that a report states.
+/// Reports the effect of trouble on the intervals that a report states.
 void report_troubles(int observers, int threads) {
   for (const haptrial::test::CoverageCell& cell : haptrial::test::coverage_cells()) {
     const auto counts = haptrial::test::count_coverage(cell, observers, threads);

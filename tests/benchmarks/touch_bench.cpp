@@ -1,4 +1,4 @@
-// What is felt of a soft block with and without a lump, and what a tick takes, as tables:
+// Feel of a soft block with and without a lump, and the cost of a tick, as tables:
 //   bench_touch felt > touch.dat; gnuplot tests/benchmarks/touch.gp draws deformable-touch.svg
 //   bench_touch ticks
 //   bench_touch moving: ticks of a body of springs
@@ -50,7 +50,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Of this thread, so that other work on the machine does not count [µs].
+/// Processor time of this thread, so that other work on the machine does not count [µs].
 double thread_time() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

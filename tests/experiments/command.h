@@ -4,7 +4,7 @@
 
 namespace haptrial::test {
 
-/// What a command gave.
+/// Output and exit status of a command.
 struct CommandResult {
   int status{-1};      // exit status; 128 + signal where it was killed
   std::string output;  // standard output

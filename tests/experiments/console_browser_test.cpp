@@ -220,7 +220,7 @@ TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
   }
 }
 
-/// What a session of two says of its link: at first nothing, then a link, then its loss.
+/// A partner's state in a session of two: at first nothing, then a link, then its loss.
 record::PartnerState partner_at(int step) {
   record::PartnerState p;
   if (step == 0) {

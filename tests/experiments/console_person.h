@@ -18,7 +18,7 @@ class ConsolePerson {
 
   /// @returns whether the console took it. @param request  "start", "skip", ...
   bool ask(const std::string& request);
-  /// What the page shows now; null before the first event.
+  /// Status that the page shows now; null before the first event.
   nlohmann::json status();
   /// Waits until the page shows a state, and a stage of a pass if one is named. States that came
   /// since the last request or status() count, however short they were.

@@ -273,7 +273,7 @@ TEST_F(DeformCommandTest, ACalibrationThatMadeThingsWorseSaysSo) {
           "--range -2 2 --hand 0.02 1e-5 0.01 --out cal");
   ASSERT_EQ(found.status, 0) << found.errors;
   const auto numbers = json("cal/calibration.json");
-  // Of a few wild guesses none is better than a good hand.
+  // A few wild guesses are all worse than a good hand.
   const bool worse = numbers["error_m"].get<double>() > numbers["hand_error_m"].get<double>();
   ASSERT_TRUE(worse) << found.output;
   EXPECT_THAT(found.output, HasSubstr("all in all worse than with constants set by hand"));

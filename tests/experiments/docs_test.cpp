@@ -1,5 +1,5 @@
-// What the documents say is true: commands work, links lead somewhere, quoted messages and named
-// tests exist.
+// Statements of the documents are true: commands work, links lead somewhere, quoted messages and
+// named tests exist.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

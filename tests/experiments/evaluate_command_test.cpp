@@ -198,7 +198,7 @@ explore = { do = "follow", turn_after = 2.0 }
 instructions = "Go round it."
 )";
 
-/// What a session rendered comes out again, though the chain must find where the ball was.
+/// Forces that a session rendered come out again, though the chain must find where the ball was.
 TEST_F(EvaluateCommandTest, ASessionIsARecordingOfItsContacts) {
   test::write_text(folder_ / "ball.toml", kBallStudy);
   ASSERT_EQ(run("haptrial mesh repair body.obj ball.obj --scale 0.5").status, 0);

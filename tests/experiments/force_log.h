@@ -12,7 +12,7 @@ struct Commanded {
   double force;  // its size [N]
 };
 
-/// What a stand-in was given so far, also by a program that has died. @param file  as
+/// Forces that a stand-in was given so far, also by a program that has died. @param file  as
 /// STAND_IN_FORCES named it
 std::vector<Commanded> read_force_log(const std::filesystem::path& file);
 

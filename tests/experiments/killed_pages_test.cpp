@@ -54,8 +54,8 @@ question = "Anything else?"
 words = true
 )";
 
-/// Who answers at the console, in each run in a way of its own, and ends the program with kill -9
-/// as soon as a question of this number is asked.
+/// A person who answers at the console, in each run in a way of its own, and ends the program with
+/// kill -9 as soon as a question of this number is asked.
 class Respondent {
  public:
   Respondent(SessionControl& control, int run, int last)

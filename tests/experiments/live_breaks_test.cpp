@@ -186,7 +186,7 @@ TEST_F(LiveBreaksTest, TheConsoleSpeaksOfThePlannedTrialsAndOfTheDefinitions) {
   EXPECT_EQ(now["trials"], 3);
   EXPECT_EQ(now["trials_defined"], 72);
   EXPECT_EQ(now["blocks"], 3);
-  // What is missing is there before the session is started.
+  // The library that was missing is there before the session is started.
   EXPECT_THAT(now["notices"].dump(), HasSubstr("the session continues without its streams"));
 }
 

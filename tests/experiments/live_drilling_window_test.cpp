@@ -128,7 +128,7 @@ class LiveDrillingWindowTest : public testing::Test {
   std::optional<test::VirtualDisplay> display_;
 };
 
-/// What happened while a function's key was held.
+/// Events while a function's key was held.
 struct Held {
   std::set<int> modes;
   std::set<int> tools;

@@ -1,5 +1,5 @@
-// What ends a session from outside, as it comes about: Ctrl-C in the terminal, SIGTERM, and a
-// terminal whose window is closed; during a pass, a text and a break.
+// Ends of a session from outside: Ctrl-C in the terminal, SIGTERM, and a terminal whose window is
+// closed; during a pass, a text and a break.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -151,7 +151,7 @@ TEST_F(LiveLinkTest, TwoProcessesGoThroughAStudyInStep) {
     EXPECT_EQ(rows(file(side)).size(), reader.sample_count());
     EXPECT_GT(figures_of(file(side)).most_coupling, 0.05);
     EXPECT_GT(figures_of(file(side)).least_energy, -0.01);
-    // What both know and nobody else stands in no file.
+    // The secret that both know and nobody else stands in no file.
     std::string known = test::read_text(secret());
     known.pop_back();
     EXPECT_EQ(bytes_of(file(side)).find(known), std::string::npos);

@@ -78,7 +78,7 @@ TEST(LiveSoundTest, TheCardIsGivenTheDrillsSoundWhileTheLoopKeepsItsTime) {
   EXPECT_GT(heard, 0.86 * strongest.frequency);
   EXPECT_LT(heard, 1.02 * strongest.frequency);
 
-  // What the record says it sounded like, by another way.
+  // Sound according to the record, by another way.
   const fs::path file = folder / "out" / "S01.h5";
   const fs::path track = folder / "track.wav";
   const test::CommandResult replay =

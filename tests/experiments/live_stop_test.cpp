@@ -1,5 +1,5 @@
-// What becomes of the force when a session is stopped, ended or killed, or when its device fails:
-// `haptrial run` drives the stand-in of an omega.3, which keeps every force that it is given.
+// Force when a session is stopped, ended or killed, or when its device fails: `haptrial run` drives
+// the stand-in of an omega.3, which keeps every force that it is given.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

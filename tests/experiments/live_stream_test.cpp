@@ -28,7 +28,7 @@ using testing::HasSubstr;
 
 using Fields = std::vector<std::string>;
 
-/// What the stand-in library wrote: for each stream its head, then a row a sample or text.
+/// Streams that the stand-in library wrote: for each its head, then a row a sample or text.
 std::vector<std::vector<Fields>> streams_in(const fs::path& file) {
   std::istringstream text(test::read_text(file));
   std::vector<std::vector<Fields>> streams;
@@ -119,7 +119,7 @@ TEST_F(LiveStreamTest, SamplesAndMarkersArriveInALibraryThatTheLoaderFinds) {
   EXPECT_GE(expected.size(), 2u) << "the start and the end";
 }
 
-/// Of every protocol: the study of force curves has the stages of its passes.
+/// Onsets arrive for every protocol: the study of force curves has the stages of its passes.
 TEST_F(LiveStreamTest, OnsetsArriveWithTheirCodes) {
   test::write_text(folder_ / "study.toml", test::brisk_text() + "\n[markers]\nstage = 41\n");
   const CommandResult ended = LiveCommand(run(), with_the_layer()).wait();

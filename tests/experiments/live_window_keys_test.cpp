@@ -1,4 +1,4 @@
-// What the participant's own keyboard may do to a session, and what begins one without an
+// Rights of the participant's own keyboard in a session, and the start of one without an
 // experimenter.
 
 #include <gmock/gmock.h>

@@ -43,7 +43,7 @@ Image part(const Image& image, int left, int top, int width, int height) {
   return out;
 }
 
-/// What a picture of a trial says.
+/// Content of a picture of a trial.
 struct Seen {
   Eigen::Vector2d marker;     // [px]
   double target_height{0.0};  // of the bars [px]
@@ -75,7 +75,7 @@ class LiveWindowTest : public testing::TestWithParam<bool> {
            (folder_ / "out").string() + "' --window --console";
   }
   Image on_monitor() const { return {kDisplayWidth, kDisplayHeight, display_->screenshot()}; }
-  /// What the program draws on: the whole monitor, or a window in its middle.
+  /// Area that the program draws on: the whole monitor, or a window in its middle.
   Image on_screen() const {
     return part(on_monitor(), (kDisplayWidth - style_.width) / 2,
                 (kDisplayHeight - style_.height) / 2, style_.width, style_.height);

@@ -129,7 +129,7 @@ TEST_F(NerveSessionTest, TheSameSeedGivesTheSameSamplesOnAnyThread) {
             session("beside.h5").rows<record::NerveEventRow>().size());
 }
 
-/// What a session's file takes. @param monitor  at the end of its definition
+/// Size of a session's file. @param monitor  at the end of its definition
 double bytes_of(double seconds, const std::vector<std::pair<std::string, std::string>>& more,
                 const std::string& monitor) {
   const test::TemporaryFolder folder;

@@ -6,7 +6,7 @@
 
 namespace haptrial::test {
 
-/// What the relay does to datagrams, each way.
+/// Effects of the relay on datagrams, each way.
 struct RelayConditions {
   double delay{0.0};        // [s]
   double jitter{0.0};       // mean of what comes on top, exponential [s]

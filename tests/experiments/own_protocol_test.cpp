@@ -61,7 +61,7 @@ SessionRequest request_for(const std::filesystem::path& file) {
   return request;
 }
 
-/// What the staircase makes of answers, written once more: two right down, one wrong up.
+/// Levels of the staircase after answers, written once more: two right down, one wrong up.
 std::vector<double> staircase(const std::vector<record::ResponseRow>& answers) {
   std::vector<double> differences{150.0};
   int right = 0;

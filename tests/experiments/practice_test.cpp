@@ -99,8 +99,8 @@ TEST_F(PracticeTest, ComesFirstIsMarkedAndIsNotScored) {
     EXPECT_EQ(pass.stimulus_seed, study_alone[i].stimulus_seed);
   }
 
-  // What is scored is the same trials. The scores differ: the virtual subjects' own noise has gone
-  // on through the practice, as people's has.
+  // The scored trials are the same. The scores differ: the virtual subjects' own noise has gone on
+  // through the practice, as people's has.
   const Table scores = table_in(folder_ / "with/scores.csv");
   const Table plain = table_in(folder_ / "without/scores.csv");
   ASSERT_EQ(scores.size(), 1u + 2 * 6);

@@ -118,7 +118,7 @@ TEST_F(RateTest, WhatRatersGetDoesNotDependOnNames) {
   }
 }
 
-/// Of the first stream of a film, as ffprobe prints it.
+/// Entries of the first stream of a film, as ffprobe prints them.
 std::string probed(const fs::path& film, const std::string& entries) {
   const test::CommandResult result =
       test::run_command("ffprobe -v error -of default=nk=1:nw=1 -show_entries " + entries + " '" +

@@ -1,4 +1,4 @@
-// What stands in results/ is what the program gives.
+// Files in results/ are those that the program gives.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -127,7 +127,7 @@ TEST_P(ScoredResults, Reproduce) {
 INSTANTIATE_TEST_SUITE_P(Shipped, ScoredResults, testing::ValuesIn(results_with("scores.csv")),
                          study_of);
 
-/// What two kept studies have in common, from what is kept of them.
+/// Comparison of two kept studies, from their kept files.
 TEST(ComparedResults, Reproduce) {
   const std::vector<fs::path> compared = results_with("comparison.json");
   ASSERT_EQ(compared.size(), 1u);

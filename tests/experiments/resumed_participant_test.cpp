@@ -181,7 +181,7 @@ std::string short_curl_field() {
   return text;
 }
 
-/// Of one process, x' = A x + B e: the error e that a step of it says.
+/// For one process, x' = A x + B e: the error e that a step of it says.
 double error_of(double before, double after, double retention, double learning) {
   return (after - retention * before) / learning;
 }

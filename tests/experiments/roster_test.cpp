@@ -1,4 +1,4 @@
-// Who has done what, and who is next: read from the session files alone.
+// Roster of a study, read from the session files alone: past sessions, and the next one.
 
 #include "experiments/study/roster.h"
 

@@ -61,7 +61,7 @@ class ScanGuideTest : public testing::Test {
     EXPECT_EQ(result.status, 0) << line << "\n" << result.output << result.errors;
     output_ += result.output;
   }
-  /// What a clinic has: a scan, a segmentation in two layers, a mesh of the nerve.
+  /// Writes the files of a clinic: a scan, a segmentation in two layers, a mesh of the nerve.
   void write_scan() {
     ear_ = bone::make_temporal_bone({.seed = 5, .spacing = 0.8e-3});
     const geometry::VoxelGrid& grid = ear_.grid;
@@ -172,7 +172,7 @@ TEST_F(ScanGuideTest, EveryCommandLeadsFromTheScanToADrilledBone) {
     EXPECT_NEAR(one.volume, before->volume, 0.25 * before->volume + 8.0 * grain) << structure.name;
     EXPECT_LT((one.box.center() - before->box.center()).norm(), 1e-3) << structure.name;
   }
-  // What the exported labels call removed is what the session emptied.
+  // Voxels that the exported labels call removed are those that the session emptied.
   const record::SessionReader session(folder_ / "out/case/S01.h5");
   const auto removals = session.rows<record::RemovalRow>();
   const bone::BoneModel drilled = bone::load_bone(folder_ / "drilled.seg.nrrd");

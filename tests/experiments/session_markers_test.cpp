@@ -94,7 +94,7 @@ fade = 0.01
 )" + more;
 }
 
-/// What was sent, by its code.
+/// Codes that were sent.
 const std::map<std::string, int> kCodes{{"trial", 1}, {"whole", 11},  {"half", 12},   {"ready", 21},
                                         {"feel", 17}, {"first", 101}, {"second", 102}};
 

@@ -95,7 +95,7 @@ TEST_F(SoftTissueSessionTest, ATearIsAnInjuryWithItsForceTimeAndPlace) {
             : 0;
   }
   EXPECT_EQ(told, tears.size());
-  // What is felt before the tear grows to its force, and is the dura's: the hand is in no bone.
+  // Force before the tear grows to its force, and is the dura's: the hand is in no bone.
   const auto tool = reader.rows<record::ToolRow>();
   const record::ToolRow& torn = tool.at(tears.front().sequence - tool.front().sequence);
   EXPECT_NEAR(torn.contact.norm(), tears.front().force, 0.3);

@@ -52,7 +52,7 @@ std::vector<std::string> texts_of(const record::SessionReader& reader, const std
   return texts;
 }
 
-/// What two files say of one bone, to the bit.
+/// Checks that two files say the same of one bone, to the bit.
 void expect_one_bone(const record::SessionReader& learns, const record::SessionReader& teaches) {
   for (const record::SessionReader* reader : {&learns, &teaches}) {
     const record::Integrity integrity = record::check_session(*reader);
@@ -197,8 +197,8 @@ bone::BoneModel over_dura() {
   return model;
 }
 
-/// What a hand felt of a bone that it did not drill itself is felt again with the bone that the
-/// replay makes: to the last bit of the file.
+/// Forces on a hand from a bone that it did not drill itself follow from the bone that the replay
+/// makes: to the last bit of the file.
 TEST_F(TaughtBoneTest, WhatTheLedHandFeltFollowsFromTheFile) {
   const fs::path study =
       definition("authority = 0.5\n", 8.0, {{"bones", "bones = [\"dura.nrrd\"]"}});

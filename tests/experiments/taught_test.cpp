@@ -89,7 +89,7 @@ TEST_F(TaughtTest, TheHandIsLedByTheLawAndBothFilesAgree) {
         << "tick " << row.sequence;
   }
   EXPECT_GT(led, 500u);
-  // Who teaches feels nothing of the coupling.
+  // The teacher feels nothing of the coupling.
   EXPECT_TRUE(std::ranges::all_of(others, [](const LinkRow& r) { return r.coupling.norm() == 0; }));
   EXPECT_THAT(learns.events(), testing::Contains(testing::Field(&record::EventRow::kind, "link")));
 }

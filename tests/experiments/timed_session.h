@@ -6,7 +6,7 @@
 
 namespace haptrial::test {
 
-/// What a real-clock session of a fixed length gave.
+/// Result of a real-clock session of a fixed length.
 struct TimedSession {
   std::uint64_t ticks{0};
   std::uint64_t overruns{0};

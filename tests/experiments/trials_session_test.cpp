@@ -229,7 +229,7 @@ class KilledTrialsTest : public testing::Test {
     std::vector<double> asked, outcomes, answers;
     bool operator==(const Done&) const = default;
   };
-  /// Of completed passes.
+  /// Counts of completed passes.
   static Done done_of(const record::SessionReader& file) {
     Done done;
     const auto passes = file.passes();

@@ -73,7 +73,7 @@ TEST(TutoringTest, ARecordedRunLeadsAnotherHandByTheLaw) {
               testing::Contains(testing::Field(&record::EventRow::kind, "tutor")));
 }
 
-/// What a link would carry of a recorded session, of the ticks that belong to passes; the partner's
+/// Messages of a link for a recorded session, on the ticks that belong to passes; the partner's
 /// error stays within its bounds at each of them.
 struct Sent {
   double messages{0.0};

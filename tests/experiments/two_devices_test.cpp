@@ -27,7 +27,7 @@ using Eigen::Vector3d;
 
 constexpr double kRunning = 0.5;  // a pass [s]
 
-/// What goes wrong with the second device, and when.
+/// Trouble of the second device, and when.
 struct Trouble {
   int at_tick{std::numeric_limits<int>::max()};
   bool read_fails{false};
@@ -237,7 +237,7 @@ TEST_F(TwoDevicesTest, EachHasAnEnvelopeOfItsOwn) {
   EXPECT_GT(steepest(first), 0.0045) << "1 N in 0.2 s";
 }
 
-/// What the first device may do is a fault of one whose limit is lower.
+/// A force that the first device may have is a fault of one whose limit is lower.
 TEST_F(TwoDevicesTest, AForceAboveTheLimitOfOneStopsBoth) {
   second_limits_.max_force = 3.0;  // and 8 N are asked for
   const record::SessionReader file = run();

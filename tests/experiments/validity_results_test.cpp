@@ -52,7 +52,7 @@ TEST(ValidityResultsTest, TheFirstProcedureComesOutAgainAndIsRatedTheSame) {
   dry.seed = manifest["seed"].get<std::uint64_t>();
   dry.folder = out / "study";
   experiments::run_dry(protocols::bone_drilling(), d, dry);
-  // What raters say about the bone holds its completeness, what was injured and its roughness.
+  // Ratings of the bone depend on its completeness, its injuries and its roughness.
   const std::string lines =
       analysis::drilling::ratings_csv(experiments::simulate_ratings(dry.folder, 1));
   std::istringstream again(lines);
@@ -85,8 +85,8 @@ TEST(ValidityResultsTest, ASmallNullStudyFindsLittle) {
     scores.insert(person.begin(), person.end());
   }
   EXPECT_GE(scores.size(), 4U) << "ratings that are nearly all the same test nothing";
-  // Who is an expert is drawn anew for every run, so that the runs are independent given the
-  // people; more than 8 of 40 has a chance below 1 in 1000 at 5 %.
+  // Experts are drawn anew for every run, so that the runs are independent given the people; more
+  // than 8 of 40 has a chance below 1 in 1000 at 5 %.
   EXPECT_LE(figures.means, 8);
   EXPECT_LE(figures.mixed, 8);
 }

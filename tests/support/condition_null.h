@@ -27,7 +27,7 @@ enum class NullScheme {
   kMissing        // the same, three of ten trials missing and a whole cell
 };
 
-/// Of the shipped study, as its mixed model estimates them.
+/// Variances of the shipped study, as its mixed model estimates them.
 struct Variances {
   double subject{0.022};
   double cell{0.142};  // subject x condition
@@ -164,7 +164,7 @@ inline std::vector<std::vector<double>> means_table(const Scores& scores) {
   return table;
 }
 
-/// What the tests of one study without a difference say: p values.
+/// P values of the tests of one study without a difference.
 struct NullTests {
   double mixed{1.0};                // mixed model with the design's terms, F
   std::vector<double> differences;  // its coefficients

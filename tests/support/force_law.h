@@ -12,7 +12,7 @@ namespace haptrial::test {
 template <std::size_t n>
 using PointsOf = std::array<Eigen::Vector3d, n>;
 
-/// What forces on n points add up to, relative to the forces themselves.
+/// Sum of forces on n points, relative to the forces themselves.
 struct Leak {
   double force;   // |sum| over the sum of sizes
   double torque;  // about the origin, over the sum of sizes and the points' extent

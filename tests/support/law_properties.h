@@ -10,7 +10,8 @@
 
 namespace haptrial::test {
 
-/// What every law of elasticity must obey, written once. All vectors have 3 numbers a vertex.
+/// Properties that every law of elasticity must have, written once. All vectors have 3 numbers a
+/// vertex.
 struct LawUnderTest {
   std::function<double(const Eigen::VectorXd& u)> energy;
   std::function<Eigen::VectorXd(const Eigen::VectorXd& u)> forces;

@@ -7,7 +7,7 @@
 
 namespace haptrial::test {
 
-/// What the error that the call throws says.
+/// Message of the error that the call throws.
 template <class Error = InputError>
 std::string message_of(const std::function<void()>& call) {
   try {

@@ -2,7 +2,7 @@
 
 namespace haptrial::test {
 
-/// What a stand-in library can be told to do wrong from some tick on.
+/// Failure of a stand-in library from some tick on.
 enum class Failure : int {
   kNone,
   kNoDevice,
@@ -24,7 +24,7 @@ enum class Failure : int {
   kButton,  // the handle's button 0 is pressed
 };
 
-/// What a stand-in knows of itself, in the vendor's axes and units.
+/// State of a stand-in, in the vendor's axes and units.
 struct StandInView {
   double position[3];
   double force[3];  // that the motors give
@@ -33,7 +33,7 @@ struct StandInView {
   bool open;
 };
 
-/// What a stand-in was set to, and in which order.
+/// Setup of a stand-in, and its order.
 struct StandInSetup {
   double effector_mass;  // [kg]
   int gravity;

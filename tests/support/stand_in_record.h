@@ -60,8 +60,8 @@ class ForceRecord {
   Head* head_{nullptr};
 };
 
-/// What a stand-in is told by its environment, where the test is another program: the failure of
-/// number STAND_IN_FAILURE comes 50 ticks after the force has first reached STAND_IN_FAILURE_FORCE
+/// Orders of a stand-in in its environment, for tests of another program: the failure of number
+/// STAND_IN_FAILURE comes 50 ticks after the force has first reached STAND_IN_FAILURE_FORCE
 /// newtons.
 class FailureFromEnvironment {
  public:

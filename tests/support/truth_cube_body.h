@@ -65,7 +65,7 @@ class LayerFit {
   Eigen::MatrixXd factors_;
 };
 
-/// What lies between the end layers of beads, as wide as the cube.
+/// Body between the end layers of beads, as wide as the cube.
 struct CubeBody {
   CubeLattice cubes;
   geometry::TetMesh mesh;

@@ -20,7 +20,7 @@ class VirtualDisplay {
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
-  /// What the monitor would show, from the server's own memory, not by OpenGL.
+  /// Picture of the monitor from the server's own memory, not by OpenGL.
   std::vector<std::uint8_t> screenshot() const;  // (height x width x 3), rows from the top
   int width() const { return width_; }
   int height() const { return height_; }

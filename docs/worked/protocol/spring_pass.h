@@ -6,7 +6,7 @@
 #include "core/record/table/table.h"
 #include "protocols/interface/pass.h"
 
-/// What the participant is shown; the drawing and the virtual participant take it from here.
+/// The participant's view; the drawing and the virtual participant take it from here.
 struct SpringView {
   int trial{0};     // from 1
   int interval{0};  // which spring is felt, 1 or 2; 0: none

@@ -6,7 +6,7 @@
 #include "depth_log.h"
 #include "protocols/definition/definition.h"
 
-/// What a definition of two springs states.
+/// Definition of two springs.
 struct SpringsDefinition final : haptrial::protocols::Definition {
   double standard{0.0};    // stiffness of the one spring [N/m]
   double difference{0.0};  // of the other, at first [N/m]

@@ -145,7 +145,7 @@ TEST(AlignmentOptionsTest, SwappingTheCurvesKeepsTheCostOfSymmetricForms) {
   }
 }
 
-/// What an alignment makes least: see ExhaustiveSearch::cost().
+/// Quantity that an alignment makes least: see ExhaustiveSearch::cost().
 double measure(const Alignment& found, const AlignmentOptions& options) {
   const std::uint32_t paired = found.path.back().target + found.path.back().applied + 2;
   return options.open_end && doubles_straight(options.pattern) ? found.cost / paired : found.cost;

@@ -70,7 +70,7 @@ inline ContourTool contour_tool(char set_up) {
   return tool;
 }
 
-/// What the authors found for the load: 1.96138 N along -y of the tracker's world; the sensor says
+/// The authors' result for the load: 1.96138 N along -y of the tracker's world; the sensor says
 /// nothing when its z axis points up.
 inline SensorLoad contour_load() {
   SensorLoad load;

@@ -33,7 +33,7 @@ struct SimulatedTrials {
   std::uint64_t seed{1};
 };
 
-/// What the people of such a study have for a threshold (log difference), point, d' or exponent.
+/// Typical threshold (log difference), point, d' and exponent of the people of such a study.
 inline constexpr double kTypicalLogThreshold = 3.4;  // 30 N/m above 300
 inline constexpr double kTypicalPoint = 10.0;        // [N]
 inline constexpr double kTypicalDPrime = 1.5;

@@ -195,7 +195,7 @@ TEST(CurveTrackerTest, TheSourcesMethodGoesTheSameWay) {
     tracker.follow(tool);
     const CurvePlace place = source.place(tool, source.nearest_points(tool, 100), before, kWeight);
     before = place.arc;
-    // Its penalty holds the place back: on a straight stretch by weight / length of the distance.
+    // The penalty holds the place back: on a straight stretch by weight / length of the distance.
     const double drag = 3.0 * kWeight / source.length() * place.distance + 1e-6;
     ASSERT_NEAR(place.arc, tracker.place().arc, drag) << arc;
   }

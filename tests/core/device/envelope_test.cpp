@@ -460,7 +460,7 @@ TEST(EnvelopeTest, AHandThatTensesAgainstAWallIsNotFrozen) {
   }
 }
 
-/// Where a protocol goes over to other forces, in contact or not.
+/// A protocol goes over to other forces, in contact or not.
 TEST(EnvelopeTest, WhatChangesByGoingOverFades) {
   EnvelopeLimits limits = open_limits();
   limits.change_time = 0.1;

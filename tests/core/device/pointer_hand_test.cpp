@@ -95,7 +95,7 @@ TEST_F(PointerHandTest, AHandThatIsHeldBackGoesNotMuchFurther) {
 
 TEST_F(PointerHandTest, ArrowsTiltAsThePictureHasIt) {
   at(400, 300);
-  // What points to the eye, y, is tilted to the right of the picture, x.
+  // The axis that points to the eye, y, is tilted to the right of the picture, x.
   keys_ = {262};
   for (int i = 0; i < 50; ++i) {
     follow();

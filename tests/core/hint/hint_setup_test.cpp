@@ -1,4 +1,4 @@
-// What a definition says of hints.
+// Hints of a definition.
 
 #include "core/hint/hint_setup.h"
 

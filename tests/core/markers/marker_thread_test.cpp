@@ -1,4 +1,4 @@
-// What a pseudo-terminal receives, byte for byte, and when.
+// Bytes that a pseudo-terminal receives, and when.
 
 #include "core/markers/marker_thread.h"
 

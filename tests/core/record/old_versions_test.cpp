@@ -89,7 +89,7 @@ void expect_same(const Sample& found, const Dumped& row) {
   EXPECT_EQ(found.saturated, row.i("saturated") != 0);
 }
 
-/// What a pass says when it begins; also in /begun.
+/// Checks the facts of a pass when it begins; also in /begun.
 void expect_begun(const PassRow& found, const Dumped& row) {
   EXPECT_EQ(found.trial, row.i("trial"));
   EXPECT_EQ(found.condition, row.text("condition"));

@@ -38,7 +38,7 @@ constexpr std::size_t kPage = 4096;
 
 bool all_of_them() { return std::getenv("HAPTRIAL_POWER_CUTS") != nullptr; }
 
-/// What was given to the writer before a sync that ended.
+/// Rows that were given to the writer before a sync that ended.
 struct Synced {
   std::uint64_t rows{0}, tool{0}, passes{0}, events{0}, begun{0}, frames{0};
 };

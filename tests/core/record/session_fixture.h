@@ -11,7 +11,7 @@ namespace haptrial::test {
 
 record::SessionInfo example_info();
 
-/// What a participant's hand gives: a smooth curve at 16 mm/s with tremor, read by an encoder with
+/// Samples of a participant's hand: a smooth curve at 16 mm/s with tremor, read by an encoder with
 /// steps of 1e-5 m, velocity from a first-order filter, forces smooth with noise, passes of 18 s.
 std::vector<record::Sample> hand_motion(std::size_t count, std::uint64_t seed);
 
@@ -24,7 +24,7 @@ record::BoneRecord small_bone();
 /// Every table that a file of these tests may have beside those of every session.
 record::TableList drilling_and_common();
 
-/// What a tool does on as many ticks, with another value in every field of every row.
+/// Rows of a tool on as many ticks, with another value in every field of every row.
 std::vector<record::ToolRow> tool_motion(std::size_t count, std::uint64_t seed);
 
 bool same(const record::Sample& a, const record::Sample& b);

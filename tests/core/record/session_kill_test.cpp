@@ -31,7 +31,7 @@ constexpr std::uint64_t kPass = 3000;    // ticks of a pass; then a pause of kPa
 constexpr std::uint64_t kPause = 1000;
 constexpr std::uint64_t kCycle = kPass + kPause;
 
-/// What the child is about, seen by the parent.
+/// State of the child, seen by the parent.
 struct Shared {
   std::atomic<std::uint64_t> given{0};  // rows of append() calls that returned
   std::atomic<int> doing{0};

@@ -34,7 +34,7 @@ using ::testing::Not;
 
 class ConsoleTest : public ::testing::Test {
  protected:
-  /// What a page would send.
+  /// Request that a page would send.
   static RawRequest good(const Console& console) {
     RawRequest request;
     request.host = "127.0.0.1:" + std::to_string(console.port());

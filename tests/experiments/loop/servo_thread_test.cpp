@@ -23,7 +23,7 @@ class HoldingPass final : public protocols::Pass {
   protocols::PassState state() const noexcept override { return protocols::PassState::kRunning; }
 };
 
-/// What a servo thread uses; on the heap, so that a thread that hangs keeps it.
+/// Parts that a servo thread uses; on the heap, so that a thread that hangs keeps them.
 struct Parts {
   static device::EnvelopeLimits limits() {
     device::EnvelopeLimits l;

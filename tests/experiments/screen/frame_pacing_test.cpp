@@ -59,7 +59,7 @@ TEST(PaceTest, ATimerDoesNotWaitWhereAPictureIsLate) {
   EXPECT_EQ(dropped, 9);
 }
 
-// Where the swap waits for the refresh, the distance of two pictures tells how many had none.
+// If the swap waits for the refresh, the distance of two pictures tells how many had none.
 TEST(PaceTest, RefreshesWithoutAPictureAreCounted) {
   std::int64_t now = 0;
   Pace pace({100.0, true, ""}, now);

@@ -272,7 +272,7 @@ TEST_F(ScreenTest, KeysPointerAndCloseButtonReachTheCallbacks) {
   });
   EXPECT_THAT(requests, ElementsAre(Request::kStart, Request::kEmergencyStop));
 
-  // Where the renderer draws the end of the path, the pointer is at the end of the path.
+  // At the end of the path as drawn, the pointer is at the end of the path.
   Presentation at_end = running();
   at_end.tool = path().back();
   at_end.show_target_bar = at_end.show_applied_bar = false;

@@ -1,5 +1,5 @@
-// What a drilling does on the servo thread: nothing allocates, everything is logged, what is
-// simulated is simulated again from what is logged.
+// Drilling on the servo thread: nothing allocates, everything is logged, and the same results come
+// from simulating the log again.
 
 #include "protocols/bone_drilling/drilling_pass.h"
 
@@ -208,7 +208,7 @@ TEST(DrillingPassTest, WhatIsSimulatedIsOnTheGridsOfTheFile) {
     reading.pedal = random.uniform();
     const device::DeviceReading once = as_recorded(reading);
     EXPECT_LE((once.tool.position - reading.tool.position).cwiseAbs().maxCoeff(), 0x1p-21);
-    // What a 32-bit column gives back.
+    // Value that a 32-bit column gives back.
     const auto stored = [](double value) { return static_cast<double>(static_cast<float>(value)); };
     for (int a = 0; a < 3; ++a) {
       EXPECT_EQ(stored(once.tool.position[a]), once.tool.position[a]);

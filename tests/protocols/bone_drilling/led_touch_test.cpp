@@ -1,5 +1,5 @@
-// What a hand that is led feels, held against what the hand that leads feels with the same tool at
-// the same place in the same tick: to the bit.
+// Forces on a hand that is led, held against those on the hand that leads with the same tool at the
+// same place in the same tick: to the bit.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -157,7 +157,7 @@ TEST(PlanTest, OneConditionNeedsNoBalance) {
 
 class DesignTest : public ::testing::Test {
  protected:
-  /// What is said of the published design when `from` is replaced by `to`.
+  /// Sentences about the published design when `from` is replaced by `to`.
   static std::vector<std::string> problems(const std::string& from, const std::string& to) {
     std::string text =
         "participants = 12\ntrials = 72\nrepetitions = 3\nbreak_after = 36\n"

@@ -1,4 +1,4 @@
-// What a definition allows but spoils its data, and what no session could do.
+// Values that a definition allows but that spoil its data, and those that no session could do.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

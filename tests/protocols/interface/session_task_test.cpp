@@ -258,7 +258,7 @@ TEST_F(SessionTaskTest, APassThatGivesUpIsAbortedWithoutAFault) {
   EXPECT_EQ(task_.result().last_sample, 10u) << "the next one needs no clearing";
 }
 
-/// What a device may do at one tick, and what is to be made of it.
+/// A fault of a device at one tick, and its expected consequence.
 struct Lie {
   const char* name;
   Fault fault;

@@ -70,7 +70,7 @@ TEST(StudyRulesTest, VirtualParticipantsCountIfOneWasAsked) {
               ElementsAre("observer.criterion"));
 }
 
-/// What a person feels follows from these keys whatever the device (compare the loop that the
+/// A person's sensations follow from these keys whatever the device (compare the loop that the
 /// guidance is given).
 TEST(StudyRulesTest, KeysThatGuidanceReckonsWithMayNotChange) {
   const auto loop_of = [](const std::string& text) {

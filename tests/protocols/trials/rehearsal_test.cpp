@@ -26,7 +26,7 @@ namespace {
 
 using record::ResponseSource;
 
-/// Where the tip was on each tick.
+/// Place of the tip on each tick.
 class Tips final : public stimulus::Observer {
  public:
   void observe(const stimulus::Shown& shown, const stimulus::Forces&, double) noexcept override {
@@ -436,7 +436,7 @@ TEST_P(ReplayedBodyTest, WhatPressedABodyFollowsFromTheHandsAndTheStages) {
   EXPECT_GT(pressed, 500);
 }
 
-/// What the screen is told presses the body is what the hand feels, turned around.
+/// The force that the screen shows on the body is the one on the hand, turned around.
 TEST_F(RehearsalTest, WhatIsSeenToPressABodyIsWhatIsFelt) {
   ASSERT_NO_FATAL_FAILURE(rehearse(soft_block("0.006")));
   ASSERT_GT(presses_.all.size(), 500u);

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What one side sends is there for the other at its next tick.
+/// A message of one side is there for the other at its next tick.
 class DirectWire final : public network::Wire {
  public:
   DirectWire() { inbox_.reserve(16); }

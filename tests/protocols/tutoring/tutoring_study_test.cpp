@@ -97,7 +97,7 @@ TEST(TutoringStudyTest, ADryRunIsRecordedScoredAndReported) {
   EXPECT_THAT(refused.errors, HasSubstr("have an expert of their own"));
 }
 
-/// What the report prints of participants as the unit: p values.
+/// P values that the report prints with participants as the unit.
 std::map<std::string, double> printed(const StudyStatistics& s, const std::string& of) {
   std::map<std::string, double> p;
   p[of + " repeated measures"] = s.repeated->p_corrected;
@@ -141,7 +141,7 @@ TEST(TutoringStudyTest, TestsKeepTheirLevelWhereConditionsDoNotDiffer) {
   EXPECT_GT(pooled, band.high);
 }
 
-/// What the virtual learners are made of shows: two senses are better than one, and a led hand
+/// Assumptions about the virtual learners show: two senses are better than one, and a led hand
 /// stays behind as far as its drag over the spring says.
 TEST(TutoringStudyTest, TheShippedResultsAreThoseOfTheAssumptions) {
   std::map<std::string, std::array<double, 3>> sums;

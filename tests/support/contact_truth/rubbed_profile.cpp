@@ -75,7 +75,7 @@ void RubbedProfile::rest_in_valley(Spot& at, std::size_t other, const Vector3d& 
   at.z = tool.z() + std::clamp(far, -reach, reach);
 }
 
-/// Where a straight way first enters the solid, over none of the faces that it leaves.
+/// First point at which a straight way enters the solid, over none of the faces that it leaves.
 std::optional<RubbedProfile::Spot> RubbedProfile::meet(const Vector3d& from, const Vector3d& to,
                                                        const std::optional<Left>& left) const {
   std::optional<Spot> first;

@@ -61,7 +61,7 @@ bool RubbedSurface::slide(Vector3d& at, const Vector3d& tool) const {
   return now != Hold::kLeaves;
 }
 
-/// Where a straight way first enters the solid.
+/// First point at which a straight way enters the solid.
 std::optional<Vector3d> RubbedSurface::meet(const Vector3d& from, const Vector3d& to) const {
   const Vector3d way = to - from;
   const double length = std::max(way.norm(), kSkin);

@@ -20,14 +20,14 @@ class SmoothSurface {
   /// Out of the solid, a unit vector. @param on  a point of the surface
   virtual Eigen::Vector3d normal(const Eigen::Vector3d& on) const = 0;
 
-  /// Where a point of the surface is after the time s if it slides down the distance to the tool:
+  /// Place of a point of the surface after the time s if it slides down the distance to the tool:
   ///
   ///     dx/ds = (I - n nᵀ)(tool - x)
   ///
   /// Exact where a body has a closed form, else stepped_flow().
   virtual Eigen::Vector3d flow(const Eigen::Vector3d& from, const Eigen::Vector3d& tool,
                                double time) const;
-  /// Where that way first comes to the friction cone, if there is a formula: from outside of it.
+  /// First point of that way on the friction cone, if there is a formula: from outside of it.
   virtual std::optional<Eigen::Vector3d> cone(const Eigen::Vector3d& from,
                                               const Eigen::Vector3d& tool, double friction) const;
 };

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Where the proxy is for a tool that is inside; nothing for one in the air. One for each body;
+/// Place of the proxy for a tool that is inside; nothing for one in the air. One for each body;
 /// some remember where they were.
 class PlaneProxy {
  public:
@@ -67,7 +67,7 @@ class TorusProxy {
   TrueTorus body_;
 };
 
-/// What is outside of a concave edge is convex: its nearest point is the only one.
+/// The space outside of a concave edge is convex: its nearest point is the only one.
 class ConcaveProxy {
  public:
   explicit ConcaveProxy(const TrueConcaveEdge& body)

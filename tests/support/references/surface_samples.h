@@ -9,7 +9,7 @@
 
 namespace haptrial::bone {
 
-/// What a burr that is sampled on its surface meets in a bone.
+/// Contact of a burr that is sampled on its surface with a bone.
 struct SurfaceContact {
   std::int32_t samples{0};                        // that lie in bone
   Eigen::Vector3d push{Eigen::Vector3d::Zero()};  // sum of depth times direction to the centre [m]

@@ -115,7 +115,7 @@ std::pair<int, double> nearest_rod(const bone::Voxel& v) {
   double nerve = 1e9, sinus = 1e9;
   for (int i = 0; i < 20; ++i) {
     nerve = std::min(nerve, (v - bone::Voxel(i, 2, 1)).cast<double>().norm());
-    // Where the rods would cross, nothing is marked twice: they lie 5 voxels apart.
+    // At crossings of the rods nothing is marked twice: they lie 5 voxels apart.
     sinus = std::min(sinus, (v - bone::Voxel(17, i, 6)).cast<double>().norm());
   }
   return nerve <= sinus ? std::pair(0, 1e-3 * nerve) : std::pair(1, 1e-3 * sinus);

@@ -1,4 +1,4 @@
-// What a session sees while it runs is what its file says afterwards.
+// Figures that a session shows while it runs are those of its file afterwards.
 
 #include "analysis/bone_drilling/metrics/live.h"
 

@@ -127,7 +127,7 @@ TEST(StrokesTest, AMinimumJerkStrokeHasItsSmoothness) {
       const std::vector<Stroke> strokes = find_strokes(p);
       ASSERT_EQ(strokes.size(), 1u);
       const double exact = -std::log(720.0 / (1.875 * 1.875));
-      // Where the movement begins and ends its jerk jumps, and a step takes the mean over that.
+      // At both ends of the movement its jerk jumps, and a step takes the mean over that.
       EXPECT_NEAR(*strokes[0].smoothness, exact, 0.2);
       EXPECT_NEAR(*find_strokes(p, {.step = 0.002})[0].smoothness, exact, 0.05);
     }

@@ -1,4 +1,4 @@
-// What comes out of a session file: trials, their passes, their bones.
+// Contents of a session file as read: trials, their passes, their bones.
 
 #include "analysis/bone_drilling/procedure/procedure.h"
 

@@ -21,8 +21,8 @@ double area(const render::SceneTriangle& t) {
   return 0.5 * (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).norm();
 }
 
-/// Of the triangles in which red, green or blue is the strongest: hidden voxels, seen ones, the
-/// vein [mm^2].
+/// Areas of the triangles in which red, green or blue is the strongest: hidden voxels, seen ones,
+/// the vein [mm^2].
 Eigen::Vector3d areas(const std::vector<render::SceneTriangle>& triangles) {
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
   for (const render::SceneTriangle& t : triangles) {

@@ -1,4 +1,4 @@
-// What a condition changed: against the paired test of means by hand, and in studies without any
+// Change by a condition: against the paired test of means by hand, and in studies without any
 // effect.
 
 #include "analysis/bone_drilling/report/with_without.h"

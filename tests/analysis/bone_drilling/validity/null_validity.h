@@ -9,7 +9,7 @@
 
 namespace haptrial::test {
 
-/// What analyze wrote of a rated validity study.
+/// Results that analyze wrote of a rated validity study.
 struct RatedStudy {
   std::vector<analysis::drilling::ProcedureSummary> procedures;  // without voxels
   std::vector<analysis::drilling::Rating> ratings;

@@ -50,7 +50,7 @@ class RatingsTest : public testing::Test {
   RatingKey key_{false, {{"AB34", {"S01", 1, 5}}, {"CD67", {"S01", 2, 6}}}};
 };
 
-// What raters get depends on what was done and the seed, not on who did it: other names, in another
+// Codes depend on the procedures and the seed, not on the participants: other names, in another
 // alphabetical order and in other files, give the same codes for the same procedures.
 TEST_F(RatingsTest, CodesDoNotDependOnNames) {
   const std::vector<std::string> plain{"S01", "S02", "S03"}, other{"zoe", "anna", "mia"};

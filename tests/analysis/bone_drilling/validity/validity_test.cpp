@@ -97,7 +97,7 @@ TEST(ValidityTest, ComparesExpertsWithNovices) {
   EXPECT_NEAR(v.rating_groups[4].participant_means->high, mean_interval(novice_means)->high, 1e-12);
 }
 
-// Of balanced data the mixed model's contrast is the difference of means, and its t that of the
+// For balanced data the mixed model's contrast is the difference of means, and its t that of the
 // participants' means with equal variances.
 TEST(ValidityTest, TheMixedModelOfBalancedDataIsTheTTestOfMeans) {
   const Study study = made(2, 0.8, 0.8);
@@ -116,7 +116,7 @@ TEST(ValidityTest, TheMixedModelOfBalancedDataIsTheTTestOfMeans) {
   EXPECT_NEAR(*c.mixed_p, student->p, 1e-6);
 }
 
-// Where nothing differs the published test, which takes a participant's procedures as independent,
+// If nothing differs the published test, which takes a participant's procedures as independent,
 // finds a difference far more often than in 5 % of studies; the mixed model does not.
 TEST(ValidityTest, NullStudiesFindADifferenceAsOftenAsTheyMay) {
   RandomStream random(12, "null studies");
@@ -138,7 +138,7 @@ TEST(ValidityTest, NullStudiesFindADifferenceAsOftenAsTheyMay) {
   EXPECT_NEAR(mixed, 0.05 * kStudies, 0.021 * kStudies);  // three standard errors
 }
 
-// Of many metrics that say nothing, one or more pass Holm's limit in at most 5 % of studies.
+// Among many metrics that say nothing, one or more pass Holm's limit in at most 5 % of studies.
 TEST(ValidityTest, ManyMetricsDoNotFindMoreByChance) {
   int found = 0;
   constexpr int kStudies = 60;
@@ -185,7 +185,7 @@ TEST(ValidityTest, RelatesMetricsToRatings) {
             *v.combined.fit->validated.r);
 }
 
-// Of experts expected lower, an area above 1/2 says that they are lower.
+// For experts expected lower, an area above 1/2 says that they are lower.
 TEST(ValidityTest, AnAreaIsThatOfTheExpectation) {
   Study study = made(4, 1.0, 0.3);
   const std::vector<MetricKind> kinds = metric_kinds();
@@ -251,7 +251,7 @@ TEST(ValidityTest, RefusesWhatDoesNotFitThePlan) {
               HasSubstr("'chiefs'"));
 }
 
-// What is simulated says so: participants or raters are enough.
+// A simulated study says so: participants or raters are enough.
 TEST(ValidityTest, ASimulatedStudySaysSoEverywhere) {
   Study study = made(9, 1.0, 0.5, 2);
   const std::string real = to_markdown(validity_report(result_of(study), {}));

@@ -174,7 +174,8 @@ TEST(TrueRenderingTest, AslantOverAnEdgeAPointIsExactAtAnySpeed) {
   }
 }
 
-/// Where a sphere's centre may be beside a wedge: outside of two faces and an arc of `facets`.
+/// Profile of the places of a sphere's centre beside a wedge: outside of two faces and an arc of
+/// `facets`.
 RubbedProfile rounded_wedge(double flank, double radius, int facets, double friction) {
   const auto at = [&](double a) { return Vector2d(radius * std::sin(a), radius * std::cos(a)); };
   const Vector2d down(std::cos(flank), -std::sin(flank));
@@ -214,7 +215,7 @@ TEST(TrueRenderingTest, AslantOverAnEdgeASphereIsExactAtAnySpeed) {
   for (const int ticks : {1000, 10000}) {  // steps up to 0.19 mm and 19 micrometres
     for (const double friction : {0.0, 0.05, kRubbed, 0.8}) {
       SCOPED_TRACE(std::to_string(ticks) + " ticks, friction " + std::to_string(friction));
-      // Of 1 mm: the tool is so deep that the sphere hardly rests on the edge.
+      // With a depth of 1 mm the sphere hardly rests on the edge.
       EXPECT_LT(worst_of_sphere(0.001, ticks, 4000, friction), 1e-8);
       const double coarse = worst_of_sphere(0.005, ticks, 400, friction);
       const double fine = worst_of_sphere(0.005, ticks, 4000, friction);

@@ -97,7 +97,8 @@ TEST(FailureMapTest, HeightAndStiffnessChangeNothing) {
   EXPECT_GT(climbed, 100);
 }
 
-/// What is drawn to the nearest surface loses the ridge once the tool is deeper than it is high.
+/// A tool that is drawn to the nearest surface loses the ridge once it is deeper than the ridge is
+/// high.
 TEST(FailureMapTest, RenderersWithoutAProxyPassUnder) {
   for (const FailureMap& map : maps()) {
     if (map.kind == RendererKind::kPenalty || map.kind == RendererKind::kDistanceField) {

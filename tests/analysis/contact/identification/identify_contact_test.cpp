@@ -22,8 +22,8 @@ constexpr double kStiffness = 800.0;  // [N/m]
 constexpr double kSphere = 0.05;      // [m]
 constexpr int kTicks = 5000;
 
-/// Where a hand leads the tool over a plane y = 0: strokes of 24 mm with pauses, 1 to 3 mm deep, in
-/// the air at first.
+/// Path of a hand over a plane y = 0: strokes of 24 mm with pauses, 1 to 3 mm deep, in the air at
+/// first.
 std::vector<Vector3d> rubbing(RandomStream& random, double depth = 0.002) {
   const double a = 6.0 * random.uniform(), b = 6.0 * random.uniform(), c = 6.0 * random.uniform();
   std::vector<Vector3d> tool;
@@ -49,7 +49,7 @@ struct Noise {
   double pose{2e-4}, memory{0.9}, force{0.01};
 };
 
-/// What a recording of these contacts says.
+/// Recording of these contacts.
 ContactSamples recorded(const std::vector<Vector3d>& tool, const std::vector<Vector3d>& contact,
                         const std::vector<Vector3d>& force, bool sphere, const Noise& noise,
                         RandomStream& random) {

@@ -60,7 +60,7 @@ TEST(SensorLoadTest, OneOrientationLeavesWeightAndOffsetMixed) {
   const LoadFit fit = estimate_load(in_the_air(loaded(), 0.01, 0.0), loaded().mount, {{0.0, 10.0}});
   ASSERT_FALSE(fit.unfixed.empty());
   EXPECT_THAT(fit.unfixed.front(), HasSubstr("only a combination"));
-  // What is mixed still explains that orientation.
+  // A mixed reading still explains that orientation.
   EXPECT_NEAR(fit.force_rms, 0.01, 0.001);
 }
 

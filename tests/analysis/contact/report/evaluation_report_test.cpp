@@ -70,7 +70,7 @@ TEST(EvaluationReportTest, LinesNameEveryRendering) {
   EXPECT_THAT(name_of(rubbed_duck().renderings.back()), testing::StartsWith("proxy with friction"));
 }
 
-/// What renderers count stands in the lines, the report and the file, by the same names.
+/// Counts of renderers stand in the lines, the report and the file, by the same names.
 TEST(EvaluationReportTest, OperationsAreToldByTheirNames) {
   const std::string page = analysis::to_html(evaluation_report(rubbed_duck(), {}, {}));
   const std::string file = evaluation_json(rubbed_duck(), {});

@@ -96,7 +96,7 @@ NullLevels levels_of(const analysis::StudyComparison& comparison, bool paired) {
   return levels;
 }
 
-/// What compare does not do: every trial counted as independent.
+/// The test that compare does not do: every trial counted as independent.
 void note_pooled(NullLevels& levels, const analysis::StudyComparison& comparison) {
   for (const auto& c : comparison.conditions) {
     std::vector<double> values[2];

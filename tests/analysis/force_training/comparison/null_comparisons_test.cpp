@@ -1,4 +1,4 @@
-// What a comparison of two studies leads with keeps its level.
+// The first result of a comparison of two studies keeps its level.
 #include "tests/analysis/force_training/comparison/null_comparisons.h"
 
 #include <gmock/gmock.h>

@@ -157,7 +157,7 @@ TEST(Markdown, LeavesNothingThatReadsAsMarkup) {
   EXPECT_THAT(text, HasSubstr("````\none\n```\ntwo\n````\n"));
 }
 
-// What stands between each `before` and the next quote.
+// Texts between each `before` and the next quote.
 std::vector<std::string> quoted_after(const std::string& text, const std::string& before) {
   std::vector<std::string> result;
   for (std::size_t at = 0; (at = text.find(before, at)) != std::string::npos;) {

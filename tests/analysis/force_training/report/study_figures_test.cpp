@@ -1,4 +1,4 @@
-// What the figures show, before anything is drawn.
+// Contents of the figures, before anything is drawn.
 #include "analysis/force_training/report/study_figures.h"
 
 #include <gmock/gmock.h>

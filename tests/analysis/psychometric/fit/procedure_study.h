@@ -26,7 +26,7 @@ struct Found {
   double low{0.0}, high{0.0};
 };
 
-/// What a session gave.
+/// Results of a session.
 struct Session {
   int trials{0};
   std::optional<Found> natural;              // the procedure's own estimate

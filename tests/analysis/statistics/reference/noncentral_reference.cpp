@@ -44,7 +44,7 @@ void compare_f(Answers& r) {
   }
 }
 
-// Where our lower tail has R's probability.
+// Place at which our lower tail has R's probability.
 double quantile(double p, double n, double df, double lambda) {
   return find_root([&](double f) { return noncentral_f(f, n, df, lambda).lower - p; }, 0.0, 1e5);
 }

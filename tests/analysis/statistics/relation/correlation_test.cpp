@@ -70,7 +70,7 @@ TEST(Pearson, OfALineIsOneAndCertain) {
 }
 
 TEST(Spearman, CountsArrangements) {
-  // Of the 24 orders of four only the two monotone ones are as strong.
+  // Among the 24 orders of four only the two monotone ones are as strong.
   const auto c = spearman_correlation(Values{1, 2, 3, 4}, Values{1, 8, 27, 64});
   EXPECT_DOUBLE_EQ(c->r, 1.0);
   EXPECT_DOUBLE_EQ(c->p, 2.0 / 24.0);

@@ -53,8 +53,8 @@ TEST(CrossValidated, RecoversALinearLaw) {
   EXPECT_EQ(c->lambda, ridge_penalties().front());
 }
 
-// What is predicted for a participant must not change whatever that participant's own values are;
-// those of the others must.
+// A participant's prediction must not change whatever that participant's own values are; those of
+// the others must.
 TEST(CrossValidated, APoisonedParticipantDoesNotReachTheirOwnFit) {
   const VectorXd law = VectorXd::Constant(2, 1.0);
   const Data clean = made("poison", 12, 4, law, 0.5);

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using Values = std::vector<double>;
 
 TEST(PermutationTest, CountsTheArrangementsOfACaseWorkedByHand) {
-  // Of the six pairs out of 1, 2, 3, 4 one has the lowest sum and one the highest.
+  // Among the six pairs out of 1, 2, 3, 4 one has the lowest sum and one the highest.
   const Values a{1, 2}, b{3, 4};
   EXPECT_DOUBLE_EQ(permutation_test(a, b, Tail::kTwoSided, {})->p, 2.0 / 6.0);
   EXPECT_DOUBLE_EQ(permutation_test(a, b, Tail::kLess, {})->p, 1.0 / 6.0);

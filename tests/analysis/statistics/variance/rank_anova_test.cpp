@@ -102,8 +102,8 @@ TEST(KruskalWallis, IsExactForFewValues) {
   EXPECT_NEAR(test->p, 6.0 / 90.0, 1e-14);
 }
 
-// Of two conditions it is the sign test: (n+ - n-)² / (n+ + n-), equal pairs left out. Four or more
-// of five signs agree in 12 of 32 cases.
+// For two conditions Friedman's test is the sign test: (n+ - n-)² / (n+ + n-), equal pairs left
+// out. Four or more of five signs agree in 12 of 32 cases.
 TEST(Friedman, OfTwoConditionsIsTheSignTest) {
   const auto test = friedman({{1, 2}, {5, 3}, {2, 8}, {4, 4}, {1, 7}, {0, 9}});
   ASSERT_TRUE(test);

@@ -1,4 +1,4 @@
-// What sessions record comes back, trial by trial, and stands in the tidy table.
+// Records of sessions come back, trial by trial, and stand in the tidy table.
 #include "analysis/trials/data/read_trials.h"
 
 #include <gmock/gmock.h>

@@ -23,7 +23,7 @@ using psychometric::Staircase;
 
 constexpr int kPeople = 12;
 
-/// What a person adds to the log odds of "yes".
+/// A person's addition to the log odds of "yes".
 struct Habit {
   double repetition{0.0};  // half of it for "yes" before, less half for "no"
   double drift{0.0};       // from first to last of 50 trials

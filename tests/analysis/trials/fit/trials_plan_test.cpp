@@ -175,7 +175,7 @@ PlanDefaults defaults_of_cues() {
   return d;
 }
 
-/// What is said of the table with one thing written otherwise.
+/// Sentences about the table with one thing written otherwise.
 std::string problems_with(const std::string& what, const std::string& by) {
   std::string text = kCues;
   text.replace(text.find(what), what.size(), by);

@@ -8,7 +8,7 @@
 
 namespace haptrial::test {
 
-/// What people make of two cues.
+/// Use of two cues by simulated people.
 enum class CueUse {
   kLeastVariance,  // both, weighed by 1 / variance
   kBetterAlone,    // the one with the smaller standard deviation

@@ -98,7 +98,7 @@ TEST(TrialsStudyTest, IntervalsHoldTheTruthAndBothFitsAgree) {
     EXPECT_LE(fit.band.front().level.value, fit.band.back().level.value);
     EXPECT_GT(fit.deviance_p, 0.0);
   }
-  // Of 12 intervals of 95 %, 8 or fewer hold the truth once in 400,000 studies.
+  // Among 12 intervals of 95 %, 8 or fewer hold the truth once in 400,000 studies.
   EXPECT_GE(likelihood, 9);
   EXPECT_GE(bayesian, 9);
 }
@@ -176,7 +176,7 @@ TEST(TrialsStudyTest, DetectionIsThatOfThePeople) {
               3.0 * q.means[0]->deviation / std::sqrt(30.0) + 0.02);
   // Yes from 0.8 on; the middle between both distributions is at d' / 2.
   EXPECT_NEAR(of(result, "criterion").means[0]->mean, 0.8 - 0.5 * test::kTypicalDPrime, 0.06);
-  // Of equal variances the area is Phi(d' / sqrt 2).
+  // With equal variances the area is Phi(d' / sqrt 2).
   const double area = 0.5 * std::erfc(-test::kTypicalDPrime / 2.0);
   double binormal = 0.0;
   for (const DetectedCondition& one : result.detected) {
@@ -307,7 +307,7 @@ TEST(TrialsStudyTest, AdaptiveTrialsHaveIntervalsThatHoldTheTruth) {
     const auto [low, high] = *track.estimates[0].interval;
     own_held += low <= aim && aim <= high ? 1 : 0;
   }
-  // Of 12 and 24 intervals of 95 %, 8 and 18 or fewer hold the truth once in 10,000 studies.
+  // Among 12 and 24 intervals of 95 %, 8 and 18 or fewer hold the truth once in 10,000 studies.
   EXPECT_GE(held, 9);
   EXPECT_GE(own_held, 19);
   TrialsPlan bare = plan;

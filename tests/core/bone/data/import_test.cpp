@@ -1,4 +1,4 @@
-// What a file says of its volume comes out at the right place; what it says wrongly is refused.
+// Voxels of a file come out at the right place; wrong statements of a file are refused.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a segmentation of 3D Slicer or meshes beside a scan say lands where they say it.
+// Segmentations of 3D Slicer, and meshes beside a scan, land where they say.
 
 #include "core/bone/data/segments.h"
 

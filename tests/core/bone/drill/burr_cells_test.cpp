@@ -166,7 +166,8 @@ TEST(BurrCellsTest, SamplesThatTakeTurnsRemoveAsMuch) {
   EXPECT_NEAR(volume, kForce * kTicks * 1e-3 * each, 0.01 * volume);
 }
 
-/// What is felt is drilled, and the other way round: a burr that plunges leaves no voxel behind.
+/// Bone that is felt is drilled, and the other way round: a burr that plunges leaves no voxel
+/// behind.
 TEST(BurrCellsTest, APlungeLeavesNoCrumbs) {
   BoneVolume bone(test::flat_bone(80, kFine));
   BurrParameters parameters = fine_burr(3e-3);

@@ -21,7 +21,7 @@ constexpr double kVoxel = kSpacing * kSpacing * kSpacing;
 const Quaterniond kUpright = Quaterniond::Identity();
 const Quaterniond kLying(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()));
 
-/// What one tick takes from fresh flat bone, the burr `depth` deep.
+/// Bone that one tick takes from fresh flat bone, the burr `depth` deep.
 double removed(const BurrParameters& burr, double depth, const Quaterniond& turn, double force,
                double power, double dt) {
   BoneVolume bone(test::flat_bone(40, kSpacing));

@@ -75,8 +75,8 @@ TEST(DrillTest, ThePushOfAHalfSpaceIsItsNormal) {
   }
 }
 
-/// What touch() finds, by brute force in doubles, and how many samples lie so near to a face
-/// between voxels that rounding decides.
+/// Result of touch(), by brute force in doubles, and the number of samples that lie so near to a
+/// face between voxels that rounding decides.
 struct Brute {
   int samples{0};
   int unsure{0};

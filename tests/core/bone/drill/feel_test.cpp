@@ -96,7 +96,7 @@ TEST(FeelTest, AClockwiseBurrRunsAlongTheBoneAsAWheelRolls) {
   const BurrParameters burr = default_burr(BurrKind::kCutting, 4e-3);
   EXPECT_TRUE(burr.clockwise);
   Drill drill(burr, {});
-  // Who holds the handle stands at -y and looks along y, with x to the right.
+  // The holder of the handle stands at -y and looks along y, with x to the right.
   const auto turn =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -Eigen::Vector3d::UnitY());
   const Contact contact = drill.touch(bone, {0.0, 0.0, 1.5e-3}, turn);

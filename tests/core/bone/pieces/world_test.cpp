@@ -233,7 +233,7 @@ TEST(BoneWorldTest, AGrabbedPieceMovesRigidlyWithTheToolAndAlone) {
   for (int i = 0; i < 10; ++i) {
     const Isometry3d moved = a_pose(random);
     world.drag(moved);
-    // What the tool sees does not move.
+    // The bone does not move as seen from the tool.
     EXPECT_TRUE((moved.inverse() * world.pose(1)).isApprox(tool.inverse() * bone, 1e-12));
   }
   EXPECT_TRUE(world.pose(0).isApprox(bone, 0.0));
@@ -494,7 +494,7 @@ TEST(BoneWorldTest, NothingIsLostWhileADrillCutsAndASearchRunsEveryFewTicks) {
       }
       drilled->tick(*world, drill, tick);
     }
-    // What is on its way is looked at by holders(); one search more would change the count.
+    // Bone on its way is looked at by holders(); one search more would change the count.
     drilled->expect_nothing_lost(*world);
   }
   expect_same(one, two);

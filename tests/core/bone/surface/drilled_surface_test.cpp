@@ -1,4 +1,4 @@
-// What a surface looks like where bone is worn away by parts of voxels.
+// Shape of a surface if bone is worn away by parts of voxels.
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>

@@ -25,7 +25,7 @@ BoneModel model_with_structures(RandomStream& random) {
   return model;
 }
 
-/// What is left, as a model of its own.
+/// The remaining bone, as a model of its own.
 BoneModel left_of(const BoneModel& model, const BoneVolume& volume) {
   BoneModel left = model;
   for (std::size_t at = 0; at < left.labels.size(); ++at) {

@@ -26,7 +26,7 @@ TEST(NeighbourSurfaceTest, FourVoxelsMakeATetrahedronOrASquareTwice) {
   });
   EXPECT_EQ(corner.size(), 4U);
   EXPECT_EQ(open_edges(corner), 0);
-  // What the exhaustive way costs: all four triangles of three of a square's corners.
+  // Cost of the exhaustive way: all four triangles of three of a square's corners.
   const auto square = made([](const Voxel& v) {
     return v.z() == 3 && (v.x() == 3 || v.x() == 4) && (v.y() == 3 || v.y() == 4);
   });

@@ -33,7 +33,7 @@ double area_of(const geometry::Mesh& mesh) {
   return sum;
 }
 
-/// What a plate covers, by asking at many points.
+/// Area that a plate covers, by asking at many points.
 double footprint(const PlateShape& shape) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& hole : shape.holes) {

@@ -35,7 +35,7 @@ Vector3d random_in(RandomStream& random, double reach) {
   return {x, y, random.uniform(-reach, reach)};
 }
 
-/// Of a proxy in a room: k (p - g) with p the point of the room nearest to the tool.
+/// Force of a proxy in a room: k (p - g) with p the point of the room nearest to the tool.
 class RoomTest : public testing::TestWithParam<double> {};
 
 TEST_P(RoomTest, WallsEdgesAndCornersAreExact) {
@@ -272,7 +272,7 @@ TEST(ExactBodiesTest, AFanOfManyTrianglesIsAPlane) {
   }
 }
 
-/// Where there is one nearest place, a proxy that may do one step a tick comes to it, only later.
+/// If there is one nearest place, a proxy that may do one step a tick comes to it, only later.
 TEST(ProxyTest, WorkThatIsLeftIsDoneOnTheNextTicks) {
   const ContactSurface surface(geometry::make_sphere(0.03, 20));
   for (const double radius : {0.0, 0.002}) {

@@ -263,8 +263,8 @@ TEST(NeverThroughTest, ASkinThatGrowsWithThePathLetsNothingThrough) {
 }
 
 TEST(NeverThroughTest, ASphereThatRollsOverManyEdgesATickNeverCutsThem) {
-  // Its ways round edges are blocked by the next faces all the time; what it learns on a way that
-  // it does not take must not be believed afterwards.
+  // The proxy's ways round edges are blocked by the next faces all the time; a discovery on a way
+  // that it does not take must not be believed afterwards.
   for (const int frequency : {30, 71}) {
     const ContactSurface surface(geometry::make_sphere(0.03, frequency));
     const double radius = 0.001;

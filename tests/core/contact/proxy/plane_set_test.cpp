@@ -71,7 +71,7 @@ TEST(PlaneSetTest, ThePointIsTheNearestThatAllPlanesAllow) {
     ASSERT_LT((s.move - wish - s.residual).norm(), 1e-12) << i;
   }
   EXPECT_GT(corners, 3000);
-  // Where no three of the planes that meet in the proxy are far from parallel.
+  // Cases in which no three of the planes that meet in the proxy are far from parallel.
   EXPECT_LT(pulling, 40);
   EXPECT_EQ(unsolved, 0);
 }

@@ -93,7 +93,7 @@ TEST_P(EveryRendererTest, ASphereIsFeltToItsResolution) {
   }
 }
 
-/// What a renderer gives to the tool on the second round of a closed path.
+/// Work of a renderer on the tool on the second round of a closed path.
 struct Work {
   double given{0.0};  // [J]
   double moved{0.0};  // the sum of what goes to and fro [J]

@@ -24,7 +24,7 @@ struct FeltBox {
   }
 };
 
-/// What a tick adds.
+/// Operations that a tick adds.
 Operations added(Renderer& renderer, const Vector3d& tool) {
   const Operations before = renderer.operations();
   renderer.tick(tool, kTick);

@@ -34,7 +34,7 @@ Partner drawn(double t) {
   return now;
 }
 
-/// What a partner has of it at every tick, by what is sent and nothing else.
+/// A partner's knowledge at every tick, from the messages and nothing else.
 class Hearer {
  public:
   explicit Hearer(const DeadbandParameters& p) : p_(p) {}
@@ -45,7 +45,7 @@ class Hearer {
       since_ = 0.0;
     }
   }
-  /// Where the bounds hold.
+  /// Checks that the bounds hold.
   void expect_right(const Partner& now) const {
     const Partner taken = expected(heard_, since_, p_.keepalive);
     ASSERT_LE((taken.force - now.force).norm(),

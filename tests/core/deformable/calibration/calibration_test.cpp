@@ -43,7 +43,7 @@ LoadCase pressed(const SpringBody& body, const Vector3d& force) {
 
 class CalibrationTest : public testing::Test {
  protected:
-  /// What springs with these constants do is the reference.
+  /// Problem whose reference is the answer of springs with these constants.
   CalibrationProblem problem_of(const SpringConstants& truth,
                                 const std::vector<Vector3d>& forces) const {
     SpringBody body = body_;
@@ -185,7 +185,7 @@ TEST_F(CalibrationTest, DescentAndAnnealingFindWhatMadeTheReference) {
   EXPECT_GT(annealed.steps.size(), 100u);
 }
 
-/// What was recorded is not done again, and the search goes on as it would have.
+/// Recorded steps are not done again, and the search goes on as it would have.
 TEST_F(CalibrationTest, AnInterruptedAnnealingGoesOn) {
   const auto parameters = SpringParameters::uniform(body_);
   const CalibrationProblem problem =

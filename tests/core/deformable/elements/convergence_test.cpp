@@ -1,4 +1,4 @@
-// What finer meshes converge to: Lamé's sphere, Timoshenko's cantilever, Cook's membrane.
+// Limits of finer meshes: Lamé's sphere, Timoshenko's cantilever, Cook's membrane.
 
 #include <gtest/gtest.h>
 

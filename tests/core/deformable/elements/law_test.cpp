@@ -125,7 +125,7 @@ TEST_P(LawTest, ATurnedBodyPushesTheSameWay) {
     test::expect_objectivity(law_, moved_, Eigen::AngleAxisd(2.5, axis).toRotationMatrix());
     return;
   }
-  // Of the linear law: any turn, however large, of a displacement that is taken for small.
+  // For the linear law: any turn, however large, of a displacement that is taken for small.
   VectorXd turn(law_.rest.size());
   for (Eigen::Index i = 0; i < turn.size(); i += 3) {
     turn.segment<3>(i) = axis.cross(Vector3d(law_.rest.segment<3>(i)));

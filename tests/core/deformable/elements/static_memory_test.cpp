@@ -1,4 +1,4 @@
-// What a static solution takes, against the memory that the process was given.
+// Memory of a static solution, against the memory that the process was given.
 
 #include <gtest/gtest.h>
 #include <malloc.h>

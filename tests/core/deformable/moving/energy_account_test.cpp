@@ -11,8 +11,8 @@ using Eigen::Vector3d;
 
 constexpr double kPeriod = 0.001;
 
-/// What a spring against a wall at 0 gives a hand beyond what the hand's damping takes, with the
-/// force held over each tick [J].
+/// Energy that a spring against a wall at 0 gives a hand beyond what the hand's damping takes, with
+/// the force held over each tick [J].
 double given_by_spring(double stiffness, bool with_account, double frequency) {
   EnergyAccount account;
   double given = 0.0, held = 0.0, before = -0.001;

@@ -311,7 +311,7 @@ TEST(BallTouchTest, ATickDoesNotAllocate) {
   EXPECT_GT(touch.counts().contact, 300u);
 }
 
-/// What is recorded, the tool, gives the same body to the bit.
+/// The recorded tool gives the same body to the bit.
 TEST(BallTouchTest, TheSameToolGivesTheSameForcesToTheBit) {
   const auto again = std::make_shared<const Compliance>(soft_block(), soft_tissue());
   BallTouch first(soft_body(), ball(0.007, 5000.0, {0.5, 0.4}));

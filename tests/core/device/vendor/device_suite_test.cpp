@@ -1,4 +1,4 @@
-// What every device promises, over all of them: the simulated ones, and the vendors' drivers on
+// Promises of every device, over all of them: the simulated ones, and the vendors' drivers on
 // stand-in libraries.
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What the one suite over every device does not say: how the vendors' devices are set up, and what
-// each of their failures is called.
+// Parts of drivers that the one suite over every device does not test: how the vendors' devices are
+// set up, and what each of their failures is called.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -36,7 +36,7 @@ std::vector<std::string> seeds(MeshFormat format) {
   return all;
 }
 
-/// What a reader promises of a mesh that it gives.
+/// Promises of a reader about a mesh that it gives.
 void expect_whole(const Mesh& mesh) {
   ASSERT_FALSE(mesh.triangles.empty());
   for (const Eigen::Vector3d& v : mesh.vertices) {

@@ -167,7 +167,7 @@ TEST(PseudonormalTest, SignsAgreeWithParity) {
   }
 }
 
-// Of a tetrahedron so sharp that one face's own normal would call points beyond its tip inside.
+// The tetrahedron is so sharp that one face's own normal would call points beyond its tip inside.
 TEST(PseudonormalTest, SharpCornersKeepTheirSign) {
   const Mesh mesh{{{0, 0, 0}, {10, 0.1, 0}, {10, -0.1, 0.1}, {10, -0.1, -0.1}},
                   {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}}};

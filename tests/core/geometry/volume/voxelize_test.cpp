@@ -28,7 +28,7 @@ std::vector<bool> inside(const VoxelSolid& solid) {
   return flags;
 }
 
-/// What `rule(centre)` says of every voxel.
+/// Answer of `rule(centre)` for every voxel.
 template <class Rule>
 std::vector<bool> each_centre(const VoxelGrid& grid, const Rule& rule) {
   std::vector<bool> flags;

@@ -13,7 +13,7 @@
 #include "core/geometry/volume_files/volume_files.h"
 #include "tests/support/temporary_folder.h"
 
-// What we write is read by programs that are not ours.
+// Our files are read by programs that are not ours.
 namespace haptrial::geometry {
 namespace {
 

@@ -1,4 +1,4 @@
-// What a definition says of a nerve monitor, how far nerves are, what a tool does to them.
+// Nerve monitor of a definition, distances of nerves, and effects of a tool on them.
 
 #include "core/nerve/setup/nerve_setup.h"
 

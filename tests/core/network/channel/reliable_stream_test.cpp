@@ -1,4 +1,4 @@
-// What is put in comes out once and in order, whatever the network does to the messages.
+// Bytes that are put in come out once and in order, whatever the network does to the messages.
 
 #include "core/network/channel/reliable_stream.h"
 

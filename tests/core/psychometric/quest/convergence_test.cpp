@@ -71,7 +71,7 @@ std::shared_ptr<const QuestTables> psi_tables(bool marginal) {
   return std::make_shared<QuestTables>(psi_definition(p));
 }
 
-/// What a device applies whose levels are multiples of the quantum.
+/// Level that a device applies if its levels are multiples of the quantum.
 Level quantised(Level level, double quantum) {
   if (quantum > 0.0) {
     level[0] = quantum * std::round(level[0] / quantum);

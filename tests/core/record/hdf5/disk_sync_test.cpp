@@ -124,7 +124,7 @@ TEST(DiskSyncTest, NobodyWaitsForASlowDisk) {
   test::wait_until([&] { return disk.syncs() > before + 1; });
 }
 
-/// What was in the file when a sync began is in the bytes that it covers.
+/// Bytes in the file when a sync began are among those that it covers.
 TEST(DiskSyncTest, AChunkAndAPassAreSyncedSoon) {
   const TemporaryFolder folder;
   SlowDisk disk;

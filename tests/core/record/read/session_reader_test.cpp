@@ -135,7 +135,7 @@ TEST(SessionReaderTest, RefusesMissingAndForeignDatasets) {
   EXPECT_THAT(refusal(folder / "whole.h5"), HasSubstr("/attributes is empty"));
 }
 
-/// What a killed writer leaves: the file as it is while the writer still has it open.
+/// File that a killed writer leaves: as it is while the writer still has it open.
 std::string unfinished_session(const TemporaryFolder& folder) {
   SessionWriter writer(folder / "open.h5", test::example_info());
   writer.append(test::hand_motion(20000, 1));

@@ -63,7 +63,7 @@ PassRow pass_row(std::uint64_t pass, PassStatus status = PassStatus::kCompleted)
           status};
 }
 
-/// What a kill leaves at this instant: a copy of the file while it is written.
+/// Leaves the file of a kill at this instant: a copy of the file while it is written.
 void leave_as_killed(const TemporaryFolder& folder, const std::string& from,
                      const std::string& to) {
   fs::copy_file(folder / (from + ".partial"), folder / (to + ".partial"));

@@ -10,7 +10,7 @@
 namespace haptrial::render {
 namespace {
 
-/// Where a point of W is in the picture, from -1 to 1 each way.
+/// Place of a point of W in the picture, from -1 to 1 each way.
 Eigen::Vector3d clip(const EyeView& view, const Eigen::Vector3d& point) {
   const Eigen::Vector4d p = view.projection * view.view * point.homogeneous();
   return p.hnormalized();

@@ -1,4 +1,4 @@
-// What a picture leaves out of a tool's shadow is what the shadow's law leaves alone.
+// Parts that a picture leaves out of a tool's shadow are those that the shadow's law leaves alone.
 #include "core/render/shadow/tool_shadow.h"
 
 #include <gtest/gtest.h>

@@ -21,7 +21,7 @@ std::vector<std::uint32_t> glyphs_of(const SetLine& line) {
   return all;
 }
 
-/// What HarfBuzz makes of a text by itself, in the order in which it is seen.
+/// Glyphs that HarfBuzz makes of a text by itself, in the order in which they are seen.
 std::vector<std::uint32_t> shaped(const std::string& file, const std::string& text) {
   hb_blob_t* blob = hb_blob_create_from_file(file.c_str());
   hb_face_t* face = hb_face_create(blob, 0);

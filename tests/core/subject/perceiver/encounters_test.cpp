@@ -19,7 +19,7 @@ using test::Vector3d;
 
 const Vector3d kDown(0.0, -1.0, 0.0);
 
-/// What a probe meets in a scene.
+/// Contacts of a probe in a scene.
 Encounters explore(const std::vector<scene::Field>& fields, const Probe& probe, double seconds,
                    const Vector3d& start = Vector3d::Zero()) {
   HandRig rig(fields, start);

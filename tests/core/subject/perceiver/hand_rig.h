@@ -29,7 +29,7 @@ inline scene::Field floor_of(double stiffness, double damping = 2.0) {
 /// a clock.
 class HandRig {
  public:
-  /// What happens on a tick: the time since the probe began, the force on the hand, its reading.
+  /// Callback for a tick: the time since the probe began, the force on the hand, its reading.
   using Tick = std::function<void(double, const Vector3d&, const PointState&)>;
 
   explicit HandRig(const std::vector<scene::Field>& fields = {},

@@ -126,7 +126,7 @@ TEST(JudgeTest, AYesNeedsMoreThanTheCriterionThatDrifts) {
   EXPECT_NEAR(share(0.05, 100, 0), phi(-0.5), bound(0.3));
 }
 
-/// Of three prototypes each is answered as often as noise leaves the percept between its borders.
+/// Each of three prototypes is answered as often as noise leaves the percept between its borders.
 TEST(JudgeTest, TheNearestPrototypeIsAnswered) {
   JudgementParameters p;
   p.logarithmic = false;

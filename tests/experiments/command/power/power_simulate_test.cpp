@@ -155,7 +155,7 @@ TEST_F(PowerSimulateTest, TheBatchScriptNamesTheQuestionAsItIs) {
   EXPECT_THAT(read_text(folder_ / "plan.sbatch"), HasSubstr("#SBATCH --array=1-3\n"));
   // To the script itself, which the program has become by exec.
   EXPECT_THAT(read_text(folder_ / "plan.sbatch"), HasSubstr("#SBATCH --signal=B:TERM@60\n"));
-  // What Slurm runs, three times: the last task makes what was missing.
+  // The command that Slurm runs, three times: the last task makes what was missing.
   const CommandResult tasks =
       run_command("cd " + path("") +
                   "; mkdir bin; ln -s \"$HAPTRIAL\" bin/haptrial; PATH=$PWD/bin:$PATH; "

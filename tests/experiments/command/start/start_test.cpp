@@ -1,4 +1,4 @@
-// What a newcomer types first: examples, new, doctor.
+// First commands of a newcomer: examples, new, doctor.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

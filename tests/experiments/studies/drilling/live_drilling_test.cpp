@@ -1,4 +1,4 @@
-// What a session says of its drillings while they run, held against the analysis of its file.
+// Figures of a session's drillings while they run, held against the analysis of its file.
 
 #include "experiments/studies/drilling/live_drilling.h"
 
@@ -31,7 +31,7 @@ namespace {
 namespace drilling = analysis::drilling;
 using testing::HasSubstr;
 
-/// What the analysis of a procedure says of the same things.
+/// The same figures by the analysis of a procedure.
 drilling::LiveFigures figures_of(const drilling::Procedure& procedure) {
   drilling::StudyBones bones;
   const drilling::ProcedureSummary s = drilling::summarize(procedure, {}, bones);

@@ -1,4 +1,4 @@
-// What the definition of a drilling says, and what it is told where it is wrong.
+// Definition of a drilling, and the sentences about its mistakes.
 
 #include "protocols/bone_drilling/definition/bone_definition.h"
 

@@ -132,7 +132,7 @@ TEST(CurveGuideTest, ItHoldsAcrossThePathAndIsFreeAlongIt) {
     const Vector3d across =
         Vector3d(0.0, 0.0, 3e-4) - stimulus::presentation_of(m.out.shown).direction.z() * 3e-4 *
                                        stimulus::presentation_of(m.out.shown).direction;
-    // Where the path is straight for the while, the spring sees the offset across it.
+    // While the path is straight, the spring sees the offset across it.
     if (std::abs(across.norm() - m.out.force.norm() / 900.0) < 2e-5) {
       ++seen;
     }

@@ -14,7 +14,7 @@ std::string small_trials(const std::string& procedure, const std::string& more =
 /// A staircase of the variable `level`, for small_trials().
 extern const char* const kSmallStaircase;
 
-/// What is wrong with a definition of trials, a sentence each; also what only some of its values
+/// Problems of a definition of trials, a sentence each; also those that only some of its values
 /// would show.
 std::vector<std::string> problems_of_trials(const std::string& text);
 

@@ -19,8 +19,8 @@ RandomDots bar() {
   return dots;
 }
 
-/// Where the lines of sight through both eyes' dots meet: by intersection in the plane y = 0, with
-/// the eyes at (-+e/2, D) and the screen at depth 0.
+/// Depth at which the lines of sight through both eyes' dots meet: by intersection in the plane y =
+/// 0, with the eyes at (-+e/2, D) and the screen at depth 0.
 double depth_of(const EyeDot& left, const EyeDot& right) {
   const double crossed = left.x() - right.x();
   return kEyes.viewing_distance * crossed / (kEyes.eye_distance + crossed);

@@ -182,7 +182,7 @@ TEST(TrialObjectTest, ABodyOfSpringsIsFeltByOneDevice) {
       testing::Not(refused));
 }
 
-/// What validate says of a body of springs: its steps, and what a tick costs.
+/// Lines of validate about a body of springs: its steps, and the cost of a tick.
 TEST(TrialObjectTest, WhatABodyOfSpringsTakesIsSaid) {
   scene::DeformableObjectParameters p;
   p.mesh = std::make_shared<const deformable::HapticMesh>(

@@ -33,7 +33,7 @@ scene::Field floor_of(double stiffness, double damping) {
   return {"floor", wall, kStrong};
 }
 
-/// What is felt for an hour.
+/// Sensations for an hour.
 struct Feeling {
   std::string name;
   std::vector<scene::Field> fields;

@@ -40,7 +40,7 @@ const Question& question() {
   return asked;
 }
 
-/// What no protocol names: the stages of /samples.
+/// The pass has stages of /samples, which no protocol names.
 class StagedPass final : public Pass {
  public:
   PassOutput tick(const Readings&, double) noexcept override {

@@ -19,7 +19,7 @@ double number(RandomStream& random, int exponents) {
   return random.uniform(0, 1) < 0.5 ? -size : size;
 }
 
-/// What is added to a product: anything, what cancels it to its last bits, or far smaller parts.
+/// Addend of a product: anything, one that cancels it to its last bits, or far smaller parts.
 double addend(RandomStream& random, double product) {
   switch (static_cast<int>(random.uniform(0, 4))) {
     case 0:

@@ -64,7 +64,7 @@ TEST_F(SpringEnergiesTest, AVolumeObeysTheLawAlsoInsideOut) {
   EXPECT_GT(inside_out, kShapes / 4);
 }
 
-// What the source prints pushes and turns a triangle that is not equilateral.
+// The printed force of the source pushes and turns a triangle that is not equilateral.
 TEST_F(SpringEnergiesTest, ThePrintedAreaFormLeaks) {
   const Spring spring{0.3, 1e-4};
   const Vector3d off{0.02, -0.01, 0};  // at the corner where its heights meet it would not turn
