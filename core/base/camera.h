@@ -15,7 +15,7 @@ struct Camera {
   double distance() const { return (target - eye).norm(); }  // [m]
   /// Right, up and towards the eye in the picture, as columns; orthonormal.
   Eigen::Matrix3d axes() const noexcept;
-  /// From the camera's axes, with their origin at the eye, to W.
+  /// Transform from the camera's axes, with their origin at the eye, to W.
   Eigen::Isometry3d pose() const;
 };
 

@@ -9,7 +9,7 @@
 
 namespace haptrial {
 
-/// As many threads as the machine has processors where `threads` is 0 or less.
+/// The number of threads; as many as the machine has processors if `threads` is 0 or less.
 int threads_or_all(int threads);
 
 /// Items 0 .. count - 1 that threads take in order as they become free, each item once. When an

@@ -31,7 +31,7 @@ class CurveConstraint {
 
   // Servo thread, all of them: no allocation, lock, I/O or throw.
   void set_motion(const CurveMotion& motion) noexcept { motion_ = motion; }
-  /// At the nearest place of the whole curve.
+  /// Starts at the nearest place of the whole curve.
   void start(const Eigen::Vector3d& tool) noexcept;
   void start_at(double arc) noexcept { tracker_.start_at(arc); }
   /// Moves the place along with the tool. @returns where it is in W, and moving along with the tool

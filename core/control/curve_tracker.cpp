@@ -84,7 +84,7 @@ const CurvePlace& CurveTracker::start_at(double arc) noexcept {
 
 const CurvePlace& CurveTracker::follow(const Eigen::Vector3d& tool) noexcept {
   const CurveFollowing& f = following_;
-  // By material coordinate, so that a curve that was refitted keeps its place.
+  // The place is kept by material coordinate, so that a curve that was refitted keeps it.
   const double before = curve_->arc_of(place_.segment, place_.t);
   CurveQuery query;
   query.window = {before - f.step, before + f.step};

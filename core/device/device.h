@@ -24,8 +24,8 @@ struct DeviceReading {
   std::uint32_t buttons{0};  // bit i: button i is pressed
   bool forces_on{true};      // false: the device has switched its motors off
   bool stop_pressed{false};  // the button that the device's set-up names as emergency stop
-  /// From the handle's own frame to W, unit length; identity where the device does not sense it.
-  /// Which way the handle runs in its frame is a parameter of what is held.
+  /// Rotation from the handle's own frame to W, unit length; identity if the device does not sense
+  /// it. Which way the handle runs in its frame is a parameter of what is held.
   Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
   std::uint32_t keys{0};  // bit i: function i of the definition is held by a key of the window
   double pedal{0.0};      // how far an analog pedal is down, 0 to 1
@@ -49,8 +49,9 @@ class Device {
   /// @param force  on the tool tip, in W [N].
   /// @returns false when the device refused it.
   virtual bool write(const Eigen::Vector3d& force) noexcept = 0;
-  /// Asked on every tick, before read(), while a pass wants to begin: may it, with that read? A
-  /// recording lets each pass begin where it began when it was recorded. Servo thread.
+  /// Whether a pass may begin with the next read(); asked before it on every tick while a pass
+  /// wants to begin. A recording lets each pass begin where it began when it was recorded. Servo
+  /// thread.
   virtual bool ready() noexcept { return true; }
   /// Why the last read or write failed or the motors went off, in a sentence; "" where all is well.
   /// A text of static duration. The thread that reads.

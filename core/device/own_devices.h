@@ -19,7 +19,7 @@ struct RegisteredDevice {
   std::unique_ptr<Device> (*open)(const std::string& setting, int number, double rate){nullptr};
 };
 
-/// In the order in which they were added. Call before threads are started.
+/// Added devices in the order in which they were added. Call before threads are started.
 const std::vector<RegisteredDevice>& own_devices();
 /// @throws std::invalid_argument for a name that is taken or has other characters
 void add_own_device(const RegisteredDevice& device);

@@ -86,7 +86,7 @@ bool ReadingWatch::stale(bool equal, const Eigen::Vector3d& velocity, double dt)
   return stale_for_ >= kStaleAfter;
 }
 
-/// At the mean speed of the last readings; there and back again adds nothing to it.
+/// Way at the mean speed of the last readings; there and back again adds nothing to it.
 double ReadingWatch::way_in_two_ticks(double dt) noexcept {
   Place& place = passed_[passes_ % passed_.size()];
   const Place oldest = passes_ < passed_.size() ? passed_.front() : place;

@@ -17,7 +17,7 @@ struct HintRow {
   hint::HintKind kind{hint::HintKind::kForce};
   bool shown{false};         // to the participant
   std::int32_t removals{0};  // that were faulty, those that began it among them
-  // At the removal that was worst, the first of equally bad ones.
+  // Facts at the removal that was worst, the first of equally bad ones.
   std::string structure;    // nearest one; empty: none within reach
   double distance{0.0};     // from it; 0: none within reach [m]
   double force{0.0};        // [N]

@@ -21,7 +21,7 @@ namespace haptrial::hint {
 enum class HintKind : std::uint8_t { kForce, kSpeed, kHidden };
 inline constexpr std::array kAllHintKinds{HintKind::kForce, HintKind::kSpeed, HintKind::kHidden};
 inline constexpr std::size_t kHintKinds = kAllHintKinds.size();
-/// As definitions and files call them: "force", "speed", "hidden".
+/// Name of a kind in definitions and files: "force", "speed", "hidden".
 std::string_view name_of(HintKind kind) noexcept;
 constexpr std::uint8_t bit(HintKind kind) noexcept {
   return static_cast<std::uint8_t>(1U << static_cast<unsigned>(kind));

@@ -74,7 +74,7 @@ void HintWatch::removal(const HintTick& tick, const HintVoxel& voxel, bool shown
   const bool seen = sight_.remove(voxel.voxel, tick.burr);
   Fault fault{voxel, map_->at(voxel.voxel), 0.0};
   if (const SafeInterval* safe = fault.place.safe) {
-    // As the analysis has them, in single precision.
+    // The values are in single precision, as the analysis has them.
     const auto force = static_cast<double>(static_cast<float>(voxel.force));
     const auto speed = static_cast<double>(static_cast<float>(voxel.speed));
     fault.excess = force - safe->force;

@@ -78,8 +78,8 @@ class SteppedHints final : public HintsBeside {
   std::vector<HintVoxel> voxels_;
 };
 
-/// On a thread of its own, fed through logs without locks. What is recorded is the same as that of
-/// SteppedHints for the same ticks; it is seen some milliseconds later.
+/// Hints on a thread of their own, fed through logs without locks. The records are the same as
+/// those of SteppedHints for the same ticks; hints are seen some milliseconds later.
 class ThreadedHints final : public HintsBeside {
  public:
   explicit ThreadedHints(std::shared_ptr<Chime> chime);

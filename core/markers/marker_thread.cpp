@@ -29,7 +29,7 @@ MarkerThread::~MarkerThread() {
   thread_.join();
 }
 
-/// Below the servo thread, which it must not delay, and above everything else.
+/// Runs below the servo thread, which it must not delay, and above everything else.
 void MarkerThread::run() {
   const realtime::RealTimeScope urgent(realtime::RealTimeScope::kPriority - 10);
   while (!stop_.load(std::memory_order_relaxed) || !queue_.empty() || high_) {
@@ -67,7 +67,7 @@ void MarkerThread::take_onsets() {
   done_.fetch_add(count, std::memory_order_release);
 }
 
-/// In the order of `send` within a tick; what is not sent is left out.
+/// Queues codes in the order of `send` within a tick; onsets that are not sent are left out.
 void MarkerThread::queue_codes(std::vector<TimedOnset>& onsets) {
   const auto rank = [this](const TimedOnset& onset) {
     return std::ranges::find(options_.send, onset.onset.what) - options_.send.begin();

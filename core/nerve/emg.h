@@ -42,7 +42,7 @@ class Emg {
   /// @param severity  0 to 1: stronger and longer. @returns what comes, from the next sample on
   Planted burst(double severity) noexcept;
   Planted train(double severity) noexcept;
-  /// After a stimulus. @param latency  [s]  @param amplitude  peak [V]
+  /// Plants the response to a stimulus. @param latency  [s] @param amplitude  peak [V]
   Planted response(double latency, double amplitude) noexcept;
 
   /// Artefacts of this tick; those of a drill and a suction are the same in every muscle.

@@ -67,7 +67,8 @@ class NerveMonitor {
   /// One sample of every channel [V]. @param stimulus  a pulse begins with it
   void look(std::span<const float> samples, bool stimulus) noexcept;
 
-  /// From now on an event of the channel begins at this, and to this its threshold returns [V].
+  /// Sets the value at which an event of the channel begins from now on, and to which its threshold
+  /// returns [V].
   void set_threshold(std::size_t i, double threshold) noexcept;
 
   const ChannelState& channel(std::size_t i) const noexcept { return state_[i]; }

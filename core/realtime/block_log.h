@@ -28,7 +28,8 @@ namespace haptrial::realtime {
 /// Source: Morris 2006, §6.4.2; what differs and why: docs/algorithms/block-log.md.
 template <class Record>
 class BlockLog {
-  // Not is_trivially_copyable: Eigen's fixed-size vectors are plain data with a written-out copy.
+  // The test is not is_trivially_copyable: Eigen's fixed-size vectors are plain data with a
+  // written-out copy.
   static_assert(std::is_copy_constructible_v<Record> && std::is_trivially_destructible_v<Record>,
                 "a record is plain data: slots are overwritten without being destroyed");
 

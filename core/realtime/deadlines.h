@@ -54,7 +54,7 @@ class Deadlines {
   }
 
  private:
-  // From the index each time, rounded to a nanosecond: no rounding adds up.
+  // The deadline comes from the index each time, rounded to a nanosecond: no rounding adds up.
   std::int64_t due() const noexcept {
     return anchor_ + static_cast<std::int64_t>(static_cast<double>(index_) * period_ns_ + 0.5);
   }

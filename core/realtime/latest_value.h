@@ -13,7 +13,8 @@ namespace haptrial::realtime {
 /// that nobody read in time are replaced; what must not be lost goes through a BlockLog.
 template <class T>
 class LatestValue {
-  // Not is_trivially_copyable: Eigen's fixed-size vectors are plain data with a written-out copy.
+  // The test is not is_trivially_copyable: Eigen's fixed-size vectors are plain data with a
+  // written-out copy.
   static_assert(std::is_copy_assignable_v<T> && std::is_trivially_destructible_v<T>,
                 "a value is plain data: it is copied without allocation");
 

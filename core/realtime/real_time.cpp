@@ -40,8 +40,8 @@ void touch_stack() {
   asm volatile("" : : "r"(stack.data()) : "memory");
 }
 
-// Only what exists now: the servo thread allocates nothing later, and a limit on locked memory
-// would make later allocations of other threads fail.
+// Locks only memory that exists now: the servo thread allocates nothing later, and a limit on
+// locked memory would make later allocations of other threads fail.
 bool lock_memory() {
   touch_stack();
   return mlockall(MCL_CURRENT) == 0;

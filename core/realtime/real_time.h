@@ -13,10 +13,10 @@ struct RealTimeStatus {
   std::string notice;         // what was refused and how to permit it; empty when all was granted
 };
 
-/// While it lives, the constructing thread runs under SCHED_FIFO if the system permits, and wakes
-/// from a sleep without the 50 µs that the system may add for other threads. The destructor gives
-/// back the previous scheduling. Memory is locked for the whole process and stays locked.
-/// To be destroyed by the thread that constructed it.
+/// Scope of real-time treatment: the constructing thread runs under SCHED_FIFO if the system
+/// permits, and wakes from a sleep without the 50 µs that the system may add for other threads. The
+/// destructor gives back the previous scheduling. Memory is locked for the whole process and stays
+/// locked. The thread that constructed the scope destroys it.
 class RealTimeScope {
  public:
   static constexpr int kPriority = 80;  // below the kernel's own urgent threads

@@ -59,7 +59,7 @@ void ServoLoop::run_simulated(ServoTask& task) {
   const double dt = 1.0 / rate_hz_;
   bool more = true;
   for (std::uint64_t index = ticks(); more && !stop_requested(); ++index) {
-    // From the index each time: no rounding adds up.
+    // The time comes from the index each time: no rounding adds up.
     const double time_ns = static_cast<double>(index) * period_ns_;
     more = task.tick({index, static_cast<std::int64_t>(time_ns + 0.5), dt});
     ticks_.store(index + 1, std::memory_order_relaxed);

@@ -81,7 +81,8 @@ class ServoLoop {
     return resynchronised_.load(std::memory_order_relaxed);
   }
 
-  /// After run() has returned, or on its thread; the status also once started().
+  /// Timing of the loop, after run() has returned, or on its thread; the status also once
+  /// started().
   const LoopTiming& timing() const noexcept { return timing_; }
   const RealTimeStatus& real_time_status() const noexcept { return status_; }
 

@@ -55,7 +55,7 @@ class Scene {
 
   std::size_t size() const noexcept;
   std::uint64_t mask() const noexcept;  // what is switched on
-  /// After the last tick. @param field  below size()
+  /// State of a field after the last tick. @param field  below size()
   const FieldState& state(std::size_t field) const noexcept;
   /// How a body that gives way is touched; null for any other field. @param field  below size()
   const deformable::BodyTouch* touch(std::size_t field) const noexcept;

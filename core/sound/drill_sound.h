@@ -45,7 +45,7 @@ class DrillSound {
   DrillSound(SpectrumTable table, const ThinBone& thin, std::uint64_t seed);
 
   void set(const DrillState& drill) noexcept;
-  /// From -1 to 1: louder sound is cut off.
+  /// The next sample from -1 to 1: louder sound is cut off.
   float next() noexcept;
 
  private:

@@ -29,7 +29,7 @@ class SoundOutput {
   /// Sets the state of the drill from now on. Servo thread: no allocation, lock, wait or throw.
   void set(const DrillState& drill) noexcept { latest_.write(drill); }
 
-  /// As CardPlayer has them. Any thread.
+  /// Counts of CardPlayer. Any thread.
   std::uint64_t played() const noexcept { return player_.played(); }
   std::uint64_t gaps() const noexcept { return player_.gaps(); }
   bool lost() const noexcept { return player_.lost(); }

@@ -29,8 +29,8 @@ struct Spectrum {
   double noise{0.0};  // root mean square of the white rest >= 0 [as the amplitudes]
 };
 
-/// From one spectrum to another: weight 0 gives the first, 1 the second. The i-th line glides to
-/// the i-th; a line that the other lacks keeps its frequency and fades. Any thread.
+/// Blend from one spectrum to another: weight 0 gives the first, 1 the second. The i-th line glides
+/// to the i-th; a line that the other lacks keeps its frequency and fades. Any thread.
 Spectrum blend(const Spectrum& first, const Spectrum& second, double weight) noexcept;
 
 /// A spectrum as it was recorded, or made up, at one force.

@@ -9,14 +9,15 @@ namespace haptrial {
 
 class Table;
 
-/// In which trials a participant is given something that a study compares trials with and without.
+/// Trials in which a participant is given something that a study compares trials with and without.
 enum class GivenIn : std::uint8_t { kAll, kNone, kEveryOther };
 
 /// Reads "all", "none" or "every other"; a key that is left out says all.
 GivenIn read_given_in(Table& table, std::string_view key);
 
-/// With every other trial, the first participant is given it in the first, third, ... one, and the
-/// next participant in the others. @param trial  from 1; practice: 0  @param participant  from 0
+/// Whether a trial has it. With every other trial, the first participant is given it in the first,
+/// third, ... one, and the next participant in the others. @param trial  from 1; practice: 0 @param
+/// participant  from 0
 bool is_given(GivenIn in, int trial, int participant) noexcept;
 
 /// A trial's condition: "monitor on". What is given is one word.

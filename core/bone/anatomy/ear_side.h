@@ -15,16 +15,16 @@ struct EarDirections {
   Eigen::Vector3d back;      // towards the sigmoid sinus; not square to outwards
 };
 
-/// From the places of a temporal bone's structures: from the inner ear to the ear canal it goes
-/// outwards, from there to the sigmoid sinus back. Nothing where these are not labelled.
+/// Directions from the places of a temporal bone's structures: from the inner ear to the ear canal
+/// it goes outwards, from there to the sigmoid sinus back. Nothing where these are not labelled.
 std::optional<EarDirections> ear_directions(const BoneModel& model);
 
-/// Whose ear it is, if the axes are the patient's (x to the left): outwards it goes to the right or
+/// Side of an ear, if the axes are the patient's (x to the left): outwards it goes to the right or
 /// to the left. Nothing where the structures do not say, or lie along no such axis.
 std::optional<EarSide> ear_side(const BoneModel& model);
 
-/// From where an ear is seen from outside, a little from the back and from above; a right ear where
-/// the structures do not say.
+/// Direction from which an ear is seen from outside, a little from the back and from above; a right
+/// ear if the structures do not say.
 Eigen::Vector3d outside_view(const BoneModel& model);
 
 /// The same bone with left and right exchanged: a left ear becomes a right one.

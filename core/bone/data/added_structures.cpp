@@ -32,7 +32,7 @@ Eigen::AlignedBox3d box_of(const geometry::VoxelGrid& grid) {
   return {grid.origin, grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1)};
 }
 
-/// By label of the segments: that of the bone.
+/// Label of the bone for each label of the segments.
 std::array<std::uint8_t, 256> labels_for(const std::vector<Structure>& structures,
                                          BoneModel& model) {
   std::array<std::uint8_t, 256> labels{};

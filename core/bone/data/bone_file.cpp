@@ -33,7 +33,7 @@ std::string bone_head(const BoneModel& model) {
       origin.y(), origin.z());
   head += fmt::format("haptrial_bone:={}\nhaptrial_source:={}\n", one_line(model.name),
                       one_line(model.source));
-  // In metres and to the last bit, which millimetres are not.
+  // The grid is written in metres and to the last bit, which millimetres are not.
   head += fmt::format("haptrial_grid:={} {} {} {}\n", grid.spacing, grid.origin.x(),
                       grid.origin.y(), grid.origin.z());
   for (const auto& [key, value] : keys_of(model.structures)) {

@@ -341,7 +341,7 @@ void take_exact_grid(const VolumeHead& head, geometry::VoxelGrid& grid) {
   }
 }
 
-/// One that save_bone() wrote.
+/// Loads a bone that save_bone() wrote.
 BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVolume& volume) {
   BoneModel model = labelled_bone(job, head, volume);
   const bool same = model.grid.size == volume.size;
@@ -371,7 +371,7 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
   return model;
 }
 
-/// From B to the patient's axes, LPS.
+/// Transform from B to the patient's axes, LPS.
 Eigen::Affine3d patient_frame(const UprightVolume& volume) {
   const VoxelMap map = map_to(volume, keeps_axes(pose_of(volume)));
   Eigen::Affine3d X_PB;

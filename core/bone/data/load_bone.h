@@ -39,7 +39,7 @@ struct LoadOptions {
   std::filesystem::path segments;           // a segmentation of the scan; empty: none
   std::vector<MeshStructure> meshes;        // structures that are added, in this order
   std::function<void(const GreyFindings&)> findings;  // of grey volumes; also before a refusal
-  /// Asked before memory is taken: what for, and how many bytes; throws InputError to refuse.
+  /// Called before memory is taken: what for, and how many bytes; throws InputError to refuse.
   /// Default: refuses what the system does not have.
   std::function<void(const std::string& what, double bytes)> room;
 };

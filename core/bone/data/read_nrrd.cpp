@@ -70,7 +70,7 @@ double metres(const std::string& name, const char* unit) {
   return known->second;
 }
 
-/// From the file's space to LPS: signs of x and y.
+/// Signs of x and y from the file's space to LPS.
 std::optional<Eigen::Vector3d> to_lps(int space) {
   switch (space) {
     case nrrdSpaceLeftPosteriorSuperior:

@@ -57,7 +57,7 @@ VolumeHead heard(const json& words) {
   return head;
 }
 
-/// In the other process: what comes back is JSON on the pipe, values in the shared memory.
+/// Runs in the other process: the result is JSON on the pipe, values in the shared memory.
 json read_and_share(const fs::path& file, const Room& room, int memory) {
   try {
     const SourceVolume volume = read_here(file, room);

@@ -33,7 +33,7 @@ Pose pose_of(const UprightVolume& volume);
 /// (`own_axes`), else along the patient's and around all of it.
 geometry::VoxelGrid grid_over(const UprightVolume& volume, double spacing, bool own_axes);
 
-/// From B, as grid_over() has it, to voxels of the volume, as continuous (i, j, k).
+/// Map from B, as grid_over() has it, to voxels of the volume, as continuous (i, j, k).
 struct VoxelMap {
   Eigen::Matrix3d turn;
   Eigen::Vector3d offset;

@@ -38,7 +38,7 @@ struct SourceVolume {
   BigArray<float> values;  // count() x components
 };
 
-/// Asked before memory is taken: what for, and how many bytes; throws InputError to refuse.
+/// Called before memory is taken: what for, and how many bytes; throws InputError to refuse.
 using Room = std::function<void(const std::string& what, double bytes)>;
 /// Refuses what the system does not have.
 void check_system_memory(const std::string& what, double bytes);

@@ -85,7 +85,7 @@ std::vector<Eigen::Vector3d> half_of_samples(const BurrShape& shape, double cell
   return samples;
 }
 
-/// Those of the other half.
+/// Mirror image of a sample in the other half.
 Eigen::Vector3d image_of(const BurrShape& shape, const Eigen::Vector3d& at) {
   return shape.is_point_symmetric() ? Eigen::Vector3d(-at)
                                     : Eigen::Vector3d(-at.x(), -at.y(), at.z());

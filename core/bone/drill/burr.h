@@ -104,7 +104,7 @@ class Burr {
   /// The tree of cells, each before those within it; none where samples are few.
   const std::vector<Cell>& cells() const noexcept { return cells_; }
 
-  /// For kernels: samples() numbers each.
+  /// The samples as arrays for kernels: samples() numbers each.
   struct Arrays {
     const std::int16_t* x;  // positions, kRadius is the reach
     const std::int16_t* y;

@@ -16,7 +16,7 @@ enum class BurrForm : std::uint8_t {
   kPear,      // the hull of two balls, narrow at its neck; a cylinder with round ends if it is not
   kRod,  // a cylinder whose ends are within other parts: a shaft, which pushes by its side only
 };
-/// As definitions call it: "ball", "cylinder", "cone", "pear"; "rod" is none of theirs.
+/// Name of a form in definitions: "ball", "cylinder", "cone", "pear"; "rod" is none of theirs.
 std::string_view name_of(BurrForm form) noexcept;
 
 /// Volume of a ball over diameter^3.

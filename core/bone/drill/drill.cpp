@@ -13,7 +13,7 @@ constexpr double kWidest = 5000.0;          // reach of a burr in voxels
 constexpr std::size_t kMostHits = 400'000;  // of a burr in cells, in cells on the bone's surface
 constexpr std::int32_t kTurn = 64;          // samples that take bone in the same ticks
 
-/// As much as it needs and no more than a burr in cells is to have.
+/// Room for hits: as much as the burr needs and no more than a burr in cells is to have.
 std::size_t room_for_hits(const Burr& burr, bool any_soft) {
   const auto samples = static_cast<std::size_t>(burr.samples());
   const bool few = burr.cells().empty() || any_soft;
@@ -127,7 +127,7 @@ class CellBoxes {
 bool place(const geometry::VoxelGrid& grid, const Eigen::Vector3d& tip, double reach,
            const Eigen::Matrix3d& turn, kernel::Placement& at) noexcept {
   const double wide = reach / grid.spacing;  // in voxels
-  // In units of voxels, with voxel i from i to i + 1.
+  // The centre is in units of voxels, with voxel i from i to i + 1.
   const Eigen::Array3d centre = ((tip - grid.origin) / grid.spacing).array() + 0.5;
   for (int axis = 0; axis < 3; ++axis) {
     const double size = grid.size[static_cast<std::size_t>(axis)];
@@ -138,7 +138,7 @@ bool place(const geometry::VoxelGrid& grid, const Eigen::Vector3d& tip, double r
   if (!(wide < kWidest && turn.allFinite())) {
     return false;
   }
-  // As many bits below the point as leave 30 for the burr and a voxel beside it.
+  // The shift has as many bits below the point as leave 30 for the burr and a voxel beside it.
   at.shift = 29 - std::ilogb(wide + 2.0);
   const double one = std::ldexp(1.0, at.shift);
   for (int axis = 0; axis < 3; ++axis) {

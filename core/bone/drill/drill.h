@@ -33,7 +33,7 @@ struct Contact {
 /// The same contact seen from W. Its place in the drill's list stays.
 /// @param X_WB  pose of the bone B in W
 Contact in_world(const Contact& contact_B, const Eigen::Isometry3d& X_WB) noexcept;
-/// Both together: sums of sums, centroid by volume; for feeling only (nothing in the list).
+/// Sum of both contacts: sums of sums, centroid by volume; for feeling only (nothing in the list).
 Contact together(const Contact& a, const Contact& b) noexcept;
 
 /// A voxel that has just lost its last bone.

@@ -1,7 +1,8 @@
 // The kernel of this file is compiled for AVX2; it runs where the processor has it.
 #ifdef __x86_64__
 
-// Before the instructions are switched on, so that nothing shared is compiled with them.
+// These headers come before the instructions are switched on, so that nothing shared is compiled
+// with them.
 #include <cstdint>
 
 #pragma GCC push_options

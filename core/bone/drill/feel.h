@@ -57,7 +57,7 @@ Eigen::Vector3d push_force(const Contact& contact, const FeelParameters& paramet
 Eigen::Vector3d drag_force(const Contact& contact, const BurrParameters& burr,
                            double power) noexcept;
 
-/// Both together, shortened to the limit where they are longer [N]. Servo thread.
+/// Sum of both forces, shortened to the limit if it is longer [N]. Servo thread.
 Eigen::Vector3d bone_force(const Contact& contact, const FeelParameters& parameters,
                            const BurrParameters& burr, double power) noexcept;
 

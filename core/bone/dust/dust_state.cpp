@@ -9,7 +9,7 @@ namespace {
 
 using Ref = DustGrid::Ref;
 
-/// From a frame whose z axis is up. Exact where up is an axis of W.
+/// Rotation from a frame whose z axis is up. Exact where up is an axis of W.
 Eigen::Matrix3d frame_with_up(const Eigen::Vector3d& up) {
   const Eigen::Vector3d z = up.normalized();
   Eigen::Index least = 0;

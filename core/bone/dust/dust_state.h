@@ -122,7 +122,7 @@ struct DustState {
   double time{0.0};
   std::size_t cells{0};
   std::uint64_t version{0};
-  // In units
+  // Amounts in units (docs/algorithms/bone-dust.md).
   std::int64_t deposited{0};
   double deposited_rest{0.0};
   std::int64_t lying{0};

@@ -38,7 +38,7 @@ class DustWorker {
   /// The quads of the last round, if they changed since `version`, which is brought up to date.
   /// Any other thread. @returns whether they changed.
   bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const;
-  /// As of the last round. Any other thread.
+  /// Balance of the last round. Any other thread.
   DustBalance balance() const;
 
  private:

@@ -49,7 +49,7 @@ class BoneVolume {
   /// The voxel at an address in a brick above 0. Any thread.
   Voxel voxel_at(std::int32_t address) const noexcept;
 
-  /// From 0 to 1. Any thread.
+  /// Density of a voxel from 0 to 1. Any thread.
   float density(std::int32_t address) const noexcept {
     return std::atomic_ref<float>(densities_[address]).load(std::memory_order_relaxed);
   }
@@ -85,7 +85,8 @@ class BoneVolume {
   /// The sum of all densities, added in order of address. Any thread.
   double amount() const noexcept;
 
-  /// For kernels on the servo thread: bricks by their place, x fastest, and densities by address.
+  /// The volume as kernels on the servo thread see it: bricks by their place, x fastest, and
+  /// densities by address.
   struct View {
     std::array<std::int32_t, 3> size;        // of the grid, in voxels
     std::array<std::int32_t, 3> table_size;  // of the table, in bricks

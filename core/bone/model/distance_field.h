@@ -15,7 +15,7 @@ namespace haptrial::bone {
 /// any thread. Source: Felzenszwalb and Huttenlocher 2012; for what: Morris 2006, §3.5.2.
 class DistanceField {
  public:
-  /// To all voxels of a model whose label is in the set, as the model was made.
+  /// Measures distances to all voxels of a model whose label is in the set, as the model was made.
   /// @param labels  by label; shorter than the labels: the rest is not in the set
   /// @param reach   how far distances are known, up to 250 voxels [m]
   /// @throws std::invalid_argument where the model does not fit together or reach is out of bounds.

@@ -14,7 +14,7 @@ namespace haptrial::bone {
 /// The vital structures of a bone by name, each once, that have voxels; in the order of labels.
 std::vector<std::string> vital_structures(const BoneModel& bone);
 
-/// By label: whether it stands for a structure of this name.
+/// Whether each label stands for a structure of this name.
 std::vector<bool> labels_named(const BoneModel& bone, const std::string& name);
 
 /// A structure and how far from it a voxel is.

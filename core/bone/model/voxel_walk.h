@@ -19,7 +19,7 @@ namespace haptrial::bone {
 template <class Visit>
 void walk_voxels(const geometry::VoxelGrid& grid, const Eigen::Vector3d& from,
                  const Eigen::Vector3d& to, Visit&& visit) {
-  // In units of voxels, with voxel i from i to i + 1.
+  // The start is in units of voxels, with voxel i from i to i + 1.
   const Eigen::Array3d start = ((from - grid.origin) / grid.spacing).array() + 0.5;
   const Eigen::Array3d along = (to - from).array() / grid.spacing;
   if (!(start.isFinite().all() && along.isFinite().all())) {

@@ -115,7 +115,7 @@ class BoneWorld {
 
   // Servo thread: no allocation, lock, wait or throw ---------------------------------------------
 
-  /// For drills: densities may be taken from any piece at any time.
+  /// The volume of a piece for drills: densities may be taken from any piece at any time.
   BoneVolume& volume(int piece) noexcept { return *at(piece).volume; }
   const Eigen::Isometry3d& pose(int piece) const noexcept { return at(piece).pose; }
   bool is_born(int piece) const noexcept { return at(piece).born; }

@@ -5,8 +5,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// From the nearest surface point of a solid to the nearest point of a cube and back, until they
-/// meet or come no nearer to each other: both are convex.
+/// Whether a burr comes near a cube. The search goes from the nearest surface point of a solid to
+/// the nearest point of a cube and back, until they meet or come no nearer to each other: both are
+/// convex.
 bool meets(const BurrOnTick& burr, const Vector3d& low, const Vector3d& high,
            double close) noexcept {
   constexpr int kSteps = 100;

@@ -34,7 +34,7 @@ class VisibilityMeter {
   /// @param pose_WB  of the bone
   VisibilityMeter(std::shared_ptr<const BoneModel> bone, const Eigen::Isometry3d& pose_WB);
 
-  /// From now on. @param eye  in W [m]
+  /// Sets the eye from now on. @param eye  in W [m]
   void look_from(const Eigen::Vector3d& eye);
   /// A part that turned to dust. @param taken  its voxels are appended; may be null
   void crumble(const Voxel& voxel, std::vector<Voxel>* taken = nullptr) {

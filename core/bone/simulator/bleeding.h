@@ -55,7 +55,7 @@ class Bleeding {
   /// Lets it bleed. @param pose_WB  of the bone
   void tick(const Eigen::Isometry3d& pose_WB, double dt) noexcept;
 
-  /// Those that began on this tick.
+  /// Openings that began on this tick.
   std::span<const Opening> begun() const noexcept { return std::span(openings_).subspan(before_); }
   std::size_t openings() const noexcept { return openings_.size(); }
   /// Blood that flowed on this tick.

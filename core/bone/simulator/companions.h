@@ -19,15 +19,16 @@ class Companions {
   virtual ~Companions() = default;
   /// Servo thread, after each tick of the simulator.
   virtual void after_tick(const Simulator& simulator, double dt) noexcept = 0;
-  /// Not the servo thread.
+  /// Balance of the dust. Not the servo thread.
   virtual DustBalance dust() const = 0;
-  /// If they changed since `version`, which is brought up to date. One other thread.
+  /// Gives the quads if they changed since `version`, which is brought up to date. One other
+  /// thread.
   virtual bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const = 0;
-  /// Likewise, of blood.
+  /// The same for blood.
   virtual DustBalance blood() const = 0;
   virtual bool blood_quads(std::vector<DustQuad>& quads, std::uint64_t& version) const = 0;
-  /// While nothing ticks: until the dust has taken up all that was left for it. The thread that
-  /// ends passes.
+  /// Waits, while nothing ticks, until the dust has taken up all that was left for it. The thread
+  /// that ends passes.
   virtual void settle() = 0;
 };
 

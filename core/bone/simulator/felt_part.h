@@ -28,7 +28,7 @@ class FeltPart {
     std::int32_t immersed{0};                        // samples in bone
   };
   Felt tick(const BoneWorld& world, const ToolState& tool) noexcept;
-  /// Until it is free it is not felt.
+  /// Leaves the part unfelt until it is free.
   void wait() noexcept { waits_until_free_ = true; }
 
  private:

@@ -19,7 +19,7 @@ class Shafts {
 
   /// Force on a tool's shaft; zero without a shaft that is felt [N].
   Eigen::Vector3d force(int tool, const BoneWorld& world, const ToolState& state) noexcept;
-  /// Until they are free they are not felt.
+  /// Leaves the parts unfelt until they are free.
   void wait() noexcept;
 
  private:

@@ -56,7 +56,7 @@ class SecondHand {
              double spacing, const std::array<bool, 256>& soft);
 
   void begin() noexcept;
-  /// After the first hand's tick.
+  /// Call after the first hand's tick.
   TubeOutput tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input) noexcept;
   /// Force of the tube on the first hand's tool; the opposite acts on the tube. Zero where the two
   /// pass through each other.

@@ -42,7 +42,7 @@ enum class Function : std::uint8_t {
   kReverse,       // when it goes down: burrs turn the other way
 };
 inline constexpr std::size_t kFunctions = 13;
-/// As definitions call them: "power", "next_tool", ...
+/// Name of a function in definitions: "power", "next_tool", ...
 std::string_view name_of(Function function) noexcept;
 constexpr std::uint32_t bit(Function function) noexcept {
   return std::uint32_t{1} << static_cast<unsigned>(function);
@@ -115,7 +115,7 @@ class Simulator {
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
 
-  /// Before the first tick of a pass: what is held down is not taken as going down.
+  /// Call before the first tick of a pass: buttons that are held down are not taken as going down.
   void begin(std::uint32_t functions_held) noexcept;
   /// @param recorded  in a replay, the parts that were separated on this tick
   const SimulatorOutput& tick(const SimulatorInput& input,
@@ -132,7 +132,7 @@ class Simulator {
   const Handpiece& handpiece() const noexcept { return handpiece_; }
   /// Shape of the burr in hand; null for another tool.
   const BurrShape* burr_shape() const noexcept;
-  /// Likewise; none of another tool.
+  /// Balls of the burr in hand; none of another tool.
   std::span<const BurrShape::Ball> burr_balls() const noexcept;
   /// Null where nothing warms up.
   const DrillHeat* heat() const noexcept { return heat_ ? &*heat_ : nullptr; }

@@ -49,7 +49,7 @@ class ToolContact {
   explicit ToolContact(const ToolContactParameters& parameters);
 
   bool on() const noexcept { return p_.stiffness > 0.0; }
-  /// Until they are apart they are not felt.
+  /// Leaves the tools unfelt until they are apart.
   void wait() noexcept;
 
   /// Force on the tool, in W [N].

@@ -20,13 +20,13 @@ class NearStructures {
   /// @param depths  of the bone before anything was removed; null: nothing shows through
   explicit NearStructures(std::shared_ptr<const StructureDepths> depths);
 
-  /// Before the first at(): notes where a volume may hold structures. Always the same volume.
+  /// Notes where a volume may hold structures; call before the first at(). Always the same volume.
   /// @param occupancy  of the volume
   void begin(const BoneVolume& volume, const Occupancy& occupancy);
   /// Something that shows has gone: from now on at() looks whether the nearest is still there.
   void lose() noexcept { whole_ = false; }
 
-  /// None where nothing is left within reach.
+  /// The nearest structure; none if nothing is left within reach.
   /// @param occupancy  of the volume
   NearStructure at(const BoneVolume& volume, const Occupancy& occupancy,
                    const Voxel& voxel) const noexcept;

@@ -50,7 +50,7 @@ class Surface {
   /// @returns whether anything changed.
   bool update(const BoneVolume& volume);
 
-  /// By slot. A dead vertex keeps its last values.
+  /// Vertices by slot. A dead vertex keeps its last values.
   std::span<const SurfaceVertex> vertices() const noexcept { return vertices_; }
   /// Triangles 2q and 2q + 1 are quad q; those of a dead quad have three equal corners.
   std::span<const SurfaceTriangle> triangles() const noexcept { return triangles_; }

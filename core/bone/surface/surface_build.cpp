@@ -85,8 +85,8 @@ void Surface::begin_places(const BoneVolume& volume) {
   }
 }
 
-/// For all vertices and quads, which are counted first: growing arrays would take up to three times
-/// the memory.
+/// Makes room for all vertices and quads, which are counted first: growing arrays would take up to
+/// three times the memory.
 void Surface::make_room(const BoneVolume& volume, const std::vector<std::size_t>& places,
                         int threads) {
   std::atomic<std::size_t> vertices{0};

@@ -114,7 +114,7 @@ void CellField::leave_out_rests(const RemainingFraction& remains) noexcept {
     }
     solid[row] = holds_[row] & bits >> (kEdge - kReach);
   });
-  // Those around, first along x, then y, then z; only the corners' are used.
+  // Rows around the cell's, first along x, then y, then z; only the corners' are used.
   Rows around;
   for (std::size_t row = 0; row < solid.size(); ++row) {
     around[row] = solid[row] | solid[row] << 1 | solid[row] >> 1;
@@ -232,8 +232,9 @@ Eigen::Vector3f CellField::place(int i, int j, int k, unsigned corners,
   const float length = inwards.norm();
   normal = length > 0.0F ? Eigen::Vector3f(inwards / -length) : Eigen::Vector3f::UnitZ();
 
-  // Along the slope to where the field is half full, which is no way off. In what is thin it never
-  // is, or far away: there to the middle of the cell's crossed edges.
+  // The place goes along the slope to where the field is half full, which is no way off. In thin
+  // bone the field never is, or far away: there the place goes to the middle of the cell's crossed
+  // edges.
   const float missing = 0.5F * kFull - static_cast<float>(total) / 8.0F;
   const float steepness = slope.norm();
   const Eigen::Vector3f thin = kThinShare * kMiddles[corners];

@@ -16,10 +16,10 @@ struct NearStructure {
   double distance{0.0};   // between the voxels' centres [m]
 };
 
-/// For every voxel the nearest one of the structures that show through bone where it is thin. Made
-/// once from the bone as it was before anything was removed, and never changed: any thread. What
-/// is left of them while bone is removed: NearStructures.
-/// Source: Morris 2006, §3.1 (structures become visible as the bone over them thins).
+/// The nearest structure that shows through thin bone, for every voxel. Made once from the bone as
+/// it was before anything was removed, and never changed: any thread. What is left of them while
+/// bone is removed: NearStructures. Source: Morris 2006, §3.1 (structures become visible as the
+/// bone over them thins).
 class StructureDepths {
  public:
   /// @param shows  by label: whether it shows through; shorter than the labels: the rest does not
@@ -27,7 +27,8 @@ class StructureDepths {
   /// @throws std::invalid_argument where the model does not fit together or reach < 0.
   StructureDepths(const BoneModel& model, const std::vector<bool>& shows, double reach = 0.003);
 
-  /// None outside the grid, nor in bricks (BoneVolume) in which the model has nothing.
+  /// The nearest structure; none outside the grid, nor in bricks (BoneVolume) in which the model
+  /// has nothing.
   NearStructure at(const Voxel& voxel) const noexcept;
   bool shows(std::uint8_t label) const noexcept { return label < shows_.size() && shows_[label]; }
   double reach_in_voxels() const noexcept { return reach_; }

@@ -48,7 +48,7 @@ class CutPlaneTool {
   /// @param most  voxels to pass, all pieces together; at least one ray is traced, or as far as
   ///              kMostEmptied goes
   void step(BoneWorld& world, int most = 2000) noexcept;
-  /// By the last step(), in order.
+  /// Voxels that the last step() emptied, in order.
   std::span<const EmptiedIn> emptied() const noexcept { return {emptied_.data(), count_}; }
   /// Bone that the cut has removed so far.
   const Removed& removed() const noexcept { return removed_; }

@@ -104,7 +104,7 @@ class PlateMaker {
   std::vector<OutlinePoint> outline(std::size_t i) const {
     std::vector<OutlinePoint> points;
     const std::vector<Bar> all = bars(i);
-    // As wide as a bar seen from the hole where it leaves the pad.
+    // The angle is as wide as a bar seen from the hole where it leaves the pad.
     const double wide = std::asin(0.5 * shape_.bar_width / shape_.pad_radius);
     const auto distance = [](double a, double b) { return std::abs(std::remainder(a - b, kTurn)); };
     const auto angle_of = [](const Vector2d& v) { return std::atan2(v.y(), v.x()); };

@@ -88,7 +88,7 @@ class SoftTissue {
 
   bool empty() const noexcept { return parts_.empty(); }
   bool is_soft(std::uint8_t label) const noexcept { return soft_[label]; }
-  /// By label.
+  /// Whether each label is soft.
   const std::array<bool, 256>& soft() const noexcept { return soft_; }
 
   /// How a tool stands to each structure.
@@ -105,15 +105,15 @@ class SoftTissue {
   /// @param sucks  the tool is a tube that sucks
   /// @returns the force on the tool, in B [N]; on the tick of a tear that at which it tore
   Eigen::Vector3d tick(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
-  /// Likewise, after tick(), of the tube in the other hand, which tears as well.
+  /// The same, after tick(), for the tube in the other hand, which tears as well.
   Eigen::Vector3d tick_second(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
-  /// Likewise of a tool that tears nothing: where the first one would, it slips through,
-  /// and feels nothing until it is out of the structure.
+  /// The same for a tool that tears nothing: where the first one would, it slips through, and feels
+  /// nothing until it is out of the structure.
   Eigen::Vector3d feel(Touch& touch, const Eigen::Vector3d& c_B, double radius,
                        bool sucks) const noexcept;
   /// Tears of the last tick.
   std::span<const Tear> tears() const noexcept { return {tears_.data(), tear_count_}; }
-  /// To the nearest soft surface, negative within; infinite where none is near [m].
+  /// Distance to the nearest soft surface, negative within; infinite if none is near [m].
   double distance(const Eigen::Vector3d& p_B) const noexcept;
   /// Whether the ball is in a hole of a structure.
   bool in_hole() const noexcept;

@@ -39,13 +39,13 @@ class MovingObjects {
 
   /// Puts the tool to a point of the world without contact.
   void start(const Eigen::Vector3d& tool) noexcept;
-  /// From the next tick on the object is there. @param object  below size()
+  /// Moves the object, or brings it in, from the next tick on. @param object  below size()
   void move(std::size_t object, const ObjectPose& pose) noexcept;
   /// One tick. @param tool  in W [m]; not finite: zero force
   /// @param period  since the tick before > 0 [s]
   /// @returns the force on the tool in W [N]
   Eigen::Vector3d tick(const Eigen::Vector3d& tool, double period) noexcept;
-  /// After the last tick. @param object  below size()
+  /// Contact after the last tick. @param object  below size()
   const ObjectContact& contact(std::size_t object) const noexcept {
     return objects_[object].contact;
   }

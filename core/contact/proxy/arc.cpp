@@ -30,7 +30,8 @@ class Slide {
   Slide(const Arc& arc, double friction)
       : arc_(arc), friction_(friction), start_(tan_half(arc.from, arc.wanted)) {}
 
-  /// Not above zero where the sphere rests in the friction cone or nothing pushes it any more.
+  /// Pull along the arc; not above zero if the sphere rests in the friction cone or nothing pushes
+  /// it any more.
   double pull(double left) const {
     const double t = start_ * left, sine = 2.0 * t / (1.0 + t * t);
     const double cosine = (1.0 - t * t) / (1.0 + t * t);
@@ -81,7 +82,8 @@ class Slide {
   double friction_, start_;
 };
 
-/// At most a right angle at once: the tangents of more meet far off.
+/// The target; for a turn by more than a right angle its middle, as the tangents would meet far
+/// off.
 Vector3d at_once(const Vector3d& from, const Vector3d& to) {
   return from.dot(to) < 0.0 ? (from + to).normalized() : to;
 }

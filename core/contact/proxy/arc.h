@@ -45,8 +45,8 @@ struct Arc {
   }
 };
 
-/// None if the sphere touches the triangle's face, or the goal is on the edge or, without friction,
-/// behind it.
+/// The arc round a surface; none if the sphere touches the triangle's face, or the goal is on the
+/// edge or, without friction, behind it.
 /// @param plane  the tangent at which a sphere touches its triangle
 /// @param at  the sphere's centre [m]
 /// @param friction  dynamic; 0: none

@@ -53,7 +53,7 @@ struct FourTriangles {
   }
 };
 
-/// From the nearest point of an edge to a point, about.
+/// Vector from the nearest point of an edge to a point, about.
 inline Fours from_edge(const Fours& start, const Fours& edge, const Fours& p) noexcept {
   const Fours out = p - start;
   const Four part = edge.dot(out) / edge.dot(edge);

@@ -47,7 +47,7 @@ struct alignas(64) Hull {
   void wrap(const geometry::Corners& corners, const Eigen::Vector3d& normal,
             std::int32_t of) noexcept;
 
-  /// By how much a plane is moved out for a skin of the thickness h [m].
+  /// Distance by which a plane is moved out for a skin of the thickness h [m].
   static constexpr double wider(int k, double h) noexcept { return k < kFaces ? h : 0.5 * h; }
 
   /// How high a point is above each plane, and how a move changes that.

@@ -153,7 +153,7 @@ SweepHit sooner(const SweepHit& a, const SweepHit& b, double length, double same
 
 namespace {
 
-/// From the nearest point of a triangle; zero if that is where the point is.
+/// Vector from the nearest point of a triangle; zero if that is where the point is.
 Eigen::Vector3d away_from_triangle(const Eigen::Vector3d& at, const geometry::Corners& c) {
   const geometry::ClosestPoint nearest = geometry::closest_on_triangle(at, c[0], c[1], c[2]);
   const double distance = std::sqrt(nearest.distance_squared);

@@ -34,7 +34,7 @@ class NearTriangles {
 
   const Hull& hull(std::int32_t slot) noexcept { return hulls_.of(slot); }
 
-  /// Since forget(). The proxy adds its own.
+  /// Counts since forget(). The proxy adds its own.
   Operations& operations() noexcept { return operations_; }
   const Operations& operations() const noexcept { return operations_; }
 

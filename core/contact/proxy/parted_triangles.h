@@ -52,7 +52,7 @@ class PartedTriangles {
   /// @param from, move  within the reach around the middle [m]
   /// @param off  how far what moves has to keep off: its radius and what rounding asks for [m]
   Move in_list(const Eigen::Vector3d& from, const Eigen::Vector3d& move, double off) const noexcept;
-  /// Those that no plane keeps apart, in the list's order.
+  /// Candidates that no plane keeps apart, in the list's order.
   /// @param found  as long as the list
   /// @returns how many there are
   int within(const Move& move, std::span<Candidate> found) const noexcept;
@@ -63,7 +63,7 @@ class PartedTriangles {
   static constexpr int kTogether = 4;
 
  private:
-  /// In double precision, for what touches the surface.
+  /// A plane in double precision, for triangles that touch the surface.
   struct Plane {
     Eigen::Vector3d axis;
     double level;  // of the plane above the list's middle [m]

@@ -89,7 +89,8 @@ void Proxy::step_to(const Vector3d& at) noexcept {
   way_[way_length_++] = at;
 }
 
-/// From the last corner of the way to the one before: this way was tried and is not taken.
+/// Steps back from the last corner of the way to the one before: this way was tried and is not
+/// taken.
 void Proxy::step_back(const Vector3d& to) noexcept {
   if (state_.position != to) {
     state_.position = to;

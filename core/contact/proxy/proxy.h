@@ -27,9 +27,9 @@ enum class ContactState : std::uint8_t { kFree, kStick, kSlip };  // without fri
 /// End of the proxy on a tick, and the planes that hold it there.
 struct ProxyState {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // of the proxy, object frame [m]
-  /// From the tool along the surfaces' normals: what the surfaces push with, over the stiffness.
+  /// Vector from the tool along the surfaces' normals: the push of the surfaces over the stiffness.
   Eigen::Vector3d pushed{Eigen::Vector3d::Zero()};  // [m]
-  /// From there to the proxy: what friction pulls with, over the stiffness.
+  /// Vector from there to the proxy: the pull of friction over the stiffness.
   Eigen::Vector3d dragged{Eigen::Vector3d::Zero()};  // [m]
   /// The sum of what each surface pushes with: what friction is measured by. The length of `pushed`
   /// where one surface pushes, more in a groove.
@@ -79,7 +79,7 @@ class Proxy {
   /// One tick. @param tool  position in the object's frame [m]; not finite: nothing changes.
   const ProxyState& follow(const Eigen::Vector3d& tool) noexcept;
   const ProxyState& state() const noexcept { return state_; }
-  /// Since start().
+  /// Counts since start().
   const Operations& operations() const noexcept { return near_.operations(); }
 
   /// The corners of the last tick's way, from where the tick before ended; between them it was

@@ -61,8 +61,8 @@ bool sweep_point(const Sweep& sweep, const Hull& hull, double end, SweepHit& hit
     hit.t = end * std::clamp(-height / rate, 0.0, entry.t);
     return true;
   }
-  // It began inside of the hull: a start put it there, or the skin has grown with the path. It may
-  // go on if it is clearly on one side and stays there, or if it goes straight away.
+  // The point began inside of the hull: a start put it there, or the skin has grown with the path.
+  // It may go on if it is clearly on one side and stays there, or if it goes straight away.
   const int side = heights.at[0] >= heights.at[1] ? 0 : 1;
   const double off = heights.at[side], leaving = heights.gain[side];
   if ((leaving >= 0.0 && off > h / 32.0) || leaving > 0.25 * end * sweep.move.norm()) {

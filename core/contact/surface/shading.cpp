@@ -68,7 +68,8 @@ Shading::Shading(const geometry::Mesh& mesh, const ContactSurface& surface, doub
     const auto first = fans.corners.begin() + fans.begin[v];
     const auto last = fans.corners.begin() + fans.begin[v + 1];
     for (auto own = first; own != last; ++own) {
-      // From triangle to triangle over smooth edges, as far as none turns away from the own normal.
+      // The group grows from triangle to triangle over smooth edges, as far as none turns away from
+      // the own normal.
       group.assign(1, *own);
       Vector3d sum = angle_at(mesh, *own) * face(*own);
       for (std::size_t i = 0; i < group.size(); ++i) {

@@ -29,7 +29,7 @@ class SignedDistance {
 
   /// Servo thread. @param hint  a triangle that may be near; -1: none
   SurfacePoint operator()(const Eigen::Vector3d& point, std::int32_t hint = -1) const noexcept;
-  /// For the triangle alone: the distance from its plane.
+  /// The surface point of the triangle alone: the distance from its plane.
   SurfacePoint of_plane(const Eigen::Vector3d& point, std::int32_t triangle) const noexcept;
 
  private:

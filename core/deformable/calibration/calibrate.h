@@ -32,13 +32,13 @@ struct CalibrationSettings {
   double enough{0.0};               // ends at this error [m]
   std::uint64_t seed{1};            // of the annealing
   AnnealingOptions annealing{};
-  /// For a batch of the annealing, and for the loads in a descent; the result is the same for any
-  /// number.
+  /// Threads for a batch of the annealing, and for the loads in a descent; the result is the same
+  /// for any number.
   int threads{1};
   /// Evaluations of an earlier run with the same settings, which are taken and not done again. An
   /// annealing goes on as it would have gone on; a descent begins anew from the best of them.
   std::vector<CalibrationStep> known{};
-  /// Is told of every new evaluation, in order.
+  /// Callback for every new evaluation, in order.
   std::function<void(const CalibrationStep&)> tell{};
 };
 

@@ -38,7 +38,7 @@ class SpringParameters {
   std::size_t first(SpringKind kind) const { return first_[static_cast<std::size_t>(kind)]; }
   /// @param logarithms  size() of them
   SpringConstants constants(std::span<const double> logarithms) const;
-  /// By the logarithms what `by_constant` is by the springs' constants.
+  /// Gradient by the logarithms from the gradient `by_constant` by the springs' constants.
   std::vector<double> gradient(std::span<const double> logarithms,
                                const SpringConstants& by_constant) const;
   /// Shares of the parameters in the constant of one spring.

@@ -10,8 +10,8 @@
 
 namespace haptrial::deformable {
 
-/// Over what the strain of volume is averaged. Tetrahedra of four vertices that each keep their
-/// volume lock: in a fine mesh there are more of them than there are coordinates to move.
+/// Patches over which the strain of volume is averaged. Tetrahedra of four vertices that each keep
+/// their volume lock: in a fine mesh there are more of them than there are coordinates to move.
 enum class VolumeForm {
   kPatches,     // over the five tetrahedra of a cube, or six neighbours in another mesh
   kTetrahedra,  // over each tetrahedron alone: locks as nu nears 0.5

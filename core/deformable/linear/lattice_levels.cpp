@@ -85,7 +85,8 @@ LatticePoint at_slot(const LatticePoint& from, int slot) {
   return {from[0] + code % 3 - 1, from[1] + code / 3 % 3 - 1, from[2] + code / 9 - 1};
 }
 
-/// From 0 for the same point to 13 for one more along each axis; below 0: a point before.
+/// Slot of a neighbour, from 0 for the same point to 13 for one more along each axis; below 0: a
+/// point before.
 int slot_of(const LatticePoint& from, const LatticePoint& to) {
   return 9 * (to[2] - from[2]) + 3 * (to[1] - from[1]) + to[0] - from[0];
 }

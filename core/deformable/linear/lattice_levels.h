@@ -18,8 +18,8 @@ using LatticePoint = std::array<std::int32_t, 3>;
 std::optional<std::vector<LatticePoint>> lattice_points(std::span<const Eigen::Vector3d> vertices,
                                                         const BlockMatrix& pattern);
 
-/// From a lattice to one of twice its spacing, and between the matrices of both: a point's value is
-/// the mean of the nearest one, two, four or eight points of the coarse lattice.
+/// Transfer from a lattice to one of twice its spacing, and between the matrices of both: a point's
+/// value is the mean of the nearest one, two, four or eight points of the coarse lattice.
 class CoarseLattice {
  public:
   struct Parent {

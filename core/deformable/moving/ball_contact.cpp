@@ -157,7 +157,7 @@ void BallContact::add(const Place& place, double distance) noexcept {
   distance_[to] = distance;
 }
 
-/// From the centre to the nearest place, if that is before it; 0 if the centre is behind.
+/// Distance from the centre to the nearest place, if that is before it; 0 if the centre is behind.
 double BallContact::room(const Vector3d& centre) const noexcept {
   double nearest = std::numeric_limits<double>::infinity();
   double room = nearest;

@@ -45,12 +45,13 @@ class BallContact {
 
   /// No contact any more.
   void forget() noexcept;
-  /// Goes on as a ball of the same radius on the same body was left; any other forgets.
+  /// Goes on from `before`, if it was a ball of the same radius on the same body; any other contact
+  /// is forgotten.
   void adopt(const BallContact& before) noexcept;
   /// Which places the ball may press on a tick, on which the tool goes from one point to another.
   void gather(const SpringMotion& motion, const Eigen::Vector3d& from,
               const Eigen::Vector3d& to) noexcept;
-  /// After a free step.
+  /// Presses the body after a free step.
   void press(SpringMotion& motion, const Eigen::Vector3d& tool) noexcept;
 
   std::span<const Place> places() const noexcept { return std::span(places_).first(count_); }

@@ -24,7 +24,7 @@ class EnergyAccount {
   static constexpr double kLoan = 1e-5;    // [J]; a spring of 500 N/m that is bent by 0.2 mm
   static constexpr double kDamping = 0.5;  // b [N·s/m]
 
-  /// There is no contact.
+  /// Clears the account when there is no contact.
   void open() noexcept { balance_ = 0.0; }
 
   /// @param force  that was held on the hand since the tick before [N]

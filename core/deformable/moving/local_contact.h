@@ -37,7 +37,7 @@ class LocalContact {
   double depth() const noexcept { return depth_; }                    // of the ball at rest [m]
   bool slips() const noexcept { return slips_; }
   bool solved() const noexcept { return solved_; }
-  /// On vertices, some more than once. @returns how many
+  /// Forces on vertices, some more than once. @returns how many
   std::size_t forces(const LocalSurface& surface, std::span<VertexForce> to) const noexcept;
 
  private:

@@ -30,8 +30,8 @@ struct MovingBody {
 };
 using SharedMovingBody = std::shared_ptr<const MovingBody>;
 
-/// Made when it is first asked for and shared (touch/prepared_bodies.h). Any thread but the servo
-/// thread. @throws InputError as spring_body()
+/// A moving body, made when it is first asked for and shared (touch/prepared_bodies.h). Any thread
+/// but the servo thread. @throws InputError as spring_body()
 SharedMovingBody prepared(const SharedFeltMesh& mesh, const SpringTissue& tissue);
 
 inline constexpr int kMostSteps = 64;  // on a tick

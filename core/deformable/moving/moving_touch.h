@@ -32,7 +32,7 @@ class MovingTouch final : public BodyTouch {
               std::shared_ptr<MovingShape> shape = nullptr);
 
   void start(const Eigen::Vector3d& tool) noexcept override;
-  /// Goes on as `before`, of the same body, was left; as start() of any other body.
+  /// Goes on from `before`, if it is of the same body; else starts, as start() does.
   void adopt(const BodyTouch& before, const Eigen::Vector3d& tool) noexcept override;
   /// @param period  is that of the constructor
   const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;

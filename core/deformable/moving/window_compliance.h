@@ -35,8 +35,8 @@ class WindowCompliance {
 };
 using SharedWindowCompliance = std::shared_ptr<const WindowCompliance>;
 
-/// Made when it is first asked for and shared (touch/prepared_bodies.h). Any thread but the servo
-/// thread. @param window  that the body is behind on the average [s]
+/// A compliance, made when it is first asked for and shared (touch/prepared_bodies.h). Any thread
+/// but the servo thread. @param window  that the body is behind on the average [s]
 /// @throws InputError if the machine has not the memory.
 SharedWindowCompliance prepared_compliance(const SharedMovingBody& body, double window);
 

@@ -6,7 +6,7 @@
 
 namespace haptrial::deformable {
 
-/// Asked before memory is taken: what for, and how much [bytes]; throws where that is too much.
+/// Called before memory is taken: what for, and how much [bytes]; throws if that is too much.
 using MemoryCheck = std::function<void(const std::string& what, double bytes)>;
 
 /// The tetrahedra that a setup states: a surface filled with voxels, a file, or a block. Vertices

@@ -112,7 +112,7 @@ bool search_line(const HeldProblem& problem, const Vectors& direction, const Vec
   return false;
 }
 
-/// From a saddle along its most falling direction, by inverse iteration with the raised Hessian,
+/// Leaves a saddle along its most falling direction, by inverse iteration with the raised Hessian,
 /// which is factorized then. @returns whether the energy has fallen.
 bool leave_saddle(const HeldProblem& problem, SpringTangent& tangent, const Vectors& force,
                   double extent, Vectors& x) {

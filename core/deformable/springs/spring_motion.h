@@ -45,8 +45,8 @@ class SpringMotion {
   void set_force(std::size_t vertex, const Eigen::Vector3d& force) noexcept;  // from outside
   void place(std::size_t vertex, const Eigen::Vector3d& position) noexcept;   // also a held one
   void set_velocity(std::size_t vertex, const Eigen::Vector3d& velocity) noexcept;  // of a free one
-  /// As if this force had acted over the last step, too: what a contact that is looked for after
-  /// the step does to it. A vertex moves by mobility() for each newton.
+  /// Moves a vertex as if this force had acted over the last step, too: the effect of a contact
+  /// that is looked for after the step. A vertex moves by mobility() for each newton.
   void push(std::size_t vertex, const Eigen::Vector3d& force) noexcept;
   double mobility(std::size_t vertex) const noexcept {  // [m/N]; 0 of a held one
     return settings_.step * kick_[vertex];

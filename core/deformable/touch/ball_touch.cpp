@@ -41,7 +41,7 @@ Vector3d weights_of(const Vector3d& p, const geometry::Corners& c) {
   return w;
 }
 
-/// With the radius of a ball that the body's cells can show.
+/// Options with the radius of a ball that the body's cells can show.
 TouchOptions felt_options(const Compliance& body, TouchOptions options) {
   check(options);
   options.radius = std::max(options.radius, smallest_ball(body.mesh()));
@@ -187,7 +187,7 @@ bool BallTouch::settle(const Vector3d& tool) noexcept {
   return pressed_.size() > 0 && pressed_.maxCoeff() > 0.0;
 }
 
-/// Those that are sampled; the nearest point of all faces if the centre is inside of the body.
+/// Finds the sampled places; the nearest point of all faces if the centre is inside of the body.
 void BallTouch::find_places(const Vector3d& centre) noexcept {
   count_ = 0;
   // A ball that was outside stays outside until it can have come to a face.

@@ -53,7 +53,7 @@ class BodyTouch {
   virtual void adopt(const BodyTouch&, const Eigen::Vector3d& tool) noexcept { start(tool); }
   /// One tick. @param tool  [m]; not finite: zero force  @param period  > 0 [s]
   virtual const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;
-  /// On the body, on the last tick.
+  /// Forces on the body on the last tick.
   virtual std::span<const VertexForce> forces() const noexcept = 0;
   virtual const TouchCounts& counts() const noexcept = 0;
 };

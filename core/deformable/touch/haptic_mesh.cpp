@@ -63,7 +63,7 @@ void check_held(const HapticMesh& mesh) {
   check_load(mesh.tets, load);
 }
 
-/// Once its tetrahedra are known.
+/// Finishes a mesh once its tetrahedra are known.
 void finish(HapticMesh& mesh, const FeltSides& sides) {
   mesh.box = box_of(mesh.tets);
   mesh.held.assign(mesh.tets.vertices.size(), 0);

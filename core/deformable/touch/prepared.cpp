@@ -41,8 +41,8 @@ void check_memory(const HapticMesh& mesh) {
 }
 
 double stiffest_touch(const Compliance& body, double radius) {
-  // From a sampled vertex to the ball's axis is half a cell's diagonal at most, from what it
-  // presses to the corners of the face a diagonal.
+  // The distance from a sampled vertex to the ball's axis is half a cell's diagonal at most, from
+  // pressed vertices to the corners of the face a diagonal.
   const double diagonal = std::numbers::sqrt2 * body.mesh().spacing;
   return body.stiffest(std::max(radius, smallest_ball(body.mesh())) + 1.5 * diagonal);
 }

@@ -27,7 +27,7 @@ double seconds_of_tick(BodyTouch& touch, const Vector3d& tool, double period) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// In and out again over one face. @param times  (kTicks) of each tick the least so far [s]
+/// Presses in and out again over one face. @param times  (kTicks) of each tick the least so far [s]
 /// @returns how long all of it took [s]
 double press(BodyTouch& touch, const HapticMesh& mesh, std::size_t face, double radius,
              double period, std::span<double> times) {

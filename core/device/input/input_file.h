@@ -27,11 +27,11 @@ class InputFile {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  /// From now on the axis' value is known from the beginning, of a device; of a pipe from its first
-  /// report on. @returns nothing of a pipe
+  /// Range of an axis, whose value is known from now on: of a device at once, of a pipe from its
+  /// first report on. @returns nothing of a pipe
   /// @throws InputError if a device has no such axis; the sentence lists those that it has
   std::optional<Range> follow_axis(int axis);
-  /// Likewise; nothing if a device has no such axis.
+  /// Range of an axis; nothing if a device has no such axis.
   std::optional<Range> find_axis(int axis);
   /// The same of buttons. A device need not have them.
   void follow_buttons();

@@ -27,7 +27,7 @@ class InputReader {
     std::string table;  // as InputFile has it
     /// Checks one that was opened. @throws InputError if it does not do
     std::function<void(InputFile&)> open;
-    /// When something may have changed. Null: it is lost.
+    /// Called when something may have changed. Null: it is lost.
     std::function<void(const InputReports*)> show;
   };
 

@@ -49,7 +49,7 @@ std::vector<Place> places_of(std::span<const Eigen::Vector3d> points) {
   return places;
 }
 
-/// By code, ten bits at a time from the lowest; equal ones keep their order.
+/// Sorts by code, ten bits at a time from the lowest; equal ones keep their order.
 void sort(std::vector<Place>& places) {
   constexpr int kBits = 10;
   std::vector<Place> sorted(places.size());

@@ -12,7 +12,7 @@ namespace haptrial::geometry {
 
 enum class MeshFormat { kObj, kPly, kStl };
 
-/// By the name's ending: .obj, .ply or .stl, in either case.
+/// Format by the name's ending: .obj, .ply or .stl, in either case.
 /// @throws InputError for any other.
 MeshFormat mesh_format(const std::filesystem::path& file);
 

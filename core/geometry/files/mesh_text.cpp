@@ -115,7 +115,7 @@ double Text::coordinate(std::string_view word, std::string_view what) const {
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range && end == digits.data() + digits.size()) {
-    // Too small for a double is 0 to us; too large is not.
+    // A number that is too small for a double is 0 to us; one that is too large is not.
     value =
         digits.find("e-") == std::string_view::npos && digits.find("E-") == std::string_view::npos
             ? std::numeric_limits<double>::infinity()

@@ -18,8 +18,8 @@
 namespace haptrial::geometry {
 namespace {
 
-/// Kept points in cells as wide as the tolerance. Cells are doubles: where a coordinate is so large
-/// that its cells are wider than one, points within the tolerance of each other are equal.
+/// Points that were kept, in cells as wide as the tolerance. Cells are doubles: if a coordinate is
+/// so large that its cells are wider than one, points within the tolerance of each other are equal.
 class NearbyPoints {
  public:
   explicit NearbyPoints(double tolerance) : tolerance_(tolerance) {}

@@ -22,8 +22,7 @@ double determinant(const Flat& a, const Flat& b) {
   return std::fma(a.x, b.y, -second) + lost;
 }
 
-/// On which side of the edge from a to b the origin lies: 1 left, -1 right, 0 where a and b
-/// coincide.
+/// Side of the edge from a to b on which the origin lies: 1 left, -1 right, 0 if a and b coincide.
 int side_of(double determinant, const Flat& a, const Flat& b) {
   if (determinant != 0.0) {
     return determinant > 0.0 ? 1 : -1;

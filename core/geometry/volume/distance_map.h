@@ -10,8 +10,8 @@
 
 namespace haptrial::geometry {
 
-/// For every voxel centre of a grid the distance to a mesh and where on it the nearest point is.
-/// Source: Morris 2006, §6.3.1.
+/// Distance to a mesh for every voxel centre of a grid, and the nearest point on the mesh. Source:
+/// Morris 2006, §6.3.1.
 struct DistanceMap {
   VoxelGrid grid;
   std::vector<double> distance;        // (voxels) [m], negative inside; NaN where not asked for

@@ -10,7 +10,8 @@
 namespace haptrial::geometry {
 namespace {
 
-/// By voxel: bit a is set where the step to the next voxel along axis a crosses the surface.
+/// Walls of each voxel: bit a is set if the step to the next voxel along axis a crosses the
+/// surface.
 using Walls = std::vector<std::uint8_t>;
 
 void build_walls(const GridCrossings& crossings, const VoxelGrid& grid, int axis, Walls& walls) {

@@ -35,7 +35,7 @@ class NerveBeside {
   virtual record::NerveRows take() = 0;
   /// Ticks that found no room. Any thread.
   virtual std::uint64_t dropped() const noexcept = 0;
-  /// While nothing ticks, or for a moment: until every tick so far is in what take() gives.
+  /// Waits, while nothing ticks or for a moment, until every tick so far is in the rows of take().
   virtual void settle() = 0;
 };
 
@@ -62,7 +62,8 @@ class SteppedNerves final : public NerveBeside {
   bool tone_{false};
 };
 
-/// On a thread of its own, fed through a log without locks. The servo thread only pushes.
+/// The monitor on a thread of its own, fed through a log without locks. The servo thread only
+/// pushes.
 class ThreadedNerves final : public NerveBeside {
  public:
   /// @param rate  of ticks [Hz]

@@ -35,7 +35,7 @@ class NerveSimulation {
   /// @param heard  the participant hears the monitor at this tick
   void tick(const NerveTick& tick, bool heard);
 
-  /// From the next tick on. @param channel  one of channels()
+  /// Sets a threshold from the next tick on. @param channel  one of channels()
   void set_threshold(std::size_t channel, double threshold);
   void set_muted(std::size_t channel, bool muted);
   Stimulator& stimulator() noexcept { return stimulator_; }

@@ -31,7 +31,7 @@ void NerveVoice::take() noexcept {
   });
 }
 
-/// Between two samples a line; silence while there are none.
+/// The next sample: between two ticks a line; silence while there are none.
 float NerveVoice::next_raw() noexcept {
   const double rate = step_ * card_;
   const double behind = static_cast<double>(written_) - at_;

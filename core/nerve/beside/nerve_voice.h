@@ -25,7 +25,7 @@ class NerveVoice {
   /// @param rate  of the ticks' samples [Hz]  @param card  of the sound [Hz]
   explicit NerveVoice(double rate, double card = 48'000.0);
 
-  /// Never waits: what finds no room is not heard.
+  /// Never waits: a tick that finds no room is not heard.
   void push(const VoiceTick& tick) noexcept { ticks_.push(tick); }
   /// Adds the next samples to what is there. The sound card's thread; no allocation.
   void mix(std::span<float> part) noexcept;

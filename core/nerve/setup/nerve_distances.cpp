@@ -95,8 +95,8 @@ NerveDistances::NerveDistances(const bone::BoneModel& model,
   }
 }
 
-/// Between the centres of voxels a line. The nerve's surface is half a voxel before the centre of
-/// its outermost one.
+/// Distance to a structure, linear between the centres of voxels. The nerve's surface is half a
+/// voxel before the centre of its outermost one.
 float NerveDistances::to_structure(const bone::DistanceField& field,
                                    const Eigen::Vector3d& p_B) const noexcept {
   const Eigen::Array3d at = (p_B - grid_.origin).array() / grid_.spacing;

@@ -23,7 +23,8 @@ class NerveDistances {
   /// @throws InputError for a structure that the bone has not, and a curve that leaves its grid
   NerveDistances(const bone::BoneModel& model, const std::vector<WatchedNerve>& nerves);
 
-  /// From a place to the nerves' surfaces; not above 0 inside. @param p_B  in the bone's frame [m]
+  /// Distances from a place to the nerves' surfaces; not above 0 inside. @param p_B  in the bone's
+  /// frame [m]
   Distances at(const Eigen::Vector3d& p_B) const noexcept;
 
  private:

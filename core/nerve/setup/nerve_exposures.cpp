@@ -24,7 +24,7 @@ NerveExposures::NerveExposures(const NerveSetup& setup,
 
 namespace {
 
-/// From the tool's surface.
+/// Distances from the tool's surface.
 NerveDistances::Distances surface_distances(const NerveDistances& nerves,
                                             const ToolAtNerves& tool) noexcept {
   const auto from = [&nerves](const Eigen::Vector3d& centre_B, double radius) {

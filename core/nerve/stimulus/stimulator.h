@@ -32,11 +32,12 @@ class Stimulator {
   /// @param rate  of ticks [Hz]
   Stimulator(PulseCurrent current, double rate) : current_(std::move(current)), rate_(rate) {}
 
-  /// Ends a search. @param current  kLeastStimulus to kMostStimulus, else taken as the nearer [A]
+  /// Sets the current and ends a search. @param current  kLeastStimulus to kMostStimulus, else
+  /// taken as the nearer [A]
   void set(double current) noexcept;
   void search(std::size_t channel) noexcept;
 
-  /// After every tick.
+  /// Follows a tick; call after every one.
   /// @param pulse  that began with it [A], 0: none
   /// @param quiet  no event of the searched channel went on when the tick began
   /// @param ended  events that ended in it

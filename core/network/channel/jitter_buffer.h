@@ -25,7 +25,7 @@ class JitterBuffer {
   /// The newest message whose turn has come; null before the first. @param now  own clock [ns]
   const TickMessage* take(std::int64_t now) noexcept;
 
-  /// On top of the quickest of the last messages [ns].
+  /// Delay on top of the quickest of the last messages [ns].
   std::int64_t delay() const noexcept { return delay_; }
   std::uint64_t too_late() const noexcept { return too_late_; }  // a newer one was given out
 

@@ -36,7 +36,7 @@ class ReliableStream {
 
   /// Looks whether a message is needed now. @param round_trip_ns  negative: not known
   bool wants(ReliablePayload& freight, std::int64_t now_ns, std::int64_t round_trip_ns) noexcept;
-  /// For a message that leaves in the same tick.
+  /// Fills the stream's part of a message that leaves in the same tick.
   void fill(StreamPart& part, std::int64_t now_ns) noexcept;
 
   /// Whether the other side has all that was given so far.

@@ -18,7 +18,7 @@ class SimulatedChannel {
  public:
   /// Messages under way at once; more are lost and counted, as by a router without memory.
   static constexpr std::size_t kMost = 4096;
-  /// On each message's way beside its own bytes: IP, UDP, and what authenticates it.
+  /// Bytes on each message's way beside its own: IP, UDP, and authentication.
   static constexpr std::size_t kOverhead = 28 + 40;
 
   SimulatedChannel(const ChannelConditions& conditions, std::uint64_t seed, std::string_view name);
@@ -28,7 +28,7 @@ class SimulatedChannel {
   /// The next message that has arrived by now, in the order of arrival; nothing where none has.
   std::optional<TickBytes> receive(double now) noexcept;
 
-  /// From the next message on.
+  /// Sets the conditions from the next message on.
   void change(const ChannelConditions& conditions) noexcept { conditions_ = conditions; }
 
   std::uint64_t sent() const noexcept { return sent_; }

@@ -31,7 +31,7 @@ std::int64_t SimulatedLink::End::tick() noexcept {
     other_->begun_.wait(others, std::memory_order_acquire);
     others = other_->begun_.load(std::memory_order_acquire);
   }
-  // At the same tick, however early the other thread was through.
+  // Both sides see the end at the same tick, however early the other thread was through.
   other_closed_ = others == kClosed && needed > other_->ended_at_;
   return std::llround(1e9 * seconds(now_));
 }

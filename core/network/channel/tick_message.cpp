@@ -33,7 +33,7 @@ void each_field(Message& m, Field field) {
   field(m.turn.last_done);
 }
 
-/// Likewise, of what follows where there is a stream.
+/// Calls `field` for each field that follows if there is a stream.
 template <class Part, class Field>
 void each_field_of_stream(Part& part, Field field) {
   field(part.number);

@@ -39,14 +39,15 @@ class Wire {
  public:
   virtual ~Wire() = default;
 
-  /// Once a tick, first of all. @returns the own clock [ns]
+  /// Begins a tick; call once a tick, first of all. @returns the own clock [ns]
   virtual std::int64_t tick() noexcept = 0;
   /// Hands over the messages that have arrived since the last call, oldest first.
   virtual void receive(Listener& listener) noexcept = 0;
   virtual void send(const TickMessage& message) noexcept = 0;
   /// Whether the other end is known to be closed, so that nothing will come any more.
   virtual bool closed() const noexcept = 0;
-  /// From the next message of this side on, in a simulated network; a real one is as it is.
+  /// Sets the conditions of a simulated network from the next message of this side on; a real one
+  /// is as it is.
   virtual void change(const ChannelConditions& conditions) noexcept {
     static_cast<void>(conditions);
   }

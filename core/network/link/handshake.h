@@ -74,7 +74,7 @@ class Handshake {
   /// PendingPeer. @returns whether the host knows the secret.
   bool finish(const Closing& closing);
 
-  /// After closing() or finish(): the other side's.
+  /// Terms of the other side; call after closing() or finish().
   const LinkTerms& their_terms() const noexcept { return theirs_; }
   const LinkKeys& keys() const noexcept { return keys_; }
 

@@ -89,7 +89,7 @@ Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point
     throw RunError("the other side does not know the secret");
   }
   check_study(handshake.their_terms(), request);
-  // To the port that was called: a router may hand it on to another number.
+  // The address has the port that was called: a router may hand it on to another number.
   return {std::move(datagrams), other, handshake.keys(), false};
 }
 

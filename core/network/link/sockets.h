@@ -37,7 +37,7 @@ bool same_machine(const Address& a, const Address& b) noexcept;
 /// @throws InputError for a text of another form, a port outside 1 to 65535 or an unknown name
 Address address_of(const std::string& text);
 
-/// Until when something is waited for, and who may end it before.
+/// Limit of a wait, and the callback that may end it before.
 struct Patience {
   std::chrono::steady_clock::time_point until;
   std::function<void()> pulse;  // asked ten times a second; may throw

@@ -44,7 +44,7 @@ std::optional<WaitingGuests::Answered> WaitingGuests::next(const Patience& patie
   return std::nullopt;
 }
 
-/// Until somebody comes or speaks, and no longer than a tenth of a second.
+/// Waits until somebody comes or speaks, and no longer than a tenth of a second.
 void WaitingGuests::wait(const Patience& patience) {
   using namespace std::chrono;
   constexpr milliseconds kPulse(100);

@@ -46,7 +46,7 @@ PassBarrier::Step PassBarrier::wait(const TurnState& other, bool alone) noexcept
   return Step::kWait;
 }
 
-/// It has begun a later pass than the one that goes with the own.
+/// Whether the other side has begun a later pass than the one that goes with the own.
 bool PassBarrier::other_has_left(const TurnState& other) const noexcept {
   return other.pass > own_.with;
 }

@@ -49,7 +49,7 @@ struct Track {
   /// Level that is presented if a level is asked for: rounded, within the range.
   double applied(double asked) const noexcept;
   Level applied(const Level& asked) const;
-  /// Those that it sets, in the order of a level's dimensions.
+  /// Variables that the track sets, in the order of a level's dimensions.
   std::vector<std::string> variables() const;
   bool sets(const std::string& one) const;
   /// The lowest level of each dimension, or the highest.

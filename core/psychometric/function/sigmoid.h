@@ -37,7 +37,8 @@ struct SigmoidLanes {
   double density[kCount];
   double bend[kCount];
 };
-/// At z[0] to z[7]; the smaller of share and beyond is right to 1e-11 of itself.
+/// Values of a sigmoid at z[0] to z[7]; the smaller of share and beyond is right to 1e-11 of
+/// itself.
 void sigmoid_lanes(Sigmoid kind, const double* z, SigmoidLanes& lanes) noexcept;
 
 }  // namespace haptrial::psychometric

@@ -24,12 +24,12 @@ class Chain {
   Chain(const StaircaseParameters& parameters, const AnswerProbability& probability,
         std::size_t most_states);
 
-  /// From a state on trial `trial` (1, 2, ...).
+  /// Answers from a state on trial `trial` (1, 2, ...).
   const Node& node(std::size_t state, int trial);
   const StaircaseState& state(std::size_t index) const { return states_[index]; }
   std::size_t size() const noexcept { return states_.size(); }
   std::size_t first() const noexcept { return 0; }
-  /// Not by the number of trials.
+  /// Whether a track ends in a state, but for the number of trials.
   bool stops(std::size_t state) const { return stopped(parameters_, states_[state]); }
 
  private:

@@ -10,7 +10,7 @@ class Listed : public Procedure {
  public:
   const Level& next() const override;
   void report(double answer, const Level& applied) override;
-  /// To the end of the list.
+  /// Moves the level to the end of the list.
   void postpone() override;
   bool finished() const override { return outcomes_.size() == order_.size(); }
 

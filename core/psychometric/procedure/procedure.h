@@ -17,12 +17,12 @@ struct Outcome {
   Level applied;  // the level that was really presented: quantised, limited by the device
 };
 
-/// From low to high, 95 % [unit of the estimate].
+/// Interval from low to high, 95 % [unit of the estimate].
 struct EstimateInterval {
   double low, high;
 };
 
-/// From the lowest to the highest level that a procedure may present [unit of the level].
+/// Range from the lowest to the highest level that a procedure may present [unit of the level].
 struct LevelRange {
   double low, high;
 };
@@ -68,7 +68,7 @@ class Procedure {
 /// Reports each outcome. @throws as report() does
 void replay(Procedure& procedure, std::span<const Outcome> outcomes);
 
-/// For the procedures themselves.
+/// Checks for the procedures themselves.
 namespace checks {
 /// @throws std::invalid_argument "WHO: SENTENCE" unless `holds`.
 void require(bool holds, const char* who, const std::string& sentence);

@@ -38,7 +38,7 @@ void row_sums_avx2(const float* rows, std::size_t count, std::size_t cells,
 /// One such sum in double precision, over any number of cells.
 using RowSum = double(const double* row, std::size_t cells, const double* weights);
 double row_sum_avx2(const double* row, std::size_t cells, const double* weights);
-/// By the best set of this machine; all give the same bits.
+/// Sum of a row by the best instruction set of this machine; all give the same bits.
 double row_sum(const double* row, std::size_t cells, const double* weights) noexcept;
 
 }  // namespace haptrial::psychometric

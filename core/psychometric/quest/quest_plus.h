@@ -27,11 +27,11 @@ class QuestPlus final : public Procedure {
   /// @throws std::invalid_argument also when the outcome is impossible for all parameters.
   void report(double answer, const Level& applied) override;
   bool finished() const override;
-  /// For each parameter with more than one value: the mean of its posterior with its standard
-  /// deviation and central 95 %. An end of the values that the posterior does not exclude (its
-  /// probability is above exp(-1.92) of the largest) is an open side, but for a rate's end at 0;
-  /// with both ends there is no interval, as the answers do not tell the parameter. Then the values
-  /// at the mode of the joint posterior, without one.
+  /// Estimates of each parameter with more than one value: the mean of its posterior with its
+  /// standard deviation and central 95 %. An end of the values that the posterior does not exclude
+  /// (its probability is above exp(-1.92) of the largest) is an open side, but for a rate's end at
+  /// 0; with both ends there is no interval, as the answers do not tell the parameter. Then the
+  /// values at the mode of the joint posterior, without one.
   std::vector<Estimate> estimates() const override;
 
   std::optional<LevelRange> range() const override;

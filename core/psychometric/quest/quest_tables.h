@@ -58,7 +58,7 @@ class QuestTables {
 
   /// Product of the priors, sum 1 (cells).
   const std::vector<double>& prior() const noexcept { return prior_; }
-  /// For each cell its place in the grid of the parameters that are no nuisance; empty without one.
+  /// Place of each cell in the grid of the parameters that are no nuisance; empty without one.
   const std::vector<std::size_t>& groups() const noexcept { return groups_; }
   std::size_t group_count() const noexcept { return group_count_; }
 

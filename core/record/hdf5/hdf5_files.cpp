@@ -42,8 +42,8 @@ Id create_file(const std::filesystem::path& path, bool over) {
 Id open_to_go_on(const std::filesystem::path& path) {
   const Lock lock;
   const Id access = access_list();
-  // As HDF5's own tool h5clear does: a killed writer leaves its marks in the superblock, and there
-  // an end of file that lies before what it wrote.
+  // The marks are cleared as HDF5's own tool h5clear does: a killed writer leaves them in the
+  // superblock, and there an end of file that lies before its last writes.
   hbool_t yes = true;
   check(H5Pset(access.get(), "clear_status_flags", &yes), "status flags");
   check(H5Pset(access.get(), "skip_eof_check", &yes), "end of file");

@@ -9,8 +9,8 @@
 namespace haptrial::record {
 namespace {
 
-/// Not in files of the first schema version; later ones are read from /attributes, whose absent
-/// rows leave a field as it is by default.
+/// Whether an attribute is not in files of the first schema version; later ones are read from
+/// /attributes, whose absent rows leave a field as it is by default.
 bool is_new(std::string_view name) {
   return name.starts_with("participant_") || name == "pilot" || name == "session";
 }

@@ -15,8 +15,8 @@ std::optional<std::string> text_with_nul(const SessionInfo& info);
 void put_info(const h5::Id& file, const SessionInfo& info);
 /// @throws h5::Error also for a schema version that is not read.
 std::int64_t get_version(const h5::Id& file);
-/// From the root attributes. HDF5 1.10 can crash on a damaged heap of texts, so that a reader
-/// prefers /attributes where a file has them. @throws h5::Error
+/// Session's facts from the root attributes. HDF5 1.10 can crash on a damaged heap of texts, so
+/// that a reader prefers /attributes where a file has them. @throws h5::Error
 SessionInfo get_info(const h5::Id& file);
 
 /// The same as rows of /attributes: kind is the name, text the value; `time_ns` is unused.

@@ -22,7 +22,7 @@ class RecoveredRows {
   RecoveredRows(std::span<const std::uint8_t> file, const TableList& tables);
 
   std::size_t sample_pieces() const { return samples_.pieces(); }
-  /// In ascending order of sequence numbers, from piece to piece as well.
+  /// Samples of a piece in ascending order of sequence numbers, from piece to piece as well.
   std::vector<Sample> samples(std::size_t piece) const;
 
   std::vector<PassRow> passes;

@@ -65,7 +65,8 @@ bool RecoveredTable::take_if_ours(std::uint64_t offset, std::span<const std::uin
   return false;
 }
 
-/// Else they are rows of another table whose chunks may be as long.
+/// Whether the ticks of the rows rise; else they are rows of another table whose chunks may be as
+/// long.
 bool RecoveredTable::ticks_rise(const std::vector<std::uint8_t>& packed) const {
   const std::size_t bytes = table_->schema().row_bytes();
   std::int64_t last = -1;

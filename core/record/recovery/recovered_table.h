@@ -23,14 +23,14 @@ class RecoveredTable {
   /// most rows stays.
   /// @returns false if it is not of this table
   bool take_if_ours(std::uint64_t offset, std::span<const std::uint8_t> raw);
-  /// After the last chunk.
+  /// Ends the table; call after the last chunk.
   void finish();
 
   const TableDescription& table() const { return *table_; }
   std::uint64_t count() const { return count_; }  // rows as stored
   std::size_t pieces() const { return pieces_.size(); }
-  /// With a row for each tick in ascending order of ticks, from piece to piece as well; else all
-  /// rows are one piece.
+  /// Rows of a piece: with a row for each tick in ascending order of ticks, from piece to piece as
+  /// well; else all rows are one piece.
   std::vector<std::uint8_t> piece(std::size_t number) const;
   /// The same, of the table's own type.
   template <class Row>

@@ -19,7 +19,8 @@ std::vector<std::uint8_t> contents_of(const std::filesystem::path& file);
 RecoveredRows rows_in(const std::filesystem::path& file, std::span<const std::uint8_t> contents,
                       const TableList& tables);
 
-/// From /attributes; from the root attributes where that is lost, or in a file of version 1.
+/// Session's facts from /attributes; from the root attributes if that is lost, or in a file of
+/// version 1.
 std::optional<SessionInfo> find_info(const std::filesystem::path& file, const RecoveredRows& rows);
 
 /// Writes the rows but those of /trials, of tables whose rows belong to passes, and the counts of

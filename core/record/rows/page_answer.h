@@ -8,7 +8,7 @@
 
 namespace haptrial::record {
 
-/// When a page was shown.
+/// Time at which a page was shown.
 enum class PageTime : std::uint8_t { kBefore, kAfterBlock, kAfter };
 
 /// Place at which an answer to a page was given.

@@ -13,7 +13,7 @@ enum class RunState : std::uint8_t {
   kEnded     // as did the session
 };
 
-/// As /runs has it.
+/// Word of a state in /runs.
 constexpr const char* name_of(RunState state) noexcept {
   switch (state) {
     case RunState::kStopped:

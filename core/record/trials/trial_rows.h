@@ -78,7 +78,7 @@ const Table<AdaptationRow>& table_of<AdaptationRow>();
 template <>
 const Table<OutOfTimeRow>& table_of<OutOfTimeRow>();
 
-/// Those that every session of trials has, in the order in which they are created.
+/// Tables that every session of trials has, in the order in which they are created.
 const TableList& trial_tables();
 /// The one that only sessions of virtual participants who adapt have.
 const TableList& adaptation_tables();

@@ -60,21 +60,22 @@ class SessionWriter {
                               const TableList& tables = common_tables(),
                               const TableList& needed = {});
 
-  /// Without close(): FILE.partial stays, closed and readable, with everything that came.
+  /// A writer that goes without close() leaves FILE.partial, closed and readable, with everything
+  /// that came.
   ~SessionWriter();
   SessionWriter(SessionWriter&&) noexcept;
   SessionWriter& operator=(SessionWriter&&) = delete;
 
   /// Real values are rounded to the grids of schema.h.
   void append(std::span<const Sample> samples);
-  /// After its samples. @throws std::invalid_argument for a condition above 64 bytes or with a NUL
-  /// byte.
+  /// Adds a pass; call after its samples. @throws std::invalid_argument for a condition above 64
+  /// bytes or with a NUL byte.
   void add_pass(const PassRow& pass);
   /// A text above 256 bytes takes several rows, which the reader joins again.
   /// @throws std::invalid_argument for a kind above 32 bytes, or a NUL byte in kind or text.
   void add_event(const EventRow& event);
-  /// When a pass begins: what a kill in mid-pass would lose. On the real clock it is in the file
-  /// when this returns. @throws std::invalid_argument as add_pass() does
+  /// Notes a pass that begins: facts that a kill in mid-pass would lose. On the real clock it is in
+  /// the file when this returns. @throws std::invalid_argument as add_pass() does
   void begin_pass(const BegunRow& pass);
   void add_stimulus(std::span<const StimulusRow> rows);
   void add_frames(std::span<const FrameRow> rows);
@@ -99,8 +100,8 @@ class SessionWriter {
   void set_planned(std::int32_t trials);
   /// Notes the loop's counts so far in this run: a row of /runs if something new is to be told.
   void note_counts(const TimingSummary& so_far);
-  /// Once, when the loop has ended. @param summary  of this run: what was counted before a resume()
-  /// is added in the counts of the session.
+  /// Writes the timing; call once, when the loop has ended. @param summary  of this run: what was
+  /// counted before a resume() is added in the counts of the session.
   /// @param state  kStopped: the session goes on in another run, and FILE.partial is left
   /// @throws std::invalid_argument for a second call.
   void set_timing(std::span<const TimingRow> histogram, const TimingSummary& summary,

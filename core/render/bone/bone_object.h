@@ -39,8 +39,8 @@ class BoneObject {
   /// @param visible  may draw only the visible array, where there is one
   /// @returns triangles sent
   std::size_t draw(bool visible) const;
-  /// Only the triangles that may fall into a part of a picture of width x height pixels, in the
-  /// order of draw(): where two have the same depth, the same one shows.
+  /// Draws only the triangles that may fall into a part of a picture of width x height pixels, in
+  /// the order of draw(): of two that have the same depth, the same one shows.
   /// @param to_clip  from B to clip space
   /// @param bent     there are dents, which move vertices: only whole blocks are left out then
   std::size_t draw(bool visible, const PixelBox& part, const Eigen::Matrix4d& to_clip, int width,

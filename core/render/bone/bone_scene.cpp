@@ -293,7 +293,8 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
   };
   const std::size_t pixels = count(part.sizes());
   figures.pixels += pixels;
-  // With much to draw, finding out what would take longer than it saves.
+  // A scene with much to draw is drawn whole: finding out the parts would take longer than it
+  // saves.
   const bool all = 2 * pixels > count(all_pixels(width, height).sizes());
   for (const SceneBone& bone : frame.bones) {
     use(view, bone.pose);
@@ -414,7 +415,7 @@ void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& v
   }
 }
 
-/// As other drawing expects it.
+/// Sets the state that other drawing expects.
 void BoneScene::Impl::end() const {
   gl.disable(GL_DEPTH_TEST);
   gl.disable(GL_CULL_FACE);

@@ -137,7 +137,7 @@ void main() {
 })";
 
 constexpr double kMostPixels = BoneShading::kReach - 2;  // of the openness's reach
-/// In the eye's frame.
+/// Capsules in the eye's frame.
 std::vector<Capsule> seen_by(const EyeView& view, std::span<const Capsule> capsules) {
   std::vector<Capsule> seen;
   for (const Capsule& each : capsules) {

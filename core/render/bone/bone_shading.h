@@ -32,8 +32,8 @@ class BoneShading {
   /// @param part  changed pixels of the eye's picture, from its lower left; none: nothing is done
   void draw(const BoneLayer& layer, const EyeView& view, const EyeArea& area,
             const PixelBox& part) const;
-  /// Over the layer's copy, before the tools: what they take of the bone's light. More than
-  /// kMostCapsules are left out.
+  /// Draws the tools' shadows over the layer's copy, before the tools: the part of the bone's light
+  /// that tools keep off. More than kMostCapsules are left out.
   /// @param capsules  in W
   /// @param bone      all that shows of it
   /// @returns the pixels that it may have darkened, from the eye's lower left

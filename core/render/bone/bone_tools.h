@@ -36,7 +36,7 @@ std::vector<Capsule> burr_shadow(const BurrLook& look);
 geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length);
 /// A rectangle in the plane z = 0 around the origin, seen from both sides.
 geometry::Mesh plane_mesh(double width, double height);
-/// From T to W.
+/// Pose of a tool, from T to W.
 Eigen::Isometry3d pose_of(const ToolState& tool);
 
 }  // namespace haptrial::render

@@ -30,7 +30,7 @@ struct VisibilityResult {
 /// Whether a vertex's normal is less than 90 degrees away from the direction to an eye [in B].
 bool faces(const bone::SurfaceVertex& vertex, std::span<const Eigen::Vector3d> eyes);
 
-/// By vertex: whether it faces an eye. Any thread.
+/// Whether each vertex faces an eye. Any thread.
 std::vector<std::uint8_t> facing(std::span<const bone::SurfaceVertex> vertices,
                                  std::span<const Eigen::Vector3d> eyes);
 

@@ -22,8 +22,8 @@ class Antialias {
   Antialias(const Antialias&) = delete;
   Antialias& operator=(const Antialias&) = delete;
 
-  /// To the same place of the bound framebuffer, which has a depth buffer: that says where edges
-  /// are, so that the costly pass passes over all that is flat.
+  /// Draws to the same place of the bound framebuffer, which has a depth buffer: that says where
+  /// edges are, so that the costly pass passes over all that is flat.
   /// @param picture  a texture with linear filtering
   /// @param area     of the picture: what is outside of it is not looked at
   /// @param parts    of the area that are drawn, none of them empty

@@ -60,7 +60,7 @@ class Window {
   const Gl& gl() const noexcept;
   int width() const noexcept;  // of the framebuffer [px]
   int height() const noexcept;
-  /// As the monitor says [Hz]; 0 where it does not.
+  /// Rate of the monitor [Hz]; 0 if it does not say.
   double refresh_rate() const noexcept;
 
   /// Takes what happened to window, keys and mouse.

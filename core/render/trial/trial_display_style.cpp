@@ -25,7 +25,7 @@ void read_number(Table& table, std::string_view key, const Bounds& bounds, std::
   value = table.number_or(key, value, bounds, unit);
 }
 
-/// As a definition writes it.
+/// Text of a colour as a definition writes it.
 std::string words_of(const Colour& colour) {
   const auto byte = [](double share) { return static_cast<int>(std::lround(255.0 * share)); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(colour.red), byte(colour.green),

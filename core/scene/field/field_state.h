@@ -49,7 +49,7 @@ struct FieldState {
   bool sliding{false};  // friction: slides rather than sticks
   bool done{false};     // pulse, mover or path: over
 
-  // Since the field was switched on or forget_extremes() was called.
+  // Extremes since the field was switched on or forget_extremes() was called.
   double max_depth{0.0};  // [m]
   double max_force{0.0};  // [N]
   double work{0.0};       // done on the hand: the force held over each tick times the way [J]

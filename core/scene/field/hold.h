@@ -7,21 +7,22 @@
 
 namespace haptrial::scene {
 
-/// To a point: f = sat(k (to - p) - b v, limit).
+/// Spring to a point: f = sat(k (to - p) - b v, limit).
 struct SpringParameters {
   Eigen::Vector3d to{Eigen::Vector3d::Zero()};  // [m]
   control::PdGains gains{300.0, 3.0};           // k >= 0 [N/m], b >= 0 [N·s/m]
 };
 
-/// To the straight line through two points, endless: f = sat(-k P (p - from) - b P v, limit) with
-/// P = 1 - u uᵀ and u along the line. Free along u: an error clamp.
+/// Spring to the straight line through two points, endless: f = sat(-k P (p - from) - b P v, limit)
+/// with P = 1 - u uᵀ and u along the line. Free along u: an error clamp.
 struct LineChannelParameters {
   Eigen::Vector3d from{Eigen::Vector3d::Zero()};  // [m]
   Eigen::Vector3d to{0.0, 0.0, -0.1};             // not `from` [m]
   control::PdGains gains{1000.0, 15.0};
 };
 
-/// To the axes of W that are free through a point; P keeps the others. With two free axes a plane.
+/// Spring to the axes of W that are free through a point; P keeps the others. With two free axes a
+/// plane.
 struct AxisChannelParameters {
   Eigen::Vector3d through{Eigen::Vector3d::Zero()};  // [m]
   bool free_x{true};
@@ -30,7 +31,7 @@ struct AxisChannelParameters {
   control::PdGains gains{1000.0, 15.0};
 };
 
-/// To a plane from both sides (a wall is felt from one): P = n nᵀ.
+/// Spring to a plane from both sides (a wall is felt from one): P = n nᵀ.
 struct PlaneParameters {
   Eigen::Vector3d through{Eigen::Vector3d::Zero()};  // [m]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // any length above 0

@@ -45,7 +45,7 @@ class RigidObject {
   void lay(const ReliefHere& relief) noexcept { relief_ = relief; }  // before force()
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
   const SurfaceTouch& touch() const noexcept { return touch_; }
-  /// As Surface has it; what friction holds is left out.
+  /// Stored energy, as Surface has it; energy that friction holds is left out.
   double stored(double depth, double share) const noexcept;
 
  private:

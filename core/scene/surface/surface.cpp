@@ -37,7 +37,7 @@ Surface::Side Surface::free_side(const Vector3d& p) const noexcept {
           share};
 }
 
-/// Without the relief, which is what is felt of it beyond.
+/// Force without the relief, which is felt beyond it.
 Vector3d Surface::flat_force(const Side& here, const Felt& felt) const noexcept {
   const double damping = felt.shares.damping * contact::damper_share(here.depth);
   const double wanted = felt.shares.stiffness * gains_.stiffness * here.depth -

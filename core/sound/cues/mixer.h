@@ -35,7 +35,7 @@ class Mixer {
   Mixer(std::vector<std::vector<float>> clips, std::vector<float> masking, double fade,
         double rate);
 
-  /// From the next sample on. @param clip  from 0; others are none
+  /// Starts a clip from the next sample on. @param clip  from 0; others are none
   void start(std::size_t clip) noexcept;
   void mask(bool on) noexcept { masked_ = on; }
   void fill(std::span<float> samples) noexcept;

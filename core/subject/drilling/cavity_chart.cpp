@@ -107,7 +107,8 @@ bone::Voxel voxel_at(const geometry::VoxelGrid& grid, const Eigen::Vector3d& p_B
   return ((p_B - grid.origin) / grid.spacing).array().round().cast<std::int32_t>();
 }
 
-/// Between the centres of voxels a line; nothing where one of the eight is beyond the reach.
+/// Distance at a place, linear between the centres of voxels; nothing if one of the eight is beyond
+/// the reach.
 std::optional<double> distance_at(const bone::DistanceField& field, const geometry::VoxelGrid& grid,
                                   const Eigen::Vector3d& p_B) {
   const Eigen::Array3d at = (p_B - grid.origin).array() / grid.spacing;

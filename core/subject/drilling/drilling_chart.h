@@ -36,7 +36,7 @@ struct DrillingChart {
     return axes.transpose() * (p_W - corner);
   }
   Eigen::Vector3d world(const Eigen::Vector3d& place) const { return corner + axes * place; }
-  /// Between entries a line; far inside a structure outside of the chart. [m]
+  /// Clearance at a place, linear between entries; far inside a structure outside of the chart. [m]
   float clearance_at(const Eigen::Vector3d& place) const noexcept;
 };
 

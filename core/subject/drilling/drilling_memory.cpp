@@ -199,7 +199,7 @@ bool DrillingMemory::choose(const BoutChoice& choice, const Eigen::Vector2d& now
   return true;
 }
 
-/// From the deepest place nearby to beyond the edge that is next to it.
+/// Chooses strokes from the deepest place nearby to beyond the edge that is next to it.
 void DrillingMemory::choose_under(const Cell& at, const BoutChoice& choice, RandomStream& random,
                                   StrokeSeries& bout) noexcept {
   const int reach = static_cast<int>(choice.length / chart_.cell);

@@ -31,9 +31,9 @@ class DrillingMemory {
  public:
   explicit DrillingMemory(const DrillingChart& chart);
 
-  /// As the bone is seen before anything was done.
+  /// Begins with the bone as it is seen before anything was done.
   void begin(const std::vector<float>& surface) noexcept;
-  /// From now on with this burr. Copies within what was allocated.
+  /// Goes on with this burr. Copies within what was allocated.
   void begin_burr(const BurrReach& reach, double radius) noexcept;
 
   /// The burr has been there, turning. @param place  of its centre (u, v, w)
@@ -43,7 +43,7 @@ class DrillingMemory {
   /// Depth at which the burr's centre touches the bone that stands at a place; 1 if there is no
   /// bone. [m]
   double touch(const Eigen::Vector2d& place) const noexcept;
-  /// Over all that stands between two places. [m]
+  /// Height over all that stands between two places. [m]
   double over(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const noexcept;
 
   /// The share of the bone that this burr is to take and that is still there: 0 to 1.
@@ -51,7 +51,7 @@ class DrillingMemory {
   /// @returns false where nothing is left. @param now  where the hand is
   bool choose(const BoutChoice& choice, const Eigen::Vector2d& now, RandomStream& random,
               StrokeSeries& bout) noexcept;
-  /// After a bout: what it did not get any deeper, after a third try, is taken as gone.
+  /// Takes as gone, after a bout, the bone that it did not get any deeper after a third try.
   void end_bout(const StrokeSeries& bout) noexcept;
 
   /// The middle of all that is to go, (u, v, w) with w at the surface.

@@ -190,7 +190,7 @@ bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
   if (parameters_.look_button < 0) {
     return false;
   }
-  // Through the middle of the opening, so that the least bone is in the way.
+  // The approach goes through the middle of the opening, so that the least bone is in the way.
   const DrillingChart& chart = *p.chart;
   const Eigen::Vector2d middle = 0.5 * (bout_.from + bout_.to);
   const Eigen::Vector3d there(middle.x(), middle.y(), p.memory.touch(middle) + burr().radius);
@@ -314,7 +314,8 @@ void DrillingSurgeon::go_to(const Eigen::Vector3d& place, double speed, double d
   goal_velocity_ = step / dt * direction;
 }
 
-/// To and fro, each stroke beginning and ending at rest, and a little beside the one before.
+/// Follows a bout to and fro, each stroke beginning and ending at rest, and a little beside the one
+/// before.
 void DrillingSurgeon::follow_bout() noexcept {
   const double rate = bout_rate_;
   const double strokes = time_ * rate;

@@ -167,7 +167,7 @@ ExplorationController::Aim ExplorationController::aim(const Contour&, const Now&
   return aim;
 }
 
-/// From place to place as in a reach; at a place it keeps to the line along which it presses.
+/// Aim from place to place as in a reach; at a place it keeps to the line along which it presses.
 ExplorationController::Aim ExplorationController::aim(const Palpate& palpate, const Now&) noexcept {
   Aim aim;
   const PalpationStep step = palpation_at(palpate, time_);

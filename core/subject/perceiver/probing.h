@@ -28,8 +28,8 @@ struct Press {
   double travel{0.05};                        // from where it began > 0 [m]
 };
 
-/// To and fro about the place where it began, p(t) = a + A u sin(2 pi f t) after the first half
-/// cycle, in which it grows. With a force the hand presses along `normal` and moves across it.
+/// Stroke to and fro about the place where it began, p(t) = a + A u sin(2 pi f t) after the first
+/// half cycle, in which it grows. With a force the hand presses along `normal` and moves across it.
 struct Stroke {
   Eigen::Vector3d direction{1.0, 0.0, 0.0};  // u in W, any length above 0
   double half_length{0.02};                  // A > 0 [m]

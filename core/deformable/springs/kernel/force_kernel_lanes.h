@@ -31,7 +31,7 @@ struct Queue {
   std::uint64_t owned;
 
   HAPTRIAL_LANES bool owns(int bit) const { return (owned >> bit & 1) != 0; }
-  /// Without a branch, so that the compiler mixes what does not depend on each other.
+  /// Puts a measure without a branch, so that the compiler mixes independent parts.
   HAPTRIAL_LANES void put(int bit, const Lanes& measure) {
     *next = measure;
     next += owned >> bit & 1;

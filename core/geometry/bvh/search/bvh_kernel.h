@@ -1,6 +1,6 @@
 #pragma once
 
-// Between bvh.cpp and the searches, one file per instruction set.
+// Interface between bvh.cpp and the searches, one file per instruction set.
 
 #include <cmath>
 #include <cstddef>

@@ -9,7 +9,8 @@
 namespace haptrial::geometry::kernel {
 namespace {
 
-/// As many points at a time as a vector holds: they share the descent down to the leaves.
+/// Search for as many points at a time as a vector holds: they share the descent down to the
+/// leaves.
 template <class Lanes, class Doubles>
 class PacketSearch {
   static constexpr int kCount = Lanes::kCount;
