@@ -33,7 +33,7 @@ const ColumnDoc kPilot{
 
 ColumnDoc pass_doc(const char* name) { return doc_of(record::trials_table().schema(), name); }
 
-/// With the meaning of both values.
+/// Column `practice` with the meaning of both values.
 ColumnDoc practice_doc() {
   ColumnDoc doc = pass_doc("practice");
   doc.levels = {{"0", "part of the study"}, {"1", "practice, never scored"}};

@@ -29,8 +29,8 @@ void refuse_twins(const std::vector<ExportSession>& sessions) {
   }
 }
 
-/// As the files say it. A subject who has a number twice, as in studies of one session that was
-/// repeated, has them in the order of start.
+/// Numbers sessions as the files say. A subject who has a number twice, as in studies of one
+/// session that was repeated, has them in the order of start.
 void number_sessions(std::vector<ExportSession>& sessions) {
   std::map<std::string, std::set<std::uint64_t>> numbers;
   std::set<std::string> repeated;

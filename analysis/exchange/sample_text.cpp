@@ -137,7 +137,7 @@ std::int64_t WrittenSamples::even_time(std::int64_t time_ns) const {
       [](std::int64_t time, const ClockShift& shift) { return time < shift.time_ns; });
   const std::int64_t by = next == shifts.begin() ? 0 : std::prev(next)->by_ns;
   const std::int64_t even = time_ns - by;
-  // While the loop was suspended there was no tick: not after the one that followed.
+  // A suspended loop had no tick: the time is not after the one that followed.
   return next == shifts.end() ? even : std::min(even, next->time_ns - next->by_ns);
 }
 

@@ -23,8 +23,8 @@ struct RunSpan {
   std::uint64_t ticks{0};  // from first to last, both included; 0 where it never ran
 };
 
-/// From this sample on the clock reads so much more than the sequence numbers say: after a
-/// suspension, or where a session was resumed.
+/// Shift of the clock from this sample on, against the sequence numbers: after a suspension, or
+/// where a session was resumed.
 struct ClockShift {
   std::int64_t time_ns{0};
   std::int64_t by_ns{0};
@@ -37,7 +37,7 @@ struct WrittenSamples {
   std::vector<RunSpan> runs;       // (passes)
   std::vector<ClockShift> shifts;  // of 2 ms or more, in order of time
 
-  /// When the tick that the clock read at this time would have been on an even clock [ns].
+  /// Time, on an even clock, of the tick that the clock read at this time [ns].
   std::int64_t even_time(std::int64_t time_ns) const;
 };
 

@@ -7,7 +7,8 @@
 namespace haptrial::exchange {
 namespace {
 
-// Without an exponent: longer than the longest of the numbers that sessions hold, and than 64 bits.
+// Appends a number without an exponent. The buffer is longer than the longest of the numbers that
+// sessions hold, and than 64 bits.
 template <class Number, class... Format>
 void append_number(std::string& text, Number number, Format... format) {
   std::array<char, 400> buffer;

@@ -22,7 +22,8 @@ class NewFolder {
   /// @throws RunError when the disk is full.
   void write(const std::filesystem::path& name, std::string_view text) const;
 
-  /// Once, at the end. @throws RunError when the folder has come to hold something meanwhile.
+  /// Publishes the folder; call once, at the end. @throws RunError when the folder has come to hold
+  /// something meanwhile.
   void publish();
 
  private:

@@ -21,8 +21,9 @@ struct SmallestN {
   std::optional<double> high;  // where its lower end does
 };
 
-/// By straight lines between the points, made to rise first (pool adjacent violators, weighted by
-/// replications). A target that the smallest number meets is met at that number.
+/// Smallest number by straight lines between the points, made to rise first (pool adjacent
+/// violators, weighted by replications). A target that the smallest number meets is met at that
+/// number.
 /// @param points  by rising n, each with at least one test made
 SmallestN smallest_n(const std::vector<PowerPoint>& points, double target);
 

@@ -72,7 +72,8 @@ py::dict described(const PsychometricParameters& p) {
   return values;
 }
 
-/// From low to high; an open side is `lowest`, or infinite; NaN where the fit has no interval.
+/// Interval from low to high; an open side is `lowest`, or infinite; NaN if the fit has no
+/// interval.
 template <class Level>
 py::tuple interval(const analysis::StatedFit& fit, const analysis::ProfileInterval& from,
                    Level level, double lowest) {

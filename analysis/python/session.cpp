@@ -136,7 +136,7 @@ struct Piece {
 /// A table of several files, one after the other, as arrays of Python.
 class TableRead {
  public:
-  /// With Python's lock, which is let go while files are read.
+  /// Construct with Python's lock, which is let go while files are read.
   TableRead(const std::vector<std::string>& paths, const std::string& name,
             const std::optional<std::vector<std::string>>& columns, int threads)
       : threads_(threads_or_all(threads)) {

@@ -19,7 +19,7 @@ struct QualityColumn {
   }
 };
 
-/// In the order of the table; a column `flags` with flag_names() follows them there.
+/// Columns in the order of the table; a column `flags` with flag_names() follows them there.
 std::span<const QualityColumn> quality_columns();
 
 }  // namespace haptrial::analysis

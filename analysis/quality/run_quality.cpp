@@ -55,7 +55,7 @@ FastSwings fast_swings(std::span<const Sample> run, const Force& force) {
   return found;
 }
 
-/// Along whichever axis it was worst.
+/// Adds the oscillation along the axis on which it was worst.
 void add_oscillation(RunQuality& quality, std::span<const Sample> run) {
   const FastSwings axes[] = {fast_swings(run, [](const Sample& s) { return s.applied_force; }),
                              fast_swings(run, [](const Sample& s) { return s.force.x(); }),

@@ -99,7 +99,7 @@ Defined<double> lag_behind(std::span<const double> actual, std::span<const doubl
   if (actual.size() != ideal.size()) {
     throw std::invalid_argument("lag_behind: the curves differ in length");
   }
-  // At least half of the curves overlap at every shift.
+  // The reach leaves at least half of the curves overlapping at every shift.
   const long reach = std::min(std::lround(max_lag * rate), static_cast<long>(actual.size() / 2));
   if (reach < 2 || !varies(actual) || !varies(ideal)) {
     return Undefined{"the path does not vary"};

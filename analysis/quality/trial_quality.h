@@ -32,7 +32,7 @@ struct TrialQuality {
   int attempt{1};                       // above 1: the trial was aborted before
 };
 
-/// From where on a trial is flagged. A flag is a remark: it excludes nothing by itself.
+/// Limits from which on a trial is flagged. A flag is a remark: it excludes nothing by itself.
 namespace flag {
 /// Target forces up to the limit bring virtual participants of the shipped studies to it for up to
 /// 14 % of a run. Beyond that the recorded force is the device's and not the participant's.
@@ -44,10 +44,10 @@ inline constexpr double kOscillation = 0.05;
 inline constexpr double kLag = 0.15;  // either way [s]
 /// A path that sets the pace is over when it is over, but for a few ticks.
 inline constexpr double kDuration = 0.02;  // of the path's own duration, either way
-/// At one's own pace: three times as fast, the bumps of the pattern last less than the 0.2 s in
-/// which a force can be raised; three times as slow, it was a pause and no recall.
+/// Limit of one's own pace: three times as fast, the bumps of the pattern last less than the 0.2 s
+/// in which a force can be raised; three times as slow, it was a pause and no recall.
 inline constexpr double kPace = 3.0;
-/// As for overruns of a whole session (too_many_overruns): beyond 1 % velocity, and with it
+/// Limit as for overruns of a whole session (too_many_overruns): beyond 1 % velocity, and with it
 /// damping, is not what the definition says.
 inline constexpr double kMissingTicks = 0.01;
 inline constexpr double kLateTicks = 0.01;
@@ -57,7 +57,7 @@ inline constexpr double kTopSpeed = 1.0;  // [m/s]
 inline constexpr double kReducedDamping = 0.1;
 /// 0.3 s of a run of 15 s without a new picture, longer than it takes to react to one.
 inline constexpr double kDroppedFrames = 0.02;
-/// Below a tenth of the target's peak nobody tried to recall it.
+/// Limit of a recall: below a tenth of the target's peak nobody tried.
 inline constexpr double kLeastForce = 0.1;
 }  // namespace flag
 

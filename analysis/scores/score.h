@@ -29,7 +29,7 @@ class Score {
   virtual std::vector<ScoreValue> values(const record::SessionReader& session) const = 0;
 };
 
-/// In the order in which they were added. Call before threads are started.
+/// Scores in the order in which they were added. Call before threads are started.
 const std::vector<const Score*>& scores();
 /// @throws std::invalid_argument for a name that is empty or taken
 void add_score(const Score& score);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Between alignment.cpp and the kernels that fill the direction bits, one file per instruction set.
+// Interface between alignment.cpp and the kernels that fill the direction bits, one file per
+// instruction set.
 
 #include <cstddef>
 #include <cstdint>

@@ -53,8 +53,9 @@ struct PairPerLane {
   static Number border(const float* at) { return Lanes::load(at); }
 };
 
-/// In each step of a strip its row r meets column step - r, so that no cell of a step needs another
-/// of the same step. D moves down from vector to vector; memory sees only the last row of a strip.
+/// Sweeps strips: in each step of a strip its row r meets column step - r, so that no cell of a
+/// step needs another of the same step. D moves down from vector to vector; memory sees only the
+/// last row of a strip.
 template <class Lanes, class Layout, int straight, int power, std::size_t vectors>
 void sweep(const Task& task) {
   using Number = typename Lanes::Number;

@@ -27,7 +27,8 @@ std::string injury_banners(const Findings& findings);
 /// The main points in a few lines.
 std::string summary_points(const Findings& findings, const Experts& experts);
 std::string metrics_table(const Findings& findings, const Experts& experts);
-/// By structure: what was removed near it, what of it hidden, too hard, too fast.
+/// Table by structure: the bone that was removed near it, and the shares hidden, too hard, too
+/// fast.
 std::string structures_table(const Findings& findings);
 std::string injuries_table(const Findings& findings);
 /// The removals with the most force for their distance from a structure.

@@ -7,7 +7,7 @@
 
 namespace haptrial::analysis::drilling {
 
-/// From where a procedure was looked at first, in W.
+/// Direction from which a procedure was looked at first, in W.
 struct FirstView {
   Eigen::Vector3d towards_eye{Eigen::Vector3d::UnitZ()};  // any length but 0
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};           // in the picture, not along it

@@ -20,7 +20,8 @@ struct SceneMesh {
 /// The surface of a bone in fewer triangles. @param most  triangles, above 0
 SceneMesh scene_surface(const bone::BoneModel& bone, std::size_t most);
 
-/// Likewise of all that has one of some labels. @param wanted  by label; shorter: the rest is not
+/// Mesh of all voxels that have one of some labels. @param wanted  by label; shorter: the rest is
+/// not
 SceneMesh scene_structure(const bone::BoneModel& bone, const std::vector<bool>& wanted,
                           std::size_t most);
 

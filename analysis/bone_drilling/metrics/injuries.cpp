@@ -38,8 +38,8 @@ InjuryMeter::InjuryMeter(std::shared_ptr<const bone::BoneModel> bone,
                          const Eigen::Isometry3d& pose_WB, const std::vector<ProcedureTool>& tools,
                          StudyBones& bones)
     : bone_(std::move(bone)), pose_BW_(pose_WB.inverse()) {
-  // From the tip to its voxel's centre, and from a touched voxel's surface to its centre, it is
-  // half a diagonal each.
+  // The distance from the tip to its voxel's centre, and from a touched voxel's surface to its
+  // centre, is half a diagonal each.
   const double spacing = bone_->grid.spacing;
   const double reach =
       std::min(largest_reach(tools) + std::numbers::sqrt3 * spacing, 250.0 * spacing);

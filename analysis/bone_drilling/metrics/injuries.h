@@ -38,14 +38,15 @@ struct Injury {
   bool operator==(const Injury&) const = default;
 };
 
-/// When it was opened first, by a burr, the cut plane or a tear [s of the procedure].
+/// Time at which a structure was opened first, by a burr, the cut plane or a tear [s of the
+/// procedure].
 std::optional<double> opened_at(const Injury& injury);
 
 /// Adds what tore. @param procedure  with its ticks
 void add_tears(const Procedure& procedure, std::vector<Injury>& injuries);
 
-/// Goes along with a drilling. Contact is exact: the burr reaches into the cube of a voxel of the
-/// structure as it was at first. One thread, not the servo thread.
+/// Meter of injuries that goes along with a drilling. Contact is exact: the burr reaches into the
+/// cube of a voxel of the structure as it was at first. One thread, not the servo thread.
 class InjuryMeter {
  public:
   InjuryMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,

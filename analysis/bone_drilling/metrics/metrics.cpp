@@ -50,7 +50,7 @@ Value injured_structures(const Parts& p) {
                     [](const Injury& injury) { return injury.voxels > 0; })));
 }
 
-/// Over the time of drilling.
+/// Mean diameter over the time of drilling.
 Value mean_burr_diameter(const Parts& p) {
   double sum = 0.0;
   double time = 0.0;
@@ -150,7 +150,7 @@ void sort_removed(const Procedure& procedure, ProcedureSummary& summary) {
   }
 }
 
-/// Those asked for, or all that are vital, by name.
+/// Structures that were asked for, or all that are vital, by name.
 std::vector<std::string> structures_of(const bone::BoneModel& bone, const MetricOptions& options) {
   std::vector<std::string> names = options.structures;
   if (names.empty()) {

@@ -59,7 +59,7 @@ struct ProcedureSummary {
   StrokeFigures strokes;
   Usage usage;
   std::optional<record::FieldRow> field;  // heat and blood, where there may be any
-  /// By structure of MetricOptions; of one that this bone does not have there are no removals.
+  /// Removals by structure of MetricOptions; a structure that this bone does not have has none.
   std::vector<NearRemovals> near;
   /// (metric_kinds()); nothing where it is not defined, as the share of no voxels. That of the
   /// region is filled by add_region_scores().

@@ -38,11 +38,11 @@ struct NearBins {
   std::size_t count() const;
 };
 
-/// Those within reach [m] of a structure. @param field  of it, reaching at least as far
+/// Removals within reach [m] of a structure. @param field  of it, reaching at least as far
 NearRemovals near_removals(const Procedure& procedure, const std::string& structure,
                            const bone::DistanceField& field, double reach = NearBins{}.reach);
 
-/// Whose removals these are.
+/// Removals of a participant near a structure.
 struct NearCase {
   std::string participant;
   const NearRemovals* removals{nullptr};
@@ -53,10 +53,10 @@ struct ProfileBin {
   double low{0.0}, high{0.0};  // [m]
   std::size_t removals{0};
   std::size_t participants{0};  // with a removal in it
-  /// Over removals, as the source has it. Those of one participant are not independent: its
+  /// Mean over removals, as the source has it. Those of one participant are not independent: its
   /// interval is too narrow.
   Defined<MeanInterval> pooled{Undefined{"there is no removal"}};
-  /// Over participants' means, each one value: this is the one to plot.
+  /// Mean over participants' means, each one value: this is the one to plot.
   Defined<MeanInterval> by_participant{Undefined{"there is no removal"}};
 };
 

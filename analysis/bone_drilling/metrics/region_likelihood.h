@@ -19,7 +19,7 @@ struct RemovedRegion {
 enum class RegionTraining : std::uint8_t {
   kResubstitution,   // on everyone, those scored among them, as the source
   kLeaveSubjectOut,  // without the participant scored
-  /// Without the participant scored and one of the other group, the mean over each of these: so
+  /// Mean over each participant of the other group, with that one and the scored one left out: so
   /// both groups are as large whoever is scored, and the score does not say who was left out.
   kLeavePairOut,
 };
@@ -72,7 +72,7 @@ struct RegionLabelTest {
   int rounds{0};
 };
 
-/// With kLeavePairOut. Nothing where a score is not defined.
+/// Test of labels with kLeavePairOut. Nothing where a score is not defined.
 /// @param rounds  >= 1; the seed decides on the dealing
 /// @throws std::invalid_argument as region_log_ratios() does.
 std::optional<RegionLabelTest> region_label_test(std::span<const RemovedRegion> regions,

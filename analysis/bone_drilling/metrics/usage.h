@@ -41,7 +41,7 @@ struct Usage {
   int camera_moves{0};                   // times that the view began to change
 };
 
-/// Goes along with a drilling. One thread, not the servo thread.
+/// Meter of tools that goes along with a drilling. One thread, not the servo thread.
 class UsageMeter {
  public:
   /// @param rate  of ticks [Hz]

@@ -113,7 +113,7 @@ void Session::count(const Stretch& pass, NerveProcedure& p) const {
   }
 }
 
-/// From the first event of a stretch of drilling to its end.
+/// Adds the reaction from the first event of a stretch of drilling to its end.
 void Session::react(const Stretch& pass, NerveProcedure& p) const {
   const std::vector<bool> works = drills(pass);
   p.drilling += seconds(static_cast<std::uint64_t>(std::count(works.begin(), works.end(), true)));

@@ -56,7 +56,7 @@ struct NerveProcedure {
   double duration{0.0};  // [s]
   double drilling{0.0};  // the burr turned in bone [s]
   std::vector<NerveCounts> nerves;
-  /// From the first event of each stretch of drilling to the stretch's end.
+  /// Reactions from the first event of each stretch of drilling to the stretch's end.
   std::vector<NerveReaction> reactions;
   NerveDetection detection;
 

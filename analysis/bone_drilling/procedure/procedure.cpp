@@ -61,7 +61,7 @@ class Rows {
     }
   }
 
-  /// Those from `first` to `last`, both inclusive.
+  /// Rows from `first` to `last`, both inclusive.
   std::span<const Row> of(const record::PassRow& pass) const {
     const auto low =
         std::lower_bound(rows_.begin(), rows_.end(), pass.first_sample,

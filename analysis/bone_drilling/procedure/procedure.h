@@ -35,7 +35,8 @@ struct ProcedureSetup {
   /// X_WB, how a bone lies in the scene; null: B is W.
   std::function<Eigen::Isometry3d(const geometry::VoxelGrid&)> pose_WB;
   double scale{1.0};  // the device's motions are this many times the scene's > 0
-  /// From the tip along the handle, in the frame of the device's orientation. Any length but 0.
+  /// Direction from the tip along the handle, in the frame of the device's orientation. Any length
+  /// but 0.
   Eigen::Vector3d handle{Eigen::Vector3d::UnitZ()};
   std::vector<ProcedureTool> tools;  // in the definition's order
 };

@@ -22,7 +22,7 @@ class StudyBones {
   /// @param reach  of the field [m]
   std::shared_ptr<const bone::DistanceField> field(
       const std::shared_ptr<const bone::BoneModel>& bone, std::uint8_t label, double reach);
-  /// To all of a set of labels.
+  /// Distances to all of a set of labels.
   std::shared_ptr<const bone::DistanceField> field(
       const std::shared_ptr<const bone::BoneModel>& bone, const std::vector<bool>& labels,
       double reach);

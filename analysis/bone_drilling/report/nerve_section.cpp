@@ -17,7 +17,7 @@ using Some = std::vector<const NerveProcedure*>;
 constexpr double kLittle = 0.5;  // train time, below which palsy is rare (Prell et al. 2007) [s]
 constexpr double kMuch = 10.0;   // above which it is common [s]
 
-/// In the order of first appearance, "monitor on" first.
+/// Procedures by condition in the order of first appearance, "monitor on" first.
 std::vector<std::pair<std::string, Some>> by_condition(
     const std::vector<NerveProcedure>& procedures) {
   std::vector<std::pair<std::string, Some>> groups;

@@ -298,7 +298,7 @@ void Report::add_combined() {
   }
 }
 
-/// Whose bones had no vital structure; nothing where all had.
+/// Adds the participants whose bones had no vital structure; nothing if all had.
 void Report::add_unknown() {
   std::vector<std::string> whose;
   for (const ProcedureSummary& p : result_.procedures) {

@@ -24,8 +24,8 @@ struct ValidityStudy {
   ValidityPlan plan;
   MetricOptions metrics;
   RegionParameters region;
-  /// Whose force profile is drawn (Figure 20); empty: the chorda tympani where there are removals
-  /// near it, else the structure with most of them.
+  /// Structure whose force profile is drawn (Figure 20); empty: the chorda tympani if there are
+  /// removals near it, else the structure with most of them.
   std::string structure;
   std::filesystem::path ratings;       // of load_ratings(); a file that is absent: not rated yet
   std::vector<StudyPicture> pictures;  // Figure 18 and others

@@ -140,7 +140,7 @@ Eigen::AlignedBox3i surroundings(const SeenRemovals& r) {
   return {low, high};
 }
 
-/// Without what lies aside of the removed voxels: the dura would fill the picture.
+/// Drops the triangles aside of the removed voxels: the dura would fill the picture.
 /// @param along  the axis of the grid along which everything stays
 void keep_near(std::vector<render::SceneTriangle>& triangles, const SeenRemovals& r, int along) {
   const Eigen::AlignedBox3i voxels = surroundings(r);
@@ -181,7 +181,7 @@ void paste(render::Image& onto, const render::Image& picture, int left) {
   }
 }
 
-/// From the eye, upright.
+/// View from the eye, upright.
 render::SceneView scene_view(const SurgeonsView& view) {
   render::SceneView scene;
   const Eigen::Vector3d out = view.towards_eye.normalized();

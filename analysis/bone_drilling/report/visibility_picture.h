@@ -17,7 +17,7 @@ struct SeenRemovals {
   std::span<const std::uint8_t> seen;      // (removed)
 };
 
-/// From where it is looked at.
+/// Place from which the removals are looked at.
 struct SurgeonsView {
   Eigen::Vector3d towards_eye{Eigen::Vector3d::UnitZ()};  // in B, any length but 0
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};           // in the picture, in B, not along it

@@ -23,7 +23,7 @@ struct WithWithout {
 };
 WithWithout with_less_without(const std::vector<GivenValue>& values);
 
-/// In words: difference, interval and test.
+/// Words for difference, interval and test.
 std::string difference_word(const WithWithout& c, const char* unit);
 
 /// Whether there are values with and without it.

@@ -22,8 +22,8 @@ constexpr analysis::Look kOut{palette::kBlue, palette::kSolid, 7, 2.2, 0.5};
 constexpr analysis::Look kIn{palette::kOrange, palette::kLong, 5, 2.2, 0.5};
 constexpr analysis::Look kFaint{palette::kGrey, palette::kSolid, 7, 1.0, 0.15};
 
-/// From where on the probe touches for the longest time, and up to where; of more than `most`
-/// samples those in the middle.
+/// Longest stretch in which the probe touches, from and to; of more than `most` samples those in
+/// the middle.
 std::pair<std::size_t, std::size_t> longest_contact(const std::vector<bool>& touching,
                                                     std::size_t most) {
   std::pair<std::size_t, std::size_t> longest{0, 0};

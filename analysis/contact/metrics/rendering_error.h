@@ -31,7 +31,7 @@ struct BandError {
   double total{0.0};   // [N]
 };
 
-/// By the discrete Fourier transform of the whole error; no window.
+/// Error in a band by the discrete Fourier transform of the whole error; no window.
 /// @param rate  of the samples > 0 [Hz]
 /// @throws std::invalid_argument as force_error() or for a bad rate.
 BandError band_error(std::span<const Eigen::Vector3d> measured,
@@ -84,7 +84,7 @@ struct TickTimes {
   double worst{0.0};
 };
 
-/// By rank: the smallest time that at least that share of the ticks did not exceed.
+/// Times by rank: the smallest time that at least that share of the ticks did not exceed.
 /// @param times  (n >= 1) in any unit; the result has the same
 TickTimes tick_times(std::span<const double> times);
 

@@ -24,8 +24,8 @@ PoseStream read_poses(const analysis::CsvTable& table);
 /// torque_x_Nm, torque_y_Nm, torque_z_Nm (or _Nmm).
 ForceStream read_forces(const analysis::CsvTable& table);
 
-/// Both, from two files or from one that has all columns. Samples that repeat the one before are
-/// left out (see changes()).
+/// Reads both streams, from two files or from one that has all columns. Samples that repeat the one
+/// before are left out (see changes()).
 /// @throws InputError also when the streams have no second in common.
 ContactRecording read_recording(const std::filesystem::path& poses,
                                 const std::filesystem::path& forces);

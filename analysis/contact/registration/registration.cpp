@@ -146,7 +146,7 @@ Eigen::Quaterniond any_orientation(RandomStream& random) {
   return Eigen::Quaterniond(q.normalized());
 }
 
-/// At random, as errors may come back at even distances.
+/// A subset at random, as errors may come back at even distances.
 Points subset(std::span<const Eigen::Vector3d> contacts, RandomStream& random) {
   Points few(contacts.begin(), contacts.end());
   for (std::size_t i = 0; i < std::min(kSubset, few.size()); ++i) {

@@ -37,7 +37,7 @@ std::vector<double> values_of(const std::map<std::string, double>& means) {
   return values;
 }
 
-/// Those who have scores, by identifier.
+/// People who have scores, by identifier.
 std::map<std::string, Identity> people_of(const ScoredStudy& study) {
   std::set<std::string> scored;
   for (const TrialScore& s : study.scores) {

@@ -90,7 +90,7 @@ std::string t_value(const Defined<TTest>& test) {
               : "not defined, because " + test.because();
 }
 
-/// Without an interval where the differences do not vary.
+/// Words for differences within people, without an interval if they do not vary.
 std::string within_people(const ConditionComparison& c) {
   return c.paired ? interval(*c.paired) : c.shared > 0 ? number(c.shared_difference) : "-";
 }

@@ -21,7 +21,7 @@ std::string mean_of(const StudyStatistics& s, const std::string& side) {
                      number(found->participants->deviation));
 }
 
-/// As journals want a planned test, in one sentence.
+/// Sentence about a planned test as journals want it.
 std::string sentence(const StudyStatistics& s, const SideTest& test, const std::string& what) {
   constexpr double kAlpha = 0.05;
   const auto& [a, b, tail] = test.sides;

@@ -15,7 +15,7 @@ namespace {
 
 using namespace palette;
 
-// By place among the conditions: circle, square, triangle, diamond, each with its dash.
+// Look by place among the conditions: circle, square, triangle, diamond, each with its dash.
 Look condition_look(std::size_t index) {
   const std::array<Look, 4> looks{
       Look{kOrange, kLong, 5, 2.0, 1.1}, Look{kBlue, kMixed, 7, 2.0, 1.1},

@@ -201,7 +201,7 @@ Json learning_json(const StudyStatistics& s) {
   return rows;
 }
 
-/// At the participants' own pace there is no lag but a duration.
+/// Pace in place of the lag, which is not defined at the participants' own pace.
 Json pace(const TrackingSummary& t) {
   return {{"subject", t.subject},
           {"passes", t.passes},

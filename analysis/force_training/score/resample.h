@@ -25,7 +25,7 @@ struct SampledCurve {
 
 SampledCurve view(const ForceCurve& curve);
 
-/// From the first sample of a curve to its last [s].
+/// Duration from the first sample of a curve to its last [s].
 /// @throws InputError for a curve of fewer than two samples, a rate that is not above 0, times that
 ///   are not as many or do not increase, or a value that is not finite; `name` says which curve.
 double duration_of(const SampledCurve& curve, const char* name);

@@ -52,7 +52,7 @@ Prepared prepare(const SampledCurve& target, const SampledCurve& applied,
   return ready;
 }
 
-/// With the window in samples of the recall's time base.
+/// Options with the window in samples of the recall's time base.
 AlignmentOptions options_on(const TimeBase& time, const ScoreParameters& p) {
   AlignmentOptions options = p.alignment;
   if (p.window) {

@@ -18,7 +18,7 @@ bool is_within(double value, const Bounds& bounds) {
   return value >= bounds.low && value <= bounds.high;
 }
 
-/// As it stands after a unit that is raised to the power.
+/// Exponent as it stands after a unit that is raised to the power.
 std::string exponent(double power) {
   return power == 1.0 ? "" : power == 2.0 ? "²" : fmt::format("^{}", power);
 }

@@ -17,7 +17,7 @@ struct Block {
   std::set<std::size_t> conditions;
 };
 
-/// By subject; nothing where a block holds several conditions.
+/// Sequences by subject; nothing if a block holds several conditions.
 std::optional<std::map<std::string, Sequence>> sequences(
     std::span<const TrialScore> scores, const std::vector<std::string>& conditions) {
   std::map<std::string, std::map<std::int32_t, Block>> blocks;

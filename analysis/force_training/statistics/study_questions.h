@@ -15,7 +15,7 @@ struct StudyQuestions {
   Resampling resampling{1, "", 0, 1};             // of permutation tests and bootstrap; 0: none
 };
 
-/// Those of a report: with permutation tests and bootstrap intervals.
+/// Questions of a report: with permutation tests and bootstrap intervals.
 StudyQuestions questions_of(const std::vector<std::string>& factors, const AnalysisPlan& plan,
                             int threads);
 

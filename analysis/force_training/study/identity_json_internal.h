@@ -7,7 +7,7 @@
 
 namespace haptrial::analysis {
 
-/// As statistics.json has them.
+/// Identities as statistics.json has them.
 nlohmann::ordered_json to_json(const std::vector<Identity>& identities);
 /// @throws nlohmann::json::exception for what to_json() does not write.
 std::vector<Identity> identities_from(const nlohmann::ordered_json& json);

@@ -27,7 +27,7 @@ struct ParticipantQuality {
   std::optional<Spread> lag;                  // [s]
 };
 
-/// By subject, in the order of the scores. Quantities are empty if no trial has them.
+/// Quality by subject, in the order of the scores. Quantities are empty if no trial has them.
 std::vector<ParticipantQuality> participant_quality(std::span<const TrialScore> scores);
 
 /// Sentences that nobody may overlook: how many trials are flagged and with what, and participants

@@ -11,7 +11,7 @@
 
 namespace haptrial::analysis {
 
-/// As many draws as reports take.
+/// Number of draws that reports take.
 inline constexpr std::size_t kPosteriorDraws = 999;
 
 /// Posterior of a function after answers to adaptively chosen levels.

@@ -66,7 +66,7 @@ GridAxes axes_of(const Borders& borders, const Steps& steps) {
   return axes;
 }
 
-/// Those of the prior, or a fixed value.
+/// Borders of the prior, or a fixed value.
 Borders first_borders(const PsychometricPrior& prior, const BayesianOptions& options) {
   Borders borders;
   for (std::size_t d = 0; d < kDimensions; ++d) {
@@ -83,7 +83,7 @@ Borders first_borders(const PsychometricPrior& prior, const BayesianOptions& opt
   return borders;
 }
 
-/// From the step before the first that holds the mass to the one after the last.
+/// Borders from the step before the first that holds the mass to the one after the last.
 Borders kept(const std::array<Marginal, kDimensions>& marginals, double mass) {
   Borders borders;
   for (std::size_t d = 0; d < kDimensions; ++d) {

@@ -41,7 +41,7 @@ void check_asked(std::span<const BootstrapTarget> asked) {
   }
 }
 
-/// For each asked, the reading without each trial of each block.
+/// Readings without each trial of each block, for each reading that is asked for.
 std::vector<std::vector<std::vector<double>>> without_trials(
     const LikelihoodFitter& fitter, std::span<const TrialBlock> blocks,
     std::span<const BootstrapTarget> asked) {

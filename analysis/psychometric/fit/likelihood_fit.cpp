@@ -237,8 +237,9 @@ double LikelihoodFitter::Search::value(const LikelihoodFitter& fitter,
   return sum;
 }
 
-/// Goes the step or as much of it as leads uphill. False where nothing does. A step that ends
-/// before the top or little behind it needs no value of the likelihood, whose logarithms take long.
+/// Makes the step, or as much of it as leads uphill. @returns false if nothing does. A step that
+/// ends before the top or little behind it needs no value of the likelihood, whose logarithms take
+/// long.
 bool LikelihoodFitter::Search::step(const LikelihoodFitter& fitter, Place& place, Climb& climb,
                                     const Place& change) const noexcept {
   constexpr int kHalvings = 30;
@@ -338,7 +339,7 @@ Place LikelihoodFitter::Search::next_change(const LikelihoodFitter& fitter, cons
 bool LikelihoodFitter::Search::told(const LikelihoodFitter& fitter, const Place& place,
                                     const Climb& climb) const noexcept {
   const double range = fitter.high_ - fitter.low_;
-  // At best, standard errors of the range and of a factor 20.
+  // The best standard errors are those of the range and of a factor 20.
   bool inside = climb.hessian[0][0] * range * range > 1.0 && climb.hessian[1][1] > 1.0 / 9.0;
   for (int i = 0; i < 2; ++i) {
     inside = inside && place[i] > low[i] && place[i] < high[i];

@@ -19,7 +19,7 @@ using Place = std::array<double, 4>;  // threshold, log width, lapse, guess
 /// A rate above it would be no rate of lapses or guesses.
 inline constexpr double kLargestRate = 0.5;
 
-/// From low to high; equal where the value is known.
+/// Bounds from low to high; equal if the value is known.
 struct RateBounds {
   double low{0.0};
   double high{0.06};  // Wichmann and Hill 2001

@@ -17,7 +17,7 @@ struct StimulusRange {
   double spacing{0.1};  // smallest distance of two levels, > 0
 };
 
-/// From 1 at 0 down to 0 at 1, as a cosine; 1 below and 0 above.
+/// Fall from 1 at 0 down to 0 at 1, as a cosine; 1 below and 0 above.
 double cosine_fall(double part) noexcept;
 
 /// The range of the finite levels. @throws std::invalid_argument when there are not two of them.

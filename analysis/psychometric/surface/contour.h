@@ -35,7 +35,7 @@ class ThresholdMap {
                double share);
 
   Contour contour() const;
-  /// At evenly spaced values of the first variable, both ends among them.
+  /// Points at evenly spaced values of the first variable, both ends among them.
   std::vector<ContourPoint> points(std::size_t count) const;
 
  private:

@@ -71,7 +71,7 @@ double squares_at(double log_time, void* points) {
   return linear_part(*static_cast<const Points*>(points), std::exp(log_time)).squares;
 }
 
-/// Between the neighbours of the best point of a grid.
+/// Searches between the neighbours of the best point of a grid.
 double brent(Points& points, double low, double middle, double high) {
   const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> search(
       gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
@@ -131,7 +131,7 @@ void set_errors(const Points& points, double squares, ExponentialFit& fit) {
   fit.deviation = std::sqrt(squares / df * points.count / points.weight.sum());
 }
 
-/// At least five that are finite and vary; otherwise why not.
+/// Points of at least five values that are finite and vary; otherwise why not.
 Defined<Points> points_of(std::span<const double> values, std::span<const double> weights) {
   const Eigen::Index n = std::ssize(values);
   Points points{Eigen::ArrayXd::Zero(n), Eigen::ArrayXd::Zero(n)};

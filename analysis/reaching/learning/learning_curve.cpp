@@ -41,7 +41,7 @@ double mean_of(const Row& row) {
   return sum / static_cast<double>(row.size());
 }
 
-/// Without the participants' levels: each row minus its mean.
+/// The table without the participants' levels: each row minus its mean.
 CycleTable levelled(CycleTable table) {
   for (Row& row : table.values) {
     const double mean = mean_of(row);

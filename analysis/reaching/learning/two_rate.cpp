@@ -148,7 +148,7 @@ struct Chosen {
   }
 };
 
-/// In coordinates of the search.
+/// Squares in coordinates of the search.
 Squares on_line(const Chosen& chosen, const Parameters& line) {
   const Parameters p = from_line(line);
   Squares all = chosen.squares(p);

@@ -58,7 +58,7 @@ struct TwoRateFit {
 Defined<TwoRateFit> fit_two_rate(std::span<const AdaptationSequence> sequences,
                                  const TwoRateOptions& options = {});
 
-/// With intervals by resampling participants, one sequence each.
+/// Learning with intervals by resampling participants, one sequence each.
 struct TwoRateLearning {
   TwoRateFit fit;
   Defined<BootstrapInterval> fast_retention, fast_learning, slow_retention, slow_learning;

@@ -40,9 +40,9 @@ struct CompensationOptions {
 Defined<ForceCompensation> force_compensation(std::span<const double> measured,
                                               std::span<const double> ideal, std::size_t lags);
 
-/// From a trial in a channel, between two instants (onset and end of the movement). The wall stands
-/// in for the field: the force of the wall on the hand equals that of the field where the hand
-/// compensates fully. Only the part of the velocity along the way counts.
+/// Compensation from a trial in a channel, between two instants (onset and end of the movement).
+/// The wall stands in for the field: the force of the wall on the hand equals that of the field
+/// where the hand compensates fully. Only the part of the velocity along the way counts.
 /// @param reach  its `force` is that of the device on the hand.
 /// @param field  B of the field f = B v that is being learned, in W [N·s/m].
 /// @throws std::invalid_argument as check_reach and WayFrame, or when there is no force.

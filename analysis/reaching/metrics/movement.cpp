@@ -23,7 +23,7 @@ void check_movement(const MovementOptions& o) {
   }
 }
 
-/// When the speed passes a level between samples i - 1 and i.
+/// Time at which the speed passes a level between samples i - 1 and i.
 double crossing(std::span<const double> time, const std::vector<double>& speed, std::size_t i,
                 double level) {
   const double part = (level - speed[i - 1]) / (speed[i] - speed[i - 1]);

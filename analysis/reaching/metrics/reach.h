@@ -35,7 +35,7 @@ class WayFrame {
   double along(const Eigen::Vector3d& vector) const { return along_.dot(vector); }
   /// 0 for what is only rounding of the vector's longer parts.
   double lateral(const Eigen::Vector3d& vector) const;
-  /// From the way to a vector, counterclockwise, in (-π, π] [rad].
+  /// Angle from the way to a vector, counterclockwise, in (-π, π] [rad].
   double angle(const Eigen::Vector3d& vector) const;
 
  private:

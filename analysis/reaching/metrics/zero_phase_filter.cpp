@@ -50,7 +50,7 @@ std::vector<Section> sections_of(double rate, const ZeroPhaseFilter& filter) {
   return sections;
 }
 
-/// In place, as if the first sample had been there forever.
+/// Filters in place, as if the first sample had been there forever.
 void run(const std::vector<Section>& sections, std::vector<double>& samples) {
   for (const Section& s : sections) {
     double one = samples.front() * (1.0 - s.b0);

@@ -79,7 +79,7 @@ MatrixXd beyond_span(const MatrixXd& columns, const MatrixXd& values) {
   return turned.bottomRows(turned.rows() - qr.rank());
 }
 
-// That of GSL: Eigen's compiles for most of a minute.
+// The decomposition of GSL: Eigen's compiles for most of a minute.
 ThinSvd thin_svd(const MatrixXd& matrix) {
   const bool wide = matrix.rows() < matrix.cols();  // GSL takes what is not
   RowMajor u = wide ? RowMajor(matrix.transpose()) : RowMajor(matrix);

@@ -154,7 +154,7 @@ Effects two_between(const DesignTable& table) {
           between_effect(together(table.factors[0], table.factors[1]), test, found->interaction)};
 }
 
-/// Without factors of one level, which vary nothing.
+/// The table without factors of one level, which vary nothing.
 DesignTable varied(DesignTable table) {
   for (std::size_t f = table.factors.size(); f-- > 0;) {
     if (table.factors[f].levels.size() < 2) {

@@ -11,8 +11,8 @@
 
 namespace haptrial::analysis {
 
-/// With fewer participants bootstrap intervals are too narrow (docs/algorithms/statistics.md), and
-/// reports do not print them.
+/// Number of participants below which bootstrap intervals are too narrow
+/// (docs/algorithms/statistics.md), and reports do not print them.
 inline constexpr std::size_t kFewestForBootstrap = 30;
 
 /// Tests whose p values are adjusted together.

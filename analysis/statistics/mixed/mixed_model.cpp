@@ -64,7 +64,7 @@ std::optional<MatrixXd> parameter_covariance(const Slopes& s, const std::vector<
     hessian(i, 0) = hessian(0, i) = s.rho[k] * s.effects[k] / s.within;
     for (Index j = 1; j <= i; ++j) {
       const Index m = positive[static_cast<std::size_t>(j - 1)];
-      // That of the profiled criterion, and what profiling took away.
+      // The information of the profiled criterion, and the part that profiling took away.
       const double profiled = s.effects[k] * s.effects[m] / (df * s.within * s.within);
       hessian(i, j) = hessian(j, i) = s.rho[k] * s.rho[m] * (s.hessian(k, m) + profiled);
     }

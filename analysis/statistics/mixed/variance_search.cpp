@@ -79,7 +79,7 @@ Step step_of(const Slopes& s, bool fisher) {
     change = descent(s.hessian(free, free), slope);
   }
   if (!change) {
-    // Only its diagonal, so that the step still descends when a rho is stopped at 0.
+    // The diagonal alone counts, so that the step still descends when a rho is stopped at 0.
     const VectorXd information = s.expected(free, free).diagonal();
     change = -slope.cwiseQuotient(information.cwiseMax(std::numeric_limits<double>::min()));
   }

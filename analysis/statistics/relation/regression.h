@@ -29,7 +29,7 @@ struct Regression {
 Defined<Regression> linear_regression(const Eigen::MatrixXd& predictors,
                                       std::span<const double> response, double level = 0.95);
 
-/// With one predictor.
+/// Regression with one predictor.
 Defined<Regression> linear_regression(std::span<const double> predictor,
                                       std::span<const double> response, double level = 0.95);
 

@@ -32,7 +32,7 @@ Defined<double> bias_correction(double estimate, const std::vector<double>& sort
   return gsl_cdf_ugaussian_Pinv(share);
 }
 
-// From the influence of each row, by its jackknife.
+// Acceleration from the influence of each row, by its jackknife.
 double acceleration(const std::vector<std::vector<double>>& jackknife) {
   double squares = 0.0;
   double cubes = 0.0;
@@ -61,7 +61,7 @@ std::string beyond(std::size_t resamples, double fraction) {
                          : ", as far as so few values take them");
 }
 
-// Between order statistics, linear on the normal scale.
+// Quantile between order statistics, linear on the normal scale.
 Defined<double> normal_interpolated(const std::vector<double>& sorted, double fraction) {
   const auto places = static_cast<double>(sorted.size()) + 1.0;
   const double place = places * fraction;

@@ -19,7 +19,7 @@ struct Mauchly {
 struct Sphericity {
   Defined<Mauchly> mauchly{Undefined{"nothing was measured"}};
   double greenhouse_geisser{1.0};  // 1 / c .. 1
-  /// Not cut off: above 1 it corrects nothing. With groups, after Lecoutre 1991.
+  /// Epsilon that is not cut off: above 1 it corrects nothing. With groups, after Lecoutre 1991.
   Defined<double> huynh_feldt{Undefined{"nothing was measured"}};
 };
 

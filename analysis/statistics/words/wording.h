@@ -21,7 +21,7 @@ inline const std::string kNoBreak = "\u00a0";
 
 /// Four significant digits, "0.1230".
 std::string number(double value);
-/// As number() of a value beside the ends of its interval, "0" for what is only rounding of them.
+/// Text of a value beside the ends of its interval, as number() but "0" for mere rounding of them.
 std::string number_within(double value, double low, double high);
 /// "p = 0.0123", "p < 0.001".
 std::string p_value(double p);

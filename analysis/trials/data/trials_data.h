@@ -55,7 +55,7 @@ struct GivenLevel {
   double outcome{kNotKnown};  // what the procedure learnt; NaN: nothing
 };
 
-/// When a stage of an interval was, in ticks: 16 bytes, as a trial has many.
+/// Time of a stage of an interval, in ticks: 16 bytes, as a trial has many.
 struct StageTime {
   Word stage;
   std::int16_t interval{1};
@@ -126,7 +126,7 @@ const GivenVariable* variable_of(const StudyTrial& trial, const std::string& nam
 std::string factor_level(const TrialsData& data, const StudyTrial& trial,
                          const std::string& factor);
 
-/// As a table shows it: shortest decimals.
+/// Text of a variable as a table shows it: shortest decimals.
 std::string word_of(const GivenVariable& variable);
 
 }  // namespace haptrial::analysis::trials

@@ -169,7 +169,7 @@ FunctionReadings readings_of(const BootstrappedFit& fit, const TrialsPlan& plan)
   return r;
 }
 
-/// Without a bootstrap: readings alone.
+/// Fit without a bootstrap: readings alone.
 BootstrappedFit bare_fit(const std::vector<TrialBlock>& blocks, const LikelihoodOptions& options,
                          const std::vector<BootstrapTarget>& asked) {
   BootstrappedFit result;

@@ -20,7 +20,7 @@ struct CueBias {
   double weight{0.0};  // predicted - true weight of the first cue
 };
 
-/// By answers to the same levels, drawn anew from the fitted functions of one cue and from
+/// Bias by answers to the same levels, drawn anew from the fitted functions of one cue and from
 /// functions of both that are as steep as the prediction; then fitted as the true ones. What does
 /// not tell a function does not count, as it does not in a study.
 /// @param stream  name of the random numbers; their seed is the plan's

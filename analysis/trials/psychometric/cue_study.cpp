@@ -31,7 +31,7 @@ struct LogSd {
   Estimated sd() const {
     return {std::exp(value), std::exp(value - kNormal * error), std::exp(value + kNormal * error)};
   }
-  /// As analysis/cues takes it.
+  /// The value as analysis/cues takes it.
   Known known() const {
     const double sd = std::exp(value);
     return {sd, std::isfinite(error) ? sd * error : 0.0};

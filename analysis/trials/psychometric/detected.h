@@ -59,7 +59,7 @@ struct IdentifiedCondition {
 /// Source of the interval: Wilson 1927, Journal of the American Statistical Association 22.
 std::vector<IdentifiedCondition> identified(const TrialsData& data, const TrialsPlan& plan);
 
-/// Over the participants of each condition, in order; the sums alone.
+/// Sums over the participants of each condition, in order.
 std::vector<std::pair<std::string, Confusions>> pooled_confusions(
     const std::vector<IdentifiedCondition>& all);
 

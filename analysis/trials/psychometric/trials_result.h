@@ -29,7 +29,7 @@ struct ParticipantTrials {
   std::size_t practice{0};
   std::size_t aborted{0};                                           // passes
   Defined<double> reaction_time{Undefined{"it was not measured"}};  // median [s]
-  /// By stage, the share of the counted trials that reached the force limit in it.
+  /// Share of the counted trials that reached the force limit, by stage.
   std::map<std::string, double> at_limit;
 };
 

@@ -14,7 +14,7 @@ using Path = std::vector<Eigen::Vector3d>;
 
 constexpr double kSameTarget = 1e-6;  // [m]
 
-/// As the field would have been for one that pushes to the left.
+/// Path turned so that the field pushes to the left.
 Path turned_path(const StudyReach& reach) {
   Path path = reach.path;
   if (reach.push > 0.0) {
@@ -109,7 +109,7 @@ DrawnCurve drawn(const ReachCurve& curve, const ReachBlock& block, std::string l
   return made;
 }
 
-/// From the first to the last cycle that has a value.
+/// Curve from the first to the last cycle that has a value.
 DrawnCurve whole(const ReachCurve& curve, std::string label) {
   const auto has_value = [](const CyclePoint& point) { return point.participants > 0; };
   const auto first = std::find_if(curve.points.begin(), curve.points.end(), has_value);

@@ -19,7 +19,7 @@ Figure new_figure(const TrialsResult& result, std::string name, std::string titl
 /// "level (N/m)".
 std::string level_label(const TrialsResult& result);
 
-/// Those of the first participants have figures of their own; a study of more is looked at whole.
+/// Number of participants who have figures of their own; a study of more is looked at whole.
 inline constexpr std::size_t kMostDrawn = 500;
 std::span<const ParticipantTrials> drawn_participants(const TrialsResult& result);
 

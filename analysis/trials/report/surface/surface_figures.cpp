@@ -38,8 +38,8 @@ Series pieces(const char* label, const Look& look, const std::vector<Segment>& s
   return series;
 }
 
-/// At each place an open circle for all its trials and a disc for those with the answer 1, with
-/// areas as their numbers.
+/// Adds, at each place, an open circle for all its trials and a disc for those with the answer 1,
+/// with areas as their numbers.
 void add_answers(Figure& figure, const SurfaceCondition& one) {
   std::map<std::pair<double, double>, std::pair<int, int>> places;  // answers 1, all
   int most = 1;
