@@ -58,7 +58,7 @@ class Cursor {
             std::lower_bound(rows.begin(), rows.end(), from,
                              [](const Row& row, std::uint64_t s) { return row.sequence < s; }) -
             rows.begin())) {}
-  /// Those of a tick.
+  /// Rows of a tick.
   std::span<const Row> take(std::uint64_t sequence) {
     const std::size_t first = at_;
     while (at_ < rows_.size() && rows_[at_].sequence == sequence) {

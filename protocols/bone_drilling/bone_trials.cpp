@@ -439,7 +439,7 @@ void BoneTrials::tell_preparing(double share) {
   }
 }
 
-/// On the session's thread, so that the screen goes on meanwhile.
+/// The stage is made on the session's thread, so that the screen goes on meanwhile.
 MakeDrawing BoneTrials::drawing() {
   const auto surface = built_surface(*stage_, [this](double share) {
     tell_preparing(kUntilSurface + (1.0 - kUntilSurface) * share);

@@ -22,7 +22,7 @@ namespace haptrial::protocols {
 /// the bone as it is, unless it is to be done anew.
 class BoneTrials final : public Trials {
  public:
-  /// Both outlive the trials.
+  /// @param definition, place  outlive the trials
   BoneTrials(const BoneDefinition& definition, const SessionPlace& place);
 
   Extent extent(int most) const override { return plan_.extent(most); }

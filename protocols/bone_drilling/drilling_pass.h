@@ -59,9 +59,9 @@ class DrillingPass final : public Pass {
                std::uint64_t spent = 0, sound::DrillVibration* vibration = nullptr,
                nerve::NerveExposures* nerves = nullptr);
 
-  /// Before it begins: the bone is one that another session's follows.
+  /// Shares the bone with another session, which follows it; call before the pass begins.
   void share(SharedBone& shared) noexcept { shared_ = &shared; }
-  /// Likewise: hints are given. @param hints  outlive the pass
+  /// Gives hints; likewise. @param hints  outlive the pass
   void give(hint::HintsBeside& hints) noexcept { hints_ = &hints; }
 
   void begin(std::uint64_t sequence) noexcept override;

@@ -138,7 +138,7 @@ void DrillingRows::log_second(const bone::TubeInput& tube) noexcept {
 
 namespace {
 
-/// Those that fill a burr that is no ball.
+/// Adds the balls that fill a burr that is no ball.
 void add_balls(const bone::Simulator& simulator, const Eigen::Isometry3d& X_WB,
                const ToolState& tool, nerve::ToolAtNerves& at) noexcept {
   const std::span<const bone::BurrShape::Ball> balls = simulator.burr_balls();

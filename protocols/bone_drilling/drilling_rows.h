@@ -80,7 +80,7 @@ class DrillingLogs final : public TickLog {
 /// Log entries of a pass's ticks. Servo thread.
 class DrillingRows {
  public:
-  /// Both outlive it.
+  /// @param simulator, logs  outlive the rows
   DrillingRows(const bone::Simulator& simulator, DrillingLogs& logs, double rate) noexcept
       : simulator_(simulator), logs_(logs), rate_(rate) {}
 

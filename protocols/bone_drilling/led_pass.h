@@ -38,7 +38,7 @@ class LedPass final : public Pass {
   PassState state() const noexcept override;
   bool wants_attention() noexcept override;
 
-  /// When it is over: nothing works on the bone any more. Session's thread.
+  /// Rests when the pass is over: nothing works on the bone any more. Session's thread.
   void rest();
   /// Ticks of the other side that were followed. Not the servo thread while it ticks.
   std::uint64_t ticks() const noexcept { return ticks_; }

@@ -36,7 +36,8 @@ class ReplayedHandpiece {
   ReplayedHandpiece(const record::SessionReader& reader, const DrillingInput& input,
                     const bone::Simulator& simulator);
 
-  /// After the steps of a tick, tick by tick. @returns the first difference; empty without any
+  /// Checks a tick; call after its steps, tick by tick. @returns the first difference; empty
+  /// without any
   std::string check(std::uint64_t sequence);
 
  private:

@@ -96,7 +96,7 @@ std::uint64_t SharedBone::followed(const BoneStep& step,
   return number;
 }
 
-/// As many as fit, each with its length before it.
+/// Gives as many parcels as fit, each with its length before it.
 std::size_t SharedBone::give(std::span<std::byte> room) noexcept {
   std::size_t used = 0;
   const auto add = [&](const BoneParcel& parcel) {

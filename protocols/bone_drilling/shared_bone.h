@@ -27,7 +27,8 @@ class SharedBone final : public SharedSimulation {
   /// Whether the other side drills a newer one than this.
   bool needs_new_bone() const noexcept { return needs_new_bone_.load(std::memory_order_relaxed); }
   void prepare_pass(std::int32_t trial) noexcept;
-  /// Once the pass is completed and until it is settled: the checksum, which takes a while.
+  /// Comparison of both sides' bones once the pass is completed and until it is settled: the
+  /// checksum, which takes a while.
   /// @returns a sentence where there is something to say, and whether it is of a difference
   struct BoneComparison {
     bool differs{false};
@@ -39,7 +40,7 @@ class SharedBone final : public SharedSimulation {
 
   // The side that leads.
   void tell_begin() noexcept;
-  /// After the tick. @param recorded  that it was of
+  /// Tells a step; call after the tick. @param recorded  that it was of
   void tell_step(const device::DeviceReading& recorded, const bone::Simulator& simulator) noexcept;
   void tell_end() noexcept;
 
@@ -53,7 +54,8 @@ class SharedBone final : public SharedSimulation {
   /// pass has to be aborted, and another bone to be taken.
   bool reach(const BoneBegin& begin) noexcept;
   std::int32_t reached_trial() const noexcept { return reached_.trial; }
-  /// After a tick that was told. @returns its number, from 1 when the bone was new
+  /// Notes a tick that was told and has been followed. @returns its number, from 1 when the bone
+  /// was new
   std::uint64_t followed(const BoneStep& step, const bone::Simulator& simulator) noexcept;
   void reach_end() noexcept { completed_.store(true, std::memory_order_release); }
   /// A later pass of the other side has begun than the one that was reached.

@@ -14,7 +14,7 @@ namespace haptrial::protocols {
 /// A training pass and a test pass along a path (Morris 2006, §4).
 class ForceTrials final : public Trials {
  public:
-  /// Both outlive the trials.
+  /// @param definition, place  outlive the trials
   ForceTrials(const ForceDefinition& definition, const SessionPlace& place);
 
   Extent extent(int most) const override { return plan_.extent(most); }

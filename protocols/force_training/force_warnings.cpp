@@ -141,7 +141,8 @@ void warn_of_settling(const ForceDefinition& d, Warnings& warnings) {
   }
 }
 
-/// From one side of the workspace to the other, at the peak of a minimum-jerk move.
+/// Warns of durations too short for a way from one side of the workspace to the other, at the peak
+/// of a minimum-jerk move.
 void warn_of_durations(const ForceDefinition& d, double length, Warnings& warnings) {
   const double run = length / d.trajectory.speed;
   const double farthest = 2.0 * d.envelope.workspace_radius;

@@ -22,7 +22,7 @@ class PassPictures {
   stimulus::Observer* observer() { return renderer_ ? &capture_ : nullptr; }
   /// @param points  the path of the block, p_W (N x 3) [m]
   void set_trajectory(const std::vector<Eigen::Vector3d>& points);
-  /// After a pass: its pictures. @throws RunError where one cannot be written.
+  /// Draws the pictures of a pass that has ended. @throws RunError where one cannot be written.
   void draw(const PlannedTrial& trial, const record::Phase& phase);
 
  private:

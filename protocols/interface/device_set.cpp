@@ -92,7 +92,7 @@ bool DeviceSet::write() noexcept {
   return taken;
 }
 
-/// At once: the next read that goes well forgets it.
+/// Notes the device's message at once: the next read that goes well forgets it.
 void DeviceSet::note_trouble() noexcept {
   const bool faulty_now = fault() != Fault::kNone;
   if (faulty_now && !noted_) {
@@ -147,8 +147,8 @@ void DeviceSet::resume() noexcept {
   }
 }
 
-/// Not before the force of the pass before has gone from every device; a fault lets it begin, to
-/// end it.
+/// Whether a pass may begin: not before the force of the pass before has gone from every device; a
+/// fault lets it begin, to end it.
 bool DeviceSet::may_begin() noexcept {
   if (fault() != Fault::kNone) {
     return true;

@@ -48,7 +48,7 @@ class DeviceSet {
   stimulus::Forces forces() const noexcept { return stimulus::Forces(forces_); }
   bool without_force() const noexcept;
 
-  /// As Envelope has them, of all devices.
+  /// The functions of Envelope, for all devices.
   void trip(device::Fault fault) noexcept;
   void reset() noexcept;
   void release() noexcept;

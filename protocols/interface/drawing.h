@@ -36,7 +36,7 @@ class Drawing {
   }
 };
 
-/// Called on the screen's thread, with its OpenGL context current and its size [px].
+/// Makes a drawing on the screen's thread, with its OpenGL context current and its size [px].
 using MakeDrawing =
     std::function<std::unique_ptr<Drawing>(const render::Gl& gl, int width, int height)>;
 

@@ -55,7 +55,8 @@ class Pass {
   virtual ~Pass() = default;
   /// Whether the pass may begin; asked every tick until it may.
   virtual bool may_begin() noexcept { return true; }
-  /// Before the first tick. @param sequence  of that tick in the session file
+  /// Begins the pass; called before the first tick. @param sequence  of that tick in the session
+  /// file
   virtual void begin(std::uint64_t sequence) noexcept { static_cast<void>(sequence); }
   /// @param dt  since the previous tick [s]
   virtual PassOutput tick(const Readings& readings, double dt) noexcept = 0;
@@ -64,8 +65,8 @@ class Pass {
   virtual PassState state() const noexcept = 0;
   /// Whether PassOutput::onsets says what begins when; else the stages of PassOutput do.
   virtual bool names_onsets() const noexcept { return false; }
-  /// On a simulated clock: whether the session's thread has to empty the protocol's own logs, or to
-  /// attend to the virtual subject.
+  /// Whether, on a simulated clock, the session's thread has to empty the protocol's own logs, or
+  /// to attend to the virtual subject.
   virtual bool wants_attention() noexcept { return false; }
 };
 
@@ -73,7 +74,8 @@ class Pass {
 class TickLog {
  public:
   virtual ~TickLog() = default;
-  /// After the pass's tick, if one runs. @param sequence  of the tick in the session file
+  /// Records a tick; called after the pass's tick, if one runs. @param sequence  of the tick in the
+  /// session file
   /// @param fault  of a device; kNone: all are well
   /// Servo thread: no allocation, lock, I/O or throw.
   virtual void record(std::uint64_t sequence, const Readings& readings,

@@ -27,8 +27,8 @@ class Rig {
   }
   /// The virtual subject; null where a person holds the devices.
   virtual stimulus::Observer* subject() { return nullptr; }
-  /// While a pass runs, often: what the virtual subject leaves to others than the servo thread.
-  /// Session's thread. @throws InputError if it cannot go on
+  /// Does the work that the virtual subject leaves to others than the servo thread; called often
+  /// while a pass runs. Session's thread. @throws InputError if it cannot go on
   virtual void attend() {}
   /// Device that the screen's pointer moves; null for any other device.
   virtual device::MouseDevice* mouse() { return nullptr; }

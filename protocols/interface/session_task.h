@@ -50,8 +50,8 @@ class SessionTask final : public realtime::ServoTask {
   using Log = realtime::BlockLog<record::Sample>;
   using DeviceLog = realtime::BlockLog<record::DeviceRow>;  // of the devices after the first
 
-  /// When tick() asks ServoLoop::run to return. On a simulated clock the session's thread runs the
-  /// loop itself and has to be let out, to empty the log, before the log is full.
+  /// Ticks after which tick() asks ServoLoop::run to return. On a simulated clock the session's
+  /// thread runs the loop itself and has to be let out, to empty the log, before the log is full.
   enum class Leave : std::uint8_t { kNever, kAfterPassOrSlice };
   static constexpr std::uint64_t kSlice = 512;  // [ticks]
 
@@ -94,7 +94,7 @@ class SessionTask final : public realtime::ServoTask {
   void emergency_stop() noexcept;
   /// Whether no pass runs and the device has taken a force of zero. Any thread.
   bool at_rest() const noexcept;
-  /// After emergency_stop(): whether the device has taken the zero. Also from a signal's handler.
+  /// Whether the device has taken the zero after emergency_stop(). Also from a signal's handler.
   bool stopped() const noexcept;
 
   bool tick(const realtime::Tick& tick) noexcept override;

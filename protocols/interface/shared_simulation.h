@@ -12,7 +12,7 @@ class SharedSimulation : public network::ReliablePayload {
   /// Whether both sides know that the pass that was completed left them the same world, or have
   /// said how it differs; the pass lasts until then. Servo thread.
   virtual bool settled() const noexcept = 0;
-  /// On a simulated clock: whether the session's thread has to empty the protocol's own logs.
+  /// Whether, on a simulated clock, the session's thread has to empty the protocol's own logs.
   virtual bool wants_attention() const noexcept = 0;
 };
 

@@ -9,7 +9,7 @@ namespace haptrial::protocols {
 
 class Protocol;
 
-/// Whose hand held the tool. If it was a person's, the tables of the virtual hand were not used.
+/// The hand that held the tool. If it was a person's, the tables of the virtual hand were not used.
 enum class Hand { kPerson, kVirtual };
 
 /// Differences that the definitions of one study's sessions may have (docs/guide-experimenter.md).

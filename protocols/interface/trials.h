@@ -50,7 +50,7 @@ struct SessionPlace {
   std::filesystem::path frames_folder;
   AuxiliaryPages auxiliary_pages;  // those of the protocol's that are served
   std::filesystem::path resumed;   // the file of the earlier run; empty: none
-  /// To be called now and then while something takes seconds: what, and the share that is done.
+  /// Callback to call now and then while something takes seconds: what, and the share that is done.
   /// @throws RunError on an interrupt
   std::function<void(const char* what, double share)> pulse;
   std::function<void()> stop;  // an emergency stop; any thread, also the servo thread
@@ -123,13 +123,13 @@ class Trials {
   /// @throws InputError if what an earlier run recorded cannot be gone on with
   virtual void check_resumed(const record::SessionReader& file) const { static_cast<void>(file); }
 
-  /// Before the first attempt at a trial.
+  /// Prepares a trial; called before the first attempt at it.
   virtual void prepare(const PlannedTrial& trial, SessionFile& file) {
     static_cast<void>(trial);
     static_cast<void>(file);
   }
-  /// Before each attempt. @param anew  from the beginning; else where it was broken off, if the
-  /// protocol can
+  /// Begins an attempt; called before each. @param anew  from the beginning; else where it was
+  /// broken off, if the protocol can
   virtual void begin_attempt(const PlannedTrial& trial, bool anew) {
     static_cast<void>(trial);
     static_cast<void>(anew);
@@ -142,7 +142,7 @@ class Trials {
   virtual Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) = 0;
   /// The answers of the pass that ended last; their trial, pass and place in time are filled in.
   virtual std::vector<record::ResponseRow> responses() { return {}; }
-  /// After a pass, before its row of /trials. @param row  its number
+  /// Closes a pass; called after it, before its row of /trials. @param row  its number
   virtual void close_pass(SessionFile& file, std::int32_t row) {
     static_cast<void>(file);
     static_cast<void>(row);
@@ -160,8 +160,9 @@ class Trials {
   virtual std::optional<record::PartnerState> partner() { return std::nullopt; }
   /// Takes the lead of both hands, or hands it over.
   virtual void take_lead(bool take) { static_cast<void>(take); }
-  /// Before the first trial of a session that is linked to another: what of it must not be lost on
-  /// the way, if there is a world that both work on. @param leads  this side's is the world
+  /// The simulation whose messages must not be lost on the way, if there is a world that both sides
+  /// work on; asked before the first trial of a session that is linked to another. @param
+  /// leads  this side's is the world
   virtual SharedSimulation* share_world(bool leads) {
     static_cast<void>(leads);
     return nullptr;

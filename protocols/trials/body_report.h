@@ -21,7 +21,7 @@ class BodyReport {
   /// @param objects  of the definition; must outlive this
   explicit BodyReport(const std::vector<TrialObject>& objects) : objects_(objects) {}
 
-  /// Those that the objects need.
+  /// Adds the tables that the objects need.
   void add_tables(record::TableList& tables) const;
   /// Keeps the rows of a pass that has ended, all of its intervals together. @param row  of /trials
   void keep(const TrialPass& pass, std::int32_t row, SessionFile& file);

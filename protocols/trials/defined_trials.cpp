@@ -404,7 +404,8 @@ std::vector<TouchedPlace> DefinedTrials::places_of(const Question& question) con
   return places;
 }
 
-/// Those that differ within the pass have a row for each interval, the others one.
+/// Notes the variables: those that differ within the pass have a row for each interval, the others
+/// one.
 void DefinedTrials::note_variables(std::size_t interval,
                                    std::vector<record::VariableRow>& rows) const {
   for (const auto& [name, value] : names_->known()) {
@@ -490,7 +491,7 @@ void DefinedTrials::empty_logs(SessionFile& file) {
   }
 }
 
-/// With the stage that was aborted, and the region that the hand did not come to.
+/// Reason with the stage that was aborted, and the region that the hand did not come to.
 std::string DefinedTrials::why_aborted() const {
   const std::string why = pass_->why_aborted();
   const std::size_t begun = pass_->intervals_begun();

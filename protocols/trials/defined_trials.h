@@ -50,8 +50,8 @@ class DefinedTrials final : public Trials {
   std::string why_given_up() const override;
   std::vector<std::string> notices() const override;
 
-  /// For a replay: bodies of their own rate have no thread, and were late in the next pass as these
-  /// rows of /late_windows say.
+  /// Repeats a recorded session: bodies of their own rate have no thread, and were late in the next
+  /// pass as these rows of /late_windows say.
   void repeat(std::vector<record::LateWindowRow> late) {
     late_again_ = std::move(late);
     repeats_ = true;

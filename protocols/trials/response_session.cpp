@@ -126,7 +126,7 @@ class ResponseSession::SimulatedSession {
     }
   }
 
-  /// As DefinedTrials::outcome_of().
+  /// Value that the procedure learns, as DefinedTrials::outcome_of().
   double learnt(const NextTrial& next, const std::vector<record::ResponseRow>& answers) {
     if (next.track < 0) {
       return kNothing;

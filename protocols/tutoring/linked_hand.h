@@ -21,7 +21,7 @@
 
 namespace haptrial::protocols {
 
-/// Whose hand leads in the beginning.
+/// Role of a side in the beginning: its hand leads or is led.
 enum class LinkRole : std::uint8_t { kTeaches, kLearns };
 
 /// The first device's hand, coupled to a partner's over a wire: what is heard, felt and told at
@@ -76,7 +76,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   /// Servo thread.
   std::size_t waiting_rows() const noexcept { return log_.taken(); }
   std::size_t room() const noexcept { return log_.capacity(); }
-  /// When the loop has ended: what the partner is told last. @param flag  kOver or kLeft
+  /// Last message to the partner when the loop has ended. @param flag  kOver or kLeft
   network::TickMessage last_words(network::TickFlag flag) const noexcept;
 
  private:

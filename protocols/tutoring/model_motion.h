@@ -38,8 +38,9 @@ class Playback {
   Playback(const ModelMotion& motion, double speed, double from) noexcept
       : motion_(&motion), speed_(speed), time_(from) {}
 
-  /// Between two recorded ticks: places and forces on the line between them; a slower playback has
-  /// smaller velocities and the same forces. After its end it stands still without a force.
+  /// State between two recorded ticks: places and forces on the line between them; a slower
+  /// playback has smaller velocities and the same forces. After its end it stands still without a
+  /// force.
   control::Partner now() const noexcept;
   void step(double dt) noexcept { time_ += waits_ ? 0.0 : speed_ * dt; }
   /// Whether it stands where it is, from now on: without velocity, with the force of that place.

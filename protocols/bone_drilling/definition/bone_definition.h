@@ -70,8 +70,8 @@ struct BoneDefinition : Definition {
   std::optional<hint::HintSetup> hints;     // to who drills
   bool trainee_page{false};                 // written after a session, beside its file
   std::string experts_study;                // folder that the page compares with; empty: nobody
-  /// By source; procedures take them in turn. None where only a text was parsed: a session file has
-  /// its bones in it.
+  /// Bones by source; procedures take them in turn. There are none if only a text was parsed: a
+  /// session file has its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;
   std::vector<std::shared_ptr<const subject::DrillingChart>> charts;  // (bones) with a cavity
 
@@ -114,9 +114,10 @@ const ParticipantGroup* group_of(const BoneDefinition& definition, int participa
 
 /// @throws InputError with a sentence for every problem of the file; as bone::load_bone does.
 BoneDefinition load_bone_definition(const std::filesystem::path& file);
-/// From the text that a session file keeps, without bones.
+/// Definition from the text that a session file keeps, without bones.
 BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name);
-/// From a table that others read on, and whose problems are still to be thrown; without bones.
+/// Definition from a table that others read on, and whose problems are still to be thrown; without
+/// bones.
 /// @param folder  of the file, for tables that it names; null: they are not read
 BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
                                     const std::filesystem::path* folder);

@@ -18,7 +18,7 @@ struct SecondHandParameters {
   bone::TubeParameters tube;
   std::uint32_t suck{1};   // its buttons, a bit each: any of these
   std::uint32_t rinse{2};  //
-  /// As DrillingParameters::handle, of this device.
+  /// Direction of this device's handle, as DrillingParameters::handle.
   Eigen::Vector3d handle{Eigen::Vector3d::UnitY()};
   double force_limit{4.0};  // of what its device is asked for > 0 [N]
 };

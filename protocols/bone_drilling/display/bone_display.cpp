@@ -285,7 +285,7 @@ void BoneDisplay::set_stills(std::shared_ptr<const std::vector<render::Image>> s
   stills_ = any ? std::make_unique<render::BoneStills>(gl_, std::move(stills)) : nullptr;
 }
 
-/// None, the first, ..., the last, none.
+/// Draws none, the first, ..., the last, none.
 void BoneDisplay::draw_still(std::int32_t asked) {
   const std::size_t number = stills_ ? static_cast<std::size_t>(asked) % (stills_->count() + 1) : 0;
   if (number == 0) {

@@ -20,12 +20,12 @@ class BonePictures final : public stimulus::Observer {
   /// @param wanted  pictures of each pass > 0
   BonePictures(const BoneDefinition& definition, int wanted);
 
-  /// Before a pass.
+  /// Watches a stage; call before a pass.
   void watch(std::shared_ptr<const BoneStage> stage);
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
-  /// After a pass: FOLDER/NAME-01.png and so on. @throws RunError where one cannot be drawn or
-  /// written.
+  /// Writes the pictures of a pass that has ended: FOLDER/NAME-01.png and so on. @throws RunError
+  /// where one cannot be drawn or written.
   void write(const std::filesystem::path& folder, const std::string& name);
 
  private:

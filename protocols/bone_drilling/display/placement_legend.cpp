@@ -41,7 +41,7 @@ void each_voxel(const bone::BoneModel& model, Visit&& visit) {
   }
 }
 
-/// By label: the voxel nearest to the middle of all of its voxels; none where it has no voxel.
+/// Voxel of each label that is nearest to the middle of all of its voxels; none if it has no voxel.
 std::vector<std::optional<Eigen::Vector3d>> middles_in(const bone::BoneModel& model) {
   const std::size_t labels = model.structures.size();
   std::vector<Eigen::Vector3d> sums(labels, Eigen::Vector3d::Zero());

@@ -58,7 +58,7 @@ void lay_over(const render::Image& over, double share, render::Image& image) {
   }
 }
 
-/// Only voxels that `keeps` says so of. @param keeps  by voxel's number
+/// The model with only those voxels that `keeps` returns true for. @param keeps  by voxel's number
 template <class Keeps>
 bone::BoneModel part_of(const bone::BoneModel& model, Keeps&& keeps) {
   bone::BoneModel part = model;

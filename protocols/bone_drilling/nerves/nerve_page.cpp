@@ -41,7 +41,7 @@ json probe_json(const nerve::MonitorProbe& probe) {
   return out;
 }
 
-/// As one line.
+/// The view as one line of JSON.
 std::string nerve_json(const nerve::MonitorDesk::View& view) {
   json channels = json::array();
   for (const nerve::MonitorChannel& channel : view.channels) {

@@ -241,8 +241,8 @@ void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading)
   }
 }
 
-/// After a run in which the hand was free along y it may be moving there: the plane's damper then
-/// comes by degrees.
+/// Share of the plane's damper: after a run in which the hand was free along y it may be moving
+/// there, so that the damper comes by degrees.
 double TrajectoryPass::takes_hold() const noexcept {
   return stage_ == Stage::kReturn && !plane_holds() ? std::clamp(time_ / kBlend, 0.0, 1.0) : 1.0;
 }

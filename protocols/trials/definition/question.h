@@ -24,7 +24,7 @@ class KeyBits {
   std::vector<int> codes_;
 };
 
-/// When the participant is told whether an answer was right.
+/// Trials in which the participant is told whether an answer was right.
 enum class Feedback : std::uint8_t { kNever, kPractice, kAlways };
 
 /// One answer that may be chosen.
@@ -41,7 +41,7 @@ struct Choice {
 /// Most choices of a question that are given by touch.
 inline constexpr std::size_t kMostTouched = 8;
 
-/// When an answer came.
+/// Time of an answer relative to its limits.
 enum class Pace : std::uint8_t { kInTime, kTooFast, kTooSlow };
 
 /// A question to the participant after the last interval.

@@ -34,7 +34,7 @@ using DeviceOf = std::map<std::string, std::size_t>;
 /// Reads the key `device` of the tables of fields or regions. Problems are noted.
 DeviceOf devices_of(Table& tables, const std::vector<TrialDevice>& devices);
 
-/// For each device the fields that act on it, a bit each: those without a device act on all.
+/// Fields that act on each device, a bit each: those without a device act on all.
 std::vector<std::uint64_t> felt_by(const std::vector<scene::Field>& fields,
                                    const DeviceOf& device_of,
                                    const std::vector<TrialDevice>& devices);

@@ -41,7 +41,7 @@ void declare_names(Names& names, const TrialsDefinition& definition);
 /// Gives the values that hold throughout the trial; all others are forgotten.
 /// @throws InputError saying what is wrong with a formula
 void give(Names& names, const TrialsDefinition& definition, const TrialValues& values);
-/// And those of one interval. @param place  from 0
+/// Gives the values of one interval as well. @param place  from 0
 void give_interval(Names& names, const Interval& interval, std::size_t place);
 
 }  // namespace haptrial::protocols

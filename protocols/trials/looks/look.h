@@ -40,7 +40,7 @@ struct Look {
 ///     [centre]       in W [m]; [step], [dot] [m]; [noise] share of the step; [dots] their number
 std::vector<Look> read_looks(Table& looks);
 
-/// From where the screen is seen.
+/// Place from which the screen is seen.
 struct TwoEyes {
   double eye_distance{0.063};     // > 0 [m]
   double viewing_distance{0.50};  // from the eyes to the screen > 0 [m]

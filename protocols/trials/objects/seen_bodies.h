@@ -24,7 +24,7 @@ struct SeenForces {
   std::array<Force, kMost> forces{};                    // of one object after the other
   std::array<std::uint8_t, kMostSeenObjects> counts{};  // of each
 
-  /// Those on object `i`.
+  /// Forces on object `i`.
   std::span<const Force> on(std::size_t i) const noexcept;
   /// Adds forces on object `i`, not before those of an earlier one. If they do not fit, the
   /// strongest stay. Servo thread: no allocation or throw.
@@ -47,7 +47,7 @@ class SeenBodies {
  public:
   /// The same body gets the same number as long as it is in use.
   std::int32_t number_of(const SeenBody& body);
-  /// None if there is none, or it is no longer in use.
+  /// The body of a number; none if there is none, or it is no longer in use.
   SeenBody body(std::int32_t number) const;
 
  private:

@@ -78,7 +78,7 @@ class TrialDrawing final : public Drawing {
   }
 
  private:
-  /// From the middle of the screen, x to the right and y down [m].
+  /// Place on the screen from its middle, x to the right and y down [m].
   Eigen::Vector2d on_screen(const Eigen::Vector3d& p) const {
     return d_.view.from_above ? Eigen::Vector2d(p.x(), p.z()) : Eigen::Vector2d(p.x(), -p.y());
   }
@@ -142,7 +142,7 @@ class TrialDrawing final : public Drawing {
     text_.end();
   }
 
-  /// Below its place.
+  /// Draws a label below its place.
   void draw_label(const Choice& choice, const Mark& mark, const Part& part,
                   const render::TextStyle& style) {
     const double below = scale_ * static_cast<double>(mark.radius) + 1.2 * style.size;
@@ -192,8 +192,8 @@ class TrialDrawing final : public Drawing {
     }
   }
 
-  /// As lines, found anew when an object is another one or elsewhere. An object whose mesh was a
-  /// file that is not at hand is not drawn.
+  /// Draws objects as lines, found anew when an object is another one or elsewhere. An object whose
+  /// mesh was a file that is not at hand is not drawn.
   void draw_objects(const TrialView& view, const Part& part) {
     constexpr double kLine = 2.0;  // [px]
     const Eigen::Vector3d along =

@@ -157,7 +157,7 @@ void TrialPass::show_pressed(const IntervalRun& run, const StageSight& sight,
   }
 }
 
-/// On the first tick of a stage, which /stages names, too.
+/// Notes a stage on its first tick, which /stages names, too.
 void TrialPass::note_stage(const IntervalRun& run, PassOutput& out) noexcept {
   const std::size_t stage = run.machine.stage();
   const auto begin = static_cast<std::uint64_t>(run.machine.times()[stage].begin);
@@ -250,7 +250,7 @@ void TrialPass::ask() noexcept {
   }
 }
 
-/// To the next question; a trial that comes again is not asked about any further.
+/// Goes to the next question; a trial that comes again is not asked about any further.
 void TrialPass::go_on() noexcept {
   const PresentedQuestion& asked = setup_.questions[question_];
   if (answers_[question_].pace != Pace::kInTime && asked.question->again) {
@@ -304,7 +304,8 @@ void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexc
   }
 }
 
-/// It counts when it goes down during the question, from half that depth or less.
+/// Takes the pedal as an answer when it goes down during the question, from half that depth or
+/// less.
 void TrialPass::listen_to_pedal(const Question& question, Answer& answer) noexcept {
   for (std::size_t i = 0; i < question.choices.size() && !answer.given; ++i) {
     const double depth = question.choices[i].pedal;

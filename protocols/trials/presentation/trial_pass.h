@@ -109,13 +109,14 @@ class TrialPass final : public Pass {
     return setup_.left != nullptr && setup_.left->waits();
   }
 
-  // For a replay, which knows the stages, in place of begin() and tick().
+  // Enters a stage in a replay, which knows the stages, in place of begin() and tick().
   void enter_again(std::size_t interval, std::size_t stage) noexcept;
   /// @param hands  (devices) on a tick of that stage, all of its ticks in order
   /// @returns what presses the seen bodies
   const SeenForces& feel_again(std::span<const PointState> hands) noexcept;
 
-  // After the pass.
+  // Sequence number of the first tick of an interval; 0 for one that did not begin. Call after the
+  // pass.
   /// Sequence number of the first tick of an interval; 0 for one that did not begin.
   std::uint64_t first_tick(std::size_t interval) const { return first_ticks_[interval]; }
   const StageMachine& machine(std::size_t interval) const {
@@ -136,7 +137,7 @@ class TrialPass final : public Pass {
   const StageSight& question_sight(std::size_t question) const {
     return setup_.questions[question].sight;
   }
-  /// In words; empty if the pass was not aborted by itself.
+  /// Reason in words; empty if the pass was not aborted by itself.
   const char* why_aborted() const noexcept { return why_; }
 
  private:

@@ -33,7 +33,7 @@ bool has_read_all(int socket) noexcept {
   return ::ioctl(socket, SIOCOUTQ, &left) != 0 || left == 0;
 }
 
-/// Not a line that the script prints for itself.
+/// Whether a line is an answer, and not one that the script prints for itself.
 bool is_answer(const std::string& line, const std::string& key) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
   return json.is_object() && json.contains(key);

@@ -238,7 +238,8 @@ NextTrial TrialSequence::make_next() {
   return next;
 }
 
-/// In blocks with procedures, whose number of trials is open, a probe comes by chance.
+/// Whether a probe comes: in blocks with procedures, whose number of trials is open, it comes by
+/// chance.
 bool TrialSequence::probe_comes(const Block& block) const {
   if (!block.probe || probe_before_) {
     return false;

@@ -64,12 +64,13 @@ class TrialSequence {
   /// @throws std::logic_error without a next() before
   void conclude(bool presented, double outcome, bool right);
 
-  /// In place of conclude(): what was presented does not count and comes again at the end of its
-  /// block; a procedure that follows the answers asks for the same level in its next trial.
+  /// Postpones the trial, in place of conclude(): its presentation does not count and comes again
+  /// at the end of its block; a procedure that follows the answers asks for the same level in its
+  /// next trial.
   /// @throws std::logic_error without a next() before
   void postpone();
 
-  /// From the next trial on. @param chooser  outlives the sequence
+  /// Sets the chooser of levels from the next trial on. @param chooser  outlives the sequence
   void choose_by(LevelChooser& chooser) { chooser_ = &chooser; }
 
   const std::vector<RunningTrack>& running() const { return running_; }
