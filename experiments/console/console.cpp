@@ -76,8 +76,8 @@ class BoundedServer final : public httplib::Server {
       : stop_(stop), log_(log), time_(time) {}
   ~BoundedServer() override { close_listener(); }
 
-  /// Once bound. The library lets five wait to be accepted; the sixth would try again after a
-  /// second.
+  /// Listens once bound. The library lets five wait to be accepted; the sixth would try again after
+  /// a second.
   int listening() {
     constexpr int kWaiting = 4096;
     ::listen(svr_sock_, kWaiting);
@@ -246,7 +246,8 @@ class Console::Implementation {
     return port;
   }
 
-  /// To the workers of those who have shown the token, which nobody else can occupy, or the others.
+  /// Hands a connection to the workers of those who have shown the token, which nobody else can
+  /// occupy, or to the others.
   void admit(int socket, bool trusted) {
     Workers& workers = trusted ? *ours_ : *others_;
     const std::atomic<bool>& crowded = workers.crowded();
@@ -295,7 +296,8 @@ void Console::Implementation::refuse(httplib::Response& response, int status,
 }
 
 void Console::Implementation::set_up_server() {
-  // Not SO_REUSEPORT, with which another program of this user could share the port.
+  // The socket does not set SO_REUSEPORT, with which another program of this user could share the
+  // port.
   server_.set_socket_options([](socket_t socket) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);

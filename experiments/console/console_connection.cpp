@@ -43,7 +43,7 @@ StopEvent::~StopEvent() { ::close(descriptor_); }
 
 void StopEvent::set() noexcept {
   const std::uint64_t one = 1;
-  // Never full: it is set once.
+  // The pipe is never full: it is written once.
   [[maybe_unused]] const ssize_t written = ::write(descriptor_, &one, sizeof one);
 }
 

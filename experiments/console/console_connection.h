@@ -40,7 +40,7 @@ class Connection {
   Connection(int socket, const StopEvent& stop, const std::atomic<bool>& crowded,
              std::size_t max_bytes, Duration time);
 
-  /// It has shown the token.
+  /// Notes that the peer has shown the token.
   void trust() { trusted_ = true; }
 
   /// @returns bytes read (at least 1), 0 when the peer closed, -1 with trouble().
@@ -50,7 +50,7 @@ class Connection {
   ssize_t write(const char* data, std::size_t size);
   /// Waits without reading. @returns false when the peer or the console has gone.
   bool wait(Duration time);
-  /// From now on the peer has this long.
+  /// Sets the time that the peer has from now on.
   void set_deadline(Duration time);
   /// Lets the peer read what was written before the socket is closed: says that no more comes and
   /// throws away a bounded rest of what it still sends.

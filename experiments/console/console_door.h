@@ -53,7 +53,7 @@ class HttpListener {
     std::size_t silent{256};             // connections that have said nothing yet, at most
     Connection::Duration patience{2.0};  // with one that says nothing [s]
   };
-  /// Called on the door's thread; `admit` takes the socket over, `refuse` leaves it.
+  /// Callbacks on the door's thread; `admit` takes the socket over, `refuse` leaves it.
   struct Handlers {
     std::function<void(int socket, bool trusted)> admit;
     std::function<void(int socket)> refuse;

@@ -15,7 +15,7 @@ namespace haptrial::experiments {
 /// @throws RunError
 std::string make_token();
 
-/// In a time that does not tell how many characters were right.
+/// Compares in a time that does not tell how many characters were right.
 bool is_same_secret(const std::string& a, const std::string& b);
 
 /// Head of a request before its body is read; empty fields were not sent.

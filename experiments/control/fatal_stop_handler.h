@@ -14,8 +14,8 @@ class FatalStopHandler {
   virtual void write_zero() noexcept = 0;             // on the device, at once
 };
 
-/// While it lives, an interrupt asks for the stop, and a signal that kills the program takes the
-/// force away first. At most one at a time.
+/// Stop that is watched while the object lives: an interrupt asks for it, and a signal that kills
+/// the program takes the force away first. At most one at a time.
 class WatchedStop {
  public:
   explicit WatchedStop(FatalStopHandler& stop) noexcept;  // outlives this

@@ -64,7 +64,8 @@ void unwatch_signals() {
   }
 }
 
-/// Also from the background, where the system would otherwise suspend who sets a terminal.
+/// Sets the terminal, also from the background, where the system would otherwise suspend the
+/// program.
 void set_terminal(int terminal, const termios& wanted) {
   sigset_t background;
   sigset_t previous;
@@ -376,7 +377,7 @@ class Keyboard::Implementation {
     say(text);
   }
 
-  /// Only where there is room: a screen that hangs must not keep the next key waiting.
+  /// Writes only if there is room: a screen that hangs must not keep the next key waiting.
   void say(std::string_view text) const {
     pollfd room{output_, POLLOUT, 0};
     if (output_ >= 0 && ::poll(&room, 1, 0) == 1) {

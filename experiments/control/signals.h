@@ -2,8 +2,8 @@
 
 namespace haptrial::experiments {
 
-/// From now on SIGINT, SIGTERM and a closed terminal (SIGHUP, unless it was ignored) ask the
-/// program to stop; a second SIGINT or SIGTERM, 0.3 s later or more, ends it at once, once the
+/// Makes SIGINT, SIGTERM and a closed terminal (SIGHUP, unless it was ignored) ask the program to
+/// stop from now on; a second SIGINT or SIGTERM, 0.3 s later or more, ends it at once, once the
 /// force is zero.
 void watch_for_interrupt();
 

@@ -26,7 +26,8 @@ class InputLosses {
   /// Notes its changes since the last call. @param input  its file
   std::vector<InputNews> take(const std::string& input,
                               const std::vector<device::InputChange>& changes);
-  /// At the end; empty if it was lost once at most, which take() has said.
+  /// Sentence for the end of the session; empty if the device was lost once at most, which take()
+  /// has said.
   std::string sentence(const std::string& input) const;
 
  private:

@@ -22,11 +22,13 @@ class SessionPedal {
 
   /// Null: there is none, and readings keep what the device says.
   device::Pedal* pedal() { return pedal_.get(); }
-  /// At the beginning: that a pedal would be used, and that none is named. Empty: all is well.
+  /// Notice for the beginning: that a pedal would be used, and that none is named. Empty: all is
+  /// well.
   const std::string& notice() const { return notice_; }
   /// News since the last call.
   std::vector<InputNews> take_news();
-  /// At the end: how often it was lost; empty if at most once, which take_news() has said.
+  /// Sentence for the end: how often the pedal was lost; empty if at most once, which take_news()
+  /// has said.
   std::string losses() const;
 
  private:

@@ -69,7 +69,7 @@ class ServoThread {
   std::thread thread_;
 };
 
-/// Takes the force of a session away. All three outlive it.
+/// A stop that takes the force of a session away. All three outlive it.
 class SessionStop final : public FatalStopHandler {
  public:
   SessionStop(protocols::SessionTask& task, const ServoThread& servo, device::Device& device)

@@ -25,7 +25,7 @@ struct PageAnswer {
 /// the answer. A key that does nothing makes the hint urgent.
 class PageInput {
  public:
-  /// Both outlive the input.
+  /// @param item, words  outlive the input
   PageInput(const pages::Item& item, const protocols::SessionTexts& words);
 
   /// A key of the participant's window. @returns whether what is shown has changed
@@ -35,11 +35,11 @@ class PageInput {
   /// a reason, "1: paper form signed". @returns a sentence if it is not allowed; else empty
   std::string give(const std::string& answer);
 
-  /// Once it was given.
+  /// The answer, once it was given.
   const std::optional<PageAnswer>& answer() const { return answer_; }
-  /// As the participant sees it. @param picture  of the item, or null
+  /// The page as the participant sees it. @param picture  of the item, or null
   render::TextPage page(std::shared_ptr<const render::Image> picture) const;
-  /// As the others see it, but for the picture's bytes. @param number  of the question
+  /// The item as the others see it, but for the picture's bytes. @param number  of the question
   AskedItem asked(int number) const;
 
  private:

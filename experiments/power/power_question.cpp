@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kMostCells = 10'000.0;
 
-/// As TOML has it: whole numbers without a point, for keys that count.
+/// Text of a number as TOML has it: whole numbers without a point, for keys that count.
 std::string written(double value) {
   constexpr double kWhole = 1e15;
   return std::floor(value) == value && std::abs(value) < kWhole

@@ -30,7 +30,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   }
 }
 
-/// For the console, which shows the last ones.
+/// Notes an abort for the console, which shows the last ones.
 void AbortedPass::note_abort(const std::string& why) {
   constexpr std::size_t kShown = 4;
   std::vector<std::string>& aborts = p_.controller.status().aborts;
@@ -52,7 +52,7 @@ void AbortedPass::pause_after_several(const std::string& why) {
   }
 }
 
-/// By this experimenter, or by the partner's.
+/// Whether this experimenter, or the partner's, asked for the abort.
 bool AbortedPass::asked_for() const {
   const PendingRequests& requests = p_.controller.requests();
   return requests.repeat || requests.skip || requests.abort || requests.pause ||

@@ -193,7 +193,7 @@ void SessionPace::rest(bool until_asked) {
   }
 }
 
-/// Until the participant or the experimenter goes on, where there is one of them.
+/// Waits until the participant or the experimenter goes on, if there is one of them.
 void SessionPace::wait_until_ready() {
   if (!p_.controller.attended() && p_.screen == nullptr) {
     return;

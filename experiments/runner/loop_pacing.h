@@ -38,20 +38,22 @@ class SessionPace {
   };
   explicit SessionPace(const Parts& parts);
 
-  /// While something takes seconds on the session's thread. @throws RunError on an interrupt
+  /// Keeps the session alive while something takes seconds on its thread. @throws RunError on an
+  /// interrupt
   void meanwhile();
-  /// Until the pass that was started has ended. @throws RunError on an interrupt
+  /// Drives the loop until the pass that was started has ended. @throws RunError on an interrupt
   void drive_until_idle();
-  /// On the real clock, without force. @param until_asked  or until the experimenter starts or
-  /// stops
+  /// Waits on the real clock, without force. @param until_asked  or until the experimenter starts
+  /// or stops
   /// @returns whether all of the time has passed
   bool wait(double seconds, const char* state, bool until_asked = false);
   /// A text until the experimenter starts; without one, until a key in the participant's window.
   void wait_to_begin(const std::string& text);
   void pause_where_asked();
-  /// Without force after an abort, for the hand to come back into the workspace; ticks are recorded
-  /// all the same. On a simulated clock, which drives virtual hands only, a fault is cleared then:
-  /// nobody can be hurt, and a dry run is to go on. On the real clock a person clears it.
+  /// Waits without force after an abort, for the hand to come back into the workspace; ticks are
+  /// recorded all the same. On a simulated clock, which drives virtual hands only, a fault is
+  /// cleared then: nobody can be hurt, and a dry run is to go on. On the real clock a person clears
+  /// it.
   void recover();
   /// Stopped on the real clock, until the fault may be cleared.
   void recover_when(const std::function<bool()>& may);
@@ -62,15 +64,15 @@ class SessionPace {
   /// Why that pass was broken off, where the loop was overloaded; else empty.
   const std::string& overload() const { return overload_; }
 
-  /// On the participant's screen and the experimenter's.
+  /// Shows a text on the participant's screen and the experimenter's.
   void show_text(const std::string& text, const std::string& hint, double countdown = 0.0);
   void show_page(render::TextPage page, const std::string& text);
   /// How far what is being prepared has come. @param share  from 0 to 1
   void show_progress(double share);
-  /// Until the participant has seen the first picture of what Screen::show() was given. @throws
-  /// RunError on an interrupt
+  /// Waits until the participant has seen the first picture of what Screen::show() was given.
+  /// @throws RunError on an interrupt
   void wait_for_picture(std::uint64_t number);
-  /// Between two looks at what a page is answered. @throws RunError on an interrupt
+  /// Waits between two looks at a page's answer. @throws RunError on an interrupt
   void wait_a_little(const char* state);
   void publish(const char* state);
   /// A last page, for as long as it takes to read where there is a screen.

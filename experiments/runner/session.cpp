@@ -78,8 +78,8 @@ class Session {
   bool left_{false};  // trials that an abort kept from being presented to their end
   realtime::ServoLoop loop_;
   markers::OnsetLog onsets_;  // before the screen and the record, whose threads look at it
-  // Before the task: the servo thread may be using its pass when an error
-  // leaves a function.
+  // This member stands before the task: the servo thread may be using its pass when an error leaves
+  // a function.
   protocols::SessionPlace place_;
   std::unique_ptr<protocols::Trials> trials_;
   std::unique_ptr<protocols::Rig> rig_;
@@ -408,7 +408,7 @@ void Session::note_time_left(double trial_seconds) {
   status.left = trials * trial_seconds_ / trials_timed_ + breaks * d_.design.break_duration;
 }
 
-/// After every `break_after` trials.
+/// Whether a break follows, after every `break_after` trials.
 bool Session::has_break_after(const PlannedTrial& trial) const {
   const int after = d_.design.break_after;
   return after > 0 && !trial.practice && trial.trial % after == 0;

@@ -18,8 +18,8 @@ using record::MarkerOf;
 using record::MarkerRow;
 using record::MarkerWay;
 
-// For what is on its way. The sending thread never waits for its line: only a machine that gives
-// it no time keeps it. A screen or a card may have stopped.
+// Limit of waiting for onsets on their way. The sending thread never waits for its line: only a
+// machine that gives it no time keeps it. A screen or a card may have stopped.
 constexpr std::chrono::seconds kLongestForThread{2};
 constexpr std::chrono::milliseconds kLongestForShown{100};
 

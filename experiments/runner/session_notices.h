@@ -40,7 +40,7 @@ class SessionNotices {
 
   /// Notes trouble of the pass that has just ended, if it did not end the pass.
   void note_pass(const protocols::PassResult& result);
-  /// At the end of the session. @param live, screen  null where there is none
+  /// Notes troubles at the end of the session. @param live, screen  null where there is none
   void note_troubles(const record::LiveFigures* live, const Screen* screen);
 
   /// Says where the session is recorded, and how many trials it has.

@@ -108,7 +108,7 @@ std::string tutor_text(const SessionRequest& request) {
                      tutor.trial.value_or(0), tutor.from, fnv1a(file_text(tutor.file)));
 }
 
-/// Those of the protocol, what may become of trials, those of further devices and of markers.
+/// Tables of the protocol, of outcomes of trials, of further devices and of markers.
 static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials) {
   record::TableList tables = trials.tables();
   tables.push_back(&record::table_of<record::SkippedRow>());
@@ -157,7 +157,7 @@ bool close_what_had_ended(const SessionRequest& request) {
       return false;
     }
   } catch (const InputError&) {
-    // It is damaged: a resume repairs it, and says what it holds.
+    // The file is damaged: a resume repairs it, and says what it holds.
   }
   record::Resumed found;
   record::SessionWriter writer =

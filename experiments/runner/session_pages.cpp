@@ -156,7 +156,8 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
   return input.answer().has_value();
 }
 
-/// From elsewhere than the window. An answer that is not allowed is refused with a notice.
+/// Takes answers from elsewhere than the window. An answer that is not allowed is refused with a
+/// notice.
 void SessionPages::take_answers(PageInput& input, AnsweredAt& source) {
   for (const SessionControl::Message& message : p_.controller.take_answers()) {
     if (message.answers != asked_ || input.answer()) {

@@ -33,7 +33,8 @@ class SessionPages {
 
   /// @returns false if the participant did not consent, or the experimenter ended the session
   bool before();
-  /// After the last trial of a block. @param block  number of it  @param name  the definition's
+  /// Shows the pages after the last trial of a block. @param block  number of it @param name  the
+  /// definition's
   /// @param missed  of an earlier run: only what it left unanswered is asked
   bool after_block(int block, const std::string& name, bool missed = false);
   bool after();

@@ -88,7 +88,7 @@ void SessionRecord::open(const std::string& text) {
   }
 }
 
-/// To whoever started the session again, before anything else happens.
+/// Tells whoever started the session again what was kept, before anything else happens.
 void SessionRecord::tell_what_was_kept() {
   if (!before_.repaired.empty()) {
     fmt::print(stderr, "{}\n", before_.repaired);
@@ -97,7 +97,7 @@ void SessionRecord::tell_what_was_kept() {
              before_.next_sequence, before_.passes.size());
 }
 
-/// If a resumed session has another definition than it was last recorded with.
+/// Keeps the definition if a resumed session has another one than it was last recorded with.
 void SessionRecord::keep_definition() {
   if (before_.info.definition.empty()) {
     return;  // the file is new
@@ -234,7 +234,8 @@ void SessionRecord::tell_notices() {
 }
 
 void SessionRecord::append(std::span<const record::Sample> samples) {
-  // At least what these ticks did: a tick's own record is pushed after the protocol's.
+  // The logs hold at least the records of these ticks: a tick's own record is pushed after the
+  // protocol's.
   trials_.empty_logs(*this);
   device_log_.flush([this](std::span<const record::DeviceRow> rows) { put(record::Rows(rows)); });
   for (const record::Sample& sample : samples) {
@@ -254,7 +255,8 @@ void SessionRecord::put(const record::Rows& batch) {
   }
 }
 
-/// Before the row of their pass: a finished trial has its markers, whatever follows.
+/// Keeps the markers before the row of their pass: a finished trial has its markers, whatever
+/// follows.
 void SessionRecord::keep_markers(bool last) {
   const std::vector<record::MarkerRow> rows = markers_.take_rows(last);
   if (!rows.empty()) {
@@ -306,7 +308,7 @@ void SessionRecord::keep_frames(std::vector<record::FrameRow> frames) {
   writer_.add_frames(frames);
 }
 
-/// When a tick of the present pass was; now, if it has none.
+/// Time of a tick of the present pass; now, if it has none.
 std::int64_t SessionRecord::time_of(std::uint64_t sequence) const {
   const std::uint64_t at = sequence - first_time_;
   return sequence >= first_time_ && at < times_.size() ? times_[at] : now_ns();

@@ -81,7 +81,8 @@ class SessionRecord final : public protocols::SessionFile {
   /// @param frames  with times since this run's first tick
   void keep_frames(std::vector<record::FrameRow> frames);
   void event(const std::string& kind, const std::string& text) override;
-  /// On the stream only: what the file's tables say already. @param status  empty: none yet
+  /// Marks a trial on the stream only: the file's tables have it already. @param status  empty:
+  /// none yet
   void mark_trial(const std::string& kind, const protocols::PlannedTrial& trial, int attempt,
                   const std::string& status = "");
 
@@ -89,12 +90,12 @@ class SessionRecord final : public protocols::SessionFile {
   void set_planned(std::ptrdiff_t trials) {
     writer_.set_planned(static_cast<std::int32_t>(trials));
   }
-  /// After the loop's end, where trials are left for another run: FILE.partial stays.
+  /// Ends the record after the loop's end, if trials are left for another run: FILE.partial stays.
   void stop(const std::string& text);
-  /// After the loop's end: the last event and the timing; the file is complete.
+  /// Ends the record after the loop's end with the last event and the timing; the file is complete.
   void close(const std::string& text);
-  /// After the loop's end, where the session did not come to its own: a simulated one leaves
-  /// nothing, another FILE.partial, with its open pass as aborted.
+  /// Ends the record after the loop's end, if the session did not come to its own: a simulated
+  /// session leaves nothing, another leaves FILE.partial, with its open pass as aborted.
   void give_up(const protocols::SessionTask& task);
 
  private:
@@ -116,7 +117,8 @@ class SessionRecord final : public protocols::SessionFile {
   const realtime::ServoLoop& loop_;
   const bool real_;
   record::Resumed before_;  // what a resumed file holds
-  // Before the writer: without the streams that it needs a session leaves no file.
+  // This member stands before the writer: without the streams that it needs a session leaves no
+  // file.
   std::string notice_;
   std::unique_ptr<stream::LslOutlet> outlet_;
   SessionMarkers markers_;

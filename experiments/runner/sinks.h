@@ -10,7 +10,7 @@
 
 namespace haptrial::experiments {
 
-/// Into the session file.
+/// Sink into the session file.
 class FileSink final : public record::Sink {
  public:
   /// @param writer  outlives the sink
@@ -24,7 +24,7 @@ class FileSink final : public record::Sink {
   record::SessionWriter& writer_;
 };
 
-/// To the Lab Streaming Layer, with markers; without an outlet nowhere.
+/// Sink to the Lab Streaming Layer, with markers; nothing goes out without an outlet.
 class StreamSink final : public record::Sink {
  public:
   /// @param outlet  may be null; outlives the sink

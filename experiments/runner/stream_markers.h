@@ -18,7 +18,7 @@ class StreamMarkers {
 
   /// Samples in their order, before those of another pass; `row` is the pass that is under way.
   void follow(std::span<const record::Sample> samples, const record::PassRow& row);
-  /// After the last sample of a pass; where it had none, nothing is marked.
+  /// Marks the end of a pass after its last sample; a pass without samples has no mark.
   void end_pass(const record::PassRow& row);
 
  private:

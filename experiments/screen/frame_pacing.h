@@ -33,12 +33,12 @@ class Pace {
  public:
   explicit Pace(const AgreedPace& agreed, std::int64_t now_ns = screen_ns());
 
-  /// Before a picture is drawn; returns at once where the swap waits for the refresh.
+  /// Waits before a picture is drawn; returns at once if the swap waits for the refresh.
   void wait();
   /// The part of wait() that decides, for any clock.
   /// @returns when the next picture is due; `now_ns` if at once
   std::int64_t next_due(std::int64_t now_ns);
-  /// When the display has a picture.
+  /// Notes that the display has a picture.
   record::FrameRow shown(std::int64_t draw_ns, std::int64_t now_ns = screen_ns());
 
  private:

@@ -10,7 +10,7 @@ namespace haptrial::experiments {
 /// A pointer that a game controller moves in a window's place of the mouse. The screen's thread.
 class PadPointer {
  public:
-  /// It begins in the middle. @param width, height  of the window [px]
+  /// The pointer begins in the middle. @param width, height  of the window [px]
   PadPointer(int width, int height);
 
   /// A picture later. @param dt  since the one before [s]

@@ -77,16 +77,16 @@ class Screen final : public stimulus::Observer {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  /// From the next picture on, a page; a countdown runs from this call.
+  /// Shows a page from the next picture on; a countdown runs from this call.
   void show_text(render::TextPage page);
-  /// From the next picture on, what this makes of what observe() is given.
+  /// Shows, from the next picture on, the drawing that `make` gives, with the views of observe().
   /// @returns a number for has_shown()
   std::uint64_t show(protocols::MakeDrawing make);
   /// Whether the participant has seen a picture of what show() or show_text() asked for then.
   bool has_shown(std::uint64_t number) const noexcept;
 
-  /// Whose onsets make the photodiode's square white (Photodiode::kOnset). @param log  outlives the
-  /// screen
+  /// Sets the log whose onsets make the photodiode's square white (Photodiode::kOnset). @param
+  /// log  outlives the screen
   void flash_with(const markers::OnsetLog* log);
 
   /// Servo thread: hands the newest presentation over; no allocation, lock, I/O or throw.

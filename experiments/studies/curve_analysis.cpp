@@ -25,7 +25,7 @@ std::vector<std::string> nameable(std::vector<std::string> conditions) {
   return conditions;
 }
 
-/// Neither force nor slope counts, and nothing but the alignment makes the score.
+/// Rejects a score of neither force nor slope: nothing but the alignment would make it.
 void reject_empty_score(Table& analysis, const analysis::ScoreParameters& p) {
   const auto& a = p.alignment;
   if (p.force_share == 0.0 && p.slope_share == 0.0 && a.force_weight == 0.0 &&

@@ -57,8 +57,8 @@ void check_pictures(const protocols::Definition& definition, const std::filesyst
   }
 }
 
-/// After it was read: what the file has, and what it lacks. @throws InputError for what it has
-/// beside the definition's texts
+/// Checks translations after they were read: the texts of the file, and those that it lacks.
+/// @throws InputError for what it has beside the definition's texts
 void check_translations(const Translations& translations, Experiment& experiment) {
   const auto unknown = unknown_translations(translations, experiment.shown);
   if (!unknown.empty()) {

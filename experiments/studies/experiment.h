@@ -26,7 +26,8 @@ struct Experiment {
 /// @param given  keys that have these values in place of the file's
 Experiment load_experiment(const std::filesystem::path& file, const std::string& language = "",
                            std::span<const GivenKey> given = {});
-/// From the text that a session file keeps: what the protocol loads beside it is not.
+/// Experiment from the text that a session file keeps, without the parts that the protocol loads
+/// beside it.
 Experiment parse_experiment(std::string_view text, std::string_view file_name);
 /// The same of several files, of which sentences name each with its own lines; the definition's is
 /// the first.

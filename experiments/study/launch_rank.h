@@ -11,8 +11,8 @@ struct LaunchRank {
   int size{1};
 };
 
-/// As mpirun (OpenMPI, MPICH) or srun told this process by its environment; nothing: it was started
-/// alone. @param variable  value of an environment variable, or null
+/// Rank that mpirun (OpenMPI, MPICH) or srun told this process by its environment; nothing: it was
+/// started alone. @param variable  value of an environment variable, or null
 std::optional<LaunchRank> launch_rank(const std::function<const char*(const char*)>& variable);
 std::optional<LaunchRank> launch_rank();
 

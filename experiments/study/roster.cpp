@@ -71,7 +71,7 @@ std::vector<FoundFile> found_in(const fs::path& folder, std::vector<std::string>
   return found;
 }
 
-/// As a shell takes it.
+/// Path as a shell takes it.
 std::string typed(const std::string& path) {
   return path.find_first_of(" ()&;'") == std::string::npos ? path : fmt::format("\"{}\"", path);
 }
@@ -240,7 +240,8 @@ class RosterMaker {
     }
   }
 
-  /// As the identifiers before: "P07". After somebody who was excluded: "Pb07", then "Pc07".
+  /// Identifier in the form of those before: "P07". After somebody who was excluded: "Pb07", then
+  /// "Pc07".
   std::string subject_for(int number) const {
     std::string prefix = "P";
     std::size_t digits = 2;

@@ -6,7 +6,7 @@
 
 namespace haptrial::experiments {
 
-/// Below the folder of the sessions: what was recorded on the side that teaches.
+/// Name of the folder, below that of the sessions, for the records of the side that teaches.
 inline constexpr const char* kTeaching = "teaching";
 
 /// A dry session, and a second one in the same process whose virtual participant leads it over the

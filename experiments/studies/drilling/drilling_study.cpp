@@ -44,7 +44,7 @@ class PictureFolder {
   fs::path path_;
 };
 
-// As the surgeon looked at it first.
+// View with which the surgeon looked at the bone first.
 drilling::SurgeonsView surgeons_view(const protocols::BoneDefinition& definition,
                                      const geometry::VoxelGrid& grid) {
   const Camera& start = definition.simulator.camera.start;

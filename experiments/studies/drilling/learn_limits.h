@@ -7,7 +7,7 @@
 
 namespace haptrial::experiments {
 
-/// From whom safe values are learned.
+/// Sessions from which safe values are learned.
 struct LimitsRequest {
   std::vector<std::filesystem::path> experts;  // sessions
   std::filesystem::path study;                 // folder: those of its expert groups; empty: none

@@ -137,7 +137,7 @@ std::vector<std::pair<const Session*, int>> Pages::chosen() {
   return procedures;
 }
 
-/// Before any work.
+/// Checks the room before any work.
 void Pages::require_room(std::size_t procedures) const {
   std::vector<fs::path> files{request_.out};
   for (std::size_t n = 1; n <= procedures && procedures > 1; ++n) {
@@ -161,8 +161,8 @@ drilling::Procedure Pages::load(const Session& session, int trial) {
   throw InputError(fmt::format("{}: holds no procedure {}", session.path.string(), trial));
 }
 
-/// On the same bone, somebody else's: of the procedures that were asked for by name the one with
-/// most in sight, else of all.
+/// Another person's session on the same bone: of the procedures that were asked for by name the one
+/// with most in sight, else of all.
 const ExpertSession* Pages::shown_beside(const bone::BoneModel* bone) const {
   const auto named = [this](const ExpertSession& expert) {
     return std::find(request_.experts.begin(), request_.experts.end(), expert.file) !=

@@ -33,7 +33,7 @@ const TrialsDefinition& trials_of(const protocols::Definition& definition) {
   return dynamic_cast<const TrialsDefinition&>(definition);
 }
 
-/// As a session keeps it: what it was recorded with.
+/// Definition that a session was recorded with.
 std::unique_ptr<protocols::Definition> definition_of(const record::SessionInfo& info) {
   Table root = Table::parse(info.definition, info.definition_name);
   auto definition = protocols::trials_protocol().read(root, info.definition_name, nullptr);
