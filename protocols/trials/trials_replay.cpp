@@ -243,7 +243,7 @@ class TrialReplay {
     });
   }
 
-  /// In its interval.
+  /// Number of a row's stage in its interval.
   std::size_t number_of(const record::StageRow& row) const {
     const std::vector<NamedStage>& stages =
         trials_.stages().at(static_cast<std::size_t>(row.interval - 1));

@@ -11,7 +11,7 @@ namespace haptrial::protocols {
 class LinkQuality {
  public:
   void hear(const network::Arrived& arrived) noexcept;
-  /// Once a tick. @param window  of the messages
+  /// Takes a tick's counts; call once a tick. @param window  of the messages
   void step(const network::SequenceWindow& window, std::int64_t now_ns) noexcept;
 
   /// Mean change of the time under way from message to message (RFC 3550, 6.4.1) [s].

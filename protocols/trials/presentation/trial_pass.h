@@ -115,8 +115,7 @@ class TrialPass final : public Pass {
   /// @returns what presses the seen bodies
   const SeenForces& feel_again(std::span<const PointState> hands) noexcept;
 
-  // Sequence number of the first tick of an interval; 0 for one that did not begin. Call after the
-  // pass.
+  // The following functions are for after the pass.
   /// Sequence number of the first tick of an interval; 0 for one that did not begin.
   std::uint64_t first_tick(std::size_t interval) const { return first_ticks_[interval]; }
   const StageMachine& machine(std::size_t interval) const {

@@ -6,8 +6,7 @@
 
 namespace haptrial::protocols {
 
-/// When a stage is over: when all that is stated holds at once, and has held without a break for
-/// `hold`.
+/// End of a stage: all that is stated holds at once, and has held without a break for `hold`.
 struct Until {
   double time{0.0};          // has passed since the stage began >= 0 [s]
   std::uint64_t inside{0};   // tools are in all of these regions: bit i, the region of index i

@@ -58,11 +58,11 @@ class StageMachine {
   void begin(Scenes scenes, int most_repeats) noexcept;
   /// @param dt  since the tick before [s]
   void tick(Readings readings, Scenes scenes, double dt) noexcept;
-  /// Into a stage, whatever came before: for a replay, which knows when it began.
+  /// Enters a stage, whatever came before: for a replay, which knows when it began.
   void enter(std::size_t stage, Scenes scenes) noexcept;
 
   State state() const noexcept { return state_; }
-  /// That goes on; of an interval that is over the last one.
+  /// Number of the stage that goes on; of an interval that is over the last one.
   std::size_t stage() const noexcept { return stage_; }
   double time_in_stage() const noexcept { return in_stage_; }  // [s]
   int repeats() const noexcept { return repeats_; }
