@@ -4,9 +4,9 @@
 
 namespace haptrial::experiments {
 
-/// Runs the session and writes its file. One that had ended and was killed before its file had its
-/// name is only closed. On an interrupt or a failure of a simulated session
-/// nothing is left; a session on the real clock keeps what it recorded as FILE.partial.
+/// Runs the session and writes its file. A session that had ended but was killed before its file
+/// was renamed is only renamed. An interrupt, or a failure of a simulated session, leaves nothing;
+/// a session on the real clock keeps its records as FILE.partial.
 /// @throws RunError, InputError
 SessionSummary run_session(const SessionRequest& request);
 

@@ -352,7 +352,7 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
   return parts;
 }
 
-/// Smooths again what is not as it was, and what is near it.
+/// Smooths the edges of changed parts and of their neighbourhood anew.
 void BoneScene::Impl::smooth(std::vector<std::vector<PixelBox>> drawn, int across, int height) {
   const bool was_smooth = is_smooth;
   is_smooth = style.smooth_edges && is_shaded && quality == Quality::kFull;
@@ -366,8 +366,8 @@ void BoneScene::Impl::smooth(std::vector<std::vector<PixelBox>> drawn, int acros
   over = std::move(drawn);
 }
 
-/// Draws of the bones what is not as the kept picture has it. While the camera moves they are not
-/// darkened where they are closed in: all of the picture would have to be, in every frame.
+/// Draws the parts of the bones that differ from the kept picture. While the camera moves they are
+/// not darkened where they are closed in: all of the picture would have to be, in every frame.
 void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& views, bool there,
                            int across, int height) {
   std::vector<PixelBox> parts = changed_parts(frame, views, across, height);
