@@ -45,7 +45,7 @@ bool is_begun(const fs::path& folder) {
   return true;
 }
 
-void add(const Rehearsed& study, const PowerQuestion& question, analysis::CellCounts& counts) {
+void add(const SimulatedStudy& study, const PowerQuestion& question, analysis::CellCounts& counts) {
   ++counts.replications;
   counts.trials += study.trials;
   bool watched = false;
@@ -100,7 +100,8 @@ bool PowerFolder::has(const PowerUnit& unit) const {
   return fs::exists(folder_ / kParts / unit.file(), error);
 }
 
-void PowerFolder::keep(const PowerUnit& unit, const std::vector<Rehearsed>& replications) const {
+void PowerFolder::keep(const PowerUnit& unit,
+                       const std::vector<SimulatedStudy>& replications) const {
   write_whole(folder_ / kParts / unit.file(), part_text(question_, unit, replications));
 }
 
@@ -144,7 +145,7 @@ analysis::PowerResult PowerFolder::merged() const {
     analysis::CellCounts& counts = !check          ? cell.counts
                                    : cell.sessions ? *cell.sessions
                                                    : cell.sessions.emplace();
-    for (const Rehearsed& study : read_part(folder_ / kParts / unit.file(), question_, unit)) {
+    for (const SimulatedStudy& study : read_part(folder_ / kParts / unit.file(), question_, unit)) {
       add(study, question_, counts);
     }
   }

@@ -22,7 +22,7 @@ class PowerFolder {
   bool has(const PowerUnit& unit) const;
   /// Whole or not at all; a part that came meanwhile is replaced by the same bytes.
   /// @throws RunError in the words of the system, as on a full disk
-  void keep(const PowerUnit& unit, const std::vector<Rehearsed>& replications) const;
+  void keep(const PowerUnit& unit, const std::vector<SimulatedStudy>& replications) const;
   std::vector<PowerUnit> missing() const;
   const std::vector<PowerUnit>& units() const { return units_; }
   const std::filesystem::path& path() const { return folder_; }

@@ -19,10 +19,11 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kChecksum = "checksum ";
 
 /// Names once, then a row of values for each replication; null: it has none.
-Json table_of(const std::vector<Rehearsed>& all, std::vector<NamedNumber> Rehearsed::*numbers) {
+Json table_of(const std::vector<SimulatedStudy>& all,
+              std::vector<NamedNumber> SimulatedStudy::*numbers) {
   std::vector<std::string> names;
   std::map<std::string, std::size_t> places;
-  for (const Rehearsed& each : all) {
+  for (const SimulatedStudy& each : all) {
     for (const NamedNumber& number : each.*numbers) {
       if (places.try_emplace(number.name, names.size()).second) {
         names.push_back(number.name);
@@ -30,7 +31,7 @@ Json table_of(const std::vector<Rehearsed>& all, std::vector<NamedNumber> Rehear
     }
   }
   Json rows = Json::array();
-  for (const Rehearsed& each : all) {
+  for (const SimulatedStudy& each : all) {
     std::vector<Json> row(names.size());
     for (const NamedNumber& number : each.*numbers) {
       row[places.at(number.name)] = std::isfinite(number.value) ? Json(number.value) : Json();
@@ -40,8 +41,8 @@ Json table_of(const std::vector<Rehearsed>& all, std::vector<NamedNumber> Rehear
   return {{"names", names}, {"rows", rows}};
 }
 
-void fill(const Json& table, std::vector<Rehearsed>& all,
-          std::vector<NamedNumber> Rehearsed::*numbers) {
+void fill(const Json& table, std::vector<SimulatedStudy>& all,
+          std::vector<NamedNumber> SimulatedStudy::*numbers) {
   const auto names = table.at("names").get<std::vector<std::string>>();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Json& row = table.at("rows").at(i);
@@ -83,12 +84,12 @@ std::string body_of(const std::filesystem::path& file, const std::string& text) 
 }  // namespace
 
 std::string part_text(const PowerQuestion& question, const PowerUnit& unit,
-                      const std::vector<Rehearsed>& replications) {
+                      const std::vector<SimulatedStudy>& replications) {
   Json json = header_of(question, unit);
-  json["tests"] = table_of(replications, &Rehearsed::tests);
-  json["values"] = table_of(replications, &Rehearsed::values);
+  json["tests"] = table_of(replications, &SimulatedStudy::tests);
+  json["values"] = table_of(replications, &SimulatedStudy::values);
   Json failures = Json::array(), trials = Json::array(), hours = Json::array();
-  for (const Rehearsed& each : replications) {
+  for (const SimulatedStudy& each : replications) {
     failures.push_back(each.failures);
     trials.push_back(each.trials);
     hours.push_back(each.hours);
@@ -99,10 +100,10 @@ std::string part_text(const PowerQuestion& question, const PowerUnit& unit,
   return with_checksum(json.dump());
 }
 
-std::vector<Rehearsed> read_part(const std::filesystem::path& file, const PowerQuestion& question,
-                                 const PowerUnit& unit) {
+std::vector<SimulatedStudy> read_part(const std::filesystem::path& file,
+                                      const PowerQuestion& question, const PowerUnit& unit) {
   const std::string body = body_of(file, file_text(file));
-  std::vector<Rehearsed> all(static_cast<std::size_t>(unit.count));
+  std::vector<SimulatedStudy> all(static_cast<std::size_t>(unit.count));
   try {
     const Json json = Json::parse(body);
     const Json header = header_of(question, unit);
@@ -112,8 +113,8 @@ std::vector<Rehearsed> read_part(const std::filesystem::path& file, const PowerQ
                                  key, json.at(key).dump(), value.dump()));
       }
     }
-    fill(json.at("tests"), all, &Rehearsed::tests);
-    fill(json.at("values"), all, &Rehearsed::values);
+    fill(json.at("tests"), all, &SimulatedStudy::tests);
+    fill(json.at("values"), all, &SimulatedStudy::values);
     for (std::size_t i = 0; i < all.size(); ++i) {
       all[i].failures = json.at("failures").at(i).get<std::vector<std::string>>();
       all[i].trials = json.at("trials").at(i).get<std::uint64_t>();

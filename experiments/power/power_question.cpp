@@ -108,8 +108,8 @@ std::vector<QuestionCell> cells_of(const PowerPlan& plan) {
 void check_cell(const PowerQuestion& question, const QuestionCell& cell) {
   const std::vector<NamedText> parts = question.parts_of(cell);
   static_cast<void>(parse_experiment(parts));
-  const auto rehearsal = question.study->rehearsal(parts, question.plan.watch);
-  if (!rehearsal->people_differ()) {
+  const auto study_simulation = question.study->study_simulation(parts, question.plan.watch);
+  if (!study_simulation->people_differ()) {
     throw InputError(fmt::format(
         "{}: virtual participants do not differ from each other, so a test over participants says "
         "nothing of people; give a parameter of theirs a spread above 0",

@@ -92,9 +92,9 @@ class Filling {
   static constexpr const char* kLocks = "parts.lock";
 
   void keep(const PowerUnit& unit) {
-    const std::vector<Rehearsed> studies = simulated(question_, unit);
+    const std::vector<SimulatedStudy> studies = simulated(question_, unit);
     folder_.keep(unit, studies);
-    for (const Rehearsed& study : studies) {
+    for (const SimulatedStudy& study : studies) {
       trials_ += study.trials;
     }
     ++made_;
@@ -134,7 +134,7 @@ FirstTests first_tests(const PowerQuestion& question) {
   FirstTests first;
   for (int i = 0; i < kStudies && first.names.empty(); ++i) {
     const PowerUnit unit{0, question.plan.depth == PowerDepth::kSessions, i, 1};
-    const Rehearsed study = simulated(question, unit).front();
+    const SimulatedStudy study = simulated(question, unit).front();
     for (const NamedNumber& test : study.tests) {
       first.names.push_back(test.name);
     }

@@ -41,13 +41,13 @@ class SessionsFolder {
 /// A cell's definition, and what simulates it.
 struct ReadyCell {
   Experiment experiment;
-  std::unique_ptr<Rehearsal> rehearsal;
+  std::unique_ptr<StudySimulation> study_simulation;
 };
 
 ReadyCell ready(const PowerQuestion& question, const PowerUnit& unit) {
   const std::vector<NamedText> parts = question.parts_of(question.cells[unit.cell]);
   ReadyCell cell;
-  cell.rehearsal = question.study->rehearsal(parts, question.plan.watch);
+  cell.study_simulation = question.study->study_simulation(parts, question.plan.watch);
   if (unit.sessions) {
     cell.experiment = parse_experiment(parts);
     question.study->protocol().load(*cell.experiment.definition, question.folder);
@@ -55,14 +55,14 @@ ReadyCell ready(const PowerQuestion& question, const PowerUnit& unit) {
   return cell;
 }
 
-Rehearsed in_full(const ReadyCell& cell, std::uint64_t seed) {
+SimulatedStudy in_full(const ReadyCell& cell, std::uint64_t seed) {
   const SessionsFolder folder;
   DryRun dry;
   dry.participants = cell.experiment.definition->design.participants;
   dry.seed = seed;
   dry.folder = folder.sessions();
   run_dry(cell.experiment.study->protocol(), *cell.experiment.definition, dry);
-  return cell.rehearsal->sessions(session_files(dry.folder));
+  return cell.study_simulation->sessions(session_files(dry.folder));
 }
 
 }  // namespace
@@ -88,18 +88,18 @@ std::vector<PowerUnit> units_of(const PowerQuestion& question) {
   return units;
 }
 
-std::vector<Rehearsed> simulated(const PowerQuestion& question, const PowerUnit& unit) {
+std::vector<SimulatedStudy> simulated(const PowerQuestion& question, const PowerUnit& unit) {
   const ReadyCell cell = ready(question, unit);
   const std::uint64_t seed =
       derived_seed(question.plan.seed, "power cell " + question.cells[unit.cell].name);
-  std::vector<Rehearsed> all;
+  std::vector<SimulatedStudy> all;
   for (int i = unit.first; i < unit.first + unit.count; ++i) {
     if (interrupted()) {
       throw RunError("interrupted");
     }
     const std::uint64_t own = derived_seed(seed, fmt::format("replication {}", i));
     try {
-      all.push_back(unit.sessions ? in_full(cell, own) : cell.rehearsal->responses(own));
+      all.push_back(unit.sessions ? in_full(cell, own) : cell.study_simulation->responses(own));
     } catch (const InputError& error) {
       all.emplace_back().failures.push_back(error.what());
     } catch (const RunError& error) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/power/power_question.h"
-#include "experiments/studies/rehearsal/rehearsal.h"
+#include "experiments/studies/study_simulation/study_simulation.h"
 
 namespace haptrial::experiments {
 
@@ -25,6 +25,6 @@ std::vector<PowerUnit> units_of(const PowerQuestion& question);
 /// nothing else; random numbers are named after both. A replication that fails has its reason and
 /// no tests. Any thread. @throws InputError for a cell whose definition cannot be used; RunError on
 /// an interrupt
-std::vector<Rehearsed> simulated(const PowerQuestion& question, const PowerUnit& unit);
+std::vector<SimulatedStudy> simulated(const PowerQuestion& question, const PowerUnit& unit);
 
 }  // namespace haptrial::experiments

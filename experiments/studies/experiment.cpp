@@ -14,7 +14,7 @@
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
 #include "experiments/studies/registry.h"
-#include "experiments/studies/rehearsal/power_plan.h"
+#include "experiments/studies/study_simulation/power_plan.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/definition/languages.h"
 #include "protocols/definition/tutoring_warnings.h"

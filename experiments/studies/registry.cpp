@@ -35,8 +35,8 @@ const Study* named(std::string_view name) {
 
 }  // namespace
 
-std::unique_ptr<Rehearsal> Study::rehearsal(const std::vector<NamedText>& definition,
-                                            const std::string& watched) const {
+std::unique_ptr<StudySimulation> Study::study_simulation(const std::vector<NamedText>& definition,
+                                                         const std::string& watched) const {
   static_cast<void>(watched);
   throw InputError(fmt::format(
       "{}: power by simulation does not know the report of protocol '{}'; see haptrial power t, "

@@ -9,7 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/record/rows/live_figures.h"
 #include "experiments/studies/curve_analysis.h"
-#include "experiments/studies/rehearsal/rehearsal.h"
+#include "experiments/studies/study_simulation/study_simulation.h"
 #include "experiments/study/study_files.h"
 #include "protocols/interface/protocol.h"
 
@@ -69,8 +69,8 @@ class Study {
   /// @param definition  its text; [power] may stand in a part, and so a file, of its own
   /// @param watched     name of the test whose power is asked for
   /// @throws InputError by default: it cannot be had
-  virtual std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
-                                               const std::string& watched) const;
+  virtual std::unique_ptr<StudySimulation> study_simulation(
+      const std::vector<NamedText>& definition, const std::string& watched) const;
   /// Command that goes on with the sessions of a dry run: "haptrial analyze DIR".
   virtual std::string next_step(const std::filesystem::path& folder) const {
     return "haptrial analyze " + folder.string();

@@ -14,7 +14,7 @@
 
 namespace haptrial::analysis::drilling {
 
-const char* const kRehearsal =
+const char* const kSimulatedValidity =
     "SIMULATED: the participants or the raters of this study are programs. It is a rehearsal of "
     "the pipeline and proves nothing about people.";
 
@@ -62,7 +62,7 @@ class Report {
         fmt::format("{} ({} rated) by {} in {}.", counted(result_.procedures.size(), "procedure"),
                     v_.rated, counted(count_of(&ProcedureSummary::participant), "participant"),
                     counted(count_of(&ProcedureSummary::group), "group"));
-    rehearsal();
+    add_simulation_alarm();
     document_.points(summary_lines(result_));
     add_design();
     add_nerve_section(document_, result_.nerves, v_.simulated);
@@ -89,9 +89,9 @@ class Report {
     }
     return names.size();
   }
-  void rehearsal() {
+  void add_simulation_alarm() {
     if (v_.simulated) {
-      document_.alarm(kRehearsal);
+      document_.alarm(kSimulatedValidity);
     }
   }
   void section(const std::string& text) {
@@ -403,7 +403,7 @@ void Report::add_methods() {
   document_.paragraph(
       "The intraclass correlations follow Shrout and Fleiss (1979) over the procedures that every "
       "rater scored.");
-  rehearsal();
+  add_simulation_alarm();
 }
 
 }  // namespace

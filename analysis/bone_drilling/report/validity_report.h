@@ -8,7 +8,7 @@
 namespace haptrial::analysis::drilling {
 
 /// Words with which a report of a study with simulated participants or raters marks each result.
-extern const char* const kRehearsal;
+extern const char* const kSimulatedValidity;
 
 /// The whole report. @param drawings  outlive the document
 Document validity_report(const ValidityResult& result, const std::vector<Drawing>& drawings);

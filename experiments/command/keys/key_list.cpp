@@ -15,7 +15,7 @@
 #include "core/base/error.h"
 #include "experiments/command/keys/key_words_internal.h"
 #include "experiments/studies/registry.h"
-#include "experiments/studies/rehearsal/power_plan.h"
+#include "experiments/studies/study_simulation/power_plan.h"
 
 namespace haptrial::experiments {
 namespace {

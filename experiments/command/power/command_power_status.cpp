@@ -29,7 +29,7 @@ int power_status(const std::string& path) {
     const fs::path file = folder.path() / "parts" / unit.file();
     first = std::min(first, fs::last_write_time(file));
     last = std::max(last, fs::last_write_time(file));
-    for (const Rehearsed& study : read_part(file, question, unit)) {
+    for (const SimulatedStudy& study : read_part(file, question, unit)) {
       for (const std::string& reason : study.failures) {
         ++failures[reason];
       }

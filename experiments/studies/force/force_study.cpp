@@ -10,7 +10,7 @@
 #include "analysis/force_training/study/study_summary.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "experiments/studies/force/force_rehearsal.h"
+#include "experiments/studies/force/force_study_simulation.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 
@@ -79,12 +79,12 @@ class ForceStudy final : public Study {
     lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
     return lines;
   }
-  std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
-                                       const std::string& watched) const override {
+  std::unique_ptr<StudySimulation> study_simulation(const std::vector<NamedText>& definition,
+                                                    const std::string& watched) const override {
     static_cast<void>(watched);  // all of its tests are quick
     const CurveAnalysis curves =
         parse_curve_analysis(Table::parse(definition).source(), definition.front().file_name);
-    return force_rehearsal(definition, curves.scoring, curves.plan);
+    return force_study_simulation(definition, curves.scoring, curves.plan);
   }
 };
 

@@ -18,7 +18,7 @@
 #include "core/base/error.h"
 #include "experiments/studies/trials/reaching/reach_ways.h"
 #include "experiments/studies/trials/trials_analysis.h"
-#include "experiments/studies/trials/trials_rehearsal.h"
+#include "experiments/studies/trials/trials_study_simulation.h"
 #include "protocols/trials/definition/trials_definition.h"
 #include "protocols/trials/trials_protocol.h"
 
@@ -128,15 +128,15 @@ class TrialsStudy final : public Study {
   void read_analysis(Table& root, bool) const override { read_trials_analysis(root); }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override;
   std::vector<std::string> analyze(const AnalysisRequest& request) const override;
-  std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& definition,
-                                       const std::string& watched) const override {
+  std::unique_ptr<StudySimulation> study_simulation(const std::vector<NamedText>& definition,
+                                                    const std::string& watched) const override {
     const std::string& file_name = definition.front().file_name;
     Table root = Table::parse(definition);
     auto read = protocols::trials_protocol().read(root, file_name, nullptr);
     root.check();
     auto* studied = dynamic_cast<protocols::StudiedDefinition*>(read.release());
-    return trials_rehearsal(std::unique_ptr<const protocols::StudiedDefinition>(studied),
-                            plan_of_text(root.source(), file_name), definition, watched);
+    return trials_study_simulation(std::unique_ptr<const protocols::StudiedDefinition>(studied),
+                                   plan_of_text(root.source(), file_name), definition, watched);
   }
 };
 

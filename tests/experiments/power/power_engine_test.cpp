@@ -40,16 +40,16 @@ watch = "paired t"
 
 /// Three values of each participant with the correlation 0.5; the report has a paired t test of the
 /// first two and an analysis of variance of all.
-class NormalRehearsal final : public Rehearsal {
+class NormalStudySimulation final : public StudySimulation {
  public:
-  explicit NormalRehearsal(const std::string& text) {
+  explicit NormalStudySimulation(const std::string& text) {
     Table root = Table::parse(text, "normal.toml");
     participants_ = root.table("design").integer("participants", 2, 1000);
     Table people = root.table("people");
     effect_ = people.number("effect", {}, "");
   }
   bool people_differ() const override { return true; }
-  Rehearsed responses(std::uint64_t seed) const override {
+  SimulatedStudy responses(std::uint64_t seed) const override {
     RandomStream random(seed, "normal");
     std::vector<std::vector<double>> rows;
     std::vector<double> a, b;
@@ -65,7 +65,7 @@ class NormalRehearsal final : public Rehearsal {
     const auto f = analysis::repeated_measures_anova(rows);
     return {{{"paired t", t->p}, {"anova", f->p}}, {{"paired t", t->difference}}, {}, 3, 0.1};
   }
-  Rehearsed sessions(const std::vector<fs::path>&) const override { return {}; }
+  SimulatedStudy sessions(const std::vector<fs::path>&) const override { return {}; }
 
  private:
   long participants_{0};
@@ -76,9 +76,9 @@ class NormalStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::trials_protocol(); }
   std::vector<std::string> analyze(const AnalysisRequest&) const override { return {}; }
-  std::unique_ptr<Rehearsal> rehearsal(const std::vector<NamedText>& text,
-                                       const std::string&) const override {
-    return std::make_unique<NormalRehearsal>(text.front().text);
+  std::unique_ptr<StudySimulation> study_simulation(const std::vector<NamedText>& text,
+                                                    const std::string&) const override {
+    return std::make_unique<NormalStudySimulation>(text.front().text);
   }
 };
 

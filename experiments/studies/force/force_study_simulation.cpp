@@ -1,4 +1,4 @@
-#include "experiments/studies/force/force_rehearsal.h"
+#include "experiments/studies/force/force_study_simulation.h"
 
 #include <fmt/format.h>
 
@@ -56,7 +56,7 @@ std::optional<ScoreParts> read_parts(const std::vector<NamedText>& definition,
   return parts;
 }
 
-void note_tests(const analysis::TestFamily& family, Rehearsed& r) {
+void note_tests(const analysis::TestFamily& family, SimulatedStudy& r) {
   for (const analysis::NamedTest& test : named_tests(family, family.name + ": ")) {
     r.tests.push_back({test.name, test.p});
   }
@@ -68,7 +68,7 @@ void note_tests(const analysis::TestFamily& family, Rehearsed& r) {
   }
 }
 
-void note_pooled(const StudyStatistics& study, Rehearsed& r) {
+void note_pooled(const StudyStatistics& study, SimulatedStudy& r) {
   if (study.anova) {
     r.tests.push_back({"as published: pooled trials, analysis of variance", study.anova->p});
   }
@@ -82,8 +82,8 @@ void note_pooled(const StudyStatistics& study, Rehearsed& r) {
   }
 }
 
-Rehearsed of_statistics(const StudyStatistics& study, std::size_t trials) {
-  Rehearsed r;
+SimulatedStudy of_statistics(const StudyStatistics& study, std::size_t trials) {
+  SimulatedStudy r;
   r.trials = trials;
   for (const auto& effect : study.tests.effects) {
     if (effect) {
@@ -111,10 +111,10 @@ Rehearsed of_statistics(const StudyStatistics& study, std::size_t trials) {
   return r;
 }
 
-class ForceRehearsal final : public Rehearsal {
+class ForceStudySimulation final : public StudySimulation {
  public:
-  ForceRehearsal(const std::vector<NamedText>& definition, analysis::ScoreParameters scoring,
-                 analysis::AnalysisPlan plan)
+  ForceStudySimulation(const std::vector<NamedText>& definition, analysis::ScoreParameters scoring,
+                       analysis::AnalysisPlan plan)
       : d_(protocols::parse_force_definition(Table::parse(definition).source(),
                                              definition.front().file_name)),
         asked_in_(definition.back().file_name),
@@ -128,7 +128,7 @@ class ForceRehearsal final : public Rehearsal {
     return !parts_ || parts_->participant > 0.0 || parts_->interaction > 0.0;
   }
 
-  Rehearsed responses(std::uint64_t seed) const override {
+  SimulatedStudy responses(std::uint64_t seed) const override {
     if (!parts_) {
       throw InputError(
           fmt::format("{}: power.responses is missing; give mean, participant, interaction, block "
@@ -144,13 +144,13 @@ class ForceRehearsal final : public Rehearsal {
     return with_hours(of_statistics(analysis::study_statistics(scores, questions), scores.size()));
   }
 
-  Rehearsed sessions(const std::vector<std::filesystem::path>& files) const override {
+  SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
     const analysis::StudyResult study = analysis::analyze_study(files, scoring_, 1, plan_);
     return with_hours(of_statistics(study.statistics, study.scores.size()));
   }
 
  private:
-  Rehearsed with_hours(Rehearsed r) const {
+  SimulatedStudy with_hours(SimulatedStudy r) const {
     r.hours = static_cast<double>(r.trials) * hours_of_trial_;
     return r;
   }
@@ -207,10 +207,10 @@ class ForceRehearsal final : public Rehearsal {
 
 }  // namespace
 
-std::unique_ptr<Rehearsal> force_rehearsal(const std::vector<NamedText>& definition,
-                                           const analysis::ScoreParameters& scoring,
-                                           const analysis::AnalysisPlan& plan) {
-  return std::make_unique<ForceRehearsal>(definition, scoring, plan);
+std::unique_ptr<StudySimulation> force_study_simulation(const std::vector<NamedText>& definition,
+                                                        const analysis::ScoreParameters& scoring,
+                                                        const analysis::AnalysisPlan& plan) {
+  return std::make_unique<ForceStudySimulation>(definition, scoring, plan);
 }
 
 }  // namespace haptrial::experiments

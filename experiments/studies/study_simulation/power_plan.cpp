@@ -1,4 +1,4 @@
-#include "experiments/studies/rehearsal/power_plan.h"
+#include "experiments/studies/study_simulation/power_plan.h"
 
 #include <algorithm>
 

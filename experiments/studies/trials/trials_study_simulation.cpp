@@ -1,4 +1,4 @@
-#include "experiments/studies/trials/trials_rehearsal.h"
+#include "experiments/studies/trials/trials_study_simulation.h"
 
 #include <fmt/format.h>
 
@@ -81,8 +81,8 @@ void note_values(const trials::Quantity& q, std::vector<NamedNumber>& values) {
   }
 }
 
-Rehearsed rehearsed_of(const trials::TrialsResult& result) {
-  Rehearsed r;
+SimulatedStudy simulated_study_of(const trials::TrialsResult& result) {
+  SimulatedStudy r;
   for (const analysis::NamedTest& test : trials::tests_of(result)) {
     r.tests.push_back({test.name, test.p});
   }
@@ -114,10 +114,11 @@ Rehearsed rehearsed_of(const trials::TrialsResult& result) {
   return r;
 }
 
-class TrialsRehearsal final : public Rehearsal {
+class TrialsStudySimulation final : public StudySimulation {
  public:
-  TrialsRehearsal(std::unique_ptr<const StudiedDefinition> definition, trials::TrialsPlan plan,
-                  const std::vector<NamedText>& text, const std::string& watched)
+  TrialsStudySimulation(std::unique_ptr<const StudiedDefinition> definition,
+                        trials::TrialsPlan plan, const std::vector<NamedText>& text,
+                        const std::string& watched)
       : d_(std::move(definition)), plan_(std::move(plan)), asked_in_(text.back().file_name) {
     plan_.resamples = 0;
     plan_.bayesian = false;
@@ -142,7 +143,7 @@ class TrialsRehearsal final : public Rehearsal {
     return people && people->varies();
   }
 
-  Rehearsed responses(std::uint64_t seed) const override {
+  SimulatedStudy responses(std::uint64_t seed) const override {
     if (d_->script) {
       throw InputError(fmt::format(
           "{}: level_script chooses the levels, which responses alone do not run; give power.depth "
@@ -164,7 +165,7 @@ class TrialsRehearsal final : public Rehearsal {
     return analyzed(std::move(data));
   }
 
-  Rehearsed sessions(const std::vector<std::filesystem::path>& files) const override {
+  SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
     return analyzed(trials::read_trials(
         files, [this](const std::string& subject) { return group_of(subject); }, 1));
   }
@@ -212,8 +213,8 @@ class TrialsRehearsal final : public Rehearsal {
     }
   }
 
-  Rehearsed analyzed(trials::TrialsData data) const {
-    Rehearsed r = rehearsed_of(trials::analyze(std::move(data), plan_, procedures(), 1));
+  SimulatedStudy analyzed(trials::TrialsData data) const {
+    SimulatedStudy r = simulated_study_of(trials::analyze(std::move(data), plan_, procedures(), 1));
     r.hours = static_cast<double>(r.trials) * hours_of_trial_;
     return r;
   }
@@ -248,11 +249,11 @@ class TrialsRehearsal final : public Rehearsal {
 
 }  // namespace
 
-std::unique_ptr<Rehearsal> trials_rehearsal(std::unique_ptr<const StudiedDefinition> definition,
-                                            trials::TrialsPlan plan,
-                                            const std::vector<NamedText>& text,
-                                            const std::string& watched) {
-  return std::make_unique<TrialsRehearsal>(std::move(definition), std::move(plan), text, watched);
+std::unique_ptr<StudySimulation> trials_study_simulation(
+    std::unique_ptr<const StudiedDefinition> definition, trials::TrialsPlan plan,
+    const std::vector<NamedText>& text, const std::string& watched) {
+  return std::make_unique<TrialsStudySimulation>(std::move(definition), std::move(plan), text,
+                                                 watched);
 }
 
 }  // namespace haptrial::experiments

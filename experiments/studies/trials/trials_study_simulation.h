@@ -7,7 +7,7 @@
 #include "analysis/trials/fit/track_estimate.h"
 #include "analysis/trials/fit/trials_plan.h"
 #include "core/base/definition/table.h"
-#include "experiments/studies/rehearsal/rehearsal.h"
+#include "experiments/studies/study_simulation/study_simulation.h"
 #include "protocols/trials/studied_definition.h"
 
 namespace haptrial::experiments {
@@ -18,12 +18,12 @@ namespace haptrial::experiments {
 ///     met   formula of what an interval presents to the sense [unit of observer.senses]
 ///
 /// Bootstrap, Bayesian fits, intervals of tracks, a mixed model that has no conditions to test and,
-/// unless the watched test is one, permutation tests and those of drift and repetition are left out:
-/// none of them changes a p value of another test.
+/// unless the watched test is one, permutation tests and those of drift and repetition are left
+/// out: none of them changes a p value of another test.
 /// @param text     of the definition, for [power.responses] and sentences on it
 /// @param watched  name of the test
 /// @throws InputError for analyses that it cannot make, such as of movements
-std::unique_ptr<Rehearsal> trials_rehearsal(
+std::unique_ptr<StudySimulation> trials_study_simulation(
     std::unique_ptr<const protocols::StudiedDefinition> definition,
     analysis::trials::TrialsPlan plan, const std::vector<NamedText>& text,
     const std::string& watched);

@@ -6,7 +6,7 @@
 #include "analysis/force_training/score/score_parameters.h"
 #include "analysis/statistics/design/analysis_plan.h"
 #include "core/base/definition/table.h"
-#include "experiments/studies/rehearsal/rehearsal.h"
+#include "experiments/studies/study_simulation/study_simulation.h"
 #include "protocols/force_training/force_definition.h"
 
 namespace haptrial::experiments {
@@ -24,8 +24,8 @@ namespace haptrial::experiments {
 ///     [effects]                 CONDITION = number, as the difference from the mean
 ///
 /// @throws InputError for keys that are missing or no conditions of the definition
-std::unique_ptr<Rehearsal> force_rehearsal(const std::vector<NamedText>& definition,
-                                           const analysis::ScoreParameters& scoring,
-                                           const analysis::AnalysisPlan& plan);
+std::unique_ptr<StudySimulation> force_study_simulation(const std::vector<NamedText>& definition,
+                                                        const analysis::ScoreParameters& scoring,
+                                                        const analysis::AnalysisPlan& plan);
 
 }  // namespace haptrial::experiments

@@ -94,9 +94,9 @@ class Rows final : public SessionFile {
 };
 
 /// A session of one virtual participant.
-class RehearsalTest : public testing::Test {
+class SimulatedTrialsTest : public testing::Test {
  protected:
-  void rehearse(const std::string& text) {
+  void simulate_trials(const std::string& text) {
     Table root = Table::parse(text, "study.toml");
     definition_ = trials_protocol().read(root, "study.toml", nullptr);
     root.finish();
@@ -147,8 +147,8 @@ class RehearsalTest : public testing::Test {
   std::vector<record::ResponseRow> responses_;
 };
 
-TEST_F(RehearsalTest, AVirtualHandGoesToThePlaceOfItsAnswer) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(
+TEST_F(SimulatedTrialsTest, AVirtualHandGoesToThePlaceOfItsAnswer) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(
       test::felt_or_not("choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", "
                         "touch = \"left\" }]\n")));
   ASSERT_EQ(responses_.size(), 12u);
@@ -177,20 +177,20 @@ TEST_F(RehearsalTest, AVirtualHandGoesToThePlaceOfItsAnswer) {
   EXPECT_EQ(given, (std::map<std::string, int>{{"yes", 6}, {"no", 6}}));
 }
 
-TEST_F(RehearsalTest, AHandThatIsInThePlaceAlreadyLeavesItFirst) {
+TEST_F(SimulatedTrialsTest, AHandThatIsInThePlaceAlreadyLeavesItFirst) {
   std::string text = test::felt_or_not(
       "choices = [{ value = \"yes\", touch = \"right\" }, { value = \"no\", touch = \"left\" }]\n");
   const std::string home = "to = [0.0, 0.0, 0.0]";
   text.replace(text.find(home), home.size(), "to = [0.03, 0.0, 0.0]");
-  ASSERT_NO_FATAL_FAILURE(rehearse(text));
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(text));
   for (const record::ResponseRow& row : responses_) {
     EXPECT_GT(row.reaction_time, row.text == "yes" ? 0.6 : 0.1);
   }
   EXPECT_EQ(responses_.size(), 12u);
 }
 
-TEST_F(RehearsalTest, AVirtualParticipantPressesThePedal) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(test::felt_or_not(
+TEST_F(SimulatedTrialsTest, AVirtualParticipantPressesThePedal) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(test::felt_or_not(
       "choices = [{ value = \"yes\", pedal = 0.5 }, { value = \"no\", buttons = [0] }]\n")));
   int pedal = 0;
   for (const record::ResponseRow& row : responses_) {
@@ -204,8 +204,8 @@ TEST_F(RehearsalTest, AVirtualParticipantPressesThePedal) {
 const char* const kTwoKeys =
     "choices = [{ value = \"yes\" }, { value = \"no\" }]\ntoo_fast = 0.5\ntoo_slow = 0.7\n";
 
-TEST_F(RehearsalTest, AnswersOutOfTimeAreToldAndCount) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(test::felt_or_not(kTwoKeys)));
+TEST_F(SimulatedTrialsTest, AnswersOutOfTimeAreToldAndCount) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(test::felt_or_not(kTwoKeys)));
   std::size_t beyond = 0;
   for (const record::ResponseRow& row : responses_) {
     beyond += row.reaction_time < 0.5 || row.reaction_time > 0.7 ? 1 : 0;
@@ -222,9 +222,9 @@ TEST_F(RehearsalTest, AnswersOutOfTimeAreToldAndCount) {
   }
 }
 
-TEST_F(RehearsalTest, TrialsOfAnswersOutOfTimeComeAgainUntilAllAreInTime) {
+TEST_F(SimulatedTrialsTest, TrialsOfAnswersOutOfTimeComeAgainUntilAllAreInTime) {
   ASSERT_NO_FATAL_FAILURE(
-      rehearse(test::felt_or_not(std::string(kTwoKeys) + "out_of_time = \"repeat\"\n")));
+      simulate_trials(test::felt_or_not(std::string(kTwoKeys) + "out_of_time = \"repeat\"\n")));
   std::map<std::int32_t, bool> again;
   for (const record::OutOfTimeRow& row : rows_.late) {
     EXPECT_TRUE(row.again);
@@ -251,8 +251,8 @@ TEST_F(RehearsalTest, TrialsOfAnswersOutOfTimeComeAgainUntilAllAreInTime) {
 }
 
 /// The size of the pull decides: yes where it is felt above the criterion.
-TEST_F(RehearsalTest, QuestOfTwoDimensionsFindsTheCriterionOfTheParticipant) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(R"toml([experiment]
+TEST_F(SimulatedTrialsTest, QuestOfTwoDimensionsFindsTheCriterionOfTheParticipant) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(R"toml([experiment]
 protocol = "trials"
 name = "plane"
 [design]
@@ -331,8 +331,8 @@ explore = { do = "follow", turn_after = 10.0 }
 instructions = "Go round it."
 )";
 
-TEST_F(RehearsalTest, ContactsWithAnObjectAreRecorded) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(kRoundACube));
+TEST_F(SimulatedTrialsTest, ContactsWithAnObjectAreRecorded) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(kRoundACube));
   ASSERT_GT(rows_.contacts.size(), 3000u);
   bool left = false, under = false;
   for (const record::ContactRow& row : rows_.contacts) {
@@ -393,7 +393,8 @@ instructions = "Press."
 }
 
 /// A replay has the hands and the stages, and finds what pressed the body on each tick.
-class ReplayedBodyTest : public RehearsalTest, public testing::WithParamInterface<std::string> {};
+class ReplayedBodyTest : public SimulatedTrialsTest,
+                         public testing::WithParamInterface<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Models, ReplayedBodyTest,
                          testing::Values(kElements, kSprings, kSprings + "rate = 250.0\n"));
 
@@ -437,8 +438,8 @@ TEST_P(ReplayedBodyTest, WhatPressedABodyFollowsFromTheHandsAndTheStages) {
 }
 
 /// The force that the screen shows on the body is the one on the hand, turned around.
-TEST_F(RehearsalTest, WhatIsSeenToPressABodyIsWhatIsFelt) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(soft_block("0.006")));
+TEST_F(SimulatedTrialsTest, WhatIsSeenToPressABodyIsWhatIsFelt) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(soft_block("0.006")));
   ASSERT_GT(presses_.all.size(), 500u);
   ASSERT_GE(presses_.all.size() + 1, rows_.contacts.size()) << "nothing is seen on the last tick";
   const Eigen::Matrix3d turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()));
@@ -458,10 +459,10 @@ TEST_F(RehearsalTest, WhatIsSeenToPressABodyIsWhatIsFelt) {
 
 /// A hand that holds still while a path draws it through a plate lets the force rise and hardly
 /// moves: that is no frozen reading.
-TEST_F(RehearsalTest, AHandThatIsDrawnThroughAPlateIsNoFrozenReading) {
+TEST_F(SimulatedTrialsTest, AHandThatIsDrawnThroughAPlateIsNoFrozenReading) {
   for (const char* stiffness : {"800.0", "3000.0"}) {
     outcomes_.clear();
-    ASSERT_NO_FATAL_FAILURE(rehearse(std::string(R"([experiment]
+    ASSERT_NO_FATAL_FAILURE(simulate_trials(std::string(R"([experiment]
 protocol = "trials"
 name = "through_a_plate"
 [design]
@@ -495,8 +496,8 @@ press = { do = "hold" }
   }
 }
 
-TEST_F(RehearsalTest, ABodyOfSpringsIsPressedAndSaysHowItMoved) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(soft_block("0.006", kSprings)));
+TEST_F(SimulatedTrialsTest, ABodyOfSpringsIsPressedAndSaysHowItMoved) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(soft_block("0.006", kSprings)));
   ASSERT_GT(presses_.all.size(), 500u);
   double most = 0.0;
   for (const record::ContactRow& row : rows_.contacts) {
@@ -513,8 +514,8 @@ TEST_F(RehearsalTest, ABodyOfSpringsIsPressedAndSaysHowItMoved) {
   EXPECT_EQ(rows_.events.count("energy_limit"), rows_.moving[0].limited > 0 ? 1u : 0u);
 }
 
-TEST_F(RehearsalTest, WhatWouldTurnATetrahedronInsideOutIsTold) {
-  ASSERT_NO_FATAL_FAILURE(rehearse(soft_block("0.0025")));
+TEST_F(SimulatedTrialsTest, WhatWouldTurnATetrahedronInsideOutIsTold) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(soft_block("0.0025")));
   ASSERT_EQ(rows_.touched.size(), 1u);
   EXPECT_GT(rows_.touched[0].inverted, 0u);
   EXPECT_LE(rows_.touched[0].inverted, rows_.touched[0].contact);
