@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "analysis/contact/duck/duck_report.h"
+#include "analysis/contact/demo_study/demo_study_report.h"
 #include "analysis/contact/evaluation/check_body.h"
 #include "analysis/contact/recording/read_recording.h"
 #include "analysis/contact/recording/session_contact.h"
@@ -207,21 +207,21 @@ std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o) {
   return others;
 }
 
-int evaluate_duck(const EvaluateOptions& o) {
+int evaluate_demo_study(const EvaluateOptions& o) {
   if (!o.recording.empty() || !o.mesh.empty()) {
     throw InputError("--duck is given with a recording or a mesh; it makes its own");
   }
   if (!o.tested_on.empty()) {
     throw InputError("--test-on needs RECORDING; --duck makes its own");
   }
-  evaluation::DuckOptions duck;
-  duck.seed = checked_seed(o.seed);
-  const evaluation::DuckTables tables = evaluation::make_duck_tables(duck);
+  evaluation::DemoStudyOptions demo;
+  demo.seed = checked_seed(o.seed);
+  const evaluation::DemoStudyTables tables = evaluation::make_demo_study_tables(demo);
   const std::vector<evaluation::FailureMap> maps = evaluation::failure_maps();
   if (!o.out.empty()) {
-    evaluation::write_duck(tables, maps, o.out);
+    evaluation::write_demo_study(tables, maps, o.out);
   }
-  for (const std::string& line : evaluation::duck_lines(tables, maps)) {
+  for (const std::string& line : evaluation::demo_study_lines(tables, maps)) {
     fmt::print("{}\n", line);
   }
   return 0;
@@ -231,7 +231,7 @@ int evaluate_duck(const EvaluateOptions& o) {
 
 int evaluate(const EvaluateOptions& options) {
   if (options.duck) {
-    return evaluate_duck(options);
+    return evaluate_demo_study(options);
   }
   if (options.seed != EvaluateOptions{}.seed) {
     throw InputError("--seed is for --duck; a recording has no random numbers");

@@ -11,7 +11,7 @@
 namespace haptrial::evaluation {
 
 /// The source's experiments made anew on a simulated duck.
-struct DuckOptions {
+struct DemoStudyOptions {
   std::uint64_t seed{1};
   double seconds{30.0};  // of the recording
   int frequency{84};     // of the scan: 141,120 triangles
@@ -23,7 +23,7 @@ struct DuckOptions {
 };
 
 /// A rendering of the duck: what a row of the tables says.
-struct DuckRow {
+struct DemoStudyRow {
   std::string renderer;
   std::size_t triangles{0};
   double friction{0.0};
@@ -36,24 +36,24 @@ struct DuckRow {
   contact::Operations most{};        // of each kind, in one tick
 };
 
-struct DuckTables {
-  DuckOptions options;
+struct DemoStudyTables {
+  DemoStudyOptions options;
   PreparedContact contact;
   std::vector<Eigen::Vector3d> scan;  // its vertices [m]
   double mean_force{0.0};             // recorded [N]
   double scan_error{0.0};             // root mean square of the scan's distance from the duck [m]
   FrictionFit friction;               // on the whole scan
-  std::vector<DuckRow> table4;        // voxels at 32 and 64, proxy
-  std::vector<DuckRow> table5;        // proxy without friction and with
-  std::vector<DuckRow> table6;        // proxy on eight meshes, coarsest first
-  std::vector<DuckRow> shaded;        // the same with force shading (the source's Figure 64)
+  std::vector<DemoStudyRow> table4;   // voxels at 32 and 64, proxy
+  std::vector<DemoStudyRow> table5;   // proxy without friction and with
+  std::vector<DemoStudyRow> table6;   // proxy on eight meshes, coarsest first
+  std::vector<DemoStudyRow> shaded;   // the same with force shading (the source's Figure 64)
 };
 
 /// A duck is scanned with noise of 1 mm; a probe with the source's sensors rubs it (lag, load and
 /// place unknown to the chain); the in-trajectory comes from the whole scan, as in the source.
 /// @param said  is told what is done next; may be empty
 /// Source: Morris 2006, §7.4.1, §7.4.2, §7.4.3, §7.4.4.
-DuckTables make_duck_tables(const DuckOptions& options,
-                            const std::function<void(const std::string&)>& said = {});
+DemoStudyTables make_demo_study_tables(const DemoStudyOptions& options,
+                                       const std::function<void(const std::string&)>& said = {});
 
 }  // namespace haptrial::evaluation

@@ -1,4 +1,4 @@
-#include "analysis/contact/duck/duck_report.h"
+#include "analysis/contact/demo_study/demo_study_report.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <iterator>
 #include <span>
 
-#include "analysis/contact/duck/duck_figures.h"
-#include "analysis/contact/duck/source_tables.h"
+#include "analysis/contact/demo_study/demo_study_figures.h"
+#include "analysis/contact/demo_study/source_tables.h"
 #include "analysis/contact/report/evaluation_tables.h"
 #include "analysis/document/document.h"
 #include "analysis/document/figure_gnuplot.h"
@@ -19,12 +19,12 @@
 namespace haptrial::evaluation {
 namespace {
 
-TextTable errors(const std::vector<DuckRow>& rows, std::span<const double> source) {
+TextTable errors(const std::vector<DemoStudyRow>& rows, std::span<const double> source) {
   TextTable table{
       {"renderer", "triangles", "friction", "error (N)", "of the normal force (N)", "source (N)"},
       {}};
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const DuckRow& r = rows[i];
+    const DemoStudyRow& r = rows[i];
     table.rows.push_back({r.renderer, fmt::format("{}", r.triangles),
                           fmt::format("{:.4f}", r.friction), fmt::format("{:.4f}", r.error),
                           fmt::format("{:.4f}", r.normal_error), fmt::format("{:.3f}", source[i])});
@@ -32,9 +32,9 @@ TextTable errors(const std::vector<DuckRow>& rows, std::span<const double> sourc
   return table;
 }
 
-TextTable table4(const DuckTables& t) { return errors(t.table4, kSourceTable4); }
-TextTable table5(const DuckTables& t) { return errors(t.table5, kSourceTable5); }
-TextTable table6(const DuckTables& t) {
+TextTable table4(const DemoStudyTables& t) { return errors(t.table4, kSourceTable4); }
+TextTable table5(const DemoStudyTables& t) { return errors(t.table5, kSourceTable5); }
+TextTable table6(const DemoStudyTables& t) {
   TextTable table = errors(t.table6, kSourceTable6);
   table.heading.insert(table.heading.end() - 1, {"shaded (N)", "of the normal force, shaded (N)"});
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
@@ -45,11 +45,11 @@ TextTable table6(const DuckTables& t) {
   return table;
 }
 
-TextTable costs(const DuckTables& t) {
+TextTable costs(const DemoStudyTables& t) {
   TextTable table{
       {"renderer", "triangles", "friction", "tick (us)", "preparation (s)", "memory (MB)"}, {}};
   for (const auto* rows : {&t.table4, &t.table5, &t.table6}) {
-    for (const DuckRow& r : *rows) {
+    for (const DemoStudyRow& r : *rows) {
       table.rows.push_back({r.renderer, fmt::format("{}", r.triangles),
                             fmt::format("{:.4f}", r.friction), fmt::format("{:.2f}", 1e6 * r.tick),
                             fmt::format("{:.3f}", r.preparation),
@@ -59,14 +59,14 @@ TextTable costs(const DuckTables& t) {
   return table;
 }
 
-TextTable operations(const DuckTables& t) {
+TextTable operations(const DemoStudyTables& t) {
   TextTable table{{"renderer", "triangles", "friction"}, {}};
-  std::vector<DuckRow> rows;
+  std::vector<DemoStudyRow> rows;
   for (const auto* more : {&t.table4, &t.table5, &t.table6}) {
     rows.insert(rows.end(), more->begin(), more->end());
   }
   std::vector<contact::Operations> all;
-  for (const DuckRow& r : rows) {
+  for (const DemoStudyRow& r : rows) {
     all.push_back(r.operations);
   }
   const auto counts = counted(all);
@@ -74,7 +74,7 @@ TextTable operations(const DuckTables& t) {
     table.heading.push_back(fmt::format("{}, mean", c.name));
     table.heading.push_back(fmt::format("{}, most", c.name));
   }
-  for (const DuckRow& r : rows) {
+  for (const DemoStudyRow& r : rows) {
     auto& row = table.rows.emplace_back();
     row = {r.renderer, fmt::format("{}", r.triangles), fmt::format("{:.4f}", r.friction)};
     const double ticks = std::max(1.0, static_cast<double>(r.operations.ticks));
@@ -118,7 +118,7 @@ std::string csv_of(const TextTable& table) {
   return text;
 }
 
-std::vector<std::string> facts(const DuckTables& t) {
+std::vector<std::string> facts(const DemoStudyTables& t) {
   const Registration& r = *t.contact.registration;
   return {
       fmt::format("Seed {}; {:.0f} s of a probe that presses with {:.2f} N in the mean on a "
@@ -135,7 +135,8 @@ std::vector<std::string> facts(const DuckTables& t) {
 
 }  // namespace
 
-std::vector<std::string> duck_lines(const DuckTables& t, const std::vector<FailureMap>& maps) {
+std::vector<std::string> demo_study_lines(const DemoStudyTables& t,
+                                          const std::vector<FailureMap>& maps) {
   std::vector<std::string> lines{"SIMULATED RECORDING"};
   const auto append = [&](const std::vector<std::string>& more) {
     lines.insert(lines.end(), more.begin(), more.end());
@@ -155,7 +156,7 @@ class Report {
  public:
   explicit Report(const std::filesystem::path& folder) : out_(folder) {}
 
-  void begin(const DuckTables& t) {
+  void begin(const DemoStudyTables& t) {
     document_.title = "Rendered beside simulated contact: the source's duck made anew";
     document_.simulated = true;
     document_.alarm("SIMULATED RECORDING: no hand touched a body.");
@@ -201,8 +202,8 @@ class Report {
 
 }  // namespace
 
-void write_duck(const DuckTables& t, const std::vector<FailureMap>& maps,
-                const std::filesystem::path& folder) {
+void write_demo_study(const DemoStudyTables& t, const std::vector<FailureMap>& maps,
+                      const std::filesystem::path& folder) {
   std::vector<analysis::Figure> figures{trajectory_figure(t), path_figure(t), resolution_figure(t)};
   const std::size_t before = 2, of_tables = figures.size();
   for (const FailureMap& map : maps) {

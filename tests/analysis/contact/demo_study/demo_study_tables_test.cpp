@@ -1,4 +1,4 @@
-#include "analysis/contact/duck/duck_tables.h"
+#include "analysis/contact/demo_study/demo_study_tables.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "analysis/contact/duck/duck_figures.h"
-#include "analysis/contact/duck/duck_report.h"
+#include "analysis/contact/demo_study/demo_study_figures.h"
+#include "analysis/contact/demo_study/demo_study_report.h"
 #include "core/base/files/file_text.h"
 #include "core/geometry/bvh/bvh.h"
 #include "core/geometry/repair/mesh_check.h"
@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 
 /// The normal of the gradient is that of a fine mesh.
-TEST(DuckTest, NormalsAreThoseOfItsMesh) {
+TEST(DemoStudyTest, NormalsAreThoseOfItsMesh) {
   const geometry::Mesh mesh = radial_mesh(duck_radius, 60);
   double worst = 0.0;
   for (const geometry::Triangle& t : mesh.triangles) {
@@ -31,7 +31,7 @@ TEST(DuckTest, NormalsAreThoseOfItsMesh) {
   EXPECT_LT(worst, 0.05) << "edges of 1 mm on curvatures of up to 100 per metre";
 }
 
-TEST(DuckTest, ScanAndCoarserMeshesAreClosed) {
+TEST(DemoStudyTest, ScanAndCoarserMeshesAreClosed) {
   const geometry::Mesh scan = scanned_mesh(duck_radius, {.frequency = 40});
   const geometry::Bvh bvh(scan);
   const RadialBody scanned = radius_of(bvh);
@@ -53,11 +53,11 @@ TEST(DuckTest, ScanAndCoarserMeshesAreClosed) {
 }
 
 /// The trends of the source's tables, on a small scan.
-TEST(DuckTest, TablesHaveTheSourcesTrends) {
-  DuckOptions options;
+TEST(DemoStudyTest, TablesHaveTheSourcesTrends) {
+  DemoStudyOptions options;
   options.frequency = 60;  // 72,000 triangles
   options.seconds = 12.0;
-  const DuckTables t = make_duck_tables(options);
+  const DemoStudyTables t = make_demo_study_tables(options);
   ASSERT_EQ(t.table4.size(), 3u);
   EXPECT_GT(t.table4[0].normal_error, t.table4[1].normal_error) << "finer voxels err less";
   EXPECT_LT(t.table4[2].normal_error, t.table4[1].normal_error) << "the proxy errs least";
@@ -69,8 +69,8 @@ TEST(DuckTest, TablesHaveTheSourcesTrends) {
 }
 
 /// A probe that is led 30 mm over a plate and pressed 2 mm into it.
-DuckTables stroked_plate() {
-  DuckTables t;
+DemoStudyTables stroked_plate() {
+  DemoStudyTables t;
   t.contact.rate = 1000.0;
   t.contact.stiffness = 300.0;
   for (int i = 0; i < 300; ++i) {
@@ -84,7 +84,7 @@ DuckTables stroked_plate() {
   return t;
 }
 
-TEST(DuckTest, TheInTrajectoryIsDrawnBelowTheOutTrajectory) {
+TEST(DemoStudyTest, TheInTrajectoryIsDrawnBelowTheOutTrajectory) {
   const analysis::Figure figure = trajectory_figure(stroked_plate());
   ASSERT_EQ(figure.series.size(), 3u);
   const analysis::Series &joined = figure.series[0], &out = figure.series[1],
@@ -99,8 +99,8 @@ TEST(DuckTest, TheInTrajectoryIsDrawnBelowTheOutTrajectory) {
   EXPECT_EQ(path_figure(stroked_plate()).series.size(), 2u);
 }
 
-TEST(DuckTest, IsWrittenWithTheSourcesNumbers) {
-  DuckTables t = stroked_plate();
+TEST(DemoStudyTest, IsWrittenWithTheSourcesNumbers) {
+  DemoStudyTables t = stroked_plate();
   t.contact.registration = Registration{};
   t.contact.load = LoadFit{};
   t.table4.assign(3, {"proxy", 140'000, 0.0, 0.12, 0.01, 1e-6, 0.0, 0.0});
@@ -111,11 +111,11 @@ TEST(DuckTest, IsWrittenWithTheSourcesNumbers) {
   }
   t.shaded = t.table6;
   const test::TemporaryFolder folder;
-  write_duck(t, {}, folder / "out");
+  write_demo_study(t, {}, folder / "out");
   EXPECT_THAT(file_text(folder / "out/table-5.csv"), HasSubstr("0.067"));
   EXPECT_THAT(file_text(folder / "out/table-6.csv"), HasSubstr("0.085"));
   EXPECT_THAT(file_text(folder / "out/report.html"), HasSubstr("SIMULATED RECORDING"));
-  EXPECT_THAT(duck_lines(t, {}).front(), "SIMULATED RECORDING");
+  EXPECT_THAT(demo_study_lines(t, {}).front(), "SIMULATED RECORDING");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "analysis/contact/duck/duck_figures.h"
+#include "analysis/contact/demo_study/demo_study_figures.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/contact/duck/source_tables.h"
+#include "analysis/contact/demo_study/source_tables.h"
 #include "analysis/document/palette.h"
 
 namespace haptrial::evaluation {
@@ -68,9 +68,9 @@ void mark_simulated(analysis::Figure& figure) {
 }
 
 analysis::Series curve(const std::string& label, const analysis::Look& look,
-                       const std::vector<DuckRow>& rows) {
+                       const std::vector<DemoStudyRow>& rows) {
   analysis::Series series{label, analysis::Mark::kLine, look};
-  for (const DuckRow& r : rows) {
+  for (const DemoStudyRow& r : rows) {
     series.x.push_back(std::log10(static_cast<double>(r.triangles)));
     series.y.push_back(r.normal_error);
   }
@@ -79,7 +79,7 @@ analysis::Series curve(const std::string& label, const analysis::Look& look,
 
 }  // namespace
 
-analysis::Figure trajectory_figure(const DuckTables& t) {
+analysis::Figure trajectory_figure(const DemoStudyTables& t) {
   constexpr std::size_t kMost = 200, kJoined = 10;
   const PreparedContact& c = t.contact;
   const auto [first, end] = longest_contact(c.touching, kMost);
@@ -125,7 +125,7 @@ analysis::Figure trajectory_figure(const DuckTables& t) {
   return figure;
 }
 
-analysis::Figure path_figure(const DuckTables& t) {
+analysis::Figure path_figure(const DemoStudyTables& t) {
   constexpr std::size_t kDots = 2500;  // of each series
   const Side side = broad_side(t.scan);
   analysis::Series scan{"scan", analysis::Mark::kPoints, kFaint};
@@ -152,13 +152,13 @@ analysis::Figure path_figure(const DuckTables& t) {
   return figure;
 }
 
-analysis::Figure resolution_figure(const DuckTables& t) {
+analysis::Figure resolution_figure(const DemoStudyTables& t) {
   analysis::Figure figure;
   figure.name = "figure-64";
   figure.title = "Force error over the size of the mesh";
   figure.x_label = "triangles";
   figure.y_label = "error of the normal force (N)";
-  for (const DuckRow& r : t.table6) {
+  for (const DemoStudyRow& r : t.table6) {
     figure.x_names.emplace_back(std::log10(static_cast<double>(r.triangles)),
                                 fmt::format("{:.3g}k", 1e-3 * static_cast<double>(r.triangles)));
   }

@@ -1,4 +1,4 @@
-#include "analysis/contact/duck/duck_tables.h"
+#include "analysis/contact/demo_study/demo_study_tables.h"
 
 #include <fmt/format.h>
 
@@ -25,13 +25,13 @@ std::vector<Vector3d> normal_part(const PreparedContact& c) {
   return force;
 }
 
-class DuckRenderings {
+class DemoStudyRenderings {
  public:
-  explicit DuckRenderings(const PreparedContact& contact)
+  explicit DemoStudyRenderings(const PreparedContact& contact)
       : contact_(contact), normal_(normal_part(contact)) {}
 
-  DuckRow row(const contact::FeltBody& body, RendererKind kind,
-              const contact::RendererOptions& options) const {
+  DemoStudyRow row(const contact::FeltBody& body, RendererKind kind,
+                   const contact::RendererOptions& options) const {
     const RenderedContact r = render_contact(contact_, body, kind, options);
     return {std::string(contact::name_of(kind)),
             body.mesh.triangles.size(),
@@ -50,7 +50,7 @@ class DuckRenderings {
   std::vector<Vector3d> normal_;
 };
 
-PreparedContact recorded_duck(const contact::FeltBody& scan, const DuckOptions& o) {
+PreparedContact recorded_demo(const contact::FeltBody& scan, const DemoStudyOptions& o) {
   SimulatedProbe probe;
   probe.seconds = o.seconds;
   probe.press = o.press;
@@ -76,8 +76,8 @@ double scan_error(const geometry::Mesh& scan) {
 
 }  // namespace
 
-DuckTables make_duck_tables(const DuckOptions& o,
-                            const std::function<void(const std::string&)>& said) {
+DemoStudyTables make_demo_study_tables(const DemoStudyOptions& o,
+                                       const std::function<void(const std::string&)>& said) {
   const auto say = [&](const std::string& what) {
     if (said) {
       said(what);
@@ -86,20 +86,20 @@ DuckTables make_duck_tables(const DuckOptions& o,
   say("scanning the duck");
   const contact::FeltBody scan(
       scanned_mesh(duck_radius, {.frequency = o.frequency, .seed = o.seed}));
-  DuckTables t;
+  DemoStudyTables t;
   t.options = o;
   t.scan = scan.mesh.vertices;
   t.scan_error = scan_error(scan.mesh);
   say("lag, load, registration, in-trajectory");
-  t.contact = recorded_duck(scan, o);
+  t.contact = recorded_demo(scan, o);
   t.mean_force = force_error(t.contact.force, t.contact.force).mean_force;
-  const DuckRenderings renderings(t.contact);
+  const DemoStudyRenderings renderings(t.contact);
   say("proxy and voxels");
   for (const int resolution : {32, 64}) {
     t.table4.push_back(renderings.row(scan, RendererKind::kVoxel, {.resolution = resolution}));
     t.table4.back().renderer = fmt::format("voxel, {}^3", resolution);
   }
-  const DuckRow proxy = renderings.row(scan, RendererKind::kProxy, {});
+  const DemoStudyRow proxy = renderings.row(scan, RendererKind::kProxy, {});
   t.table4.push_back(proxy);
   say("friction");
   t.friction = fit_friction(t.contact, scan, RendererKind::kProxy, {});
