@@ -166,12 +166,12 @@ class Tables {
 };
 
 /// A table of a protocol, of all sessions together.
-struct OwnTable {
+struct ProtocolTable {
   const record::TableDescription* table;
   std::string text;  // empty: no session has a row
 };
 
-Docs own_docs(const record::TableDescription& table) {
+Docs column_docs(const record::TableDescription& table) {
   Docs docs{kSubject, kSession};
   for (const record::Column& column : table.schema().columns) {
     docs.push_back(doc_of(table.schema(), column.name));
@@ -179,12 +179,13 @@ Docs own_docs(const record::TableDescription& table) {
   return docs;
 }
 
-void add_rows(OwnTable& own, const ExportSession& session, const record::SessionReader& reader) {
+void add_rows(ProtocolTable& own, const ExportSession& session,
+              const record::SessionReader& reader) {
   if (!reader.has(*own.table) || reader.count(*own.table) == 0) {
     return;
   }
   if (own.text.empty()) {
-    own.text = heading(own_docs(*own.table), Delimited::kCsv);
+    own.text = heading(column_docs(*own.table), Delimited::kCsv);
   }
   RowText row(own.text, Delimited::kCsv);
   reader.each_row(*own.table, [&](const std::vector<record::Cell>& cells) {
@@ -198,9 +199,9 @@ void add_rows(OwnTable& own, const ExportSession& session, const record::Session
 
 /// Tables of passes, and of answers to pages; ticks and facts that a session has from the beginning
 /// are too much for a table.
-std::vector<OwnTable> own_tables(const std::vector<ExportSession>& sessions,
-                                 const record::TableList& tables) {
-  std::vector<OwnTable> all;
+std::vector<ProtocolTable> protocol_tables(const std::vector<ExportSession>& sessions,
+                                           const record::TableList& tables) {
+  std::vector<ProtocolTable> all;
   for (const record::TableDescription* table : tables) {
     const record::RowsOf of = table->of();
     if (of == record::RowsOf::kPass || of == record::RowsOf::kEndedPass ||
@@ -210,11 +211,11 @@ std::vector<OwnTable> own_tables(const std::vector<ExportSession>& sessions,
   }
   for (const ExportSession& session : sessions) {
     const record::SessionReader reader(session.file);
-    for (OwnTable& own : all) {
+    for (ProtocolTable& own : all) {
       add_rows(own, session, reader);
     }
   }
-  std::erase_if(all, [](const OwnTable& own) { return own.text.empty(); });
+  std::erase_if(all, [](const ProtocolTable& own) { return own.text.empty(); });
   return all;
 }
 
@@ -233,7 +234,7 @@ nlohmann::ordered_json described(const char* what, const Docs& docs) {
   return json;
 }
 
-std::string dictionary(const CsvOptions& options, const std::vector<OwnTable>& own,
+std::string dictionary(const CsvOptions& options, const std::vector<ProtocolTable>& own,
                        bool simulated) {
   nlohmann::ordered_json json;
   json["simulated"] = simulated;
@@ -244,9 +245,9 @@ std::string dictionary(const CsvOptions& options, const std::vector<OwnTable>& o
       described("a row for each pass; a trial has one of each phase, more if it was interrupted",
                 trial_docs(options.phases));
   files["events.csv"] = described("what happened when", happening_docs());
-  for (const OwnTable& table : own) {
+  for (const ProtocolTable& table : own) {
     files[table.table->name() + ".csv"] =
-        described(table.table->schema().description, own_docs(*table.table));
+        described(table.table->schema().description, column_docs(*table.table));
   }
   if (options.samples) {
     files["samples/*.csv.gz"] = described("a row for each tick of the servo loop", sample_docs());
@@ -309,8 +310,8 @@ CsvSummary export_csv(std::span<const fs::path> files, const fs::path& folder,
   out.write("sessions.csv", tables.sessions);
   out.write("trials.csv", tables.trials);
   out.write("events.csv", tables.events);
-  const std::vector<OwnTable> own = own_tables(sessions, options.tables);
-  for (const OwnTable& table : own) {
+  const std::vector<ProtocolTable> own = protocol_tables(sessions, options.tables);
+  for (const ProtocolTable& table : own) {
     out.write(table.table->name() + ".csv", table.text);
   }
   out.write("dictionary.json", dictionary(options, own, simulated));

@@ -8,7 +8,7 @@
 #include "core/base/text/nearest.h"
 #include "core/device/gamepad/gamepad.h"
 #include "core/device/mouse.h"
-#include "core/device/own_devices.h"
+#include "core/device/registered_devices.h"
 #include "core/device/replay.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
@@ -136,7 +136,7 @@ std::unique_ptr<protocols::Rig> open_rig(
   if (const auto file = replayed_file(choice.name)) {
     return with(replayed(*file, d.rate));
   }
-  if (const device::RegisteredDevice* own = device::own_device(choice.name)) {
+  if (const device::RegisteredDevice* own = device::registered_device(choice.name)) {
     return with(own->open(device::setting_of(choice.name), choice.number, d.rate));
   }
   check_device_name(choice.name);
@@ -164,7 +164,7 @@ void check_device_name(const std::string& name) {
     throw InputError("--device replay: names no file; write replay:FILE");
   }
   std::vector<std::string> known = device::device_names();
-  if (!name.starts_with(kReplay) && device::own_device(name) == nullptr &&
+  if (!name.starts_with(kReplay) && device::registered_device(name) == nullptr &&
       std::find(known.begin(), known.end(), name) == known.end()) {
     known.emplace_back("replay:FILE");
     throw InputError(not_allowed("--device", fmt::format("'{}'", name), known) +

@@ -46,7 +46,7 @@ struct Record {
 
 // Each queue behind the same two calls: push, and consume (everything there is).
 template <class R>
-struct OwnDrained {
+struct BlockLogDrained {
   haptrial::realtime::BlockLog<R> queue{1024, kSlots / 1024};
   bool push(const R& r) { return queue.push(r); }
   template <class F>
@@ -55,7 +55,7 @@ struct OwnDrained {
   }
 };
 template <class R>
-struct OwnFlushed {
+struct BlockLogFlushed {
   haptrial::realtime::BlockLog<R> queue{1024, kSlots / 1024};
   bool push(const R& r) { return queue.push(r); }
   template <class F>
@@ -238,8 +238,8 @@ class Run {
 template <std::size_t kBytes>
 std::uint64_t compare(Consumer kind) {
   using R = Record<kBytes>;
-  Run<OwnDrained<R>, R> drained(kind);
-  Run<OwnFlushed<R>, R> flushed(kind);
+  Run<BlockLogDrained<R>, R> drained(kind);
+  Run<BlockLogFlushed<R>, R> flushed(kind);
   Run<Moodycamel<R>, R> moodycamel(kind);
   Run<Boost<R>, R> boost(kind);
   std::array<std::array<std::vector<double>, kFigures>, 4> rounds;

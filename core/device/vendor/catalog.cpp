@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/device/gamepad/gamepad.h"
-#include "core/device/own_devices.h"
+#include "core/device/registered_devices.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
 
@@ -60,7 +60,7 @@ std::vector<DeviceListing> list_devices(const VendorLibraries& libraries) {
       gamepad(),
       force_dimension(libraries.force_dimension),
       open_haptics(libraries.open_haptics)};
-  for (const RegisteredDevice& device : own_devices()) {
+  for (const RegisteredDevice& device : registered_devices()) {
     list.push_back({device.name, true, device.what});
   }
   return list;

@@ -195,16 +195,16 @@ struct SessionReader::Impl {
   /// A table of a protocol, opened when it is first asked for.
   const OpenTable& own(const TableDescription& table) const {
     const std::lock_guard hold(own_mutex);
-    const auto at = own_tables.find(table.name());
-    if (at != own_tables.end()) {
+    const auto at = protocol_tables.find(table.name());
+    if (at != protocol_tables.end()) {
       return at->second;
     }
-    OpenTable& opened = own_tables[table.name()];
+    OpenTable& opened = protocol_tables[table.name()];
     if (h5::has_table(file, table.name().c_str())) {
       try {
         opened = open_table(file, table.schema(version));
       } catch (const h5::Error& error) {
-        own_tables.erase(table.name());
+        protocol_tables.erase(table.name());
         throw InputError(path.string() + ": cannot be read (" + error.what() + ")" + kRecover);
       }
     }
@@ -212,7 +212,7 @@ struct SessionReader::Impl {
   }
 
   mutable std::mutex own_mutex;
-  mutable std::map<std::string, OpenTable> own_tables;  // by name; nodes stay in their place
+  mutable std::map<std::string, OpenTable> protocol_tables;  // by name; nodes stay in their place
 };
 
 SessionReader::SessionReader(const fs::path& path) {

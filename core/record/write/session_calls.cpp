@@ -128,7 +128,7 @@ void SessionWriter::add_at_once(const Rows& rows) {
 
 void SessionWriter::add_packed(const TableDescription& table, std::span<const std::uint8_t> rows) {
   impl_->guarded([&] {
-    TableWriter& to = impl_->own_table(table);
+    TableWriter& to = impl_->protocol_table(table);
     const std::size_t bytes = table.schema().row_bytes();
     for (std::size_t at = 0; at < rows.size(); at += bytes) {
       to.planes().put_row(to.used(), rows.subspan(at, bytes));

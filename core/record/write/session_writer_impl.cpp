@@ -32,12 +32,12 @@ void put_attributes(TableWriter& table, const std::vector<EventRow>& rows) {
 }  // namespace
 
 SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
-                          const TableList& own_tables, std::span<const Rows> first_rows)
+                          const TableList& protocol_tables, std::span<const Rows> first_rows)
     : final_path(file_path),
       partial(partial_path(file_path)),
       live(is_live(info)),
       lock(FileLock::take(new_path(file_path), true)) {
-  for (const TableDescription* table : own_tables) {
+  for (const TableDescription* table : protocol_tables) {
     own.push_back({table, std::nullopt});
   }
   const fs::path created = new_path(file_path);
@@ -75,13 +75,13 @@ SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info,
 }
 
 SessionWriter::Impl::Impl(const fs::path& file_path, const SessionInfo& info, FileLock held,
-                          const TableList& own_tables)
+                          const TableList& protocol_tables)
     : final_path(file_path),
       partial(partial_path(file_path)),
       live(is_live(info)),
       lock(std::move(held)),
       resumed(true) {
-  for (const TableDescription* table : own_tables) {
+  for (const TableDescription* table : protocol_tables) {
     own.push_back({table, std::nullopt});
   }
   try {
@@ -132,7 +132,7 @@ int SessionWriter::Impl::level_of(const Part& part) const {
   return part.dense ? kDenseLevel : live ? kLiveLevel : kFastLevel;
 }
 
-TableWriter& SessionWriter::Impl::own_table(const TableDescription& table) {
+TableWriter& SessionWriter::Impl::protocol_table(const TableDescription& table) {
   for (Own& each : own) {
     if (each.table->name() == table.name()) {
       return *each.writer;
@@ -142,7 +142,7 @@ TableWriter& SessionWriter::Impl::own_table(const TableDescription& table) {
 }
 
 void SessionWriter::Impl::put(const Rows& rows) {
-  own_table(*rows.table).add(*rows.table, rows.data, rows.count);
+  protocol_table(*rows.table).add(*rows.table, rows.data, rows.count);
 }
 
 TableWriter::EnsureSpace SessionWriter::Impl::ensure_space() {

@@ -24,11 +24,11 @@ namespace haptrial::record {
 
 struct SessionWriter::Impl {
   /// Creates the file. @throws h5::Error, InputError, RunError; then nothing is left of it.
-  Impl(const std::filesystem::path& file_path, const SessionInfo& info, const TableList& own_tables,
-       std::span<const Rows> first_rows);
-  /// Goes on with the file, which is locked. @param own_tables  that it has
+  Impl(const std::filesystem::path& file_path, const SessionInfo& info,
+       const TableList& protocol_tables, std::span<const Rows> first_rows);
+  /// Goes on with the file, which is locked. @param protocol_tables  that it has
   Impl(const std::filesystem::path& file_path, const SessionInfo& info, FileLock held,
-       const TableList& own_tables);
+       const TableList& protocol_tables);
 
   /// A table and its writer while the file is open.
   struct Part {
@@ -40,7 +40,7 @@ struct SessionWriter::Impl {
   std::vector<Part> tables();
   int level_of(const Part& part) const;  // of compression
   /// @throws std::invalid_argument if the session does not have the table
-  TableWriter& own_table(const TableDescription& table);
+  TableWriter& protocol_table(const TableDescription& table);
   void put(const Rows& rows);
 
   /// Runs one step of writing; its first failure ends all writing.

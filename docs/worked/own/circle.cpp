@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "core/device/own_devices.h"
+#include "core/device/registered_devices.h"
 #include "experiments/command/line/whole_command.h"
 
 namespace {
@@ -52,6 +52,6 @@ std::unique_ptr<device::Device> open(const std::string& setting, int, double rat
 
 int main(int argc, char** argv) {
   return experiments::whole_command(argc, argv, [] {
-    device::add_own_device({"circle", "a handle that goes round by itself, once a second", open});
+    device::register_device({"circle", "a handle that goes round by itself, once a second", open});
   });
 }

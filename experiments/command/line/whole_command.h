@@ -6,7 +6,7 @@ namespace haptrial::experiments {
 
 /// The command haptrial, with every shipped study, and with what a program of one's own adds.
 /// @param add_own  adds it once, before the line is read: add_study() (experiments/studies),
-///                 add_own_device() (core/device), add_kind_of_field() (core/scene/read),
+///                 register_device() (core/device), add_kind_of_field() (core/scene/read),
 ///                 and add_score() (analysis/scores).
 ///                 A name that is taken ends the program with a sentence and status 1
 /// @returns exit status: 0 done, 1 failed, 2 bad input; sentences go to standard error

@@ -13,7 +13,7 @@
 #include "core/base/text/nearest.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/mouse.h"
-#include "core/device/own_devices.h"
+#include "core/device/registered_devices.h"
 #include "core/device/vendor/force_dimension.h"
 #include "core/device/vendor/open_haptics.h"
 #include "experiments/command/sessions/device_check.h"
@@ -121,7 +121,7 @@ DeviceUnderTest vendor_bench(const DeviceTestOptions& options, const DeviceSetup
   } else if (options.name == "open-haptics") {
     bench.device =
         std::make_unique<device::OpenHapticsDevice>(setup.open_haptics, kRate, options.library);
-  } else if (const device::RegisteredDevice* own = device::own_device(options.name)) {
+  } else if (const device::RegisteredDevice* own = device::registered_device(options.name)) {
     bench.device = own->open(device::setting_of(options.name), 0, kRate);
   } else {
     throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name),

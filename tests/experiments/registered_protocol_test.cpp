@@ -34,7 +34,7 @@
 #include "tests/support/stand_in_lsl.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::experiments::own_protocol_test {
+namespace haptrial::experiments::registered_protocol_test {
 namespace {
 
 constexpr const char* kDefinition = HAPTRIAL_SOURCE_DIR "/docs/worked/protocol/springs.toml";
@@ -97,7 +97,7 @@ void expect_follows_its_answers(const record::SessionReader& file) {
   }
 }
 
-TEST(OwnProtocolTest, EveryTrialFollowsFromTheAnswersBefore) {
+TEST(RegisteredProtocolTest, EveryTrialFollowsFromTheAnswersBefore) {
   const test::TemporaryFolder folder;
   run_session(request_for(folder / "S01.h5"));
   const record::SessionReader file(folder / "S01.h5");
@@ -119,7 +119,7 @@ TEST(OwnProtocolTest, EveryTrialFollowsFromTheAnswersBefore) {
 
 /// A staircase of this kind comes to where 71 % are right: at 0.545 standard deviations of the
 /// judgement (Levitt 1971), which is 8 % of 300 N/m in either interval.
-TEST(OwnProtocolTest, TheStaircaseFindsTheThresholdOfItsParticipants) {
+TEST(RegisteredProtocolTest, TheStaircaseFindsTheThresholdOfItsParticipants) {
   const test::TemporaryFolder folder;
   double sum = 0.0;
   int count = 0;
@@ -139,7 +139,7 @@ TEST(OwnProtocolTest, TheStaircaseFindsTheThresholdOfItsParticipants) {
   EXPECT_NEAR(std::exp(sum / count) / expected, 1.0, 0.35);
 }
 
-TEST(OwnProtocolTest, LiveFiguresGoAlong) {
+TEST(RegisteredProtocolTest, LiveFiguresGoAlong) {
   const test::TemporaryFolder folder;
   SessionControl control;
   SessionRequest request = request_for(folder / "S01.h5");
@@ -253,7 +253,7 @@ TEST_F(KilledTest, ResumedItGoesOnAsItWouldHave) {
   }
 }
 
-TEST(OwnProtocolTest, RecoveryKnowsItsTable) {
+TEST(RegisteredProtocolTest, RecoveryKnowsItsTable) {
   const test::TemporaryFolder folder;
   SessionRequest request = request_for(folder / "S01.h5");
   request.max_trials = 6;
@@ -264,7 +264,7 @@ TEST(OwnProtocolTest, RecoveryKnowsItsTable) {
   EXPECT_EQ(saved.responses().size(), 6u);
 }
 
-TEST(OwnProtocolTest, TheScreenDrawsItsView) {
+TEST(RegisteredProtocolTest, TheScreenDrawsItsView) {
   const test::TemporaryFolder folder;
   const SessionRequest request = request_for(folder / "S01.h5");
   protocols::SessionPlace place;
@@ -295,7 +295,7 @@ std::string answer_of(const Console& console, const std::string& method, const s
   return client.receive(test::RawClient::kForever, until);
 }
 
-TEST(OwnProtocolTest, AnAssistantsPageStandsBesideTheConsole) {
+TEST(RegisteredProtocolTest, AnAssistantsPageStandsBesideTheConsole) {
   const test::TemporaryFolder folder;
   SessionControl control;
   SessionRequest request = request_for(folder / "S01.h5");
@@ -339,7 +339,7 @@ class ReservedPage final : public protocols::AuxiliaryPage {
   std::string name_;
 };
 
-TEST(OwnProtocolTest, APageNeedsAnAddressOfItsOwn) {
+TEST(RegisteredProtocolTest, APageNeedsAnAddressOfItsOwn) {
   SessionControl control;
   for (const char* name : {"", "events", "note", "Page", "a/b", "page?"}) {
     ConsoleOptions options;
@@ -351,7 +351,7 @@ TEST(OwnProtocolTest, APageNeedsAnAddressOfItsOwn) {
   EXPECT_THROW(const Console console(control, twice), std::invalid_argument);
 }
 
-TEST(OwnProtocolTest, DepthsAreStreamedBesideTheSamples) {
+TEST(RegisteredProtocolTest, DepthsAreStreamedBesideTheSamples) {
   const test::TemporaryFolder folder;
   run_session(request_for(folder / "S01.h5"));
   const record::SessionReader file(folder / "S01.h5");
@@ -387,4 +387,4 @@ TEST(OwnProtocolTest, DepthsAreStreamedBesideTheSamples) {
 }
 
 }  // namespace
-}  // namespace haptrial::experiments::own_protocol_test
+}  // namespace haptrial::experiments::registered_protocol_test

@@ -1,4 +1,4 @@
-#include "core/scene/field/own.h"
+#include "core/scene/field/registered_law.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ RegisteredField counting(const char* type) {
   return {{type, std::make_shared<CountingNumbers>()}, {}};
 }
 
-TEST(OwnTest, AForceThatIsNotFiniteCountsAsZero) {
+TEST(RegisteredLawTest, AForceThatIsNotFiniteCountsAsZero) {
   RegisteredField own = counting("count");
   FieldState state;
   EXPECT_EQ(own.force({}, state).x(), 1.0);
@@ -49,7 +49,7 @@ TEST(OwnTest, AForceThatIsNotFiniteCountsAsZero) {
   EXPECT_EQ(state.depth, 4.0);
 }
 
-TEST(OwnTest, GoesOnOnlyWhereALawOfTheSameTypeStood) {
+TEST(RegisteredLawTest, GoesOnOnlyWhereALawOfTheSameTypeStood) {
   FieldState state;
   RegisteredField before = counting("count");
   before.force({}, state);
@@ -61,7 +61,7 @@ TEST(OwnTest, GoesOnOnlyWhereALawOfTheSameTypeStood) {
   EXPECT_EQ(other.force({}, state).x(), 1.0);
 }
 
-TEST(OwnTest, WithoutNumbersOrALawIsRefused) {
+TEST(RegisteredLawTest, WithoutNumbersOrALawIsRefused) {
   EXPECT_THROW(RegisteredField({"none", nullptr}, {}), std::invalid_argument);
   EXPECT_THROW(RegisteredField({"none", std::make_shared<NoLaw>()}, {}), std::invalid_argument);
 }

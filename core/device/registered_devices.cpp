@@ -1,4 +1,4 @@
-#include "core/device/own_devices.h"
+#include "core/device/registered_devices.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace {
 constexpr std::array kBuiltIn{"virtual", "mouse", "gamepad", "force-dimension", "open-haptics"};
 constexpr const char* kReplay = "replay";  // with a file
 
-std::vector<RegisteredDevice>& all_own() {
+std::vector<RegisteredDevice>& all_registered() {
   static std::vector<RegisteredDevice> devices;
   return devices;
 }
@@ -26,35 +26,35 @@ bool is_word(const std::string& name) {
 
 }  // namespace
 
-const std::vector<RegisteredDevice>& own_devices() { return all_own(); }
+const std::vector<RegisteredDevice>& registered_devices() { return all_registered(); }
 
-void add_own_device(const RegisteredDevice& device) {
+void register_device(const RegisteredDevice& device) {
   if (!is_word(device.name)) {
     throw std::invalid_argument(fmt::format(
-        "add_own_device: '{}' is no name; allowed: letters, digits and '-'", device.name));
+        "register_device: '{}' is no name; allowed: letters, digits and '-'", device.name));
   }
   const std::vector<std::string> taken = device_names();
   if (device.name == kReplay || std::find(taken.begin(), taken.end(), device.name) != taken.end()) {
     throw std::invalid_argument(
-        fmt::format("add_own_device: there is a device '{}' already", device.name));
+        fmt::format("register_device: there is a device '{}' already", device.name));
   }
-  all_own().push_back(device);
+  all_registered().push_back(device);
 }
 
 std::vector<std::string> device_names() {
   std::vector<std::string> names(kBuiltIn.begin(), kBuiltIn.end());
-  for (const RegisteredDevice& each : all_own()) {
+  for (const RegisteredDevice& each : all_registered()) {
     names.push_back(each.name);
   }
   return names;
 }
 
-const RegisteredDevice* own_device(const std::string& choice) {
+const RegisteredDevice* registered_device(const std::string& choice) {
   const std::string name = choice.substr(0, choice.find(':'));
   const auto found =
-      std::find_if(all_own().begin(), all_own().end(),
+      std::find_if(all_registered().begin(), all_registered().end(),
                    [&](const RegisteredDevice& device) { return device.name == name; });
-  return found != all_own().end() ? &*found : nullptr;
+  return found != all_registered().end() ? &*found : nullptr;
 }
 
 std::string setting_of(const std::string& choice) {

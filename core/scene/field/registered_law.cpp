@@ -1,4 +1,4 @@
-#include "core/scene/field/own.h"
+#include "core/scene/field/registered_law.h"
 
 #include "core/scene/shape/require.h"
 

@@ -20,13 +20,13 @@ struct RegisteredDevice {
 };
 
 /// Added devices in the order in which they were added. Call before threads are started.
-const std::vector<RegisteredDevice>& own_devices();
+const std::vector<RegisteredDevice>& registered_devices();
 /// @throws std::invalid_argument for a name that is taken or has other characters
-void add_own_device(const RegisteredDevice& device);
+void register_device(const RegisteredDevice& device);
 /// Names that --device takes without a file: the program's own devices, then added ones.
 std::vector<std::string> device_names();
 /// The one that NAME or NAME:SETTING asks for; null if there is none.
-const RegisteredDevice* own_device(const std::string& choice);
+const RegisteredDevice* registered_device(const std::string& choice);
 /// SETTING of NAME:SETTING; empty without one.
 std::string setting_of(const std::string& choice);
 
