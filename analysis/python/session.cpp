@@ -203,7 +203,7 @@ class TableRead {
     column["unit"] = field.column.unit;
     column["description"] = field.column.description;
     py::dict words;
-    for (const record::Words::Entry& entry : field.words.entries()) {
+    for (const record::EnumText::Entry& entry : field.words.entries()) {
       words[py::int_(entry.value)] = entry.word;
     }
     column["words"] = words;

@@ -5,11 +5,11 @@ namespace {
 
 constexpr std::int64_t kHintsSince = 5;
 
-Words hint_kinds() {
+EnumText hint_kinds() {
   using hint::HintKind;
-  return Words({{static_cast<std::uint8_t>(HintKind::kForce), "force"},
-                {static_cast<std::uint8_t>(HintKind::kSpeed), "speed"},
-                {static_cast<std::uint8_t>(HintKind::kHidden), "hidden"}});
+  return EnumText({{static_cast<std::uint8_t>(HintKind::kForce), "force"},
+                   {static_cast<std::uint8_t>(HintKind::kSpeed), "speed"},
+                   {static_cast<std::uint8_t>(HintKind::kHidden), "hidden"}});
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ class TrialsProtocol final : public Protocol {
     if (d.observer.script) {
       load_script(*d.observer.script, folder);
     }
-    HandleWords words = check_every_value(d);
+    HandleText words = check_every_value(d);
     d.felt = std::move(words.lines);
     d.underdamped = std::move(words.warnings);
     for (const sound::Cue& cue : d.cues.cues) {

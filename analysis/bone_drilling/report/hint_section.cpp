@@ -13,7 +13,7 @@ namespace haptrial::analysis::drilling {
 namespace {
 
 using hint::HintKind;
-using HintRowWords = std::vector<std::string>;
+using HintRowText = std::vector<std::string>;
 
 /// Sum over the hints of some procedures of one condition.
 struct HintSum {
@@ -49,7 +49,7 @@ HintSum sum_of(std::span<const HintProcedure> hints, const std::string& conditio
   return sum;
 }
 
-HintRowWords row_of(const std::string& condition, HintKind kind, const HintSum& sum) {
+HintRowText row_of(const std::string& condition, HintKind kind, const HintSum& sum) {
   return {condition,
           std::string(hint::name_of(kind)),
           std::to_string(sum.procedures),
@@ -119,7 +119,7 @@ void add_hint_section(Document& document, std::span<const HintProcedure> hints,
       "than nearly all of the experts' at that distance from a structure, or that other bone hid. "
       "Hints are recorded whether the participant saw them or not, so that conditions can be "
       "compared.");
-  std::vector<HintRowWords> rows;
+  std::vector<HintRowText> rows;
   for (const std::string& condition : conditions_of(hints)) {
     for (const HintKind kind : hint::kAllHintKinds) {
       rows.push_back(row_of(condition, kind, sum_of(hints, condition, kind)));
@@ -131,7 +131,7 @@ void add_hint_section(Document& document, std::span<const HintProcedure> hints,
   if (effects.empty()) {
     return;
   }
-  std::vector<HintRowWords> changes;
+  std::vector<HintRowText> changes;
   for (const HintEffect& each : effects) {
     changes.push_back({fmt::format("{} ({})", each.title, each.unit),
                        difference_word(each.effect, each.unit == "1" ? "" : each.unit.c_str()),

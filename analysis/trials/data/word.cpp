@@ -12,9 +12,9 @@ namespace {
 
 /// Words by number. Those that are there stay where they are while others are added, so that
 /// looking at one takes no lock.
-class Words {
+class TextStore {
  public:
-  Words() { add({}); }
+  TextStore() { add({}); }
 
   std::uint32_t number_of(std::string_view text) {
     {
@@ -54,8 +54,8 @@ class Words {
   std::unordered_map<std::string_view, std::uint32_t> numbers_;
 };
 
-Words& words() {
-  static auto* const all = new Words;  // never gone: others look at it to the end
+TextStore& words() {
+  static auto* const all = new TextStore;  // never gone: others look at it to the end
   return *all;
 }
 

@@ -8,8 +8,8 @@ template <>
 const Table<BurrRow>& table_of<BurrRow>() {
   using R = BurrRow;
   using T = Table<R>;
-  static const Words kinds({{0, "diamond"}, {1, "cutting"}});
-  static const Words shapes({{0, "ball"}, {1, "cylinder"}, {2, "cone"}, {3, "pear"}});
+  static const EnumText kinds({{0, "diamond"}, {1, "cutting"}});
+  static const EnumText shapes({{0, "ball"}, {1, "cylinder"}, {2, "cone"}, {3, "pear"}});
   static const T table(
       {"burrs", "the burrs when they were new", 8, RowsOf::kSession, {"tool"}},
       {T::column("tool", &R::tool, "1", "as in /tool"),

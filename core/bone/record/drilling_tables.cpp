@@ -12,8 +12,9 @@ constexpr std::int64_t kSince = 3;
 using Names3 = std::array<const char*, 3>;
 constexpr Names3 kVoxel{"i", "j", "k"};
 
-Words modes() {
-  return Words({{0, "tool"}, {1, "the camera moves"}, {2, "it turns"}, {3, "a piece is carried"}});
+EnumText modes() {
+  return EnumText(
+      {{0, "tool"}, {1, "the camera moves"}, {2, "it turns"}, {3, "a piece is carried"}});
 }
 
 }  // namespace

@@ -7,28 +7,28 @@ constexpr const char* kGroup = "nerve_monitor";
 constexpr std::int64_t kSince = 5;
 constexpr std::size_t kKind = 16;  // bytes of a word
 
-Words kinds() {
+EnumText kinds() {
   using Kind = NerveEventRow::Kind;
-  return Words({{static_cast<std::uint8_t>(Kind::kBurst), "burst"},
-                {static_cast<std::uint8_t>(Kind::kTrain), "train"},
-                {static_cast<std::uint8_t>(Kind::kResponse), "response"},
-                {static_cast<std::uint8_t>(Kind::kArtefact), "artefact"}});
+  return EnumText({{static_cast<std::uint8_t>(Kind::kBurst), "burst"},
+                   {static_cast<std::uint8_t>(Kind::kTrain), "train"},
+                   {static_cast<std::uint8_t>(Kind::kResponse), "response"},
+                   {static_cast<std::uint8_t>(Kind::kArtefact), "artefact"}});
 }
 
-Words causes() {
+EnumText causes() {
   using Cause = NerveThresholdRow::Cause;
-  return Words({{static_cast<std::uint8_t>(Cause::kStart), "start"},
-                {static_cast<std::uint8_t>(Cause::kMonitor), "monitor"},
-                {static_cast<std::uint8_t>(Cause::kTechnician), "technician"}});
+  return EnumText({{static_cast<std::uint8_t>(Cause::kStart), "start"},
+                   {static_cast<std::uint8_t>(Cause::kMonitor), "monitor"},
+                   {static_cast<std::uint8_t>(Cause::kTechnician), "technician"}});
 }
 
-Words stimulus_kinds() {
+EnumText stimulus_kinds() {
   using Kind = NerveStimulusRow::Kind;
-  return Words({{static_cast<std::uint8_t>(Kind::kSet), "set"},
-                {static_cast<std::uint8_t>(Kind::kPulse), "pulse"},
-                {static_cast<std::uint8_t>(Kind::kSearch), "search"},
-                {static_cast<std::uint8_t>(Kind::kFound), "found"},
-                {static_cast<std::uint8_t>(Kind::kOutOfRange), "out_of_range"}});
+  return EnumText({{static_cast<std::uint8_t>(Kind::kSet), "set"},
+                   {static_cast<std::uint8_t>(Kind::kPulse), "pulse"},
+                   {static_cast<std::uint8_t>(Kind::kSearch), "search"},
+                   {static_cast<std::uint8_t>(Kind::kFound), "found"},
+                   {static_cast<std::uint8_t>(Kind::kOutOfRange), "out_of_range"}});
 }
 
 template <class Row>

@@ -11,12 +11,12 @@
 namespace haptrial::psychometric {
 namespace {
 
-using Words = std::vector<std::string>;
+using Texts = std::vector<std::string>;
 
 /// The least that the best first trial should tell, of which a track of some 50 makes 0.05 [nat].
 constexpr double kLeastInformation = 1e-3;
 
-void add_estimate(const Track& track, const StaircaseParameters& p, Words& words) {
+void add_estimate(const Track& track, const StaircaseParameters& p, Texts& words) {
   const bool levels = p.estimator == StaircaseParameters::Estimator::kMeanOfLevels;
   const int most = levels                 ? p.stop_trials
                    : p.stop_reversals > 0 ? std::min(p.stop_reversals, p.stop_trials)
@@ -29,7 +29,7 @@ void add_estimate(const Track& track, const StaircaseParameters& p, Words& words
   }
 }
 
-void add_steps(const Track& track, const StaircaseParameters& p, Words& words) {
+void add_steps(const Track& track, const StaircaseParameters& p, Texts& words) {
   const bool trials = p.schedule == StaircaseParameters::Schedule::kTrials;
   const int most = !trials && p.stop_reversals > 0 ? p.stop_reversals : p.stop_trials;
   const auto unused =
@@ -71,7 +71,7 @@ bool thresholds_are_outside(const QuestDefinition& quest) {
                               [&](double value) { return value >= low && value <= high; });
 }
 
-void add_quest(const Track& track, const QuestTables& tables, Words& words) {
+void add_quest(const Track& track, const QuestTables& tables, Texts& words) {
   const QuestDefinition& quest = tables.definition();
   if (std::ranges::all_of(quest.parameters,
                           [](const QuestDimension& each) { return each.values.size() == 1; })) {
@@ -99,8 +99,8 @@ void add_quest(const Track& track, const QuestTables& tables, Words& words) {
 
 }  // namespace
 
-Words procedure_warnings(const Track& track) {
-  Words words;
+Texts procedure_warnings(const Track& track) {
+  Texts words;
   if (track.staircase) {
     add_estimate(track, *track.staircase, words);
     add_steps(track, *track.staircase, words);

@@ -6,7 +6,7 @@ namespace {
 constexpr std::size_t kMarkerWordBytes = 16;
 
 template <class E>
-Words::Entry named(E value) {
+EnumText::Entry named(E value) {
   return {static_cast<std::uint8_t>(value), name_of(value)};
 }
 
@@ -58,17 +58,18 @@ const Table<MarkerRow>& table_of<MarkerRow>() {
        T::column("trial", &R::trial, "1", "trial number, as in /trials"),
        T::column("interval", &R::interval, "1", "of the pass, from 1; 0: none"),
        T::word("what", &R::what, kMarkerWordBytes,
-               Words({named(MarkerOf::kTrial), named(MarkerOf::kInterval), named(MarkerOf::kStage),
-                      named(MarkerOf::kResponse)}),
+               EnumText({named(MarkerOf::kTrial), named(MarkerOf::kInterval),
+                         named(MarkerOf::kStage), named(MarkerOf::kResponse)}),
                "what begins: trial, interval, stage or response"),
        T::text("name", &R::name, kMarkerNameBytes, "of the interval, stage or answer"),
        T::column("code", &R::code, "1", "its code, 1 to 255"),
        T::column("sequence", &R::sequence, "1", "tick of the onset, as in /samples"),
        T::column("time_ns", &R::time_ns, "ns", "of that tick, since the first tick of the session"),
-       T::word("way", &R::way, kMarkerWordBytes,
-               Words({named(MarkerWay::kNone), named(MarkerWay::kSerial), named(MarkerWay::kStream),
-                      named(MarkerWay::kScreen), named(MarkerWay::kSound)}),
-               "where it went: serial, stream, screen, sound or none"),
+       T::word(
+           "way", &R::way, kMarkerWordBytes,
+           EnumText({named(MarkerWay::kNone), named(MarkerWay::kSerial), named(MarkerWay::kStream),
+                     named(MarkerWay::kScreen), named(MarkerWay::kSound)}),
+           "where it went: serial, stream, screen, sound or none"),
        T::column("written", &R::written, "s",
                  "when it had gone there, since the first tick of the session; NaN: it did not"),
        T::column("latency", &R::latency, "s", "from the tick to then; NaN: it did not go"),

@@ -6,19 +6,20 @@ namespace {
 constexpr std::size_t kPlaceBytes = 16;
 
 template <class E>
-Words::Entry word_of(E value, const char* word) {
+EnumText::Entry word_of(E value, const char* word) {
   return {static_cast<std::uint8_t>(value), word};
 }
 
-Words page_times() {
-  return Words({word_of(PageTime::kBefore, "before"), word_of(PageTime::kAfterBlock, "after block"),
-                word_of(PageTime::kAfter, "after")});
+EnumText page_times() {
+  return EnumText({word_of(PageTime::kBefore, "before"),
+                   word_of(PageTime::kAfterBlock, "after block"),
+                   word_of(PageTime::kAfter, "after")});
 }
 
-Words places() {
-  return Words({word_of(AnsweredAt::kWindow, "window"), word_of(AnsweredAt::kConsole, "console"),
-                word_of(AnsweredAt::kTerminal, "terminal"),
-                word_of(AnsweredAt::kVirtual, "virtual")});
+EnumText places() {
+  return EnumText({word_of(AnsweredAt::kWindow, "window"), word_of(AnsweredAt::kConsole, "console"),
+                   word_of(AnsweredAt::kTerminal, "terminal"),
+                   word_of(AnsweredAt::kVirtual, "virtual")});
 }
 
 }  // namespace

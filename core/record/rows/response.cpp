@@ -5,14 +5,14 @@ namespace {
 
 constexpr std::size_t kSourceBytes = 16;
 
-Words sources() {
+EnumText sources() {
   const auto entry = [](ResponseSource source, const char* word) {
-    return Words::Entry{static_cast<std::uint8_t>(source), word};
+    return EnumText::Entry{static_cast<std::uint8_t>(source), word};
   };
-  return Words({entry(ResponseSource::kNone, "none"), entry(ResponseSource::kKey, "key"),
-                entry(ResponseSource::kButton, "button"), entry(ResponseSource::kPlace, "place"),
-                entry(ResponseSource::kPointer, "pointer"),
-                entry(ResponseSource::kPedal, "pedal")});
+  return EnumText({entry(ResponseSource::kNone, "none"), entry(ResponseSource::kKey, "key"),
+                   entry(ResponseSource::kButton, "button"), entry(ResponseSource::kPlace, "place"),
+                   entry(ResponseSource::kPointer, "pointer"),
+                   entry(ResponseSource::kPedal, "pedal")});
 }
 
 }  // namespace

@@ -7,27 +7,27 @@ using Names3 = std::array<const char*, 3>;
 constexpr Names3 kPosition{"position_x", "position_y", "position_z"};
 
 template <class E>
-Words::Entry entry(E value, const char* word) {
+EnumText::Entry entry(E value, const char* word) {
   return {static_cast<std::uint8_t>(value), word};
 }
 template <class E>
-Words::Entry entry(E value) {
+EnumText::Entry entry(E value) {
   return entry(value, name_of(value));
 }
 
-Words stages() {
-  return Words({entry(Stage::kIdle, "idle"), entry(Stage::kApproach, "approach"),
-                entry(Stage::kWait, "wait"), entry(Stage::kRun, "run"),
-                entry(Stage::kReturn, "return")});
+EnumText stages() {
+  return EnumText({entry(Stage::kIdle, "idle"), entry(Stage::kApproach, "approach"),
+                   entry(Stage::kWait, "wait"), entry(Stage::kRun, "run"),
+                   entry(Stage::kReturn, "return")});
 }
 
-Words statuses() {
-  return Words(
+EnumText statuses() {
+  return EnumText(
       {entry(PassStatus::kCompleted, "completed"), entry(PassStatus::kAborted, "aborted")});
 }
 
-Words states() {
-  return Words({entry(RunState::kRunning), entry(RunState::kStopped), entry(RunState::kEnded)});
+EnumText states() {
+  return EnumText({entry(RunState::kRunning), entry(RunState::kStopped), entry(RunState::kEnded)});
 }
 
 }  // namespace

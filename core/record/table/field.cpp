@@ -43,13 +43,13 @@ Field name_field(const char* name, std::size_t offset, std::size_t bytes, const 
   return {{name, ColumnType::kText, bytes, "", description}, offset, MemberType::kName};
 }
 
-Field word_field(const char* name, std::size_t offset, std::size_t bytes, Words words,
+Field word_field(const char* name, std::size_t offset, std::size_t bytes, EnumText words,
                  const char* description) {
   return {
       {name, ColumnType::kText, bytes, "", description}, offset, MemberType::kU8, std::move(words)};
 }
 
-Field code_field(const char* name, std::size_t offset, Words words, const char* description) {
+Field code_field(const char* name, std::size_t offset, EnumText words, const char* description) {
   return {{name, ColumnType::kU8, 1, "1", description}, offset, MemberType::kU8, std::move(words)};
 }
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/record/table/enum_text.h"
 #include "core/record/table/schema.h"
-#include "core/record/table/words.h"
 
 namespace haptrial::record {
 
@@ -28,7 +28,7 @@ struct Field {
   Column column{};
   std::size_t offset{0};  // of the member in the row [bytes]
   MemberType member{MemberType::kU8};
-  Words words{};          // of an enumeration
+  EnumText words{};       // of an enumeration
   std::int64_t since{1};  // schema version from which on files have the column
 };
 
@@ -39,8 +39,8 @@ Field real32_field(const char* name, std::size_t offset, const char* unit, const
                    double resolution);
 Field text_field(const char* name, std::size_t offset, std::size_t bytes, const char* description);
 Field name_field(const char* name, std::size_t offset, std::size_t bytes, const char* description);
-Field word_field(const char* name, std::size_t offset, std::size_t bytes, Words words,
+Field word_field(const char* name, std::size_t offset, std::size_t bytes, EnumText words,
                  const char* description);
-Field code_field(const char* name, std::size_t offset, Words words, const char* description);
+Field code_field(const char* name, std::size_t offset, EnumText words, const char* description);
 
 }  // namespace haptrial::record

@@ -85,7 +85,7 @@ void get_words(const std::string& table, const Field& field, const BytePlanes& p
                std::uint8_t* members, std::size_t stride, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::string word = get_text(planes, {from.offset, from.row + i}, field.column.bytes);
-    const Words::Entry* entry = field.words.find(word);
+    const EnumText::Entry* entry = field.words.find(word);
     if (entry == nullptr) {
       unknown(table, field, "the unknown word '" + word + "'", field.words.list());
     }

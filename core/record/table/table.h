@@ -69,14 +69,14 @@ class Table : public TableDescription {
   }
   /// An enumeration as a word.
   template <class Member>
-  static Columns word(const char* name, Member member, std::size_t bytes, Words words,
+  static Columns word(const char* name, Member member, std::size_t bytes, EnumText words,
                       const char* description) {
     static_assert(sizeof(std::invoke_result_t<Member, Row&>) == 1);
     return {word_field(name, offset_of(member), bytes, std::move(words), description)};
   }
   /// An enumeration as a number.
   template <class Member>
-  static Columns code(const char* name, Member member, Words words, const char* description) {
+  static Columns code(const char* name, Member member, EnumText words, const char* description) {
     static_assert(sizeof(std::invoke_result_t<Member, Row&>) == 1);
     return {code_field(name, offset_of(member), std::move(words), description)};
   }

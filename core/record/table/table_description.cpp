@@ -15,7 +15,7 @@ namespace haptrial::record {
 namespace {
 
 void check_words(const std::string& table, const Field& field) {
-  for (const Words::Entry& entry : field.words.entries()) {
+  for (const EnumText::Entry& entry : field.words.entries()) {
     if (field.column.type == ColumnType::kText &&
         std::string_view(entry.word).size() > field.column.bytes) {
       throw std::invalid_argument("the word " + std::string(entry.word) + " does not fit " +

@@ -7,20 +7,20 @@ constexpr std::size_t kEndingBytes = 16;
 constexpr std::size_t kPaceBytes = 16;
 constexpr std::size_t kQuestionNameBytes = 64;
 
-Words paces() {
+EnumText paces() {
   const auto entry = [](OutOfTime how, const char* word) {
-    return Words::Entry{static_cast<std::uint8_t>(how), word};
+    return EnumText::Entry{static_cast<std::uint8_t>(how), word};
   };
-  return Words({entry(OutOfTime::kTooFast, "too fast"), entry(OutOfTime::kTooSlow, "too slow")});
+  return EnumText({entry(OutOfTime::kTooFast, "too fast"), entry(OutOfTime::kTooSlow, "too slow")});
 }
 
-Words endings() {
+EnumText endings() {
   const auto entry = [](StageEnding ending, const char* word) {
-    return Words::Entry{static_cast<std::uint8_t>(ending), word};
+    return EnumText::Entry{static_cast<std::uint8_t>(ending), word};
   };
-  return Words({entry(StageEnding::kReached, "reached"), entry(StageEnding::kLate, "late"),
-                entry(StageEnding::kTooLittle, "too little"),
-                entry(StageEnding::kBrokenOff, "broken off")});
+  return EnumText({entry(StageEnding::kReached, "reached"), entry(StageEnding::kLate, "late"),
+                   entry(StageEnding::kTooLittle, "too little"),
+                   entry(StageEnding::kBrokenOff, "broken off")});
 }
 
 }  // namespace

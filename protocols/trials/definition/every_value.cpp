@@ -191,7 +191,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
 
 }  // namespace
 
-HandleWords check_every_value(const TrialsDefinition& d) {
+HandleText check_every_value(const TrialsDefinition& d) {
   std::vector<std::string> bodies;
   HandleReport handle(d);
   PictureReport picture(d);
@@ -224,7 +224,7 @@ HandleWords check_every_value(const TrialsDefinition& d) {
       }
     }
   }
-  HandleWords words = handle.words();
+  HandleText words = handle.words();
   for (const auto& said : {picture.warnings(), lead.warnings()}) {
     words.warnings.insert(words.warnings.end(), said.begin(), said.end());
   }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/trials/definition/handle_words.h"
+#include "protocols/trials/definition/handle_text.h"
 
 namespace haptrial::protocols {
 
@@ -14,6 +14,6 @@ struct TrialsDefinition;
 /// @returns what there is to say of bodies that give way, as they are presented first, and of the
 ///          handle with all of them
 /// @throws InputError with the sentences of the first that cannot be presented, and its values
-HandleWords check_every_value(const TrialsDefinition& definition);
+HandleText check_every_value(const TrialsDefinition& definition);
 
 }  // namespace haptrial::protocols

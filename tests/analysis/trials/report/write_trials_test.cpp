@@ -90,7 +90,7 @@ TEST_P(WriteTrials, EverythingIsWrittenAndMarkedAsSimulatedTwiceWithEqualBytes) 
   EXPECT_EQ(first, file_text(place() / "results.json") + file_text(place() / "report.md"));
 }
 
-TEST(TrialsWords, TicksOnWhichABodyWasNotFeltAsItShouldBeAreTold) {
+TEST(TrialsTextTest, TicksOnWhichABodyWasNotFeltAsItShouldBeAreTold) {
   TrialsResult result;
   StudyTrial trial;
   trial.touched = {{"liver", 400, 0, 0}};

@@ -62,7 +62,7 @@ std::array<int, 3> corner(int number) {
   return {kOutline[at % 6][0], kOutline[at % 6][1], number / 6};
 }
 
-using Words = std::function<std::string(int)>;
+using CornerText = std::function<std::string(int)>;
 
 /// A line for each of the twelve corners.
 std::string corners(const std::string& before, const std::string& after = "") {
@@ -76,7 +76,7 @@ std::string corners(const std::string& before, const std::string& after = "") {
 
 /// A line for each face.
 std::string faces(const std::function<std::string(const std::vector<int>&)>& before,
-                  const Words& one, const std::string& after = "") {
+                  const CornerText& one, const std::string& after = "") {
   std::string lines;
   for (const std::vector<int>& face : polygons()) {
     lines += before(face);
@@ -101,10 +101,10 @@ std::string upper(std::string text) {
   return text;
 }
 
-std::string obj_faces(const Words& one) {
+std::string obj_faces(const CornerText& one) {
   return faces([](const auto&) { return "f"; }, one);
 }
-std::string obj(const Words& one = [](int i) { return fmt::format(" {}", i + 1); }) {
+std::string obj(const CornerText& one = [](int i) { return fmt::format(" {}", i + 1); }) {
   return "o prism\n" + corners("v ") + obj_faces(one);
 }
 

@@ -1,4 +1,4 @@
-#include "protocols/trials/definition/handle_words.h"
+#include "protocols/trials/definition/handle_text.h"
 
 #include <fmt/format.h>
 
@@ -221,8 +221,8 @@ void HandleReport::add(const Presented& presented) {
   }
 }
 
-HandleWords HandleReport::words() const {
-  HandleWords words;
+HandleText HandleReport::words() const {
+  HandleText words;
   words.lines = begin_;
   const control::HandleLoop loop = handle_loop(d_);
   for (const Load& load : worst_) {

@@ -10,7 +10,7 @@ struct TrialsDefinition;
 
 /// Demands of the stages' fields on the handle and on the hand on it
 /// (docs/algorithms/every-hand.md).
-struct HandleWords {
+struct HandleText {
   std::vector<std::string> lines;     // what lighter hands get less of; what begins around the hand
   std::vector<std::string> warnings;  // what the hand of [hand] does not carry
 };
@@ -21,7 +21,7 @@ class HandleReport {
  public:
   explicit HandleReport(const TrialsDefinition& definition) : d_(definition) {}
   void add(const Presented& presented);
-  HandleWords words() const;
+  HandleText words() const;
 
  private:
   /// The sum of what acts in a stage.

@@ -17,14 +17,14 @@ class UnknownWord : public std::runtime_error {
 };
 
 /// The words of a file for the values of an enumeration, each once.
-class Words {
+class EnumText {
  public:
   struct Entry {
     std::uint8_t value;
     const char* word;
   };
-  Words() = default;
-  explicit Words(std::vector<Entry> entries) : entries_(std::move(entries)) {}
+  EnumText() = default;
+  explicit EnumText(std::vector<Entry> entries) : entries_(std::move(entries)) {}
 
   const std::vector<Entry>& entries() const { return entries_; }
   bool empty() const { return entries_.empty(); }

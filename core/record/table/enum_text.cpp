@@ -1,22 +1,22 @@
-#include "core/record/table/words.h"
+#include "core/record/table/enum_text.h"
 
 #include <algorithm>
 
 namespace haptrial::record {
 
-const char* Words::word_of(std::uint8_t value) const {
+const char* EnumText::word_of(std::uint8_t value) const {
   const auto at = std::find_if(entries_.begin(), entries_.end(),
                                [value](const Entry& entry) { return entry.value == value; });
   return at != entries_.end() ? at->word : nullptr;
 }
 
-const Words::Entry* Words::find(std::string_view word) const {
+const EnumText::Entry* EnumText::find(std::string_view word) const {
   const auto at = std::find_if(entries_.begin(), entries_.end(),
                                [word](const Entry& entry) { return word == entry.word; });
   return at != entries_.end() ? &*at : nullptr;
 }
 
-std::string Words::list() const {
+std::string EnumText::list() const {
   std::string text;
   for (const Entry& entry : entries_) {
     text += (text.empty() ? "" : ", ") + std::string(entry.word);
@@ -24,7 +24,7 @@ std::string Words::list() const {
   return text;
 }
 
-std::string Words::numbered() const {
+std::string EnumText::numbered() const {
   std::string text;
   for (const Entry& entry : entries_) {
     text += (text.empty() ? "" : ", ") + std::to_string(entry.value) + " " + entry.word;
