@@ -50,7 +50,7 @@ void fill_errors(const CurveView& target, std::size_t row, const CurveView& appl
 template <int straight>
 struct SymmetricSteps {
   static void fill(const Rows& rows, std::size_t first, std::size_t last, double penalty,
-                   std::uint8_t* ways) {
+                   std::uint8_t* directions) {
     double left = kInfinity;
     for (std::size_t j = first; j <= last; ++j) {
       const double error = rows.error[j];
@@ -62,15 +62,15 @@ struct SymmetricSteps {
       const bool is_left = from_left < best;
       left = is_left ? from_left : best;
       rows.cost[j] = left;
-      ways[j] = static_cast<std::uint8_t>(is_left ? kThird : is_above ? kSecond : kStraight);
+      directions[j] = static_cast<std::uint8_t>(is_left ? kThird : is_above ? kSecond : kStraight);
     }
   }
 
-  static void start(const Rows& rows, std::size_t last, double penalty, std::uint8_t* ways) {
+  static void start(const Rows& rows, std::size_t last, double penalty, std::uint8_t* directions) {
     rows.cost[0] = rows.error[0];
     for (std::size_t j = 1; j <= last; ++j) {
       rows.cost[j] = rows.cost[j - 1] + (rows.error[j] + penalty);
-      ways[j] = kThird;
+      directions[j] = kThird;
     }
   }
 
@@ -93,7 +93,7 @@ struct StartsOnce {
 /// (1,1), (1,0) and (1,2).
 struct AsymmetricSteps : StartsOnce {
   static void fill(const Rows& rows, std::size_t first, std::size_t last, double penalty,
-                   std::uint8_t* ways) {
+                   std::uint8_t* directions) {
     for (std::size_t j = first; j <= last; ++j) {
       const double straight = rows.above[j - 1];
       const double stay = rows.above[j] + penalty;
@@ -102,7 +102,7 @@ struct AsymmetricSteps : StartsOnce {
       const double best = is_stay ? stay : straight;
       const bool is_skip = skip < best;
       rows.cost[j] = (is_skip ? skip : best) + rows.error[j];
-      ways[j] = static_cast<std::uint8_t>(is_skip ? kThird : is_stay ? kSecond : kStraight);
+      directions[j] = static_cast<std::uint8_t>(is_skip ? kThird : is_stay ? kSecond : kStraight);
     }
   }
 
@@ -117,7 +117,7 @@ struct AsymmetricSteps : StartsOnce {
 /// (1,1); (1,1) then (1,0); (1,1) then (0,1).
 struct SymmetricP1Steps : StartsOnce {
   static void fill(const Rows& rows, std::size_t first, std::size_t last, double penalty,
-                   std::uint8_t* ways) {
+                   std::uint8_t* directions) {
     for (std::size_t j = first; j <= last; ++j) {
       const double error = rows.error[j];
       const double straight = rows.above[j - 1] + 2.0 * error;
@@ -128,7 +128,7 @@ struct SymmetricP1Steps : StartsOnce {
       const double best = is_down ? down : straight;
       const bool is_across = across < best;
       rows.cost[j] = is_across ? across : best;
-      ways[j] = static_cast<std::uint8_t>(is_across ? kThird : is_down ? kSecond : kStraight);
+      directions[j] = static_cast<std::uint8_t>(is_across ? kThird : is_down ? kSecond : kStraight);
     }
   }
 
@@ -153,14 +153,16 @@ struct Search {
   void (*raise)(double* values, std::size_t count, double power);
   Band band;
   Rows rows;
-  std::uint8_t* ways;
-  std::size_t way_stride;
+  std::uint8_t* directions;
+  std::size_t direction_stride;
 
   std::size_t row_count() const { return target.force.size(); }
   std::size_t column_count() const { return applied.force.size(); }
 
-  /// The ways of a row, by column.
-  std::uint8_t* ways_of(std::size_t row) const { return ways + row * way_stride - band.first(row); }
+  /// The directions of a row, by column.
+  std::uint8_t* directions_of(std::size_t row) const {
+    return directions + row * direction_stride - band.first(row);
+  }
 
   void fill_error_row(std::size_t row, std::size_t first, std::size_t last) const {
     if (!has_short_power(options.power)) {
@@ -201,11 +203,11 @@ struct Search {
       fill_error_row(i, first, last);
       close(rows.error, first);
       if (i > 0) {
-        Steps::fill(rows, first, last, options.penalty, ways_of(i));
+        Steps::fill(rows, first, last, options.penalty, directions_of(i));
       } else if (options.open_begin) {
         std::copy(rows.error, rows.error + last + 1, rows.cost);
       } else {
-        Steps::start(rows, last, options.penalty, ways_of(0));
+        Steps::start(rows, last, options.penalty, directions_of(0));
       }
       close(rows.cost, first);
     }
@@ -245,7 +247,7 @@ struct Search {
     };
     note();
     while (row > 0 || (column > 0 && !options.open_begin)) {
-      Steps::back(static_cast<StepDirection>(ways_of(row)[column]), row, column, note);
+      Steps::back(static_cast<StepDirection>(directions_of(row)[column]), row, column, note);
     }
     path.erase(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(free));
     return true;
@@ -302,7 +304,7 @@ bool RowSearch::find(const CurveView& target, const CurveView& applied,
                 kernels_.raise,
                 band,
                 {row(0), row(1), row(2), row(3), row(4), row(5)},
-                ways_.at_least(count * band.widest()),
+                directions_.at_least(count * band.widest()),
                 band.widest()};
   switch (options.pattern) {
     case StepPattern::kSymmetric2:

@@ -10,15 +10,15 @@
 
 namespace haptrial::markers {
 
-using record::MarkerWay;
+using record::MarkerOutput;
 
 MarkerThread::MarkerThread(OnsetLog& log, const MarkerOptions& options,
-                           std::vector<MarkerMeaning> meanings, MarkerOutputs ways,
+                           std::vector<MarkerMeaning> meanings, MarkerOutputs outputs,
                            std::function<std::int64_t()> now)
     : log_(log),
       options_(options),
       meanings_(std::move(meanings)),
-      ways_(std::move(ways)),
+      outputs_(std::move(outputs)),
       now_(std::move(now)) {
   thread_ = std::thread([this] { run(); });
 }
@@ -50,18 +50,18 @@ void MarkerThread::take_onsets() {
   if (count == 0) {
     return;
   }
-  if (ways_.serial != nullptr) {
+  if (outputs_.serial != nullptr) {
     queue_codes(onsets);
     step_line();  // first: it is the quickest
   }
   for (const TimedOnset& onset : onsets) {
-    if (ways_.other) {
-      ways_.other(onset);
+    if (outputs_.other) {
+      outputs_.other(onset);
     }
   }
   for (const TimedOnset& onset : onsets) {
-    if (ways_.stream && !onset.over) {
-      tell(onset, MarkerWay::kStream, ways_.stream(onset));
+    if (outputs_.stream && !onset.over) {
+      tell(onset, MarkerOutput::kStream, outputs_.stream(onset));
     }
   }
   done_.fetch_add(count, std::memory_order_release);
@@ -91,7 +91,7 @@ void MarkerThread::step_line() {
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.pulse));
   while ((high_ || !queue_.empty()) && Clock::now() >= due_) {
     if (high_) {
-      ways_.serial->write(0);
+      outputs_.serial->write(0);
       high_ = false;
       due_ = Clock::now() + pulse;
       continue;
@@ -106,8 +106,8 @@ void MarkerThread::step_line() {
 
 void MarkerThread::write_code(const TimedOnset& onset) {
   const int code = meaning_of(meanings_, onset.onset)->code;
-  const bool taken = ways_.serial->write(static_cast<std::uint8_t>(code));
-  tell(onset, MarkerWay::kSerial, taken);
+  const bool taken = outputs_.serial->write(static_cast<std::uint8_t>(code));
+  tell(onset, MarkerOutput::kSerial, taken);
   if (taken) {
     return;
   }
@@ -116,11 +116,11 @@ void MarkerThread::write_code(const TimedOnset& onset) {
     trouble_ = fmt::format(
         "serial line {}: {}; the session goes on, and counts the markers that the line does not "
         "take; it is opened again when it is back",
-        ways_.serial->device(), std::strerror(ways_.serial->error()));
+        outputs_.serial->device(), std::strerror(outputs_.serial->error()));
   }
 }
 
-void MarkerThread::tell(const TimedOnset& onset, MarkerWay way, bool taken) {
+void MarkerThread::tell(const TimedOnset& onset, MarkerOutput way, bool taken) {
   const std::int64_t now = now_();
   const std::lock_guard lock(mutex_);
   sent_.push_back({onset, way, taken ? now : -1});

@@ -19,7 +19,7 @@ namespace haptrial::markers {
 /// An onset that was sent, or could not be.
 struct SentOnset {
   TimedOnset onset;
-  record::MarkerWay way{record::MarkerWay::kNone};
+  record::MarkerOutput way{record::MarkerOutput::kNone};
   std::int64_t written_ns{-1};  // on the session's clock; -1: it was not taken
 };
 
@@ -36,7 +36,7 @@ class MarkerThread {
   };
   /// @param now  the session's clock [ns]; asked by the thread. All of it outlives the object.
   MarkerThread(OnsetLog& log, const MarkerOptions& options, std::vector<MarkerMeaning> meanings,
-               MarkerOutputs ways, std::function<std::int64_t()> now);
+               MarkerOutputs outputs, std::function<std::int64_t()> now);
   ~MarkerThread();
   MarkerThread(const MarkerThread&) = delete;
   MarkerThread& operator=(const MarkerThread&) = delete;
@@ -58,13 +58,13 @@ class MarkerThread {
   void queue_codes(std::vector<TimedOnset>& onsets);
   void step_line();
   void write_code(const TimedOnset& onset);
-  void tell(const TimedOnset& onset, record::MarkerWay way, bool taken);
+  void tell(const TimedOnset& onset, record::MarkerOutput way, bool taken);
   Clock::time_point next_due() const;
 
   OnsetLog& log_;
   MarkerOptions options_;
   std::vector<MarkerMeaning> meanings_;
-  MarkerOutputs ways_;
+  MarkerOutputs outputs_;
   std::function<std::int64_t()> now_;
 
   // The thread's own.

@@ -21,10 +21,10 @@ double nearest_rank(const std::vector<double>& sorted, double share) {
 
 void MarkerLatencies::add(std::span<const record::MarkerRow> rows) {
   for (const record::MarkerRow& row : rows) {
-    if (row.way == record::MarkerWay::kNone) {
+    if (row.way == record::MarkerOutput::kNone) {
       continue;
     }
-    OutputDelays& way = ways_[row.way];
+    OutputDelays& way = outputs_[row.way];
     if (std::isnan(row.latency)) {
       ++way.lost;
     } else {
@@ -34,8 +34,8 @@ void MarkerLatencies::add(std::span<const record::MarkerRow> rows) {
 }
 
 void MarkerLatencies::add(const MarkerLatencies& others) {
-  for (const auto& [which, other] : others.ways_) {
-    OutputDelays& way = ways_[which];
+  for (const auto& [which, other] : others.outputs_) {
+    OutputDelays& way = outputs_[which];
     way.lost += other.lost;
     way.latencies.insert(way.latencies.end(), other.latencies.begin(), other.latencies.end());
   }
@@ -43,7 +43,7 @@ void MarkerLatencies::add(const MarkerLatencies& others) {
 
 std::vector<MarkerTimes> MarkerLatencies::times() const {
   std::vector<MarkerTimes> all;
-  for (const auto& [which, way] : ways_) {
+  for (const auto& [which, way] : outputs_) {
     std::vector<double> sorted = way.latencies;
     std::ranges::sort(sorted);
     all.push_back({which, sorted.size(), way.lost, nearest_rank(sorted, 0.5),

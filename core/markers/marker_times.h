@@ -12,7 +12,7 @@ namespace haptrial::markers {
 
 /// How soon the markers of one way had gone after the ticks of their onsets.
 struct MarkerTimes {
-  record::MarkerWay way{record::MarkerWay::kSerial};
+  record::MarkerOutput way{record::MarkerOutput::kSerial};
   std::size_t sent{0};
   std::size_t lost{0};  // did not go
   // The smallest latencies that a half, 99 % and all of those sent do not exceed [s]; NaN: none
@@ -27,7 +27,7 @@ class MarkerLatencies {
  public:
   void add(std::span<const record::MarkerRow> rows);
   void add(const MarkerLatencies& others);
-  /// One for each way that markers went, in the order of MarkerWay, without kNone.
+  /// One for each way that markers went, in the order of MarkerOutput, without kNone.
   std::vector<MarkerTimes> times() const;
 
  private:
@@ -35,7 +35,7 @@ class MarkerLatencies {
     std::vector<double> latencies;  // [s]
     std::size_t lost{0};
   };
-  std::map<record::MarkerWay, OutputDelays> ways_;
+  std::map<record::MarkerOutput, OutputDelays> outputs_;
 };
 
 /// "serial: 240 markers, median 0.031 ms, 99 % 0.102 ms, largest 0.400 ms after their tick".

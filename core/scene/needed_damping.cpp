@@ -66,8 +66,8 @@ StiffnessBound of_surface(const std::vector<Field>& fields, const Field& field,
 /// it was given, and turns against the hand by k at most, also where friction holds the proxy.
 /// Shading turns the force away from that way, and renderers without a proxy jump: of them nothing
 /// is proven.
-StiffnessBound of_solid(const std::vector<Field>& fields, const Field& field,
-                        const RigidObjectParameters& p) {
+StiffnessBound of_rigid_object(const std::vector<Field>& fields, const Field& field,
+                               const RigidObjectParameters& p) {
   StiffnessBound found = of_surface(fields, field, p.gains, true);
   found.passive = p.renderer == contact::RendererKind::kProxy && p.crease_angle < 0.0;
   return found;
@@ -76,7 +76,7 @@ StiffnessBound of_solid(const std::vector<Field>& fields, const Field& field,
 /// The spring between hand and ball and the body behind it, along each other; friction bends a
 /// bristle that is no stiffer. Of a body that is not prepared the spring alone is known. What moves
 /// keeps an account of its energy, in which the hand has a damping.
-StiffnessBound of_yielding(const DeformableObjectParameters& p) {
+StiffnessBound of_deformable_object(const DeformableObjectParameters& p) {
   if (p.springs) {
     return {true, 0.0, deformable::EnergyAccount::kDamping};
   }
@@ -86,7 +86,7 @@ StiffnessBound of_yielding(const DeformableObjectParameters& p) {
   return {true, p.tool.friction.static_friction > 0.0 ? 2.0 * both : both, 0.0};
 }
 
-struct SteepnessOf {
+struct StiffnessBoundOf {
   const std::vector<Field>& fields;
   const Field& field;
 
@@ -101,9 +101,11 @@ struct SteepnessOf {
     return of_surface(fields, field, p);
   }
   StiffnessBound operator()(const RigidObjectParameters& p) const {
-    return of_solid(fields, field, p);
+    return of_rigid_object(fields, field, p);
   }
-  StiffnessBound operator()(const DeformableObjectParameters& p) const { return of_yielding(p); }
+  StiffnessBound operator()(const DeformableObjectParameters& p) const {
+    return of_deformable_object(p);
+  }
   StiffnessBound operator()(const GratingParameters&) const { return {true, 0.0, 0.0}; }
   StiffnessBound operator()(const TextureParameters&) const { return {true, 0.0, 0.0}; }
   StiffnessBound operator()(const ViscousParameters& p) const { return {true, 0.0, p.damping}; }
@@ -130,9 +132,9 @@ struct SteepnessOf {
 
 }  // namespace
 
-StiffnessBound steepness(const std::vector<Field>& fields, std::size_t which) {
+StiffnessBound stiffness_bound(const std::vector<Field>& fields, std::size_t which) {
   const Field& field = fields.at(which);
-  return std::visit(SteepnessOf{fields, field}, field.kind);
+  return std::visit(StiffnessBoundOf{fields, field}, field.kind);
 }
 
 double needed_damping(const StiffnessBound& field, double rate) noexcept {

@@ -17,7 +17,7 @@ struct StiffnessBound {
 /// Bound on the field at `which` in a scene; reliefs steepen the surface that they lie on and are
 /// counted there. For a field that is not passive K and B hold for its forces from place and
 /// velocity; the energy that it gives over time is its purpose.
-StiffnessBound steepness(const std::vector<Field>& fields, std::size_t which);
+StiffnessBound stiffness_bound(const std::vector<Field>& fields, std::size_t which);
 
 /// The damping of device and hand with which a sampled passive field never gives out energy,
 /// whatever the hand does between two ticks (Colgate and Schenkel 1997):

@@ -74,11 +74,11 @@ bool shows_token(const std::string& text, const std::string& token) {
   return false;
 }
 
-HttpListener::HttpListener(int listening, const StopEvent& stop, Rules rules, Handlers ways)
+HttpListener::HttpListener(int listening, const StopEvent& stop, Rules rules, Handlers handlers)
     : listening_(listening),
       stop_(stop.descriptor()),
       rules_(std::move(rules)),
-      ways_(std::move(ways)) {
+      handlers_(std::move(handlers)) {
   ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
   thread_ = std::thread([this] { run(); });
 }
@@ -143,7 +143,7 @@ bool HttpListener::see_to(const Client& guest) {
     return true;
   }
   const std::string text(first.data(), static_cast<std::size_t>(count));
-  ways_.admit(guest.socket, shows_token(text, rules_.token));
+  handlers_.admit(guest.socket, shows_token(text, rules_.token));
   return true;
 }
 
@@ -180,7 +180,7 @@ void HttpListener::make_room() {
   const auto oldest = std::find_if(guests_.begin(), guests_.end(), [&](const Client& guest) {
     return guest.address == most->first;
   });
-  ways_.refuse(oldest->socket);
+  handlers_.refuse(oldest->socket);
   ::close(oldest->socket);
   guests_.erase(oldest);
 }

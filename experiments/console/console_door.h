@@ -60,7 +60,7 @@ class HttpListener {
   };
 
   /// @param listening  a socket; it and `stop` outlive the door.
-  HttpListener(int listening, const StopEvent& stop, Rules rules, Handlers ways);
+  HttpListener(int listening, const StopEvent& stop, Rules rules, Handlers handlers);
   ~HttpListener();  // once `stop` is set
   HttpListener(const HttpListener&) = delete;
   HttpListener& operator=(const HttpListener&) = delete;
@@ -81,7 +81,7 @@ class HttpListener {
   int listening_;
   int stop_;
   Rules rules_;
-  Handlers ways_;
+  Handlers handlers_;
   std::vector<Client> guests_;  // in the order in which they came
   std::thread thread_;
 };

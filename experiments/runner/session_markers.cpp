@@ -15,8 +15,8 @@ namespace {
 
 using markers::TimedOnset;
 using record::MarkerOf;
+using record::MarkerOutput;
 using record::MarkerRow;
-using record::MarkerWay;
 
 // Limit of waiting for onsets on their way. The sending thread never waits for its line: only a
 // machine that gives it no time keeps it. A screen or a card may have stopped.
@@ -33,7 +33,7 @@ SessionMarkers::SessionMarkers(const SessionRequest& request, markers::OnsetLog&
       now_(std::move(now)),
       meanings_(definition_.marker_meanings()) {
   if (used() && real_) {
-    open_ways(request, outlet);
+    open_outputs(request, outlet);
   }
 }
 
@@ -48,7 +48,7 @@ SessionMarkers::~SessionMarkers() {
   }
 }
 
-void SessionMarkers::open_ways(const SessionRequest& request, stream::LslOutlet* outlet) {
+void SessionMarkers::open_outputs(const SessionRequest& request, stream::LslOutlet* outlet) {
   const markers::MarkerOptions& options = definition_.markers;
   if (!options.serial.empty()) {
     line_ = std::make_unique<markers::SerialLine>(options.serial, options.baud);
@@ -56,15 +56,15 @@ void SessionMarkers::open_ways(const SessionRequest& request, stream::LslOutlet*
   if (definition_.sounds() != nullptr) {
     open_sound(request);
   }
-  markers::MarkerThread::MarkerOutputs ways;
-  ways.serial = line_.get();
-  ways.other = [this](const TimedOnset& onset) { hear(onset); };
+  markers::MarkerThread::MarkerOutputs outputs;
+  outputs.serial = line_.get();
+  outputs.other = [this](const TimedOnset& onset) { hear(onset); };
   streams_ = outlet != nullptr;
   if (streams_) {
-    ways.stream = [this, outlet](const TimedOnset& onset) { return stream(*outlet, onset); };
+    outputs.stream = [this, outlet](const TimedOnset& onset) { return stream(*outlet, onset); };
   }
   thread_ =
-      std::make_unique<markers::MarkerThread>(log_, options, meanings_, std::move(ways), now_);
+      std::make_unique<markers::MarkerThread>(log_, options, meanings_, std::move(outputs), now_);
 }
 
 /// A session goes on without its sounds, and says so.
@@ -144,7 +144,7 @@ MarkerRow SessionMarkers::row_of(const TimedOnset& onset) const {
   return row;
 }
 
-void SessionMarkers::add(const TimedOnset& onset, MarkerWay way, std::int64_t written_ns,
+void SessionMarkers::add(const TimedOnset& onset, MarkerOutput way, std::int64_t written_ns,
                          std::int64_t frame) {
   MarkerRow row = row_of(onset);
   row.way = way;
@@ -173,12 +173,12 @@ void SessionMarkers::take_in(const TimedOnset& onset) {
     if (player_) {
       unheard_[onset.number] = onset;
     } else {
-      add(onset, MarkerWay::kSound, -1);
+      add(onset, MarkerOutput::kSound, -1);
     }
     goes = true;
   }
   if (!goes) {
-    add(onset, MarkerWay::kNone, -1);
+    add(onset, MarkerOutput::kNone, -1);
   }
 }
 
@@ -200,7 +200,7 @@ void SessionMarkers::gather() {
     const auto shown = [&](const TimedOnset& onset) { return onset.number <= flash.onsets; };
     for (const TimedOnset& onset : unseen_) {
       if (shown(onset)) {
-        add(onset, MarkerWay::kScreen, flash.time_ns, flash.frame);
+        add(onset, MarkerOutput::kScreen, flash.time_ns, flash.frame);
       }
     }
     std::erase_if(unseen_, shown);
@@ -208,7 +208,7 @@ void SessionMarkers::gather() {
   for (const sound::StartedCue& cue :
        player_ ? player_->take_started() : std::vector<sound::StartedCue>{}) {
     if (const auto found = unheard_.find(cue.ticket); found != unheard_.end()) {
-      add(found->second, MarkerWay::kSound, cue.handed_ns);
+      add(found->second, MarkerOutput::kSound, cue.handed_ns);
       unheard_.erase(found);
     }
   }
@@ -223,10 +223,10 @@ bool SessionMarkers::all_shown() const { return unseen_.empty() && unheard_.empt
 /// The screen or the card has stopped.
 void SessionMarkers::give_up_waiting() {
   for (const TimedOnset& onset : unseen_) {
-    add(onset, MarkerWay::kScreen, -1);
+    add(onset, MarkerOutput::kScreen, -1);
   }
   for (const auto& [number, onset] : unheard_) {
-    add(onset, MarkerWay::kSound, -1);
+    add(onset, MarkerOutput::kSound, -1);
   }
   unseen_.clear();
   unheard_.clear();

@@ -55,7 +55,7 @@ class SessionMarkers {
   std::vector<std::string> latencies() const;
 
  private:
-  void open_ways(const SessionRequest& request, stream::LslOutlet* outlet);
+  void open_outputs(const SessionRequest& request, stream::LslOutlet* outlet);
   void open_sound(const SessionRequest& request);
   void hear(const markers::TimedOnset& onset);
   bool stream(stream::LslOutlet& outlet, const markers::TimedOnset& onset) const;
@@ -65,7 +65,7 @@ class SessionMarkers {
   bool all_sent() const;
   bool all_shown() const;
   record::MarkerRow row_of(const markers::TimedOnset& onset) const;
-  void add(const markers::TimedOnset& onset, record::MarkerWay way, std::int64_t written_ns,
+  void add(const markers::TimedOnset& onset, record::MarkerOutput way, std::int64_t written_ns,
            std::int64_t frame = -1);
 
   const protocols::Definition& definition_;

@@ -137,7 +137,7 @@ TEST_F(LiveStreamTest, OnsetsArriveWithTheirCodes) {
   ASSERT_EQ(heard.size(), rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const record::MarkerRow& row = rows[i];
-    EXPECT_EQ(row.way, record::MarkerWay::kStream);
+    EXPECT_EQ(row.way, record::MarkerOutput::kStream);
     EXPECT_GE(row.latency, 0.0);
     EXPECT_EQ(heard[i], "onset: what=" + std::string(record::name_of(row.what)) +
                             " name=" + row.name + " code=" + std::to_string(row.code) +

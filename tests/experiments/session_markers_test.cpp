@@ -36,8 +36,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using record::MarkerOf;
+using record::MarkerOutput;
 using record::MarkerRow;
-using record::MarkerWay;
 using testing::HasSubstr;
 
 /// Eight trials of half a second.
@@ -98,7 +98,7 @@ fade = 0.01
 const std::map<std::string, int> kCodes{{"trial", 1}, {"whole", 11},  {"half", 12},   {"ready", 21},
                                         {"feel", 17}, {"first", 101}, {"second", 102}};
 
-std::vector<MarkerRow> markers_by(const record::SessionReader& file, MarkerWay way) {
+std::vector<MarkerRow> markers_by(const record::SessionReader& file, MarkerOutput way) {
   std::vector<MarkerRow> rows = file.rows<MarkerRow>();
   std::erase_if(rows, [way](const MarkerRow& row) { return row.way != way; });
   return rows;
@@ -128,7 +128,7 @@ class SessionMarkersTest : public testing::Test {
   SessionRequest live(const std::string& more) { return request(more, realtime::ClockKind::kReal); }
 
   /// Every marker that /trials, /stages and /responses ask for is there once, on their ticks.
-  static void expect_as_presented(const record::SessionReader& file, MarkerWay way) {
+  static void expect_as_presented(const record::SessionReader& file, MarkerOutput way) {
     std::multiset<std::tuple<MarkerOf, std::uint64_t, int>> expected, found;
     for (const record::PassRow& pass : file.passes()) {
       expected.emplace(MarkerOf::kTrial, pass.first_sample, 1);
@@ -171,7 +171,7 @@ TEST_F(SessionMarkersTest, ADryRunShowsTheCodes) {
   const record::SessionReader file(folder_ / "S01.h5");
   ASSERT_EQ(file.passes().size(), 8u);
   EXPECT_EQ(file.rows<MarkerRow>().size(), 8u * 8u);
-  expect_as_presented(file, MarkerWay::kNone);
+  expect_as_presented(file, MarkerOutput::kNone);
   for (const MarkerRow& row : file.rows<MarkerRow>()) {
     EXPECT_TRUE(std::isnan(row.latency) && std::isnan(row.written));
     EXPECT_EQ(row.frame, -1);
@@ -191,9 +191,9 @@ TEST_F(SessionMarkersTest, TheSerialLineReceivesWhatTheFileSays) {
       run_session(live("[markers]\nserial = \"" + line.name() + "\"\npulse = 0.002\n"));
   const record::SessionReader file(folder_ / "S01.h5");
   ASSERT_EQ(file.passes().size(), 8u);
-  expect_as_presented(file, MarkerWay::kSerial);
+  expect_as_presented(file, MarkerOutput::kSerial);
 
-  std::vector<MarkerRow> rows = markers_by(file, MarkerWay::kSerial);
+  std::vector<MarkerRow> rows = markers_by(file, MarkerOutput::kSerial);
   std::ranges::stable_sort(rows, {}, &MarkerRow::written);
   test::wait_until([&] { return line.heard().size() >= 2 * rows.size(); });
   std::vector<test::PseudoTerminal::Heard> codes;
@@ -227,7 +227,7 @@ TEST_F(SessionMarkersTest, TheSerialLineReceivesWhatTheFileSays) {
 TEST_F(SessionMarkersTest, SoundsSayWhenTheCardTookThem) {
   const SessionSummary summary = run_session(live(""));
   const record::SessionReader file(folder_ / "S01.h5");
-  const auto rows = markers_by(file, MarkerWay::kSound);
+  const auto rows = markers_by(file, MarkerOutput::kSound);
   ASSERT_EQ(rows.size(), 16u) << "two intervals of eight trials";
   std::vector<double> latencies;
   for (const MarkerRow& row : rows) {
@@ -238,7 +238,7 @@ TEST_F(SessionMarkersTest, SoundsSayWhenTheCardTookThem) {
   std::printf("tick to the card's buffer: median %.2f ms, largest %.2f ms\n",
               quantile(latencies, 0.5), quantile(latencies, 1.0));
   EXPECT_THAT(summary.markers, testing::Contains(HasSubstr("sound: 16 markers")));
-  EXPECT_FALSE(markers_by(file, MarkerWay::kNone).empty()) << "those without a sound";
+  EXPECT_FALSE(markers_by(file, MarkerOutput::kNone).empty()) << "those without a sound";
   bool played = false;
   for (const record::EventRow& event : file.events()) {
     played = played || (event.kind == "sound" && event.text == "played on 'null'");
@@ -257,7 +257,7 @@ TEST_F(SessionMarkersTest, WithoutACardThereIsOneSentence) {
   }
   EXPECT_EQ(sentences, 1);
   const record::SessionReader file(folder_ / "S01.h5");
-  const auto rows = markers_by(file, MarkerWay::kSound);
+  const auto rows = markers_by(file, MarkerOutput::kSound);
   ASSERT_EQ(rows.size(), 16u);
   EXPECT_TRUE(std::ranges::all_of(rows, [](const auto& row) { return std::isnan(row.written); }))
       << "nothing was played";
@@ -277,9 +277,9 @@ TEST_F(SessionMarkersTest, ALineThatDisappearsDoesNotEndTheSession) {
   EXPECT_EQ(summary.aborted_passes, 0);
   const record::SessionReader file(folder_ / "S01.h5");
   ASSERT_EQ(file.passes().size(), 8u);
-  expect_as_presented(file, MarkerWay::kSerial);  // what was lost has its row, too
+  expect_as_presented(file, MarkerOutput::kSerial);  // what was lost has its row, too
   std::size_t lost = 0;
-  for (const MarkerRow& row : markers_by(file, MarkerWay::kSerial)) {
+  for (const MarkerRow& row : markers_by(file, MarkerOutput::kSerial)) {
     lost += std::isnan(row.written) ? 1 : 0;
   }
   EXPECT_GT(lost, 0u);
@@ -327,7 +327,7 @@ TEST_P(MarkerKillTest, LeavesTheMarkersOfFinishedTrials) {
   const std::size_t finished = file.passes().size();
   EXPECT_GE(finished, 2u) << "the third may not have been written yet";
   std::map<int, int> of_pass;
-  for (const MarkerRow& row : markers_by(file, MarkerWay::kSerial)) {
+  for (const MarkerRow& row : markers_by(file, MarkerOutput::kSerial)) {
     ++of_pass[row.pass];
   }
   for (std::size_t pass = 0; pass < finished; ++pass) {
@@ -357,10 +357,10 @@ TEST_F(SessionMarkersTest, TheScreenSaysWhichFrameWasWhite) {
   over = true;
   person.join();
   const record::SessionReader file(folder_ / "S01.h5");
-  expect_as_presented(file, MarkerWay::kScreen);
+  expect_as_presented(file, MarkerOutput::kScreen);
   const auto frames = file.frames();
   std::vector<double> latencies;
-  for (const MarkerRow& row : markers_by(file, MarkerWay::kScreen)) {
+  for (const MarkerRow& row : markers_by(file, MarkerOutput::kScreen)) {
     ASSERT_GE(row.frame, 0);
     ASSERT_LT(row.frame, static_cast<std::int64_t>(frames.size()));
     const record::FrameRow& frame = frames[static_cast<std::size_t>(row.frame)];

@@ -219,7 +219,7 @@ void add_combined(Validity& v, std::span<const ProcedureSummary> procedures) {
 void add_regions(Validity& v, std::span<const ProcedureSummary> procedures,
                  std::span<const RegionScores> regions, const ValueTable& rating) {
   using Member = std::optional<double> RegionScores::*;
-  const std::array<std::pair<const char*, Member>, 6> ways{{
+  const std::array<std::pair<const char*, Member>, 6> scores{{
       {"all voxels, one participant of each side left out (used here)", &RegionScores::score},
       {"all voxels, the participant left out", &RegionScores::leave_subject_out},
       {"all voxels, tested on the training data", &RegionScores::resubstitution},
@@ -228,7 +228,7 @@ void add_regions(Validity& v, std::span<const ProcedureSummary> procedures,
       {"removed voxels, tested on the training data (as published)",
        &RegionScores::removed_resubstitution},
   }};
-  for (const auto& [name, member] : ways) {
+  for (const auto& [name, member] : scores) {
     ValueTable table = table_of(v, procedures);
     for (std::size_t i = 0; i < regions.size() && i < table.rows.size(); ++i) {
       table.rows[i].value = regions[i].*member;

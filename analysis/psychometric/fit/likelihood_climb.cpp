@@ -43,12 +43,12 @@ void Sums::add(const SigmoidCurve& curve, const Blocks& blocks, const Spot& spot
   const double twice = spot.tied ? 2.0 : 1.0, second = spot.fisher ? 0.0 : 1.0;
   Lanes slope, bend, by_lapse, with_lapse, with_guess;
   for (std::size_t i = 0; i < kLanes; ++i) {
-    const double f = between * s.density[i], steep = pull.curvature[i] * between;
+    const double f = between * s.density[i], curvature = pull.curvature[i] * between;
     slope[i] = pull.slope[i] * f;
     bend[i] = pull.curvature[i] * f * f - second * pull.slope[i] * between * s.bend[i];
     by_lapse[i] = spot.tied ? s.beyond[i] - s.share[i] : -s.share[i];
-    with_lapse[i] = (steep * by_lapse[i] + second * twice * pull.slope[i]) * s.density[i];
-    with_guess[i] = (steep * s.beyond[i] + second * pull.slope[i]) * s.density[i];
+    with_lapse[i] = (curvature * by_lapse[i] + second * twice * pull.slope[i]) * s.density[i];
+    with_guess[i] = (curvature * s.beyond[i] + second * pull.slope[i]) * s.density[i];
   }
   for (std::size_t i = 0; i < kLanes; ++i) {
     impossible += pull.impossible[i];

@@ -32,49 +32,49 @@ WholeRanks whole(const Ranks& ranks) {
 }
 
 /// Sums of the positive ranks: each rank is positive or not.
-RankSumCounts signed_rank_ways(const WholeRanks& ranks) {
+RankSumCounts signed_rank_counts(const WholeRanks& ranks) {
   const auto total = std::accumulate(ranks.ranks.begin(), ranks.ranks.end(), 0L);
-  RankSumCounts ways(static_cast<std::size_t>(total) + 1, 0.0);
-  ways[0] = 1.0;
+  RankSumCounts counts(static_cast<std::size_t>(total) + 1, 0.0);
+  counts[0] = 1.0;
   for (const long rank : ranks.ranks) {
     for (long sum = total; sum >= rank; --sum) {
-      ways[static_cast<std::size_t>(sum)] += ways[static_cast<std::size_t>(sum - rank)];
+      counts[static_cast<std::size_t>(sum)] += counts[static_cast<std::size_t>(sum - rank)];
     }
   }
-  return ways;
+  return counts;
 }
 
 /// Sums of the ranks of a sample: every choice of `count` ranks.
-RankSumCounts chosen_rank_ways(const WholeRanks& ranks, std::size_t count) {
+RankSumCounts chosen_rank_counts(const WholeRanks& ranks, std::size_t count) {
   const auto total = std::accumulate(ranks.ranks.begin(), ranks.ranks.end(), 0L);
-  std::vector<RankSumCounts> ways(count + 1,
-                                  RankSumCounts(static_cast<std::size_t>(total) + 1, 0.0));
-  ways[0][0] = 1.0;
+  std::vector<RankSumCounts> counts(count + 1,
+                                    RankSumCounts(static_cast<std::size_t>(total) + 1, 0.0));
+  counts[0][0] = 1.0;
   long most = 0;  // sum of the ranks so far
   for (const long rank : ranks.ranks) {
     most += rank;
     for (std::size_t chosen = count; chosen > 0; --chosen) {
       for (long sum = most; sum >= rank; --sum) {
-        ways[chosen][static_cast<std::size_t>(sum)] +=
-            ways[chosen - 1][static_cast<std::size_t>(sum - rank)];
+        counts[chosen][static_cast<std::size_t>(sum)] +=
+            counts[chosen - 1][static_cast<std::size_t>(sum - rank)];
       }
     }
   }
-  return ways[count];
+  return counts[count];
 }
 
-/// The share of the ways whose sum is as far out as the one found.
+/// The share of the choices whose sum is as far out as the one found.
 /// @param twice_middle  twice the expected sum
-double exact_p(const RankSumCounts& ways, long found, long twice_middle, Tail tail) {
+double exact_p(const RankSumCounts& counts, long found, long twice_middle, Tail tail) {
   double beyond = 0.0, all = 0.0;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
+  for (std::size_t i = 0; i < counts.size(); ++i) {
     const auto sum = static_cast<long>(i);
     const bool far = tail == Tail::kLess ? sum <= found
                      : tail == Tail::kGreater
                          ? sum >= found
                          : std::abs(2 * sum - twice_middle) >= std::abs(2 * found - twice_middle);
-    beyond += far ? ways[i] : 0.0;
-    all += ways[i];
+    beyond += far ? counts[i] : 0.0;
+    all += counts[i];
   }
   return beyond / all;
 }
@@ -124,9 +124,9 @@ Defined<RankTest> wilcoxon_signed_rank(std::span<const double> a, std::span<cons
   const auto n = static_cast<double>(result.count);
   if (result.exact) {
     const WholeRanks units = whole(ranks);
-    const RankSumCounts ways = signed_rank_ways(units);
-    result.p = exact_p(ways, std::lround(static_cast<double>(units.unit) * result.statistic),
-                       static_cast<long>(ways.size()) - 1, tail);
+    const RankSumCounts counts = signed_rank_counts(units);
+    result.p = exact_p(counts, std::lround(static_cast<double>(units.unit) * result.statistic),
+                       static_cast<long>(counts.size()) - 1, tail);
   } else {
     result.p = normal_p(result.statistic - n * (n + 1.0) / 4.0,
                         n * (n + 1.0) * (2.0 * n + 1.0) / 24.0 - ranks.ties / 48.0, tail);
@@ -159,7 +159,7 @@ Defined<RankTest> mann_whitney(std::span<const double> a, std::span<const double
   const double n = na + nb;
   if (result.exact) {
     const WholeRanks units = whole(ranks);
-    result.p = exact_p(chosen_rank_ways(units, a.size()),
+    result.p = exact_p(chosen_rank_counts(units, a.size()),
                        std::lround(static_cast<double>(units.unit) * sum),
                        units.unit * static_cast<long>(a.size() * (all.size() + 1)), tail);
   } else {

@@ -122,20 +122,20 @@ std::optional<double> StudyReach::turned(const std::optional<double>& value) con
 
 std::vector<StudyReach> study_reaches(const TrialsData& data,
                                       const std::vector<std::filesystem::path>& files,
-                                      const std::vector<std::optional<ReachWay>>& ways,
+                                      const std::vector<std::optional<ReachRoute>>& routes,
                                       const std::string& stage, const std::string& clamp,
                                       int threads) {
   std::vector<StudyReach> reaches;
   std::map<std::string, std::size_t> counted;
   for (std::size_t i = 0; i < data.trials.size(); ++i) {
     const StudyTrial& trial = data.trials[i];
-    if (!trial.counts() || !ways.at(i)) {
+    if (!trial.counts() || !routes.at(i)) {
       continue;
     }
     StudyReach reach;
     reach.trial = i;
     reach.order = counted[data.session_of(trial).participant]++;
-    reach.way = *ways[i];
+    reach.way = *routes[i];
     const bool held = reach.way.clamp || (!trial.probe.empty() && trial.probe == clamp);
     reach.kind = held                  ? ReachKind::kClamp
                  : trial.probe.empty() ? ReachKind::kPlain

@@ -15,7 +15,7 @@
 namespace haptrial::analysis::trials {
 
 /// Reach of one trial according to the definition.
-struct ReachWay {
+struct ReachRoute {
   Eigen::Vector3d start{0.0, 0.0, 0.0};  // in W [m]
   Eigen::Vector3d target{0.0, 0.0, 0.0};
   double target_radius{0.01};                      // [m]
@@ -37,7 +37,7 @@ struct StudyReach {
   std::size_t order{0};  // from 0 among the participant's counted trials
   ReachKind kind{ReachKind::kPlain};
   std::string block;
-  ReachWay way;
+  ReachRoute way;
   bool recorded{false};   // the trial has the stage, with samples
   bool arrived{false};    // the stage ended because its end was reached
   double saturated{0.0};  // share of the stage's ticks at the force limit
@@ -58,12 +58,12 @@ struct StudyReach {
 /// the stage's first tick; 0.2 s before it belong to the recording, so that a hand which is already
 /// on its way is seen.
 /// @param files  of TrialsData::sessions, in their order
-/// @param ways   of TrialsData::trials; nothing: the trial has no reach
+/// @param routes   of TrialsData::trials; nothing: the trial has no reach
 /// @param clamp  name of a probe that counts as one in a channel, whatever acts
 /// @throws InputError naming a file that is damaged
 std::vector<StudyReach> study_reaches(const TrialsData& data,
                                       const std::vector<std::filesystem::path>& files,
-                                      const std::vector<std::optional<ReachWay>>& ways,
+                                      const std::vector<std::optional<ReachRoute>>& routes,
                                       const std::string& stage, const std::string& clamp,
                                       int threads);
 

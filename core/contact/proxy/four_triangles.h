@@ -61,11 +61,11 @@ inline Fours from_edge(const Fours& start, const Fours& edge, const Fours& p) no
 }
 
 /// Ways from four triangles to a point, of any length, about; no numbers where there is none.
-struct WaysOff {
+struct TriangleVectors {
   Fours nearest;  // from the triangle's nearest point
   Fours face;     // along its normal, on the point's side
 
-  WaysOff(const FourTriangles& t, const Fours& p) noexcept {
+  TriangleVectors(const FourTriangles& t, const Fours& p) noexcept {
     const Fours ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c, out = p - t.a;
     const Fours normal = ab.cross(bc);
     const Fours off_ab = from_edge(t.a, ab, p), off_bc = from_edge(t.b, bc, p);

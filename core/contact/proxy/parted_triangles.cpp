@@ -176,9 +176,9 @@ struct PartedTriangles::FourPlanes {
 /// `wanted` is left, along an edge and the move.
 PartedTriangles::FourPlanes PartedTriangles::best_planes(const FourTriangles& t, const Move& move,
                                                          unsigned wanted) noexcept {
-  const WaysOff ways(t, move.beside(t.middle()));
-  FourPlanes best(t, ways.nearest, move);
-  best.take_better({t, ways.face, move});
+  const TriangleVectors vectors(t, move.beside(t.middle()));
+  FourPlanes best(t, vectors.nearest, move);
+  best.take_better({t, vectors.face, move});
   if ((~geometry::bits(best.least > 0.0f) & wanted) != 0) {
     for (const Fours& edge : {t.b - t.a, t.c - t.b, t.a - t.c}) {
       best.take_better({t, outwards(move.v.cross(edge), move.p - t.middle()), move});

@@ -26,17 +26,17 @@ const char* name_of(MarkerOf what) noexcept {
   return "";
 }
 
-const char* name_of(MarkerWay way) noexcept {
+const char* name_of(MarkerOutput way) noexcept {
   switch (way) {
-    case MarkerWay::kNone:
+    case MarkerOutput::kNone:
       return "none";
-    case MarkerWay::kSerial:
+    case MarkerOutput::kSerial:
       return "serial";
-    case MarkerWay::kStream:
+    case MarkerOutput::kStream:
       return "stream";
-    case MarkerWay::kScreen:
+    case MarkerOutput::kScreen:
       return "screen";
-    case MarkerWay::kSound:
+    case MarkerOutput::kSound:
       return "sound";
   }
   return "";
@@ -65,11 +65,11 @@ const Table<MarkerRow>& table_of<MarkerRow>() {
        T::column("code", &R::code, "1", "its code, 1 to 255"),
        T::column("sequence", &R::sequence, "1", "tick of the onset, as in /samples"),
        T::column("time_ns", &R::time_ns, "ns", "of that tick, since the first tick of the session"),
-       T::word(
-           "way", &R::way, kMarkerWordBytes,
-           EnumText({named(MarkerWay::kNone), named(MarkerWay::kSerial), named(MarkerWay::kStream),
-                     named(MarkerWay::kScreen), named(MarkerWay::kSound)}),
-           "where it went: serial, stream, screen, sound or none"),
+       T::word("way", &R::way, kMarkerWordBytes,
+               EnumText({named(MarkerOutput::kNone), named(MarkerOutput::kSerial),
+                         named(MarkerOutput::kStream), named(MarkerOutput::kScreen),
+                         named(MarkerOutput::kSound)}),
+               "where it went: serial, stream, screen, sound or none"),
        T::column("written", &R::written, "s",
                  "when it had gone there, since the first tick of the session; NaN: it did not"),
        T::column("latency", &R::latency, "s", "from the tick to then; NaN: it did not go"),

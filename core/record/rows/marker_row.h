@@ -13,14 +13,14 @@ enum class MarkerOf : std::uint8_t { kTrial, kInterval, kStage, kResponse };
 const char* name_of(MarkerOf what) noexcept;
 
 /// Output that a marker went to.
-enum class MarkerWay : std::uint8_t {
+enum class MarkerOutput : std::uint8_t {
   kNone,    // nowhere: a simulated session, or nothing is connected
   kSerial,  // a serial line
   kStream,  // the Lab Streaming Layer
   kScreen,  // the photodiode's square
   kSound,   // the sound that begins with it
 };
-const char* name_of(MarkerWay way) noexcept;
+const char* name_of(MarkerOutput way) noexcept;
 
 /// An onset and where it went, a row of /markers: one for each way.
 struct MarkerRow {
@@ -32,7 +32,7 @@ struct MarkerRow {
   std::int32_t code{0};       // 1 to 255
   std::uint64_t sequence{0};  // of the tick
   std::int64_t time_ns{0};    // of the tick, since the first one of the session
-  MarkerWay way{MarkerWay::kNone};
+  MarkerOutput way{MarkerOutput::kNone};
   double written{std::numeric_limits<double>::quiet_NaN()};  // when, on the same clock [s]
   double latency{std::numeric_limits<double>::quiet_NaN()};  // from the tick on [s]
   std::int64_t frame{-1};  // of this run's screen, from 0; -1: not the screen

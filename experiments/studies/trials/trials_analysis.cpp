@@ -9,7 +9,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "experiments/studies/trials/reaching/reach_ways.h"
+#include "experiments/studies/trials/reaching/reach_routes.h"
 #include "protocols/trials/definition/trials_definition.h"
 #include "protocols/trials/trials_protocol.h"
 

@@ -16,7 +16,7 @@
 #include "analysis/trials/report/write_trials.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "experiments/studies/trials/reaching/reach_ways.h"
+#include "experiments/studies/trials/reaching/reach_routes.h"
 #include "experiments/studies/trials/trials_analysis.h"
 #include "experiments/studies/trials/trials_study_simulation.h"
 #include "protocols/trials/definition/trials_definition.h"
@@ -173,10 +173,10 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   trials::TrialsResult result =
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
   if (plan.kind == trials::AnalysisKind::kReaching) {
-    const auto ways = reach_ways(definition, result.data, plan.reaching);
+    const auto routes = reach_routes(definition, result.data, plan.reaching);
     result.reaching = trials::reaching_study(
         result.data,
-        trials::study_reaches(result.data, request.files.files, ways, plan.reaching.stage,
+        trials::study_reaches(result.data, request.files.files, routes, plan.reaching.stage,
                               plan.reaching.clamp, request.threads),
         plan.reaching, request.threads);
     result.quantities = trials::reach_quantities(result.data, *result.reaching, plan);

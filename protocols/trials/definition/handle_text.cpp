@@ -133,9 +133,9 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
     }
     const scene::Field& field = fields[at];
     if (acts(named.stage.fields, i) && !is_weak_friction(field)) {
-      const scene::StiffnessBound steep = scene::steepness(fields, at);
-      load.stiffness += std::isfinite(steep.stiffness) ? steep.stiffness : 0.0;
-      load.damping += steep.damping;
+      const scene::StiffnessBound bound = scene::stiffness_bound(fields, at);
+      load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
+      load.damping += bound.damping;
       if (const auto* inertia = std::get_if<scene::InertiaParameters>(&field.kind)) {
         load.mass += inertia->mass;
         load.cutoff = std::max(load.cutoff, inertia->acceleration_filter);

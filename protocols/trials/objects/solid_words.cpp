@@ -25,15 +25,15 @@ std::vector<std::string> words_of_solids(const std::vector<scene::Field>& fields
     if (p == nullptr) {
       continue;
     }
-    const scene::StiffnessBound steepness = scene::steepness(fields, i);
-    const double needed = 0.5 * steepness.stiffness / rate;
+    const scene::StiffnessBound bound = scene::stiffness_bound(fields, i);
+    const double needed = 0.5 * bound.stiffness / rate;
     lines.push_back(fmt::format(
         "objects.{}: at most {:.4g} N/m; {} {:.3g} N·s/m of damping at {:g} Hz (K T / 2){}; it "
         "has {:g} itself, and the hand of [hand] has {:g}",
-        fields[i].name, steepness.stiffness,
-        steepness.passive ? "passive with more than" : "its spring alone needs", needed, rate,
-        steepness.passive ? "" : ", and nothing is proven of it, since " + doubt(*p),
-        p->gains.damping, damping));
+        fields[i].name, bound.stiffness,
+        bound.passive ? "passive with more than" : "its spring alone needs", needed, rate,
+        bound.passive ? "" : ", and nothing is proven of it, since " + doubt(*p), p->gains.damping,
+        damping));
     if (p->body && p->body->closed && !p->body->outwards) {
       lines.push_back(fmt::format(
           "objects.{}: its faces look inwards, so that it is a room, free inside and solid around; "

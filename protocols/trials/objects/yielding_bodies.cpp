@@ -24,9 +24,9 @@ std::string words_of_cost(const std::string& name, const deformable::TouchCost& 
 
 /// Words about elements that rest on every tick.
 void add_words_of_elements(const scene::Field& field, const scene::DeformableObjectParameters& p,
-                           const scene::StiffnessBound& steepness, double rate, double damping,
+                           const scene::StiffnessBound& bound, double rate, double damping,
                            std::vector<std::string>& lines) {
-  const double needed = scene::needed_damping_below(0.0, steepness, rate);
+  const double needed = scene::needed_damping_below(0.0, bound, rate);
   const double most = deformable::stiffest_touch(*p.body, p.tool.radius);
   const double under = p.body->stiffest(p.tool.radius);
   const deformable::ComplianceMemory memory = deformable::compliance_memory(*p.mesh);
@@ -136,7 +136,7 @@ std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields
     if (p->moving) {
       add_words_of_springs(fields[i], *p, rate, damping, lines);
     } else {
-      add_words_of_elements(fields[i], *p, scene::steepness(fields, i), rate, damping, lines);
+      add_words_of_elements(fields[i], *p, scene::stiffness_bound(fields, i), rate, damping, lines);
     }
     if (p->tool.radius < deformable::smallest_ball(*p->mesh)) {
       lines.push_back(fmt::format(

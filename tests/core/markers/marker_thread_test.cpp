@@ -20,7 +20,7 @@ namespace haptrial::markers {
 namespace {
 
 using record::MarkerOf;
-using record::MarkerWay;
+using record::MarkerOutput;
 using std::chrono::milliseconds;
 using test::PseudoTerminal;
 using testing::ElementsAre;
@@ -55,9 +55,9 @@ class MarkerThreadTest : public testing::Test {
   MarkerThread& open(double pulse) {
     options_.pulse = pulse;
     line_ = std::make_unique<SerialLine>(terminal_.name(), options_.baud);
-    MarkerThread::MarkerOutputs ways;
-    ways.serial = line_.get();
-    thread_ = std::make_unique<MarkerThread>(log_, options_, meanings(), std::move(ways),
+    MarkerThread::MarkerOutputs outputs;
+    outputs.serial = line_.get();
+    thread_ = std::make_unique<MarkerThread>(log_, options_, meanings(), std::move(outputs),
                                              PseudoTerminal::now_ns);
     return *thread_;
   }
@@ -83,7 +83,7 @@ TEST_F(MarkerThreadTest, CodesOfOneTickFollowInTheOrderOfSend) {
   const auto sent = thread.take_sent();
   ASSERT_EQ(sent.size(), 3u);
   for (const SentOnset& each : sent) {
-    EXPECT_EQ(each.way, MarkerWay::kSerial);
+    EXPECT_EQ(each.way, MarkerOutput::kSerial);
     EXPECT_GE(each.written_ns, each.onset.time_ns);
   }
   // A pulse and a gap lie between two codes.

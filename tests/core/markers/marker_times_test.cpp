@@ -7,10 +7,10 @@
 namespace haptrial::markers {
 namespace {
 
+using record::MarkerOutput;
 using record::MarkerRow;
-using record::MarkerWay;
 
-MarkerRow row(MarkerWay way, double latency) {
+MarkerRow row(MarkerOutput way, double latency) {
   MarkerRow row;
   row.way = way;
   row.latency = latency;
@@ -19,22 +19,22 @@ MarkerRow row(MarkerWay way, double latency) {
 
 TEST(MarkerTimesTest, AreNearestRanksOfEachWay) {
   MarkerLatencies first, second;
-  std::vector<MarkerRow> rows{row(MarkerWay::kNone, std::nan("")),
-                              row(MarkerWay::kScreen, std::nan(""))};
+  std::vector<MarkerRow> rows{row(MarkerOutput::kNone, std::nan("")),
+                              row(MarkerOutput::kScreen, std::nan(""))};
   for (int i = 150; i > 0; --i) {
-    rows.push_back(row(MarkerWay::kSerial, 1e-3 * i));
+    rows.push_back(row(MarkerOutput::kSerial, 1e-3 * i));
   }
   first.add(rows);
   rows.clear();
   for (int i = 151; i <= 200; ++i) {
-    rows.push_back(row(MarkerWay::kSerial, 1e-3 * i));
+    rows.push_back(row(MarkerOutput::kSerial, 1e-3 * i));
   }
-  rows.push_back(row(MarkerWay::kSerial, std::nan("")));
+  rows.push_back(row(MarkerOutput::kSerial, std::nan("")));
   second.add(rows);
   first.add(second);
   const auto times = first.times();
   ASSERT_EQ(times.size(), 2u) << "what went nowhere has no time";
-  EXPECT_EQ(times[0].way, MarkerWay::kSerial);
+  EXPECT_EQ(times[0].way, MarkerOutput::kSerial);
   EXPECT_EQ(times[0].sent, 200u);
   EXPECT_EQ(times[0].lost, 1u);
   EXPECT_EQ(times[0].median, 0.100);

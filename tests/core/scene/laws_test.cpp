@@ -125,9 +125,9 @@ std::vector<Motion> every_motion(const std::string& name) {
 double needed_by(const std::vector<Field>& fields) {
   double needed = 0.0;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const StiffnessBound steep = steepness(fields, i);
-    EXPECT_TRUE(steep.passive) << fields[i].name;
-    needed += needed_damping(steep, kRate);
+    const StiffnessBound bound = stiffness_bound(fields, i);
+    EXPECT_TRUE(bound.passive) << fields[i].name;
+    needed += needed_damping(bound, kRate);
   }
   return needed;
 }
@@ -153,7 +153,7 @@ TEST(SceneLawTest, InSlowMotionTheirDampersAskForNothing) {
   for (const test::Example& example : test::passive_scenes()) {
     double springs = 0.0;
     for (std::size_t i = 0; i < example.fields.size(); ++i) {
-      springs += 0.5 * steepness(example.fields, i).stiffness / kRate;
+      springs += 0.5 * stiffness_bound(example.fields, i).stiffness / kRate;
     }
     RandomStream random(3, example.name);
     for (int i = 0; i < 10; ++i) {
@@ -193,7 +193,7 @@ TEST(SceneLawTest, BelowAFrequencyTheDamperHelpsAsStated) {
     }
     const Given given = round_three(law_of(scene), motion);
     EXPECT_NEAR(given.energy / given.travel,
-                needed_damping_below(frequency, steepness(fields, 0), kRate), 1e-7)
+                needed_damping_below(frequency, stiffness_bound(fields, 0), kRate), 1e-7)
         << frequency;
   }
 }
@@ -226,7 +226,7 @@ TEST(SceneLawTest, TheLawFindsFieldsThatGiveEnergy) {
   double best = 0.0;
   for (const MatrixViscousParameters& parameters : {push, curl}) {
     const std::vector<Field> fields{test::field("matrix", parameters)};
-    EXPECT_FALSE(steepness(fields, 0).passive);
+    EXPECT_FALSE(stiffness_bound(fields, 0).passive);
     Motion back(circle.rbegin(), circle.rend());
     best = 0.0;
     for (const Motion& motion : {circle, back}) {
@@ -240,7 +240,7 @@ TEST(SceneLawTest, TheLawFindsFieldsThatGiveEnergy) {
 
 TEST(NeededDampingTest, SaysWhatColgateAndSchenkelSay) {
   const std::vector<Field> fields{test::surface(HalfSpace{}, false, 3.0)};
-  const StiffnessBound wall = steepness(fields, 0);
+  const StiffnessBound wall = stiffness_bound(fields, 0);
   EXPECT_DOUBLE_EQ(needed_damping(wall, 1000.0), 800.0 * 0.001 / 2.0 + 3.0);
   EXPECT_DOUBLE_EQ(needed_damping(wall, 4000.0), 800.0 * 0.00025 / 2.0 + 3.0);
   EXPECT_DOUBLE_EQ(needed_damping_below(0.0, wall, 1000.0), 800.0 * 0.001 / 2.0 - 3.0);
@@ -252,14 +252,15 @@ TEST(NeededDampingTest, FieldsOfTimeAndLateAccelerationAreNotPassive) {
       RampParameters{},           PulseParameters{}, InertiaParameters{}, SineVibrationParameters{},
       NoiseVibrationParameters{}, TapParameters{},   MoverParameters{},   PathParameters{}};
   for (const FieldKind& kind : active) {
-    EXPECT_FALSE(steepness({test::field("active", kind)}, 0).passive) << kind.index();
+    EXPECT_FALSE(stiffness_bound({test::field("active", kind)}, 0).passive) << kind.index();
   }
   MatrixViscousParameters curl;
   curl.matrix << 0.0, 0.0, 13.0, 0.0, 0.0, 0.0, -13.0, 0.0, 0.0;
-  EXPECT_FALSE(steepness({test::field("curl", curl)}, 0).passive) << "behind its filter of 30 Hz";
+  EXPECT_FALSE(stiffness_bound({test::field("curl", curl)}, 0).passive)
+      << "behind its filter of 30 Hz";
   curl.velocity_filter = INFINITY;
-  EXPECT_TRUE(steepness({test::field("curl", curl)}, 0).passive) << "turns the hand, no more";
-  EXPECT_NEAR(steepness({test::field("curl", curl)}, 0).damping, 13.0, 1e-12);
+  EXPECT_TRUE(stiffness_bound({test::field("curl", curl)}, 0).passive) << "turns the hand, no more";
+  EXPECT_NEAR(stiffness_bound({test::field("curl", curl)}, 0).damping, 13.0, 1e-12);
 }
 
 }  // namespace

@@ -61,9 +61,9 @@ TEST(YieldingTest, ABlockThatIsTurnedAndMovedIsFeltTurnedAndMoved) {
 TEST(YieldingTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
   const Field field = soft_block();
   Scene scene({field}, 1000.0);
-  const StiffnessBound steepness = scene::steepness({field}, 0);
-  EXPECT_TRUE(steepness.passive);
-  EXPECT_LT(steepness.stiffness, 1000.0) << "not the spring alone";
+  const StiffnessBound bound = scene::stiffness_bound({field}, 0);
+  EXPECT_TRUE(bound.passive);
+  EXPECT_LT(bound.stiffness, 1000.0) << "not the spring alone";
   scene.switch_to(Scene::kAll);
   double before = 0.0;
   const haptrial::test::AllocationGuard guard;
@@ -71,7 +71,7 @@ TEST(YieldingTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
     PointState hand;
     hand.position = {0.0, kTop + 0.0062 - 1e-5 * i, 0.0};
     const double force = scene.force(hand).y();
-    EXPECT_LE(force - before, 1e-5 * steepness.stiffness * 1.001) << i;
+    EXPECT_LE(force - before, 1e-5 * bound.stiffness * 1.001) << i;
     before = force;
   }
   EXPECT_EQ(guard.count(), 0u);

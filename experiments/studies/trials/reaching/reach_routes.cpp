@@ -1,4 +1,4 @@
-#include "experiments/studies/trials/reaching/reach_ways.h"
+#include "experiments/studies/trials/reaching/reach_routes.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using analysis::trials::GivenVariable;
 using analysis::trials::ReachingPlan;
-using analysis::trials::ReachWay;
+using analysis::trials::ReachRoute;
 using analysis::trials::StudyTrial;
 using analysis::trials::TrialsData;
 
@@ -34,7 +34,7 @@ class ReachRoutes {
     names_ = protocols::read_names(root_, definition);
   }
 
-  ReachWay of(const TrialsData& data, const StudyTrial& trial) {
+  ReachRoute of(const TrialsData& data, const StudyTrial& trial) {
     const std::string group =
         definition_.groups.empty()
             ? std::string()
@@ -65,11 +65,11 @@ class ReachRoutes {
     }
   }
 
-  ReachWay read(const StudyTrial& trial) {
+  ReachRoute read(const StudyTrial& trial) {
     const protocols::Presented presented =
         protocols::read_presented(root_, *names_, definition_, nullptr);
     root_.check();
-    ReachWay way;
+    ReachRoute way;
     way.start = names_->place(plan_.start);
     way.target = names_->place(plan_.target);
     if (way.start.x() == way.target.x() && way.start.z() == way.target.z()) {
@@ -93,7 +93,7 @@ class ReachRoutes {
     return way;
   }
 
-  void add_field(const scene::Field& field, bool acts, ReachWay& way) const {
+  void add_field(const scene::Field& field, bool acts, ReachRoute& way) const {
     if (field.name == plan_.field) {
       if (const auto* matrix = std::get_if<scene::MatrixViscousParameters>(&field.kind)) {
         way.field = matrix->matrix;
@@ -113,12 +113,13 @@ class ReachRoutes {
 
 }  // namespace
 
-std::vector<std::optional<ReachWay>> reach_ways(const protocols::TrialsDefinition& definition,
-                                                const TrialsData& data, const ReachingPlan& plan) {
-  ReachRoutes ways(definition, plan);
-  std::vector<std::optional<ReachWay>> all;
+std::vector<std::optional<ReachRoute>> reach_routes(const protocols::TrialsDefinition& definition,
+                                                    const TrialsData& data,
+                                                    const ReachingPlan& plan) {
+  ReachRoutes routes(definition, plan);
+  std::vector<std::optional<ReachRoute>> all;
   for (const StudyTrial& trial : data.trials) {
-    all.push_back(trial.counts() ? std::optional(ways.of(data, trial)) : std::nullopt);
+    all.push_back(trial.counts() ? std::optional(routes.of(data, trial)) : std::nullopt);
   }
   return all;
 }

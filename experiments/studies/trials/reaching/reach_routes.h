@@ -17,7 +17,7 @@ namespace haptrial::experiments {
 /// other fields that act in the stage, read anew with the values that the session recorded. Nothing
 /// for a trial that does not count.
 /// @throws InputError when the recorded values do not fit the definition.
-std::vector<std::optional<analysis::trials::ReachWay>> reach_ways(
+std::vector<std::optional<analysis::trials::ReachRoute>> reach_routes(
     const protocols::TrialsDefinition& definition, const analysis::trials::TrialsData& data,
     const analysis::trials::ReachingPlan& plan);
 
