@@ -31,7 +31,7 @@ constexpr double kTop = 0.012;
 constexpr double kRadius = 0.005;
 constexpr double kTick = 0.001;  // [s]
 
-SharedFeltMesh block(int cells) {
+SharedHapticMesh block(int cells) {
   FeltSides sides;
   sides.felt = {BodySide::kTop};
   return std::make_shared<const HapticMesh>(
@@ -91,7 +91,7 @@ void felt() {
 const Vector3d kHalfAxes(0.024, 0.019, 0.0145);  // of an ellipsoid [m]
 
 /// 13,000 tetrahedra that are touched all over but for what holds them.
-SharedFeltMesh ellipsoid() {
+SharedHapticMesh ellipsoid() {
   auto surface = haptrial::geometry::make_sphere(1.0, 20);
   for (Vector3d& vertex : surface.vertices) {
     vertex = vertex.cwiseProduct(kHalfAxes);
@@ -109,7 +109,8 @@ Vector3d round_ellipsoid(double t) {
 }
 
 template <class Way>
-void ticks_of(const std::string& name, const SharedFeltMesh& mesh, const Tissue& tissue, Way way) {
+void ticks_of(const std::string& name, const SharedHapticMesh& mesh, const Tissue& tissue,
+              Way way) {
   const auto start = Clock::now();
   const Compliance made(mesh, tissue);
   const double taken = seconds_since(start);

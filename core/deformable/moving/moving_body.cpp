@@ -13,7 +13,7 @@
 namespace haptrial::deformable {
 namespace {
 
-std::shared_ptr<const MovingBody> made(const SharedFeltMesh& mesh, const SpringTissue& tissue) {
+std::shared_ptr<const MovingBody> made(const SharedHapticMesh& mesh, const SpringTissue& tissue) {
   auto body = std::make_shared<MovingBody>();
   body->mesh = mesh;
   body->springs = spring_body(mesh->tets, tissue.density, tissue.constants, mesh->name);
@@ -36,7 +36,7 @@ std::shared_ptr<const MovingBody> made(const SharedFeltMesh& mesh, const SpringT
 
 }  // namespace
 
-SharedMovingBody prepared(const SharedFeltMesh& mesh, const SpringTissue& tissue) {
+SharedMovingBody prepared(const SharedHapticMesh& mesh, const SpringTissue& tissue) {
   static PreparedBodies<SpringTissue, MovingBody> bodies;
   return bodies.get(mesh, tissue, [&] { return made(mesh, tissue); });
 }

@@ -22,7 +22,7 @@ struct SpringTissue {
 
 /// A body of springs that is to be felt while it moves, the same for all who touch it.
 struct MovingBody {
-  SharedFeltMesh mesh;
+  SharedHapticMesh mesh;
   SpringBody springs;
   std::vector<std::int32_t> held;  // vertices, those that the hand holds among them
   double drag{};                   // of every vertex: 2 a times their mean mass [N·s/m]
@@ -32,7 +32,7 @@ using SharedMovingBody = std::shared_ptr<const MovingBody>;
 
 /// A moving body, made when it is first asked for and shared (touch/prepared_bodies.h). Any thread
 /// but the servo thread. @throws InputError as spring_body()
-SharedMovingBody prepared(const SharedFeltMesh& mesh, const SpringTissue& tissue);
+SharedMovingBody prepared(const SharedHapticMesh& mesh, const SpringTissue& tissue);
 
 inline constexpr int kMostSteps = 64;  // on a tick
 

@@ -56,7 +56,7 @@ struct Numbers {
 
 }  // namespace
 
-Compliance::Compliance(SharedFeltMesh mesh, const Tissue& tissue) : mesh_(std::move(mesh)) {
+Compliance::Compliance(SharedHapticMesh mesh, const Tissue& tissue) : mesh_(std::move(mesh)) {
   const ElasticBody body(mesh_->tets, elasticity_of(*mesh_, tissue));
   number_places(body.patches());
   invert(body);

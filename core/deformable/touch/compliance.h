@@ -24,7 +24,7 @@ class Compliance {
   using Block = std::array<float, 12>;  // 3 x 3, column after column, each with a fourth number 0
 
   /// Takes some seconds. @throws InputError as check_tissue() and ElasticBody
-  Compliance(SharedFeltMesh mesh, const Tissue& tissue);
+  Compliance(SharedHapticMesh mesh, const Tissue& tissue);
 
   const HapticMesh& mesh() const noexcept { return *mesh_; }
   std::size_t touched() const noexcept { return touched_; }         // columns
@@ -72,7 +72,7 @@ class Compliance {
   void invert(const ElasticBody& body);
   double stiffest_at(std::int32_t centre, double radius) const;
 
-  SharedFeltMesh mesh_;
+  SharedHapticMesh mesh_;
   std::size_t touched_{0};
   std::vector<std::int32_t> vertices_;  // of the mesh, by place
   std::vector<Eigen::Vector3d> rest_;

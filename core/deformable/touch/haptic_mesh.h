@@ -41,7 +41,7 @@ struct HapticMesh {
   Eigen::AlignedBox3d box;            // [m]
   double spacing{};                   // the longest side of its cells [m]
 };
-using SharedFeltMesh = std::shared_ptr<const HapticMesh>;
+using SharedHapticMesh = std::shared_ptr<const HapticMesh>;
 
 inline constexpr double kMostFeltVertices = 1e5;  // what takes a minute or so to prepare
 inline constexpr int kMostFeltCells = 200;        // along the longest side

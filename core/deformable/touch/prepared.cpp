@@ -47,7 +47,7 @@ double stiffest_touch(const Compliance& body, double radius) {
   return body.stiffest(std::max(radius, smallest_ball(body.mesh())) + 1.5 * diagonal);
 }
 
-std::shared_ptr<const Compliance> prepared(const SharedFeltMesh& mesh, const Tissue& tissue) {
+std::shared_ptr<const Compliance> prepared(const SharedHapticMesh& mesh, const Tissue& tissue) {
   static PreparedBodies<Tissue, Compliance> bodies;
   return bodies.get(mesh, tissue, [&] {
     check_tissue(*mesh, tissue);

@@ -11,7 +11,7 @@ namespace haptrial::deformable {
 /// servo thread.
 /// @throws InputError as check_tissue(), and before anything is made if the machine has not the
 /// memory that it takes.
-std::shared_ptr<const Compliance> prepared(const SharedFeltMesh& mesh, const Tissue& tissue);
+std::shared_ptr<const Compliance> prepared(const SharedHapticMesh& mesh, const Tissue& tissue);
 
 /// @throws InputError naming the body if the machine has not the memory that it takes.
 void check_memory(const HapticMesh& mesh);

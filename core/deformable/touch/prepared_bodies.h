@@ -23,7 +23,7 @@ class PreparedBodies {
 
   /// @param make  called if there is none; what it throws, all get who asked for the same
   template <class Make>
-  Shared get(const SharedFeltMesh& mesh, const Tissue& tissue, const Make& make) {
+  Shared get(const SharedHapticMesh& mesh, const Tissue& tissue, const Make& make) {
     std::promise<Shared> promise;
     const std::shared_future<Shared> known = find_or_add(mesh, tissue, promise);
     if (known.valid()) {
@@ -41,13 +41,13 @@ class PreparedBodies {
 
  private:
   struct Entry {
-    SharedFeltMesh mesh;
+    SharedHapticMesh mesh;
     Tissue tissue;
     std::shared_future<Shared> made;
   };
 
   /// @returns not valid: it is to be made, and `promise` kept
-  std::shared_future<Shared> find_or_add(const SharedFeltMesh& mesh, const Tissue& tissue,
+  std::shared_future<Shared> find_or_add(const SharedHapticMesh& mesh, const Tissue& tissue,
                                          std::promise<Shared>& promise) {
     const std::lock_guard lock(guard_);
     const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {

@@ -10,9 +10,9 @@ namespace haptrial::geometry::h5 {
 namespace {
 
 /// One call at a time, without HDF5's own printing of errors.
-class Turn {
+class Hdf5Lock {
  public:
-  Turn() : hold_(mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+  Hdf5Lock() : hold_(mutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
  private:
   static std::recursive_mutex& mutex() {
@@ -57,7 +57,7 @@ hid_t in_memory(Number type) {
 }  // namespace
 
 File::File(std::filesystem::path path) : path_(std::move(path)), id_(-1) {
-  const Turn turn;
+  const Hdf5Lock lock;
   id_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   if (id_ < 0) {
     fail("cannot be made");
@@ -65,7 +65,7 @@ File::File(std::filesystem::path path) : path_(std::move(path)), id_(-1) {
 }
 
 File::~File() {
-  const Turn turn;
+  const Hdf5Lock lock;
   if (id_ >= 0) {
     H5Fclose(id_);
   }
@@ -73,7 +73,7 @@ File::~File() {
 
 void File::write(const char* dataset, Number type, const std::vector<std::uint64_t>& shape,
                  const void* values) {
-  const Turn turn;
+  const Hdf5Lock lock;
   const std::vector<hsize_t> sizes(shape.begin(), shape.end());
   const Id space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose);
   const Id data(
@@ -85,7 +85,7 @@ void File::write(const char* dataset, Number type, const std::vector<std::uint64
 }
 
 void File::put(const char* dataset, const char* attribute, const std::string& text) {
-  const Turn turn;
+  const Hdf5Lock lock;
   const Id data(H5Dopen2(id_, dataset, H5P_DEFAULT), H5Dclose);
   const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, text.size() + 1);
@@ -97,7 +97,7 @@ void File::put(const char* dataset, const char* attribute, const std::string& te
 }
 
 void File::put(const char* dataset, const char* attribute, const std::vector<double>& values) {
-  const Turn turn;
+  const Hdf5Lock lock;
   const Id data(H5Dopen2(id_, dataset, H5P_DEFAULT), H5Dclose);
   const hsize_t size = values.size();
   const Id space(H5Screate_simple(1, &size, nullptr), H5Sclose);
@@ -109,7 +109,7 @@ void File::put(const char* dataset, const char* attribute, const std::vector<dou
 }
 
 void File::close() {
-  const Turn turn;
+  const Hdf5Lock lock;
   const hid_t id = id_;
   id_ = -1;
   if (H5Fclose(id) < 0) {

@@ -14,7 +14,7 @@ namespace haptrial::scene {
 
 /// An object that gives way to the hand.
 struct DeformableObjectParameters {
-  deformable::SharedFeltMesh mesh;                  // null: nothing is felt
+  deformable::SharedHapticMesh mesh;                // null: nothing is felt
   deformable::Tissue tissue;                        // of elements that rest on every tick
   std::optional<deformable::SpringTissue> springs;  // of springs that move, instead
   double rate{0.0};                                 // of these; 0: that of the loop [Hz]

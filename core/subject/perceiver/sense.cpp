@@ -3,13 +3,13 @@
 namespace haptrial::subject {
 
 Sense::Sense(const SenseParameters& senses, Quantity quantity)
-    : senses_(senses), quantity_(quantity), encounters_(senses) {
+    : senses_(senses), quantity_(quantity), episodes_(senses) {
   check(senses);
 }
 
 void Sense::begin(RandomStream& random) noexcept {
   noise_ = draw_noise(random);
-  encounters_.begin();
+  episodes_.begin();
 }
 
 double Sense::percept() const noexcept { return felt(senses_, quantity_, met(), noise_); }

@@ -4,7 +4,7 @@
 
 #include "core/base/point_state.h"
 #include "core/base/random.h"
-#include "core/subject/perceiver/encounters.h"
+#include "core/subject/perceiver/contact_episodes.h"
 #include "core/subject/perceiver/felt.h"
 
 namespace haptrial::subject {
@@ -26,18 +26,18 @@ class Sense {
   void begin(RandomStream& random) noexcept;
   /// @param force  that the device applies to the hand, in W [N]; @param dt  > 0 [s]
   void feel(const Eigen::Vector3d& force, const PointState& hand, double dt) noexcept {
-    encounters_.feel(force, hand, dt);
+    episodes_.feel(force, hand, dt);
   }
   /// Percept so far [unit of the quantity]. A force near nothing can be felt below 0; free air has
   /// stiffness 0 and infinite compliance.
   double percept() const noexcept;
-  ContactEpisode met() const noexcept { return encounters_.met(quantity_); }  // without noise
+  ContactEpisode met() const noexcept { return episodes_.met(quantity_); }  // without noise
   Quantity quantity() const noexcept { return quantity_; }
 
  private:
   SenseParameters senses_;
   Quantity quantity_;
-  Encounters encounters_;
+  ContactEpisodes episodes_;
   FeltNoise noise_;
 };
 

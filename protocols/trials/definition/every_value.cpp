@@ -14,8 +14,8 @@
 #include "protocols/trials/definition/presented.h"
 #include "protocols/trials/definition/read_definition.h"
 #include "protocols/trials/definition/trial_values.h"
-#include "protocols/trials/objects/solid_words.h"
-#include "protocols/trials/objects/yielding_bodies.h"
+#include "protocols/trials/objects/deformable_bodies.h"
+#include "protocols/trials/objects/rigid_objects.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -168,7 +168,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       prepare_moving_bodies(presented.fields, d.rate);
       if (with_bodies && place == 0) {
         prepare_bodies(presented.fields, d.rate);
-        bodies = words_of_solids(presented.fields, d.rate, d.hand.damping);
+        bodies = words_of_rigid_objects(presented.fields, d.rate, d.hand.damping);
         const auto yielding = words_of_bodies(presented.fields, d.rate, d.hand.damping);
         bodies.insert(bodies.end(), yielding.begin(), yielding.end());
       }

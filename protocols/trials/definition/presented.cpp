@@ -5,9 +5,9 @@
 #include <variant>
 
 #include "core/base/definition/table.h"
+#include "core/scene/read/read_deformable.h"
 #include "core/scene/read/read_field.h"
-#include "core/scene/read/read_solid.h"
-#include "core/scene/read/read_yielding.h"
+#include "core/scene/read/read_rigid.h"
 #include "core/sound/cues/read_cues.h"
 #include "protocols/definition/window_keys.h"
 #include "protocols/trials/definition/trial_devices.h"
@@ -24,9 +24,9 @@ std::vector<scene::Field> read_felt_objects(Table& table, const TrialsDefinition
     if (known && object->moves && d.devices() > 1 && !own.has("device")) {
       own.reject("device", "is missing; name the device whose tool feels the body of springs");
     }
-    objects.push_back(known && object->yields
-                          ? scene::read_yielding(own, name, object->felt, object->constants)
-                          : scene::read_solid(own, name, known ? object->body : nullptr));
+    objects.push_back(known && object->deformable
+                          ? scene::read_deformable(own, name, object->felt, object->constants)
+                          : scene::read_rigid(own, name, known ? object->body : nullptr));
   }
   return objects;
 }

@@ -108,7 +108,7 @@ std::vector<deformable::BodySide> read_sides(Table& table, const char* key) {
 }
 
 /// The keys of a body that gives way; its block, unless it is a file.
-void read_yielding_shape(Table& table, TrialObject& object) {
+void read_deformable_shape(Table& table, TrialObject& object) {
   object.yields = true;
   object.moves = table.has("model") && table.choice("model", {"elements", "springs"}) == "springs";
   object.own_rate = object.moves && table.has("rate");
@@ -155,7 +155,7 @@ std::vector<TrialObject> read_objects(Table& objects) {
     TrialObject object;
     object.name = name;
     if (table.has("kind") && table.choice("kind", {"rigid", "deformable"}) == "deformable") {
-      read_yielding_shape(table, object);
+      read_deformable_shape(table, object);
     } else if (table.has("mesh") && table.has("shape")) {
       table.reject("shape", "stands beside mesh; keep one of the two");
       for (const char* key : {"shape", "mesh", "radius", "size", "length", "tube"}) {
@@ -181,7 +181,7 @@ void load_mesh(TrialObject& object, const std::filesystem::path& file) {
   object.file_bytes = bytes.size();
   object.file_checksum = fnv1a(bytes);
   if (object.yields) {
-    object.felt = std::make_shared<const deformable::HapticMesh>(deformable::felt_solid(
+    object.felt = std::make_shared<const deformable::HapticMesh>(deformable::felt_object(
         object.body->mesh, object.cells, object.sides, "objects." + object.name));
   }
 }

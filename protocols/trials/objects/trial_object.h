@@ -26,7 +26,7 @@ struct TrialObject {
   bool yields{false};                             // gives way to the hand
   int cells{16};                                  // then: along its longest side
   deformable::FeltSides sides{};
-  deformable::SharedFeltMesh felt{};       // of a file: null until it is loaded
+  deformable::SharedHapticMesh felt{};     // of a file: null until it is loaded
   bool seen_yielding{true};                // else it is seen at its resting shape
   bool moves{false};                       // it yields and moves: it is made of springs
   bool own_rate{false};                    // and moves at another rate than the loop's
@@ -52,7 +52,7 @@ struct TrialObject {
 ///     [fixed]         its sides that do not move, of "left", "right", "bottom", "top", "back",
 ///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
 ///     [felt]          its sides that can be touched; all that are not fixed if left out
-///     [model]         "elements" or "springs" (core/scene/read/read_yielding.h)
+///     [model]         "elements" or "springs" (core/scene/read/read_deformable.h)
 ///     [rate]          of springs: how often they move a second, less often than they are felt
 ///     [grasped]       of springs: sides that the hand holds from the first tick on; then it does
 ///                     not press the body
@@ -61,7 +61,7 @@ struct TrialObject {
 ///     [seen]          "yielding", as the hand presses it, if left out; "rest": its resting outline
 ///
 /// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
-/// and turn, which read_solid() or read_yielding() reads with all else.
+/// and turn, which read_rigid() or read_deformable() reads with all else.
 std::vector<TrialObject> read_objects(Table& objects);
 
 /// Reads the meshes and constants that are files. @param folder  of the definition

@@ -11,8 +11,8 @@
 #include "core/render/flat/shaded_surface.h"
 #include "core/render/flat/text.h"
 #include "core/render/flat/text_screen.h"
+#include "protocols/trials/objects/deformable_sight.h"
 #include "protocols/trials/objects/outline.h"
-#include "protocols/trials/objects/yielding_sight.h"
 #include "protocols/trials/presentation/trial_view.h"
 
 namespace haptrial::protocols {
@@ -200,7 +200,7 @@ class TrialDrawing final : public Drawing {
         d_.view.from_above ? -Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitZ());
     for (std::size_t i = 0; i < view.objects.size(); ++i) {
       const SeenObject& seen = view.objects[i];
-      if (YieldingSight* body = sight_of(seen, i)) {
+      if (DeformableSight* body = sight_of(seen, i)) {
         draw_body(*body, seen, view.pressed.on(i), part);
         continue;
       }
@@ -217,7 +217,7 @@ class TrialDrawing final : public Drawing {
   }
 
   /// Null for an object that is seen at rest.
-  YieldingSight* sight_of(const SeenObject& seen, std::size_t i) {
+  DeformableSight* sight_of(const SeenObject& seen, std::size_t i) {
     if (seen.body < 0 || !bodies_) {
       return nullptr;
     }
@@ -225,16 +225,16 @@ class TrialDrawing final : public Drawing {
       sighted_[i] = seen.body;
       const SeenBody body = bodies_->body(seen.body);
       const TrialObject& object = d_.objects[static_cast<std::size_t>(seen.object)];
-      sights_[i] =
-          body ? std::make_unique<YieldingSight>(body, object.file.empty() ? nullptr : object.body)
-               : nullptr;
+      sights_[i] = body ? std::make_unique<DeformableSight>(
+                              body, object.file.empty() ? nullptr : object.body)
+                        : nullptr;
     }
     return sights_[i].get();
   }
 
   /// Draws the body's surface, and over it the sides of its cells, so that dents show from the
   /// front, too.
-  void draw_body(YieldingSight& body, const SeenObject& seen,
+  void draw_body(DeformableSight& body, const SeenObject& seen,
                  std::span<const SeenForces::Force> pressed, const Part& part) {
     constexpr double kThin = 1.0;  // [px]
     constexpr double kPale = 0.3;  // share of the colour in the surface's
@@ -312,7 +312,7 @@ class TrialDrawing final : public Drawing {
   std::array<SeenObject, kMostSeenObjects> outlined_{};
   std::array<Outline, kMostSeenObjects> outlines_{};
   std::array<std::int32_t, kMostSeenObjects> sighted_{-1, -1};  // numbers of the bodies
-  std::array<std::unique_ptr<YieldingSight>, kMostSeenObjects> sights_{};
+  std::array<std::unique_ptr<DeformableSight>, kMostSeenObjects> sights_{};
   std::vector<Eigen::Vector3f> pixels_;  // of a body's vertices, and towards the eye [px]
 };
 

@@ -53,11 +53,11 @@ class TrialsRig::Participant final : public stimulus::Observer {
         felt_in_(index_of(briefing.stages, plan_.stage)),
         reaction_(seed_, "reaction") {
     for (const auto& arm : arms) {
-      const std::size_t device = limbs_.size();
-      SimulatedHand& limb = limbs_.emplace_back(SimulatedHand{
+      const std::size_t device = hands_.size();
+      SimulatedHand& hand = hands_.emplace_back(SimulatedHand{
           arm->hand.get(), &arm->device, subject::ExplorationController(hand_parameters_), {}});
       for (const std::string& stage : briefing.stages) {
-        limb.actions.push_back(action_in(stage, device));
+        hand.actions.push_back(action_in(stage, device));
       }
     }
     if (plan_.sight) {
@@ -82,13 +82,13 @@ class TrialsRig::Participant final : public stimulus::Observer {
       leave_stage();
       begun_ = false;
       end_answer();
-      for (SimulatedHand& limb : limbs_) {
-        limb.hand->command({});
+      for (SimulatedHand& hand : hands_) {
+        hand.hand->command({});
       }
       return;
     }
-    for (SimulatedHand& limb : limbs_) {
-      limb.state = limb.hand->state();
+    for (SimulatedHand& hand : hands_) {
+      hand.state = hand.hand->state();
     }
     if (!begun_ || view->trial != trial_) {
       begin_trial(view->trial);
@@ -159,8 +159,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
     percepts_ = {};
     decider_.begin_trial(trial);
     // A hand that is quite still would look like a device whose reading is frozen.
-    for (std::size_t i = 0; i < limbs_.size(); ++i) {
-      limbs_[i].prober = subject::ExplorationController(
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      hands_[i].prober = subject::ExplorationController(
           hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
                                                 subject::trial_stream(seed_, kMotor[i], trial)));
     }
@@ -181,7 +181,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     }
     stage_ = stage;
     interval_ = interval;
-    for (std::size_t i = 0; i < limbs_.size(); ++i) {
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
       begin_probe(i, view);
     }
     if (error_ && stage == learnt_in_) {
@@ -201,9 +201,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
   }
 
   void begin_probe(std::size_t device, const TrialView& view) noexcept {
-    SimulatedHand& limb = limbs_[device];
+    SimulatedHand& hand = hands_[device];
     const StageAction* action =
-        stage_ >= 0 ? limb.actions[static_cast<std::size_t>(stage_)] : nullptr;
+        stage_ >= 0 ? hand.actions[static_cast<std::size_t>(stage_)] : nullptr;
     subject::Probe probe = action != nullptr ? action->probe : subject::Probe{subject::Rest{}};
     for (std::size_t i = view.mark_count; action != nullptr && action->to_mark && i-- > 0;) {
       if (view.marks[i].device == device) {  // the first one is the last to be set
@@ -211,7 +211,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
         std::get<subject::Reach>(probe).to = {place[0], place[1], place[2]};
       }
     }
-    limb.prober.begin(probe, limb.state);
+    hand.prober.begin(probe, hand.state);
   }
 
   /// Keeps the sensations of the stage, and learns from a reach.
@@ -228,7 +228,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
 
   /// Percept of one hand; between two fingertips, or by eye, a size.
   double percept() const noexcept {
-    const bool both = limbs_.size() > 1 && plan_.senses == subject::Quantity::kExtent;
+    const bool both = hands_.size() > 1 && plan_.senses == subject::Quantity::kExtent;
     if (!both && !sight_) {
       return sense_.percept();
     }
@@ -251,35 +251,35 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (view.interval == 0) {
       return;
     }
-    const PointState& hand = limbs_.front().state;
+    const PointState& hand = hands_.front().state;
     if (felt_in_ < 0 || stage_ == felt_in_) {
       sense_.feel(forces[0], hand, dt);
-      if (limbs_.size() > 1 && forces.size() > 1) {
-        grip_.feel({forces[0], hand}, {forces[1], limbs_[1].state}, dt);
+      if (hands_.size() > 1 && forces.size() > 1) {
+        grip_.feel({forces[0], hand}, {forces[1], hands_[1].state}, dt);
       }
       seen_ = view.dots.shown ? view.dots : seen_;
     }
     if (error_ && stage_ == learnt_in_) {
-      error_->feel(forces[0], compensation(), limbs_.front().prober.desired().velocity);
+      error_->feel(forces[0], compensation(), hands_.front().prober.desired().velocity);
     }
   }
 
   Eigen::Vector3d compensation() const noexcept {
     return adaptation_ && stage_ >= 0 && stage_ == learnt_in_
                ? adaptation_->compensation(plan_.adaptation->field,
-                                           limbs_.front().prober.desired().velocity)
+                                           hands_.front().prober.desired().velocity)
                : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
 
   void act(const stimulus::Forces& forces, double dt) noexcept {
-    for (std::size_t i = 0; i < limbs_.size(); ++i) {
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
       const Eigen::Vector3d felt =
           i < forces.size() ? forces[i] : Eigen::Vector3d(Eigen::Vector3d::Zero());
-      subject::HandCommand command = limbs_[i].prober.command(limbs_[i].state, dt, felt);
+      subject::HandCommand command = hands_[i].prober.command(hands_[i].state, dt, felt);
       if (i == 0) {
         command.force += compensation();
       }
-      limbs_[i].hand->command(command);
+      hands_[i].hand->command(command);
     }
   }
 
@@ -299,8 +299,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
     wait_ -= dt;
     take_decision();
     if (by_hand_.under_way()) {
-      SimulatedHand& limb = limbs_[by_hand_.device()];
-      by_hand_.tick(limb.prober, limb.state, dt);
+      SimulatedHand& hand = hands_[by_hand_.device()];
+      by_hand_.tick(hand.prober, hand.state, dt);
     }
     if (wait_ > 0.0 || thinks_ || decided_ || view.told()) {
       return;
@@ -349,9 +349,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
     const int place = AnswerByHand::place_of(question, said_.choice);
     if (place >= 0 && place < view.mark_count) {
       const auto mark = static_cast<std::size_t>(place);
-      SimulatedHand& limb =
-          limbs_[std::min<std::size_t>(view.marks[mark].device, limbs_.size() - 1)];
-      by_hand_.begin(view, mark, limb.prober, limb.state);
+      SimulatedHand& hand =
+          hands_[std::min<std::size_t>(view.marks[mark].device, hands_.size() - 1)];
+      by_hand_.begin(view, mark, hand.prober, hand.state);
     } else if (said_.choice >= 0 &&
                question.choices[static_cast<std::size_t>(said_.choice)].pedal > 0.0) {
       hold_pedal(1.0);
@@ -362,7 +362,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
 
   void hold_pedal(double depth) noexcept {
     pedal_ = depth;
-    limbs_.front().device->hold(0, depth, Eigen::Quaterniond::Identity());
+    hands_.front().device->hold(0, depth, Eigen::Quaterniond::Identity());
   }
 
   void end_answer() noexcept {
@@ -390,7 +390,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::optional<subject::Sight> sight_;
   double sight_noise_{0.0};           // of the interval, standard normal
   DotsShown seen_;                    // in the interval
-  std::vector<SimulatedHand> limbs_;  // (devices)
+  std::vector<SimulatedHand> hands_;  // (devices)
   Decider decider_;
   int felt_in_;  // stage; -1: all
   RandomStream reaction_;

@@ -24,14 +24,14 @@ struct FakeServo final : FatalStopHandler {
   const WatchedStop watched{*this};
 };
 
-TEST(LastStopTest, TheServoThreadWritesTheZeroWhereItStillRuns) {
+TEST(FatalStopHandlerTest, TheServoThreadWritesTheZeroWhereItStillRuns) {
   FakeServo servo(3);
   take_force_away();
   EXPECT_TRUE(servo.asked);
   EXPECT_EQ(servo.written, 0) << "the library is called from one thread only";
 }
 
-TEST(LastStopTest, AServoThreadThatHangsIsWaitedForABoundedTime) {
+TEST(FatalStopHandlerTest, AServoThreadThatHangsIsWaitedForABoundedTime) {
   FakeServo servo(-1);
   take_force_away();
   EXPECT_EQ(servo.written, 1);
@@ -39,14 +39,14 @@ TEST(LastStopTest, AServoThreadThatHangsIsWaitedForABoundedTime) {
   EXPECT_LE(servo.looked, 1000) << "it is looked at five times a millisecond";
 }
 
-TEST(LastStopTest, AServoThreadThatDiesDoesNotWaitForItself) {
+TEST(FatalStopHandlerTest, AServoThreadThatDiesDoesNotWaitForItself) {
   FakeServo servo(-1, true);
   take_force_away();
   EXPECT_EQ(servo.written, 1);
   EXPECT_EQ(servo.looks_left, -1);
 }
 
-TEST(LastStopTest, WithoutASessionThereIsNothingToDo) { take_force_away(); }
+TEST(FatalStopHandlerTest, WithoutASessionThereIsNothingToDo) { take_force_away(); }
 
 }  // namespace
 }  // namespace haptrial::experiments

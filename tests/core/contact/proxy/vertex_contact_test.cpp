@@ -104,7 +104,7 @@ class Corner {
   PlaneSet met_;
 };
 
-TEST(HeldCornerTest, WhatItHoldsSweepsHoldToo) {
+TEST(VertexContactTest, WhatItHoldsSweepsHoldToo) {
   RandomStream random(3, "corner");
   int held = 0, told = 0, free = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -127,7 +127,7 @@ TEST(HeldCornerTest, WhatItHoldsSweepsHoldToo) {
   EXPECT_GT(told, 0.95 * held) << "else it saves nothing";
 }
 
-TEST(HeldCornerTest, AnotherSkinOrAFewPlanesAreNotKnown) {
+TEST(VertexContactTest, AnotherSkinOrAFewPlanesAreNotKnown) {
   RandomStream random(4, "skin");
   Corner corner(random, 8);
   ASSERT_GE(corner.met().size(), 3);

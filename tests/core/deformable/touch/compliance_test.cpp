@@ -93,7 +93,7 @@ TEST(ComplianceTest, TheSameBodyIsPreparedOnce) {
   EXPECT_NE(first, prepared(soft_block(6), other));
 }
 
-TEST(FeltMeshTest, BadBodiesAreRefusedInASentence) {
+TEST(HapticMeshTest, BadBodiesAreRefusedInASentence) {
   FeltSides loose;
   loose.fixed.clear();
   EXPECT_THAT(test::message_of([&] {
@@ -121,7 +121,7 @@ TEST(FeltMeshTest, BadBodiesAreRefusedInASentence) {
 }
 
 TEST(TissueTest, BadTissuesAreRefusedInASentence) {
-  const SharedFeltMesh mesh = soft_block(6);
+  const SharedHapticMesh mesh = soft_block(6);
   const auto says = [&](const Tissue& tissue) {
     return test::message_of([&] { check_tissue(*mesh, tissue); });
   };
@@ -138,7 +138,7 @@ TEST(TissueTest, BadTissuesAreRefusedInASentence) {
 }
 
 TEST(TissueTest, SharesOfABallSumToItsVolume) {
-  const SharedFeltMesh mesh = soft_block(12);
+  const SharedHapticMesh mesh = soft_block(12);
   const double voxel = 0.004 * 0.004 * 0.004;
   for (const double radius : {0.003, 0.006, 0.009}) {
     double sum = 0.0;

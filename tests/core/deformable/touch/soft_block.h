@@ -12,11 +12,11 @@ namespace haptrial::test {
 
 using deformable::BodySide;
 using deformable::HapticMesh;
-using deformable::SharedFeltMesh;
+using deformable::SharedHapticMesh;
 using deformable::Tissue;
 
 /// 48 x 24 x 48 mm on a plate, touched from above.
-inline SharedFeltMesh soft_block(int cells = 12) {
+inline SharedHapticMesh soft_block(int cells = 12) {
   deformable::FeltSides sides;
   sides.felt = {BodySide::kTop};
   return std::make_shared<const HapticMesh>(
@@ -27,7 +27,7 @@ inline Tissue soft_tissue() { return {20e3, 0.45, 1000.0, {}}; }
 
 /// A block whose cells are `fine` at the middle of its top and grow outwards and downwards; touched
 /// near the middle alone. Its bottom is held, some 60 `fine` below.
-inline SharedFeltMesh half_space(double fine) {
+inline SharedHapticMesh half_space(double fine) {
   constexpr int kHalf = 13;  // cells from the middle to a side
   constexpr int kEven = 6;   // of them as fine
   constexpr double kGrowth = 1.55;

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/geometry/mesh/procedural.h"
-#include "core/subject/perceiver/encounters.h"
+#include "core/subject/perceiver/contact_episodes.h"
 #include "tests/core/subject/perceiver/hand_rig.h"
 #include "tests/support/allocation_guard.h"
 
@@ -31,7 +31,7 @@ scene::Field solid(geometry::Mesh mesh) {
 struct Round {
   double turns{0.0};
   double touched{0.0};  // share of the time
-  Encounters met{SenseParameters{}};
+  ContactEpisodes met{SenseParameters{}};
 };
 
 Round explored(geometry::Mesh mesh, const Contour& contour, double seconds) {
@@ -87,7 +87,7 @@ TEST(ContourTest, ACubeIsUnevenAndASphereIsNot) {
 /// Places on known curves, touched at an even speed.
 TEST(ContourTest, UnevennessIsTheRadialDeviation) {
   const auto of = [](auto radius) {
-    Encounters met{SenseParameters{}};
+    ContactEpisodes met{SenseParameters{}};
     met.begin();
     const Vector3d centre(0.02, -0.01, 0.05);
     for (int i = 0; i < 20000; ++i) {

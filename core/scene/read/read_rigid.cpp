@@ -1,4 +1,4 @@
-#include "core/scene/read/read_solid.h"
+#include "core/scene/read/read_rigid.h"
 
 #include <fmt/format.h>
 
@@ -99,7 +99,7 @@ void check_inside(Table& table, RigidObjectParameters& p) {
 
 }  // namespace
 
-Field read_solid(Table& table, std::string name, const contact::SharedBody& body) {
+Field read_rigid(Table& table, std::string name, const contact::SharedBody& body) {
   Field field;
   field.name = std::move(name);
   read_limits(table, field);

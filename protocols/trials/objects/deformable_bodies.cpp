@@ -1,4 +1,4 @@
-#include "protocols/trials/objects/yielding_bodies.h"
+#include "protocols/trials/objects/deformable_bodies.h"
 
 #include <fmt/format.h>
 

@@ -17,7 +17,7 @@ namespace haptrial::scene {
 /// (core/scene/surface/deformable_object.h). Problems are noted in the table.
 /// @param mesh  null: it is not known yet, nothing is felt
 /// @param calibrated  the constants of `calibrated`; null: they are not known yet
-Field read_yielding(Table& table, std::string name, const deformable::SharedFeltMesh& mesh,
+Field read_deformable(Table& table, std::string name, const deformable::SharedHapticMesh& mesh,
                     std::shared_ptr<const deformable::SpringConstants> calibrated = nullptr);
 
 }  // namespace haptrial::scene

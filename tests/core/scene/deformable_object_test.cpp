@@ -44,7 +44,7 @@ Vector3d pressed(Scene& scene, const contact::ObjectPose& pose, double depth) {
   return force;
 }
 
-TEST(YieldingTest, ABlockThatIsTurnedAndMovedIsFeltTurnedAndMoved) {
+TEST(DeformableObjectTest, ABlockThatIsTurnedAndMovedIsFeltTurnedAndMoved) {
   const contact::ObjectPose turned{
       Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Vector3d(1.0, 2.0, -1.0).normalized())),
       {0.02, -0.03, 0.01}};
@@ -58,7 +58,7 @@ TEST(YieldingTest, ABlockThatIsTurnedAndMovedIsFeltTurnedAndMoved) {
             1e-3 * force.norm());
 }
 
-TEST(YieldingTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
+TEST(DeformableObjectTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
   const Field field = soft_block();
   Scene scene({field}, 1000.0);
   const StiffnessBound bound = scene::stiffness_bound({field}, 0);
@@ -77,7 +77,7 @@ TEST(YieldingTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(YieldingTest, ABodyThatIsNotPreparedIsNotFelt) {
+TEST(DeformableObjectTest, ABodyThatIsNotPreparedIsNotFelt) {
   Field field = soft_block();
   std::get<DeformableObjectParameters>(field.kind).body = nullptr;
   Scene scene({field}, 1000.0);

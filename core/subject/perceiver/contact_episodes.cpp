@@ -1,4 +1,4 @@
-#include "core/subject/perceiver/encounters.h"
+#include "core/subject/perceiver/contact_episodes.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -16,7 +16,7 @@ constexpr double kLeastFixed = 1e-6;   // of squares in it: 10 µm
 
 }  // namespace
 
-void Encounters::Line::add(double px, double py, double w) noexcept {
+void ContactEpisodes::Line::add(double px, double py, double w) noexcept {
   weight += w;
   x += w * px;
   y += w * py;
@@ -24,7 +24,7 @@ void Encounters::Line::add(double px, double py, double w) noexcept {
   xy += w * px * py;
 }
 
-double Encounters::Line::slope(double least_variance) const noexcept {
+double ContactEpisodes::Line::slope(double least_variance) const noexcept {
   if (!(weight > 0.0)) {
     return 0.0;
   }
@@ -35,7 +35,7 @@ double Encounters::Line::slope(double least_variance) const noexcept {
   return xx > 0.0 ? xy / xx : 0.0;
 }
 
-void Encounters::Ball::add(const Eigen::Vector3d& p, double way) noexcept {
+void ContactEpisodes::Ball::add(const Eigen::Vector3d& p, double way) noexcept {
   const Eigen::Vector4d row(p.x() / kUnit, p.y() / kUnit, p.z() / kUnit, 1.0);
   const double square = p.squaredNorm() / (kUnit * kUnit);
   weight += way;
@@ -45,7 +45,7 @@ void Encounters::Ball::add(const Eigen::Vector3d& p, double way) noexcept {
 }
 
 /// A plane way fixes no centre across it; there the centre stays at the start.
-double Encounters::unevenness() const noexcept {
+double ContactEpisodes::unevenness() const noexcept {
   if (!(ball_.weight > 0.0)) {
     return 0.0;
   }
@@ -58,18 +58,19 @@ double Encounters::unevenness() const noexcept {
   return radius > 0.0 ? 0.5 * kUnit * std::sqrt(std::max(0.0, error)) / radius : 0.0;
 }
 
-Encounters::Encounters(const SenseParameters& senses) noexcept
+ContactEpisodes::ContactEpisodes(const SenseParameters& senses) noexcept
     : contact_force_(senses.contact_force), moving_speed_(senses.moving_speed) {}
 
-void Encounters::begin() noexcept {
+void ContactEpisodes::begin() noexcept {
   const double contact_force = contact_force_;
   const double moving_speed = moving_speed_;
-  *this = Encounters(SenseParameters{});
+  *this = ContactEpisodes(SenseParameters{});
   contact_force_ = contact_force;
   moving_speed_ = moving_speed;
 }
 
-void Encounters::feel(const Eigen::Vector3d& force, const PointState& hand, double dt) noexcept {
+void ContactEpisodes::feel(const Eigen::Vector3d& force, const PointState& hand,
+                           double dt) noexcept {
   if (!force.allFinite() || !hand.position.allFinite() || !hand.velocity.allFinite()) {
     return;
   }
@@ -86,7 +87,8 @@ void Encounters::feel(const Eigen::Vector3d& force, const PointState& hand, doub
   move(force, hand.velocity, touching, dt);
 }
 
-void Encounters::touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p, double dt) noexcept {
+void ContactEpisodes::touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p,
+                            double dt) noexcept {
   upper_.add(force.norm(), dt);
   cloud_.weight += dt;
   cloud_.p += dt * p;
@@ -96,8 +98,8 @@ void Encounters::touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p, d
   cloud_.ff += dt * force * force.transpose();
 }
 
-void Encounters::move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bool touching,
-                      double dt) noexcept {
+void ContactEpisodes::move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bool touching,
+                           double dt) noexcept {
   const double speed = v.norm();
   const bool moving = speed > moving_speed_;
   if (moving) {
@@ -118,7 +120,7 @@ void Encounters::move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bo
   }
 }
 
-void Encounters::follow(const Eigen::Vector3d& p, bool touching, double dt) noexcept {
+void ContactEpisodes::follow(const Eigen::Vector3d& p, bool touching, double dt) noexcept {
   farthest_ = std::max(farthest_, (p - start_).norm());
   if (!touching) {
     free_for_ += dt;
@@ -139,11 +141,11 @@ void Encounters::follow(const Eigen::Vector3d& p, bool touching, double dt) noex
   free_for_ = 0.0;
 }
 
-double Encounters::stiffness() const noexcept {
+double ContactEpisodes::stiffness() const noexcept {
   return stiffness_of(longest_.weight > cloud_.weight ? longest_ : cloud_);
 }
 
-double Encounters::contrast() const noexcept {
+double ContactEpisodes::contrast() const noexcept {
   std::array<double, 17> all{};
   std::copy_n(stiffnesses_.begin(), stiffness_count_, all.begin());
   std::size_t count = stiffness_count_;
@@ -159,7 +161,7 @@ double Encounters::contrast() const noexcept {
   return all[count - 1] / median;
 }
 
-double Encounters::stiffness_of(const Cloud& cloud) const noexcept {
+double ContactEpisodes::stiffness_of(const Cloud& cloud) const noexcept {
   if (!(cloud.weight > 0.0)) {
     return 0.0;
   }
@@ -176,30 +178,30 @@ double Encounters::stiffness_of(const Cloud& cloud) const noexcept {
   return std::max(0.0, -(n.dot(cloud.pf * n) - p * f / w) / w / variance);
 }
 
-double Encounters::viscosity() const noexcept {
+double ContactEpisodes::viscosity() const noexcept {
   return std::max(0.0, line_.slope(moving_speed_ * moving_speed_));
 }
 
-double Encounters::friction() const noexcept {
+double ContactEpisodes::friction() const noexcept {
   return way_ > 0.0 ? std::max(0.0, lost_ / way_) : 0.0;
 }
 
-double Encounters::roughness() const noexcept {
+double ContactEpisodes::roughness() const noexcept {
   return rough_time_ > 0.0 ? std::sqrt(fluctuation_ / rough_time_) : 0.0;
 }
 
-double Encounters::extent() const noexcept {
+double ContactEpisodes::extent() const noexcept {
   if (contacts_ == 0) {
     return farthest_;
   }
   return contacts_ == 1 ? (first_ - start_).norm() : apart_;
 }
 
-double Encounters::resistance() const noexcept {
+double ContactEpisodes::resistance() const noexcept {
   return line_.weight > 0.0 ? std::max(0.0, line_.y / line_.weight) : 0.0;
 }
 
-ContactEpisode Encounters::met(Quantity quantity) const noexcept {
+ContactEpisode ContactEpisodes::met(Quantity quantity) const noexcept {
   switch (quantity) {
     case Quantity::kForce:
       return {force(), force()};

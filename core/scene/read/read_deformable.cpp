@@ -1,4 +1,4 @@
-#include "core/scene/read/read_yielding.h"
+#include "core/scene/read/read_deformable.h"
 
 #include <fmt/format.h>
 
@@ -123,7 +123,7 @@ void read_material(Table& table, DeformableObjectParameters& p) {
 
 }  // namespace
 
-Field read_yielding(Table& table, std::string name, const deformable::SharedFeltMesh& mesh,
+Field read_deformable(Table& table, std::string name, const deformable::SharedHapticMesh& mesh,
                     std::shared_ptr<const deformable::SpringConstants> calibrated) {
   Field field;
   field.name = std::move(name);

@@ -14,6 +14,6 @@ namespace haptrial::scene {
 /// Reads how one table [objects.NAME] is felt, as a field (core/scene/surface/rigid_object.h).
 /// Problems are noted in the table.
 /// @param body  that its shape describes; null: it is not known yet, nothing is felt
-Field read_solid(Table& table, std::string name, const contact::SharedBody& body);
+Field read_rigid(Table& table, std::string name, const contact::SharedBody& body);
 
 }  // namespace haptrial::scene

@@ -45,7 +45,7 @@ Vector3d led(const Field& field, const Vector3d& from, const Vector3d& to, int t
   return force;
 }
 
-TEST(SolidTest, AFaceOfABoxIsExact) {
+TEST(RigidObjectTest, AFaceOfABoxIsExact) {
   const RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   RandomStream random(3, "box");
   for (int i = 0; i < 50; ++i) {
@@ -59,7 +59,7 @@ TEST(SolidTest, AFaceOfABoxIsExact) {
   }
 }
 
-TEST(SolidTest, ASphereOfTrianglesFeelsLikeTheFieldOfASphere) {
+TEST(RigidObjectTest, ASphereOfTrianglesFeelsLikeTheFieldOfASphere) {
   RigidObjectParameters p;
   p.body = shared(geometry::make_sphere(0.025, 40));
   p.gains = {700.0, 0.0};
@@ -78,7 +78,7 @@ TEST(SolidTest, ASphereOfTrianglesFeelsLikeTheFieldOfASphere) {
 }
 
 /// The same body in millimetres, or twice as large, with the scale that makes up for it.
-TEST(SolidTest, TheScaleChangesLengthsAndNoForce) {
+TEST(RigidObjectTest, TheScaleChangesLengthsAndNoForce) {
   const RigidObjectParameters metres = box_of({0.04, 0.03, 0.05});
   RigidObjectParameters other = metres;
   other.gains.damping = 3.0;
@@ -93,7 +93,7 @@ TEST(SolidTest, TheScaleChangesLengthsAndNoForce) {
   EXPECT_GT(led(placed(other), from, to).norm(), 0.5);
 }
 
-TEST(SolidTest, AHandInsideIsPushedOutByTheNearestFace) {
+TEST(RigidObjectTest, AHandInsideIsPushedOutByTheNearestFace) {
   const RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   const Vector3d inside = p.pose.position + p.pose.orientation * Vector3d(0.017, 0.002, 0.001);
   const Vector3d force = led(placed(p), inside, inside, 3);
@@ -101,7 +101,7 @@ TEST(SolidTest, AHandInsideIsPushedOutByTheNearestFace) {
 }
 
 /// A new trial's scene: the proxy stays where it was, so that friction that sticks goes on.
-TEST(SolidTest, ANewSceneGoesOnWhereTheProxyWas) {
+TEST(RigidObjectTest, ANewSceneGoesOnWhereTheProxyWas) {
   RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   p.friction = {2.0, 2.0};
   const Field field = placed(p);
@@ -120,7 +120,7 @@ TEST(SolidTest, ANewSceneGoesOnWhereTheProxyWas) {
   EXPECT_LT((goes_on - stuck).norm(), 1e-3 * stuck.norm());
 }
 
-TEST(SolidTest, RidgesLieBelowTheMesh) {
+TEST(RigidObjectTest, RidgesLieBelowTheMesh) {
   const RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   const Vector3d x = p.pose.orientation * Vector3d::UnitX();
   const GratingParameters grating{"thing", x, 0.0004, 0.004};
@@ -143,7 +143,7 @@ TEST(SolidTest, RidgesLieBelowTheMesh) {
   EXPECT_NEAR(least, 700.0 * (depth - 0.0008), 0.01);
 }
 
-TEST(SolidTest, ATickAllocatesNothing) {
+TEST(RigidObjectTest, ATickAllocatesNothing) {
   RigidObjectParameters p;
   p.body = shared(geometry::make_rough_solid(0.05, 20, 1));
   p.friction = {0.4, 0.3};
@@ -159,7 +159,7 @@ TEST(SolidTest, ATickAllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(SolidTest, ABodyThatIsNotThereIsNotFelt) {
+TEST(RigidObjectTest, ABodyThatIsNotThereIsNotFelt) {
   EXPECT_EQ(led(placed(RigidObjectParameters{}), Vector3d::Zero(), Vector3d::Ones()),
             Vector3d::Zero());
 }

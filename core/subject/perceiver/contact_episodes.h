@@ -27,9 +27,9 @@ namespace haptrial::subject {
 ///                 1 with fewer than two
 ///
 /// Slopes are least-squares lines with an offset. Servo thread: no allocation, lock, I/O or throw.
-class Encounters {
+class ContactEpisodes {
  public:
-  explicit Encounters(const SenseParameters& senses) noexcept;
+  explicit ContactEpisodes(const SenseParameters& senses) noexcept;
 
   void begin() noexcept;
   /// A tick. @param force  on the hand, in W [N]; @param dt  > 0 [s]. Not finite: left out.

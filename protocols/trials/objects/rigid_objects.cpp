@@ -1,4 +1,4 @@
-#include "protocols/trials/objects/solid_words.h"
+#include "protocols/trials/objects/rigid_objects.h"
 
 #include <fmt/format.h>
 
@@ -17,8 +17,8 @@ std::string doubt(const scene::RigidObjectParameters& p) {
 
 }  // namespace
 
-std::vector<std::string> words_of_solids(const std::vector<scene::Field>& fields, double rate,
-                                         double damping) {
+std::vector<std::string> words_of_rigid_objects(const std::vector<scene::Field>& fields,
+                                                double rate, double damping) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const auto* p = std::get_if<scene::RigidObjectParameters>(&fields[i].kind);

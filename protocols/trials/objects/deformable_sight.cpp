@@ -1,4 +1,4 @@
-#include "protocols/trials/objects/yielding_sight.h"
+#include "protocols/trials/objects/deformable_sight.h"
 
 #include <algorithm>
 #include <map>
@@ -49,7 +49,7 @@ std::vector<Edge> sides_of_cells(const deformable::HapticMesh& mesh) {
 
 }  // namespace
 
-YieldingSight::YieldingSight(SeenBody body, const contact::SharedBody& skin)
+DeformableSight::DeformableSight(SeenBody body, const contact::SharedBody& skin)
     : body_(std::move(body)) {
   const auto& rest = mesh().tets.vertices;
   coarse_.assign(rest.begin(), rest.end());
@@ -71,11 +71,11 @@ YieldingSight::YieldingSight(SeenBody body, const contact::SharedBody& skin)
   }
 }
 
-const deformable::HapticMesh& YieldingSight::mesh() const {
+const deformable::HapticMesh& DeformableSight::mesh() const {
   return body_.resting ? body_.resting->mesh() : *body_.moving->mesh;
 }
 
-void YieldingSight::update(std::span<const SeenForces::Force> forces) {
+void DeformableSight::update(std::span<const SeenForces::Force> forces) {
   if (body_.resting) {
     press(forces);
   } else if (!body_.shape->read(coarse_)) {
@@ -86,7 +86,7 @@ void YieldingSight::update(std::span<const SeenForces::Force> forces) {
   }
 }
 
-void YieldingSight::press(std::span<const SeenForces::Force> forces) {
+void DeformableSight::press(std::span<const SeenForces::Force> forces) {
   const deformable::Compliance& body = *body_.resting;
   for (std::size_t i = 0; i < body.places(); ++i) {
     const auto place = static_cast<std::int32_t>(i);

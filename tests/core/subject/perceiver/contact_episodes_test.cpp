@@ -1,4 +1,4 @@
-#include "core/subject/perceiver/encounters.h"
+#include "core/subject/perceiver/contact_episodes.h"
 
 #include <gtest/gtest.h>
 
@@ -20,10 +20,10 @@ using test::Vector3d;
 const Vector3d kDown(0.0, -1.0, 0.0);
 
 /// Contacts of a probe in a scene.
-Encounters explore(const std::vector<scene::Field>& fields, const Probe& probe, double seconds,
-                   const Vector3d& start = Vector3d::Zero()) {
+ContactEpisodes explore(const std::vector<scene::Field>& fields, const Probe& probe, double seconds,
+                        const Vector3d& start = Vector3d::Zero()) {
   HandRig rig(fields, start);
-  Encounters met(SenseParameters{});
+  ContactEpisodes met(SenseParameters{});
   rig.run(probe, seconds, [&](double, const Vector3d& force, const PointState& hand) {
     met.feel(force, hand, kStep);
   });
@@ -57,8 +57,8 @@ TEST(UpperMeanTest, OfARampItIsThreeQuarters) {
 }
 
 /// Three presses on springs, one after the other.
-TEST(EncountersTest, ContrastIsTheStiffestOverTheMedian) {
-  Encounters met(SenseParameters{});
+TEST(ContactEpisodesTest, ContrastIsTheStiffestOverTheMedian) {
+  ContactEpisodes met(SenseParameters{});
   EXPECT_EQ(met.contrast(), 1.0);
   const auto press = [&](double stiffness) {
     for (int i = 0; i < 400; ++i) {
@@ -77,20 +77,20 @@ TEST(EncountersTest, ContrastIsTheStiffestOverTheMedian) {
   EXPECT_EQ(met.met(Quantity::kContrast).amount, met.contrast());
 }
 
-TEST(EncountersTest, AWallHasItsStiffnessAndTheForceOfThePress) {
+TEST(ContactEpisodesTest, AWallHasItsStiffnessAndTheForceOfThePress) {
   for (const double stiffness : {150.0, 300.0, 600.0}) {
-    const Encounters met =
+    const ContactEpisodes met =
         explore({floor_of(stiffness, 0.0)}, Press{kDown, 3.0, 0.5}, 6.0, {0.0, 0.01, 0.0});
     EXPECT_NEAR(met.stiffness(), stiffness, 0.005 * stiffness);
     EXPECT_NEAR(met.force(), 3.0, 0.1 + 0.01) << "but for the handle's friction, 0.1 N";
     // A damper adds force while the hand comes in, where the wall itself has none yet.
-    const Encounters damped =
+    const ContactEpisodes damped =
         explore({floor_of(stiffness, 2.0)}, Press{kDown, 3.0, 0.5}, 2.5, {0.0, 0.01, 0.0});
     EXPECT_NEAR(damped.stiffness(), stiffness, 0.05 * stiffness);
   }
 }
 
-TEST(EncountersTest, ATiltedWallAndASpringToo) {
+TEST(ContactEpisodesTest, ATiltedWallAndASpringToo) {
   const Vector3d normal = Vector3d(0.3, 1.0, -0.2).normalized();
   const auto tilted =
       field("floor",
@@ -101,30 +101,30 @@ TEST(EncountersTest, ATiltedWallAndASpringToo) {
       << "to and fro through its rest";
 }
 
-TEST(EncountersTest, AFluidHasItsViscosityAlsoWithFriction) {
+TEST(ContactEpisodesTest, AFluidHasItsViscosityAlsoWithFriction) {
   const auto oil = field("oil", scene::ViscousParameters{10.0});
   const Stroke stroke{{1.0, 0.0, 0.0}, 0.03, 0.8};
   EXPECT_NEAR(explore({oil}, stroke, 4.0).viscosity(), 10.0, 0.3);
   const auto dry = field("dry", scene::FrictionParameters{"", 0.5, 0.5, 20000.0});
-  const Encounters both = explore({oil, dry}, stroke, 4.0);
+  const ContactEpisodes both = explore({oil, dry}, stroke, 4.0);
   EXPECT_NEAR(both.viscosity(), 10.0, 0.6) << "the offset of the line takes the friction";
   const auto spring = field("spring", scene::SpringParameters{Vector3d::Zero(), {100.0, 0.0}});
   EXPECT_NEAR(explore({spring}, stroke, 5.0).viscosity(), 0.0, 0.6) << "a spring is no fluid";
 }
 
-TEST(EncountersTest, AnOblongReachThroughACurlFieldMeetsNoResistance) {
+TEST(ContactEpisodesTest, AnOblongReachThroughACurlFieldMeetsNoResistance) {
   scene::MatrixViscousParameters curl;
   curl.matrix << 0.0, 0.0, 13.0, 0.0, 0.0, 0.0, -13.0, 0.0, 0.0;
-  const Encounters met = explore({field("curl", curl)}, Reach{{0.0, 0.0, -0.06}, 0.5}, 0.6);
+  const ContactEpisodes met = explore({field("curl", curl)}, Reach{{0.0, 0.0, -0.06}, 0.5}, 0.6);
   EXPECT_NEAR(met.friction(), 0.0, 0.02);
 }
 
-TEST(EncountersTest, FrictionIsTheForceThatResists) {
+TEST(ContactEpisodesTest, FrictionIsTheForceThatResists) {
   const Stroke stroke{{1.0, 0.0, 0.0}, 0.025, 0.5, kDown, 1.5};
   for (const double level : {0.3, 0.6}) {
     HandRig rig(
         {floor_of(800.0), field("rub", scene::FrictionParameters{"floor", level, level, 10000.0})});
-    Encounters met(SenseParameters{});
+    ContactEpisodes met(SenseParameters{});
     double normal = 0.0;
     double way = 0.0;
     rig.run(stroke, 4.0, [&](double, const Vector3d& force, const PointState& hand) {
@@ -141,7 +141,7 @@ TEST(EncountersTest, FrictionIsTheForceThatResists) {
   EXPECT_NEAR(explore({floor_of(800.0)}, stroke, 4.0).friction(), 0.0, 0.03) << "a smooth floor";
 }
 
-TEST(EncountersTest, RoughnessIsTheFluctuationOfTheForce) {
+TEST(ContactEpisodesTest, RoughnessIsTheFluctuationOfTheForce) {
   const auto rough = [](double amplitude) {
     scene::GratingParameters grating{"floor", Vector3d::UnitX(), amplitude, 0.002};
     return explore({floor_of(1000.0), field("ridges", grating)},
@@ -153,8 +153,8 @@ TEST(EncountersTest, RoughnessIsTheFluctuationOfTheForce) {
   EXPECT_NEAR(rough(2e-4) / fine, 2.0, 0.3) << "nearly in proportion to the ridges";
 }
 
-TEST(EncountersTest, OfASinusoidRoughnessIsItsRootMeanSquare) {
-  Encounters met(SenseParameters{});
+TEST(ContactEpisodesTest, OfASinusoidRoughnessIsItsRootMeanSquare) {
+  ContactEpisodes met(SenseParameters{});
   for (int i = 0; i < 20000; ++i) {
     const double t = i * kStep;
     PointState hand;
@@ -165,7 +165,7 @@ TEST(EncountersTest, OfASinusoidRoughnessIsItsRootMeanSquare) {
   EXPECT_NEAR(met.roughness(), 0.3 / std::numbers::sqrt2, 0.06 * 0.3);
 }
 
-TEST(EncountersTest, TheExtentIsTheWayBetweenTwoWalls) {
+TEST(ContactEpisodesTest, TheExtentIsTheWayBetweenTwoWalls) {
   for (const double gap : {0.03, 0.05}) {
     const auto wall = [&](const char* name, double side) {
       return field(name, scene::SurfaceParameters{
@@ -173,31 +173,31 @@ TEST(EncountersTest, TheExtentIsTheWayBetweenTwoWalls) {
                              false,
                              {1000.0, 5.0}});
     };
-    const Encounters met = explore({wall("left", -1.0), wall("right", 1.0)},
-                                   Stroke{{1.0, 0.0, 0.0}, 0.04, 0.5}, 4.0, {0.003, 0.0, 0.0});
+    const ContactEpisodes met = explore({wall("left", -1.0), wall("right", 1.0)},
+                                        Stroke{{1.0, 0.0, 0.0}, 0.04, 0.5}, 4.0, {0.003, 0.0, 0.0});
     EXPECT_NEAR(met.extent(), gap, 1e-3);
   }
 }
 
-TEST(EncountersTest, WithOneContactTheExtentIsTheWayThereAndWithNoneTheWay) {
+TEST(ContactEpisodesTest, WithOneContactTheExtentIsTheWayThereAndWithNoneTheWay) {
   EXPECT_NEAR(explore({floor_of(500.0)}, Press{kDown}, 2.0, {0.0, 0.02, 0.0}).extent(), 0.02, 5e-4);
   EXPECT_NEAR(explore({}, Reach{{0.03, 0.0, 0.0}}, 1.5).extent(), 0.03, 5e-4);
 }
 
-TEST(EncountersTest, InFreeAirNothingIsMet) {
-  const Encounters met = explore({}, Press{kDown, 3.0, 0.5, 0.03}, 2.0);
+TEST(ContactEpisodesTest, InFreeAirNothingIsMet) {
+  const ContactEpisodes met = explore({}, Press{kDown, 3.0, 0.5, 0.03}, 2.0);
   for (const Quantity quantity :
        {Quantity::kForce, Quantity::kStiffness, Quantity::kCompliance, Quantity::kViscosity,
         Quantity::kFriction, Quantity::kRoughness}) {
     EXPECT_EQ(met.met(quantity).amount, 0.0);
   }
-  EXPECT_EQ(Encounters(SenseParameters{}).extent(), 0.0);
+  EXPECT_EQ(ContactEpisodes(SenseParameters{}).extent(), 0.0);
 }
 
-TEST(EncountersTest, WhatIsNotFiniteIsLeftOutAndBeginForgets) {
+TEST(ContactEpisodesTest, WhatIsNotFiniteIsLeftOutAndBeginForgets) {
   SenseParameters senses;
   senses.contact_force = 0.2;
-  Encounters met(senses);
+  ContactEpisodes met(senses);
   PointState hand;
   met.feel({0.0, 2.0, 0.0}, hand, kStep);
   met.feel({0.0, NAN, 0.0}, hand, kStep);

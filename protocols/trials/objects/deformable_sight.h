@@ -13,10 +13,10 @@ namespace haptrial::protocols {
 /// The surface of a body as it gives way, for pictures: of a block its outer faces, of a body
 /// from a file the file's mesh, which follows the elements as a skin. Lengths are the body's own
 /// frame [m]. One thread.
-class YieldingSight {
+class DeformableSight {
  public:
   /// @param skin  null: the outer faces of the elements
-  YieldingSight(SeenBody body, const contact::SharedBody& skin);
+  DeformableSight(SeenBody body, const contact::SharedBody& skin);
 
   /// Moves a body to its present shape: one that rests on every tick lies as these forces press it;
   /// beyond the vertices that a Compliance knows, those deeper than one element, nothing moves. A

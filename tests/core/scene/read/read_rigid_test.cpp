@@ -1,4 +1,4 @@
-#include "core/scene/read/read_solid.h"
+#include "core/scene/read/read_rigid.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ Field read_thing(const std::string& keys, const contact::SharedBody& body = null
   Table document = Table::parse("[objects.thing]\n" + keys + "\n", "x.toml");
   Table objects = document.table("objects");
   Table table = objects.table("thing");
-  Field field = read_solid(table, "thing", body);
+  Field field = read_rigid(table, "thing", body);
   document.finish();
   return field;
 }
@@ -29,7 +29,7 @@ std::string told_of_thing(const std::string& keys) {
 
 const std::string kLeast = "stiffness = 600\ndamping = 1\n";
 
-TEST(ReadSolidTest, EveryKeyIsRead) {
+TEST(ReadRigidTest, EveryKeyIsRead) {
   const Field field = read_thing(kLeast +
                                  "centre = [0.01, 0.02, 0.03]\nturn = [0, 0, 1.5]\nscale = 0.001\n"
                                  "friction = { static = 0.5, dynamic = 0.4 }\nshading = 0.7\n"
@@ -53,7 +53,7 @@ TEST(ReadSolidTest, EveryKeyIsRead) {
   EXPECT_EQ(field.fade_out, 0.1);
 }
 
-TEST(ReadSolidTest, EveryMistakeGetsItsSentence) {
+TEST(ReadRigidTest, EveryMistakeGetsItsSentence) {
   EXPECT_THAT(told_of_thing("damping = 1"), HasSubstr("objects.thing.stiffness is missing"));
   EXPECT_THAT(told_of_thing("stiffness = 0\ndamping = 1"), HasSubstr("stiffness is 0"));
   EXPECT_THAT(told_of_thing(kLeast + "scale = 0"), HasSubstr("objects.thing.scale is 0"));
@@ -67,7 +67,7 @@ TEST(ReadSolidTest, EveryMistakeGetsItsSentence) {
   EXPECT_THAT(told_of_thing(kLeast + "stifness = 5"), HasSubstr("stifness is not a known key"));
 }
 
-TEST(ReadSolidTest, KeysOfOtherRenderersAreRefused) {
+TEST(ReadRigidTest, KeysOfOtherRenderersAreRefused) {
   const auto& cells = std::get<RigidObjectParameters>(
       read_thing(kLeast + "renderer = \"voxel\"\nresolution = 32").kind);
   EXPECT_EQ(cells.resolution, 32);
@@ -80,7 +80,7 @@ TEST(ReadSolidTest, KeysOfOtherRenderersAreRefused) {
       HasSubstr("friction stands beside the renderer \"penalty\", which has none"));
 }
 
-TEST(ReadSolidTest, RenderersWithoutAProxyNeedAnInside) {
+TEST(ReadRigidTest, RenderersWithoutAProxyNeedAnInside) {
   geometry::Mesh box = geometry::make_box({0.1, 0.2, 0.3});
   const std::string penalty = kLeast + "renderer = \"penalty\"";
   EXPECT_NO_THROW(read_thing(penalty, contact::felt_body(box)));
