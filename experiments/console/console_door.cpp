@@ -85,8 +85,8 @@ HttpListener::HttpListener(int listening, const StopEvent& stop, Rules rules, Ha
 
 HttpListener::~HttpListener() {
   thread_.join();
-  for (const Client& guest : guests_) {
-    ::close(guest.socket);
+  for (const Client& client : clients_) {
+    ::close(client.socket);
   }
 }
 
@@ -96,15 +96,15 @@ void HttpListener::run() {
   std::vector<bool> spoke;
   for (;;) {
     watched = {{stop_, POLLIN, 0}, {listening_, POLLIN, 0}};
-    for (const Client& guest : guests_) {
-      watched.push_back({guest.socket, POLLIN, 0});
+    for (const Client& client : clients_) {
+      watched.push_back({client.socket, POLLIN, 0});
     }
-    ::poll(watched.data(), watched.size(), guests_.empty() ? -1 : kSlice);
+    ::poll(watched.data(), watched.size(), clients_.empty() ? -1 : kSlice);
     if (watched[0].revents != 0) {
       return;
     }
-    spoke.assign(guests_.size(), false);
-    for (std::size_t i = 0; i < guests_.size(); ++i) {
+    spoke.assign(clients_.size(), false);
+    for (std::size_t i = 0; i < clients_.size(); ++i) {
       spoke[i] = watched[i + 2].revents != 0;
     }
     sort_out(spoke);
@@ -118,32 +118,32 @@ void HttpListener::sort_out(const std::vector<bool>& spoke) {
   const auto patience = std::chrono::duration_cast<Clock::duration>(rules_.patience);
   const auto now = Clock::now();
   std::vector<Client> stay;
-  for (std::size_t i = 0; i < guests_.size(); ++i) {
-    const Client& guest = guests_[i];
-    if (spoke[i] && see_to(guest)) {
+  for (std::size_t i = 0; i < clients_.size(); ++i) {
+    const Client& client = clients_[i];
+    if (spoke[i] && see_to(client)) {
       continue;
     }
-    if (now - guest.came > patience) {  // browsers open some ahead of need: no refusal
-      ::close(guest.socket);
+    if (now - client.came > patience) {  // browsers open some ahead of need: no refusal
+      ::close(client.socket);
       continue;
     }
-    stay.push_back(guest);
+    stay.push_back(client);
   }
-  guests_ = std::move(stay);
+  clients_ = std::move(stay);
 }
 
-bool HttpListener::see_to(const Client& guest) {
+bool HttpListener::see_to(const Client& client) {
   std::array<char, 2048> first;
-  const ssize_t count = ::recv(guest.socket, first.data(), first.size(), MSG_PEEK | MSG_DONTWAIT);
+  const ssize_t count = ::recv(client.socket, first.data(), first.size(), MSG_PEEK | MSG_DONTWAIT);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) {
     return false;
   }
   if (count <= 0) {
-    ::close(guest.socket);
+    ::close(client.socket);
     return true;
   }
   const std::string text(first.data(), static_cast<std::size_t>(count));
-  handlers_.admit(guest.socket, shows_token(text, rules_.token));
+  handlers_.admit(client.socket, shows_token(text, rules_.token));
   return true;
 }
 
@@ -152,37 +152,37 @@ void HttpListener::take_in() {
   for (int i = 0; i < kAtOnce; ++i) {
     const int socket = ::accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC);
     if (socket < 0) {
-      if ((errno == EMFILE || errno == ENFILE) && !guests_.empty()) {
+      if ((errno == EMFILE || errno == ENFILE) && !clients_.empty()) {
         make_room();
         continue;
       }
       return;
     }
-    Client guest{socket, address_of(socket), Clock::now()};
-    if (see_to(guest)) {
+    Client client{socket, address_of(socket), Clock::now()};
+    if (see_to(client)) {
       continue;
     }
-    if (guests_.size() >= rules_.silent) {
+    if (clients_.size() >= rules_.silent) {
       make_room();
     }
-    guests_.push_back(std::move(guest));
+    clients_.push_back(std::move(client));
   }
 }
 
 void HttpListener::make_room() {
   std::map<std::string, int> of_address;
-  for (const Client& guest : guests_) {
-    ++of_address[guest.address];
+  for (const Client& client : clients_) {
+    ++of_address[client.address];
   }
   const auto most =
       std::max_element(of_address.begin(), of_address.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
-  const auto oldest = std::find_if(guests_.begin(), guests_.end(), [&](const Client& guest) {
-    return guest.address == most->first;
+  const auto oldest = std::find_if(clients_.begin(), clients_.end(), [&](const Client& client) {
+    return client.address == most->first;
   });
   handlers_.refuse(oldest->socket);
   ::close(oldest->socket);
-  guests_.erase(oldest);
+  clients_.erase(oldest);
 }
 
 }  // namespace haptrial::experiments

@@ -76,13 +76,13 @@ class HttpListener {
   void sort_out(const std::vector<bool>& spoke);
   void make_room();
   /// @returns whether it has gone, to a worker or for good.
-  bool see_to(const Client& guest);
+  bool see_to(const Client& client);
 
   int listening_;
   int stop_;
   Rules rules_;
   Handlers handlers_;
-  std::vector<Client> guests_;  // in the order in which they came
+  std::vector<Client> clients_;  // in the order in which they came
   std::thread thread_;
 };
 

@@ -9,7 +9,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   const std::string why = fault ? cause(result) : why_broken_off();
   const std::string trouble = result.trouble;
   const std::string all = trouble.empty() ? why : why + "; " + trouble;
-  const bool overloaded = !p_.pace.overload().empty();  // and no better the next time
+  const bool overloaded = !p_.pacing.overload().empty();  // and no better the next time
   p_.record.event("aborted", fmt::format("trial {}: {}", p_.record.pass().trial, all));
   note_abort(all);
   if (result.fault == device::Fault::kStopButton) {
@@ -19,13 +19,13 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
     p_.controller.status().fault = all;
     p_.controller.requests().stopped = true;  // a person sees to the cause
   } else if (result.fault == device::Fault::kEmergencyStop && p_.real && partner_stops()) {
-    p_.pace.recover_when([this] { return !partner_stops(); });  // who stopped sees to the cause
+    p_.pacing.recover_when([this] { return !partner_stops(); });  // who stopped sees to the cause
   } else if ((fault || overloaded) && p_.real) {
     // Nobody is at a console or keyboard to see to the cause and say that it may go on.
-    p_.pace.let_read(p_.definition.texts.stopped, "stopped");
-    p_.pace.end_early(all);
+    p_.pacing.let_read(p_.definition.texts.stopped, "stopped");
+    p_.pacing.end_early(all);
   } else {
-    p_.pace.recover();
+    p_.pacing.recover();
     pause_after_several(all);
   }
 }
@@ -48,7 +48,7 @@ void AbortedPass::pause_after_several(const std::string& why) {
   if (++in_row_ >= kMost && p_.real) {
     in_row_ = 0;
     p_.notices.note(fmt::format("paused after {} aborts in a row: {}", kMost, why));
-    p_.pace.wait_to_begin(p_.definition.texts.paused);
+    p_.pacing.wait_to_begin(p_.definition.texts.paused);
   }
 }
 
@@ -72,8 +72,8 @@ std::string AbortedPass::cause(const protocols::PassResult& result) const {
 
 std::string AbortedPass::why_broken_off() const {
   const PendingRequests& requests = p_.controller.requests();
-  if (!p_.pace.overload().empty()) {
-    return p_.pace.overload();
+  if (!p_.pacing.overload().empty()) {
+    return p_.pacing.overload();
   }
   if (requests.repeat) {
     return "to be repeated";

@@ -22,7 +22,7 @@ class AbortedPass {
     protocols::Trials& trials;
     SessionRecord& record;
     SessionController& controller;
-    SessionPace& pace;
+    LoopPacing& pacing;
     SessionNotices& notices;
     bool real{false};  // on a real clock
   };

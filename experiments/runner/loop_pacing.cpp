@@ -17,7 +17,7 @@ namespace haptrial::experiments {
 
 using Clock = std::chrono::steady_clock;
 
-SessionPace::SessionPace(const Parts& parts)
+LoopPacing::LoopPacing(const Parts& parts)
     : p_(parts),
       d_(*parts.request.definition),
       real_(parts.request.clock == realtime::ClockKind::kReal),
@@ -26,7 +26,7 @@ SessionPace::SessionPace(const Parts& parts)
 
 /// A hand is not guided by a loop that does not catch up. Where nobody feels the forces the pass
 /// goes on: what it is worth stands in the file.
-void SessionPace::watch_loop() {
+void LoopPacing::watch_loop() {
   const auto sentence = watch_.overloaded(Clock::now(), p_.loop.ticks(), p_.loop.overruns());
   if (real_ && sentence && p_.felt && overload_.empty()) {
     overload_ = *sentence;
@@ -34,7 +34,7 @@ void SessionPace::watch_loop() {
   }
 }
 
-void SessionPace::drive_until_idle() {
+void LoopPacing::drive_until_idle() {
   overload_.clear();
   watch_.begin_pass(p_.loop.ticks(), p_.loop.overruns());
   while (!p_.task.idle()) {
@@ -60,7 +60,7 @@ void SessionPace::drive_until_idle() {
 }
 
 /// Collects records, shown pictures and messages since the last call.
-void SessionPace::collect() {
+void LoopPacing::collect() {
   const std::size_t count = p_.record.collect([this](std::span<const record::Sample> samples) {
     p_.controller.follow(samples, 1e9 / d_.rate);
   });
@@ -79,14 +79,14 @@ void SessionPace::collect() {
   }
 }
 
-void SessionPace::meanwhile() {
+void LoopPacing::meanwhile() {
   collect();
   if (asked_to_stop()) {
     end_early("interrupted");
   }
 }
 
-bool SessionPace::wait(double seconds, const char* state, bool until_asked) {
+bool LoopPacing::wait(double seconds, const char* state, bool until_asked) {
   PendingRequests& requests = p_.controller.requests();
   requests.start = false;
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
@@ -101,7 +101,7 @@ bool SessionPace::wait(double seconds, const char* state, bool until_asked) {
   return Clock::now() >= end;
 }
 
-void SessionPace::wait_to_begin(const std::string& text) {
+void LoopPacing::wait_to_begin(const std::string& text) {
   if (p_.controller.attended()) {
     wait_for_experimenter("instructions", text, d_.texts.begin);
   } else if (p_.screen != nullptr) {
@@ -110,8 +110,8 @@ void SessionPace::wait_to_begin(const std::string& text) {
   }
 }
 
-void SessionPace::wait_for_experimenter(const char* state, const std::string& text,
-                                        const std::string& hint) {
+void LoopPacing::wait_for_experimenter(const char* state, const std::string& text,
+                                       const std::string& hint) {
   PendingRequests& requests = p_.controller.requests();
   requests.pause = true;
   std::optional<bool> shown;  // as stopped
@@ -127,7 +127,7 @@ void SessionPace::wait_for_experimenter(const char* state, const std::string& te
   }
 }
 
-void SessionPace::wait_for_participant() {
+void LoopPacing::wait_for_participant() {
   p_.begin_pressed->store(false);
   while (!p_.begin_pressed->load()) {
     wait(0.02, "instructions");
@@ -138,14 +138,14 @@ void SessionPace::wait_for_participant() {
   p_.record.event("start", fmt::format("by the {}", name_of(RequestSource::kWindow)));
 }
 
-void SessionPace::pause_where_asked() {
+void LoopPacing::pause_where_asked() {
   const PendingRequests& requests = p_.controller.requests();
   if (requests.stopped || requests.pause) {
     wait_for_experimenter("paused", d_.texts.paused, "");
   }
 }
 
-void SessionPace::recover() {
+void LoopPacing::recover() {
   if (real_) {
     show_text(d_.texts.recovering, "");
     wait(d_.recovery, "recovering");
@@ -160,7 +160,7 @@ void SessionPace::recover() {
   }
 }
 
-void SessionPace::recover_when(const std::function<bool()>& may) {
+void LoopPacing::recover_when(const std::function<bool()>& may) {
   show_text(d_.texts.stopped, "");
   while (!may()) {
     wait_a_little("stopped");
@@ -168,7 +168,7 @@ void SessionPace::recover_when(const std::function<bool()>& may) {
   p_.task.clear_fault();
 }
 
-void SessionPace::take_break() {
+void LoopPacing::take_break() {
   const bool until_ready = d_.design.break_until_ready;
   p_.record.event("break", fmt::format("{} s{}", d_.design.break_duration,
                                        until_ready ? ", then until ready" : ""));
@@ -182,7 +182,7 @@ void SessionPace::take_break() {
 }
 
 /// The handle is taken again in the last seconds.
-void SessionPace::rest(bool until_asked) {
+void LoopPacing::rest(bool until_asked) {
   constexpr double kTakeAgain = 10.0;  // [s]
   const double all = d_.design.break_duration;
   const double last = std::min(kTakeAgain, 0.5 * all);
@@ -194,7 +194,7 @@ void SessionPace::rest(bool until_asked) {
 }
 
 /// Waits until the participant or the experimenter goes on, if there is one of them.
-void SessionPace::wait_until_ready() {
+void LoopPacing::wait_until_ready() {
   if (!p_.controller.attended() && p_.screen == nullptr) {
     return;
   }
@@ -213,7 +213,7 @@ void SessionPace::wait_until_ready() {
   }
 }
 
-void SessionPace::show_text(const std::string& text, const std::string& hint, double countdown) {
+void LoopPacing::show_text(const std::string& text, const std::string& hint, double countdown) {
   if (p_.screen != nullptr) {
     render::TextPage page = protocols::page_of(text, hint);
     if (countdown > 0.0) {
@@ -225,7 +225,7 @@ void SessionPace::show_text(const std::string& text, const std::string& hint, do
   text_shown_ = true;
 }
 
-void SessionPace::show_page(render::TextPage page, const std::string& text) {
+void LoopPacing::show_page(render::TextPage page, const std::string& text) {
   if (p_.screen != nullptr) {
     p_.screen->show_text(std::move(page));
   }
@@ -233,7 +233,7 @@ void SessionPace::show_page(render::TextPage page, const std::string& text) {
   text_shown_ = true;
 }
 
-void SessionPace::show_progress(double share) {
+void LoopPacing::show_progress(double share) {
   if (!real_) {
     return;
   }
@@ -242,7 +242,7 @@ void SessionPace::show_progress(double share) {
   publish("preparing");
 }
 
-void SessionPace::wait_for_picture(std::uint64_t number) {
+void LoopPacing::wait_for_picture(std::uint64_t number) {
   const PendingRequests& requests = p_.controller.requests();
   const auto start = Clock::now();
   while (!p_.screen->has_shown(number) && p_.screen->trouble().empty() && !requests.abort) {
@@ -257,14 +257,14 @@ void SessionPace::wait_for_picture(std::uint64_t number) {
                                                waited.count()));
 }
 
-void SessionPace::wait_a_little(const char* state) {
+void LoopPacing::wait_a_little(const char* state) {
   wait(0.02, state);
   if (asked_to_stop()) {
     end_early("interrupted");
   }
 }
 
-void SessionPace::let_read(const std::string& text, const char* state) {
+void LoopPacing::let_read(const std::string& text, const char* state) {
   constexpr double kTimeToRead = 5.0;  // [s]
   show_text(text, "");
   if (p_.screen != nullptr) {
@@ -272,12 +272,12 @@ void SessionPace::let_read(const std::string& text, const char* state) {
   }
 }
 
-void SessionPace::clear_text() {
+void LoopPacing::clear_text() {
   p_.controller.status().screen.clear();
   text_shown_ = false;
 }
 
-void SessionPace::publish(const char* state) {
+void LoopPacing::publish(const char* state) {
   if (!p_.controller.attended()) {
     return;
   }
@@ -298,12 +298,12 @@ void SessionPace::publish(const char* state) {
   p_.controller.publish(state);
 }
 
-bool SessionPace::asked_to_stop() const {
+bool LoopPacing::asked_to_stop() const {
   return interrupted() ||
          (p_.request.cancel != nullptr && p_.request.cancel->load(std::memory_order_relaxed));
 }
 
-void SessionPace::end_early(const std::string& why) const {
+void LoopPacing::end_early(const std::string& why) const {
   throw RunError(real_
                      ? fmt::format("{}; what was recorded is in {}.partial; continue with --resume",
                                    why, p_.request.file.string())

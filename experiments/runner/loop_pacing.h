@@ -20,9 +20,9 @@ class Screen;
 /// How a session passes its time: while a pass runs, in breaks, and while the experimenter is to
 /// say something. Whatever it waits for, it empties the logs, hears messages and shows how things
 /// stand. Session's thread.
-class SessionPace {
+class LoopPacing {
  public:
-  /// All of them outlive the pace. @param screen, live  null where there is none
+  /// All of them outlive the pacing. @param screen, live  null where there is none
   struct Parts {
     const SessionRequest& request;
     realtime::ServoLoop& loop;
@@ -36,7 +36,7 @@ class SessionPace {
     std::function<void()> hear{};  // what else may have happened, asked often
     protocols::Rig* rig{nullptr};  // attended to while a pass runs
   };
-  explicit SessionPace(const Parts& parts);
+  explicit LoopPacing(const Parts& parts);
 
   /// Keeps the session alive while something takes seconds on its thread. @throws RunError on an
   /// interrupt
@@ -78,7 +78,7 @@ class SessionPace {
   /// A last page, for as long as it takes to read where there is a screen.
   void let_read(const std::string& text, const char* state);
   bool text_shown() const { return text_shown_; }
-  void clear_text();  // what shows instead is not the pace's
+  void clear_text();  // what shows instead is not the pacing's
 
   /// @throws RunError that says where what was recorded is
   [[noreturn]] void end_early(const std::string& why) const;

@@ -47,7 +47,7 @@ class Session {
 
  private:
   std::vector<stimulus::Observer*> observers();
-  SessionController::Actions desk_actions();
+  SessionController::Actions controller_actions();
 
   void watch_flashes();
   void hear_inputs();
@@ -93,7 +93,7 @@ class Session {
   SessionRecord record_;  // opened when everything else is there
   SessionController controller_;
   protocols::SessionTask task_;
-  SessionPace pace_;
+  LoopPacing pacing_;
   SessionPages pages_;
   NextTrial next_;
   SessionNotices notices_;
@@ -132,8 +132,8 @@ protocols::SessionPlace Session::place() {
     if (!progress_) {
       progress_ = std::make_unique<Progress>(what, 1.0);
     }
-    pace_.meanwhile();
-    pace_.show_progress(share);
+    pacing_.meanwhile();
+    pacing_.show_progress(share);
     progress_->update(share, "", 0.0);
   };
   place.stop = [this] { task_.emergency_stop(); };
@@ -152,7 +152,7 @@ Session::Session(const SessionRequest& request)
       screen_(open_screen(request, *rig_, &held_keys_, &begin_pressed_, &page_keys_)),
       live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
-      controller_(request.control, desk_actions()),
+      controller_(request.control, controller_actions()),
       task_({.devices = rig_->arms(d_.envelope),
              .loop = protocols::handle_loop(d_),
              .log = record_.log(),
@@ -165,22 +165,22 @@ Session::Session(const SessionRequest& request)
             real_ ? protocols::SessionTask::Leave::kNever
                   : protocols::SessionTask::Leave::kAfterPassOrSlice,
             record_.origin()),
-      pace_({request, loop_, record_, controller_, task_, rig_->felt(), screen_.get(),
-             &begin_pressed_, live_.get(),
-             [this] {
-               hear_inputs();
-               note_warnings();
-               controller_.status().partner = trials_->partner();
-               if (live_ == nullptr) {
-                 controller_.status().figures = trials_->live();
-               }
-             },
-             rig_.get()}),
+      pacing_({request, loop_, record_, controller_, task_, rig_->felt(), screen_.get(),
+               &begin_pressed_, live_.get(),
+               [this] {
+                 hear_inputs();
+                 note_warnings();
+                 controller_.status().partner = trials_->partner();
+                 if (live_ == nullptr) {
+                   controller_.status().figures = trials_->live();
+                 }
+               },
+               rig_.get()}),
       pages_(
-          {request, record_, controller_, pace_, page_keys_, screen_.get(), place_.session_seed}),
+          {request, record_, controller_, pacing_, page_keys_, screen_.get(), place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, controller_, summary_}),
-      aborted_({d_, *trials_, record_, controller_, pace_, notices_, real_}),
+      aborted_({d_, *trials_, record_, controller_, pacing_, notices_, real_}),
       servo_(loop_, task_, longest_fade(d_.envelope)),
       stop_(task_, servo_, rig_->device()) {
   SessionStatus& status = controller_.status();
@@ -239,7 +239,7 @@ Session::~Session() {
   }
 }
 
-SessionController::Actions Session::desk_actions() {
+SessionController::Actions Session::controller_actions() {
   return {[this] { task_.break_off(); }, [this] { task_.clear_fault(); },
           [this](const std::string& kind, const std::string& text) { record_.event(kind, text); },
           request_.link ? [this](bool take) { trials_->take_lead(take); }
@@ -298,11 +298,11 @@ void Session::run_trials() {
     left_ = !pages_.declined();
     if (pages_.declined()) {
       notices_.note("the participant did not agree to take part, so nothing was presented");
-      pace_.let_read(d_.texts.declined, "thanks");
+      pacing_.let_read(d_.texts.declined, "thanks");
     }
     return;
   }
-  pace_.wait_to_begin(d_.instructions());
+  pacing_.wait_to_begin(d_.instructions());
   bool practised = false;
   std::optional<PlannedTrial> trial = next_.after(nullptr);
   while (trial) {
@@ -311,7 +311,7 @@ void Session::run_trials() {
       break;
     }
     if (trial->practice != practised) {  // practice begins or is over
-      pace_.wait_to_begin(trial->practice ? d_.texts.practice : d_.texts.counts);
+      pacing_.wait_to_begin(trial->practice ? d_.texts.practice : d_.texts.counts);
       practised = trial->practice;
     }
     const Outcome outcome = present(*trial);
@@ -330,14 +330,14 @@ void Session::run_trials() {
       break;
     }
     if (rests && trial) {
-      pace_.take_break();
+      pacing_.take_break();
     }
   }
   left_ = left_ || next_.ended_at_page();
   if (!left_ && !pages_.after()) {
     left_ = true;
   }
-  pace_.let_read(d_.texts.thanks, "thanks");
+  pacing_.let_read(d_.texts.thanks, "thanks");
 }
 
 /// Events for each run: a resumed session may go on in another language.
@@ -348,12 +348,12 @@ void Session::note_setting() {
 }
 
 void Session::show_trial() {
-  pace_.clear_text();
+  pacing_.clear_text();
   if (screen_) {
     const std::uint64_t number = screen_->show(trials_->drawing());
-    pace_.clear_text();
+    pacing_.clear_text();
     if (trials_->waits_for_picture()) {
-      pace_.wait_for_picture(number);
+      pacing_.wait_for_picture(number);
     }
     progress_.reset();
   }
@@ -376,7 +376,7 @@ Outcome Session::present(const PlannedTrial& trial) {
     show_trial();
     record_.mark_trial("trial_begin", trial, attempt);
     const bool done = run_trial(trial, attempt);
-    pace_.pause_where_asked();
+    pacing_.pause_where_asked();
     const AfterAbort after = done ? AfterAbort::kAsAsked : trials_->after_abort();
     const bool skipped = (requests.skip || after == AfterAbort::kSkip) && !done;
     const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
@@ -420,7 +420,7 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
   const std::span<const record::Phase> phases = trials_->phases();
   for (std::size_t i = 0; i < phases.size(); ++i) {
     if (i > 0) {
-      pace_.pause_where_asked();
+      pacing_.pause_where_asked();
       const PendingRequests& requests = controller_.requests();
       if (requests.repeat || requests.skip || requests.abort) {
         return false;
@@ -436,7 +436,7 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
 }
 
 bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt) {
-  if (pace_.text_shown()) {
+  if (pacing_.text_shown()) {
     show_trial();
   }
   PlannedTrial row = trial;
@@ -444,8 +444,8 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
   task_.start(pass, number);
   ++summary_.passes;
-  pace_.drive_until_idle();
-  notices_.note_overruns(pace_.watch());
+  pacing_.drive_until_idle();
+  notices_.note_overruns(pacing_.watch());
   const protocols::PassResult& result = task_.result();
   const bool aborted = result.state == protocols::PassState::kAborted;
   trials_->close_pass(record_, number);
@@ -508,7 +508,7 @@ void Session::finish() {
   summary_.ticks = loop_.ticks();
   summary_.overruns = loop_.overruns();
   summary_.dropped = record_.dropped();
-  pace_.publish("ended");
+  pacing_.publish("ended");
 }
 
 void Session::give_up() noexcept {

@@ -122,8 +122,8 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
   const auto draw = [&] {
     render::TextPage shown = input.page(picture);
     shown.progress = progress_of(page, item);
-    p_.pace.show_page(std::move(shown),
-                      item.title.empty() ? item.text : item.title + "\n" + item.text);
+    p_.pacing.show_page(std::move(shown),
+                        item.title.empty() ? item.text : item.title + "\n" + item.text);
   };
   p_.keys.set_open(true);
   p_.controller.status().asked = std::move(asked);
@@ -131,10 +131,10 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
   const PendingRequests& requests = p_.controller.requests();
   while (!input.answer() && !requests.abort) {
     if (requests.stopped || requests.pause) {
-      p_.pace.pause_where_asked();
+      p_.pacing.pause_where_asked();
       draw();
     }
-    p_.pace.wait_a_little("page");
+    p_.pacing.wait_a_little("page");
     for (const render::KeyPress& key : p_.keys.pressed()) {
       if (!input.answer() && input.press(key)) {
         source = AnsweredAt::kWindow;
@@ -149,7 +149,7 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
   }
   p_.controller.status().asked = {};
   p_.keys.set_open(false);
-  p_.pace.clear_text();
+  p_.pacing.clear_text();
   if (input.answer()) {
     answer = *input.answer();
   }

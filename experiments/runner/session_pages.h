@@ -24,7 +24,7 @@ class SessionPages {
     const SessionRequest& request;
     SessionRecord& record;
     SessionController& controller;
-    SessionPace& pace;
+    LoopPacing& pacing;
     PageKeys& keys;
     Screen* screen{nullptr};
     std::uint64_t session_seed{0};

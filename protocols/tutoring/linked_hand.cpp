@@ -15,7 +15,7 @@ using network::TurnPhase;
 LinkedHand::LinkedHand(const Parts& parts)
     : p_(parts),
       side_(side_parameters(parts.options)),
-      stream_(parts.freight != nullptr ? std::make_unique<network::ReliableStream>() : nullptr),
+      stream_(parts.payload != nullptr ? std::make_unique<network::ReliableStream>() : nullptr),
       coupled_(parts.options.ramp),
       claim_(parts.options.ramp),
       taught_(parts.options.ramp, parts.options.authority) {}
@@ -38,7 +38,7 @@ void LinkedHand::listen() noexcept {
   arrived_ = 0;
   p_.wire.receive(*this);
   if (stream_) {
-    stream_->deliver(*p_.freight);
+    stream_->deliver(*p_.payload);
   }
   quality_.step(side_.sequence(), now_);
   heed_partner();
@@ -111,7 +111,7 @@ void LinkedHand::step(const PointState& tool, const Eigen::Vector3d& own_force,
   own_.buttons = buttons;
   own_.flags = flags();
   own_.turn = turns_.own();
-  own_.news = stream_ && stream_->wants(*p_.freight, now_, side_.clock().round_trip());
+  own_.news = stream_ && stream_->wants(*p_.payload, now_, side_.clock().round_trip());
   network::CoupledSide::Output out = side_.step(own_, now_, dt);
   coupling_ = out.force - side_.own_share() * own_force;
   sent_ = out.message ? static_cast<std::int64_t>(out.message->sequence) : 0;

@@ -35,7 +35,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
     network::Wire& wire;
     TickLog* inner{nullptr};                     // the protocol's own; null: none
     std::function<void()> stop;                  // an emergency stop of the own session
-    network::ReliablePayload* freight{nullptr};  // that must not be lost; null: there is none
+    network::ReliablePayload* payload{nullptr};  // that must not be lost; null: there is none
   };
   /// All parts outlive it.
   explicit LinkedHand(const Parts& parts);
@@ -94,7 +94,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
 
   Parts p_;
   network::CoupledSide side_;
-  std::unique_ptr<network::ReliableStream> stream_;  // where there is freight
+  std::unique_ptr<network::ReliableStream> stream_;  // where there is payload
   network::PassBarrier turns_;
   network::PassBarrier::Step step_{network::PassBarrier::Step::kWait};  // the last one
   LinkQuality quality_;

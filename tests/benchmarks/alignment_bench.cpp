@@ -46,7 +46,7 @@ class Textbook {
  public:
   void align(const CurveView& a, const CurveView& b, const AlignmentOptions& p, Alignment& result) {
     const std::size_t rows = a.force.size(), columns = b.force.size();
-    ways_.resize(rows * columns);
+    steps_.resize(rows * columns);
     above_.assign(columns + 1, std::numeric_limits<double>::infinity());
     row_.resize(columns + 1);
     above_[0] = 0.0;
@@ -63,7 +63,7 @@ class Textbook {
         }
         row_[j + 1] = best + p.force_weight * std::abs(a.force[i] - b.force[j]) +
                       p.slope_weight * std::abs(a.slope[i] - b.slope[j]);
-        ways_[i * columns + j] = way;
+        steps_[i * columns + j] = way;
       }
       std::swap(row_, above_);
     }
@@ -74,7 +74,7 @@ class Textbook {
       if (i == 0 && j == 0) {
         break;
       }
-      const char way = ways_[i * columns + j];
+      const char way = steps_[i * columns + j];
       if (way != 'l') {
         --i;
       }
@@ -87,7 +87,7 @@ class Textbook {
 
  private:
   std::vector<double> above_, row_;
-  std::vector<char> ways_;
+  std::vector<char> steps_;
 };
 
 /// Processor time of this thread: what another program takes in between does not count.

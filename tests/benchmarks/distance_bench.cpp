@@ -45,14 +45,14 @@ double median(std::vector<double> v) {
 }
 
 /// One way of answering all points: what it is called, and the squared distances that it gives.
-struct Way {
+struct SearchMethod {
   std::string name;
   std::function<void(const Points&, std::vector<double>&)> answer;
   std::vector<double> seconds{};
   double worst{0.0};  // difference of a distance from ours [m]
 };
 
-Way ours_many(const Bvh& bvh) {
+SearchMethod ours_many(const Bvh& bvh) {
   return {"ours, many at once", [&](const Points& points, std::vector<double>& squared) {
             std::vector<ClosestPoint> answers(points.size());
             bvh.closest(points, answers);
@@ -61,14 +61,14 @@ Way ours_many(const Bvh& bvh) {
             }
           }};
 }
-Way ours_one(const Bvh& bvh) {
+SearchMethod ours_one(const Bvh& bvh) {
   return {"ours, one by one", [&](const Points& points, std::vector<double>& squared) {
             for (std::size_t i = 0; i < points.size(); ++i) {
               squared[i] = bvh.closest(points[i]).distance_squared;
             }
           }};
 }
-Way ours_warm(const Bvh& bvh) {
+SearchMethod ours_warm(const Bvh& bvh) {
   return {"ours, one by one, warm", [&](const Points& points, std::vector<double>& squared) {
             std::int32_t hint = -1;
             for (std::size_t i = 0; i < points.size(); ++i) {
@@ -79,7 +79,7 @@ Way ours_warm(const Bvh& bvh) {
           }};
 }
 /// The map of the whole grid, its arrays included.
-Way ours_map(const Bvh& bvh, const VoxelSolid& solid) {
+SearchMethod ours_map(const Bvh& bvh, const VoxelSolid& solid) {
   return {"ours, distance map", [&](const Points&, std::vector<double>& squared) {
             const DistanceMap map = make_distance_map(bvh, solid, {.threads = 1});
             std::size_t i = 0;
@@ -91,33 +91,34 @@ Way ours_map(const Bvh& bvh, const VoxelSolid& solid) {
           }};
 }
 template <class Peer>
-Way of(const std::string& name, const Peer& peer, bool warm) {
+SearchMethod of(const std::string& name, const Peer& peer, bool warm) {
   return {name + (warm ? ", warm" : ""),
           [&peer, warm](const Points& points, std::vector<double>& squared) {
             peer.answer(points, warm, squared);
           }};
 }
 
-void compare(const std::string& title, const Points& points, std::vector<Way> ways, int rounds) {
+void compare(const std::string& title, const Points& points, std::vector<SearchMethod> methods,
+             int rounds) {
   std::vector<double> ours(points.size()), squared(points.size());
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (std::size_t i = 0; i < methods.size(); ++i) {
       const double start = processor_seconds();
-      ways[i].answer(points, i == 0 ? ours : squared);
-      ways[i].seconds.push_back(processor_seconds() - start);
+      methods[i].answer(points, i == 0 ? ours : squared);
+      methods[i].seconds.push_back(processor_seconds() - start);
       for (std::size_t k = 0; i > 0 && k < points.size(); ++k) {
-        ways[i].worst =
-            std::max(ways[i].worst, std::abs(std::sqrt(squared[k]) - std::sqrt(ours[k])));
+        methods[i].worst =
+            std::max(methods[i].worst, std::abs(std::sqrt(squared[k]) - std::sqrt(ours[k])));
       }
     }
   }
   fmt::print("\n{:<34}{:>10}{:>12}{:>12}{:>16}\n", title, "seconds", "us/query", "x ours",
              "worst error [m]");
-  for (const Way& way : ways) {
+  for (const SearchMethod& way : methods) {
     const double seconds = median(way.seconds);
     fmt::print("{:<34}{:>10.4f}{:>12.4f}{:>12.2f}{:>16.1e}\n", way.name, seconds,
                1e6 * seconds / static_cast<double>(points.size()),
-               seconds / median(ways[0].seconds), way.worst);
+               seconds / median(methods[0].seconds), way.worst);
   }
 }
 
@@ -178,8 +179,8 @@ int main(int argc, char** argv) {
 
   const VoxelSolid solid = voxelize(mesh, make_grid(bounds(mesh), resolution), fitting_rule(mesh));
   Points points = inside_points(solid);
-  std::vector<Way> shuffled{ours_many(bvh), ours_one(bvh), ours_warm(bvh)};
-  std::vector<Way> raster{ours_map(bvh, solid)};
+  std::vector<SearchMethod> shuffled{ours_many(bvh), ours_one(bvh), ours_warm(bvh)};
+  std::vector<SearchMethod> raster{ours_map(bvh, solid)};
   raster.insert(raster.end(), shuffled.begin(), shuffled.end());
 #ifdef HAPTRIAL_EMBREE
   raster.push_back(of("Embree", embree, false));

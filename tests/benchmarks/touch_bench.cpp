@@ -108,9 +108,9 @@ Vector3d round_ellipsoid(double t) {
   return unit.cwiseProduct(kHalfAxes) + (kRadius - depth) * normal;
 }
 
-template <class Way>
+template <class Route>
 void ticks_of(const std::string& name, const SharedHapticMesh& mesh, const Tissue& tissue,
-              Way way) {
+              Route way) {
   const auto start = Clock::now();
   const Compliance made(mesh, tissue);
   const double taken = seconds_since(start);

@@ -25,10 +25,10 @@ using test::ConsolePerson;
 using test::LiveCommand;
 using testing::HasSubstr;
 
-enum class Way { kControlC, kTerminate, kCloseTerminal };
+enum class Interruption { kControlC, kTerminate, kCloseTerminal };
 enum class Moment { kPass, kText, kBreak };
 
-class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>> {
+class LiveInterruptTest : public testing::TestWithParam<std::tuple<Interruption, Moment>> {
  protected:
   LiveInterruptTest() {
     test::write_text(folder_ / "study.toml",
@@ -37,11 +37,11 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
                                           {"break_duration", "break_duration = 3600.0"}}));
   }
   void SetUp() override {
-    if (way() != Way::kTerminate && !LiveCommand::has_terminals()) {
+    if (way() != Interruption::kTerminate && !LiveCommand::has_terminals()) {
       GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
     }
   }
-  static Way way() { return std::get<0>(GetParam()); }
+  static Interruption way() { return std::get<0>(GetParam()); }
   static Moment moment() { return std::get<1>(GetParam()); }
 
   std::string run(const std::string& more = "") const {
@@ -63,14 +63,14 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
   }
   static void interrupt(LiveCommand& session) {
     switch (way()) {
-      case Way::kControlC:
+      case Interruption::kControlC:
         session.press("\x03");
         break;
-      case Way::kTerminate:
+      case Interruption::kTerminate:
         session.signal(SIGTERM);
         session.signal(SIGTERM);  // as `timeout` tells the program and its group
         break;
-      case Way::kCloseTerminal:
+      case Interruption::kCloseTerminal:
         session.hang_up();
         break;
     }
@@ -99,16 +99,16 @@ class LiveInterruptTest : public testing::TestWithParam<std::tuple<Way, Moment>>
 };
 
 TEST_P(LiveInterruptTest, EndsAtOnceAndCanBeGoneOnWith) {
-  LiveCommand session(
-      run(), "",
-      way() == Way::kTerminate ? LiveCommand::Where::kBackground : LiveCommand::Where::kTerminal);
+  LiveCommand session(run(), "",
+                      way() == Interruption::kTerminate ? LiveCommand::Where::kBackground
+                                                        : LiveCommand::Where::kTerminal);
   ConsolePerson person(session.line_after("console: "));
   ASSERT_NO_FATAL_FAILURE(come_to_the_moment(person)) << session.errors();
   interrupt(session);
   const CommandResult ended = session.wait();
   EXPECT_EQ(ended.status, 1);
-  if (way() != Way::kCloseTerminal) {  // there nobody reads it any more
-    const std::string said = way() == Way::kTerminate ? ended.errors : ended.output;
+  if (way() != Interruption::kCloseTerminal) {  // there nobody reads it any more
+    const std::string said = way() == Interruption::kTerminate ? ended.errors : ended.output;
     EXPECT_THAT(said, HasSubstr("haptrial: interrupted; what was recorded is in "));
     EXPECT_THAT(said, HasSubstr("S01.h5.partial"));
   }
@@ -122,7 +122,7 @@ TEST_P(LiveInterruptTest, EndsAtOnceAndCanBeGoneOnWith) {
   expect_it_goes_on();
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<Way, Moment>>& info) {
+std::string name_of(const testing::TestParamInfo<std::tuple<Interruption, Moment>>& info) {
   const char* const ways[] = {"ControlC", "Terminate", "CloseTerminal"};
   const char* const moments[] = {"Pass", "Text", "Break"};
   return std::string(ways[static_cast<int>(std::get<0>(info.param))]) + "During" +
@@ -131,7 +131,8 @@ std::string name_of(const testing::TestParamInfo<std::tuple<Way, Moment>>& info)
 
 INSTANTIATE_TEST_SUITE_P(
     All, LiveInterruptTest,
-    testing::Combine(testing::Values(Way::kControlC, Way::kTerminate, Way::kCloseTerminal),
+    testing::Combine(testing::Values(Interruption::kControlC, Interruption::kTerminate,
+                                     Interruption::kCloseTerminal),
                      testing::Values(Moment::kPass, Moment::kText, Moment::kBreak)),
     name_of);
 

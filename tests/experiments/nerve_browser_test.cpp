@@ -33,12 +33,12 @@ nerve::NerveSetup setup() {
 /// holds a probe on the first of them instead.
 class Drilling {
  public:
-  explicit Drilling(std::shared_ptr<nerve::MonitorDesk> desk)
+  explicit Drilling(std::shared_ptr<nerve::MonitorBuffer> buffer)
       : beside_(
             [this](std::uint64_t) {
               return std::make_unique<nerve::NerveSimulation>(setup(), 1000.0, 1, pulse_);
             },
-            1000.0, {std::move(desk), nullptr}),
+            1000.0, {std::move(buffer), nullptr}),
         thread_([this] { run(); }) {}
   ~Drilling() {
     ended_ = true;
@@ -80,7 +80,7 @@ TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
   ConsoleOptions options;
   const auto page = std::make_shared<protocols::NervePage>();
   options.sides = {page};
-  const Drilling drilling(page->desk());
+  const Drilling drilling(page->buffer());
   auto console = std::make_unique<Console>(control, options);
   const std::string command =
       "python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/nerve_browser.py' '" +

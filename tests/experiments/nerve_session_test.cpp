@@ -19,7 +19,7 @@
 #include "analysis/bone_drilling/nerves/nerve_findings.h"
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/nerve/beside/monitor_desk.h"
+#include "core/nerve/beside/monitor_buffer.h"
 #include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
@@ -266,7 +266,7 @@ TEST(LiveNerveTest, ATechnicianSeesASessionOnTheRealClock) {
   ASSERT_NE(page, nullptr);
   const SessionSummary done = run_session(request);
   EXPECT_EQ(done.dropped, 0u);
-  const nerve::MonitorDesk::View view = page->desk()->since(0, 0);
+  const nerve::MonitorBuffer::View view = page->buffer()->since(0, 0);
   EXPECT_EQ(view.channels.size(), 3u);
   EXPECT_GT(view.next_column, 400u);
   const record::SessionReader reader(folder / "S01.h5");

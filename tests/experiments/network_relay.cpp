@@ -63,9 +63,9 @@ struct Datagram {
 };
 
 /// One way through the network.
-class Way {
+class Direction {
  public:
-  Way(const RelayConditions& c, std::uint64_t seed, bool to_host)
+  Direction(const RelayConditions& c, std::uint64_t seed, bool to_host)
       : c_(c), random_(seed), to_host_(to_host) {}
 
   /// @returns whether it gets through
@@ -115,8 +115,8 @@ NetworkRelay::~NetworkRelay() {
 }
 
 void NetworkRelay::run() {
-  Way there(conditions_, seed_, true);
-  Way back(conditions_, seed_ + 1, false);
+  Direction there(conditions_, seed_, true);
+  Direction back(conditions_, seed_ + 1, false);
   std::priority_queue<Datagram> waiting;
   sockaddr_in guest{};
   int from_guest = -1;  // connections
@@ -144,7 +144,7 @@ void NetworkRelay::run() {
       ::close(to_host);
       from_guest = to_host = -1;
     }
-    const auto take = [&](int fd, Way& way, sockaddr_in* from) {
+    const auto take = [&](int fd, Direction& way, sockaddr_in* from) {
       while (true) {
         sockaddr_in address{};
         socklen_t size = sizeof(address);

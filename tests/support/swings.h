@@ -10,7 +10,7 @@ namespace haptrial::test {
 /// Times at which a force turns round by 2 N or more [s].
 inline std::vector<double> turns(std::span<const double> forces, double rate) {
   constexpr double kSwing = 2.0;  // peak to peak [N]
-  enum class Way { kUnknown, kUp, kDown } way = Way::kUnknown;
+  enum class Direction { kUnknown, kUp, kDown } way = Direction::kUnknown;
   std::vector<double> turns;
   double low = forces.empty() ? 0.0 : forces[0];
   double high = low;
@@ -26,11 +26,11 @@ inline std::vector<double> turns(std::span<const double> forces, double rate) {
       low = f;
       low_at = i;
     }
-    const bool falls = way != Way::kDown && high - f >= kSwing;
-    const bool rises = way != Way::kUp && f - low >= kSwing;
+    const bool falls = way != Direction::kDown && high - f >= kSwing;
+    const bool rises = way != Direction::kUp && f - low >= kSwing;
     if (falls || rises) {
       turns.push_back(static_cast<double>(falls ? high_at : low_at) / rate);
-      way = falls ? Way::kDown : Way::kUp;
+      way = falls ? Direction::kDown : Direction::kUp;
       low = high = f;
       low_at = high_at = i;
     }

@@ -88,7 +88,7 @@ void ThreadedNerves::follow(const NerveTick& tick, bool heard) {
   if (listeners_.voice) {
     speak(heard);
   }
-  if (listeners_.desk) {
+  if (listeners_.buffer) {
     show(tick, heard);
   }
 }
@@ -124,11 +124,11 @@ void ThreadedNerves::show(const NerveTick& tick, bool heard) {
   }
   for (const record::NerveEventRow& e : simulation_->ended()) {
     const auto ticks = static_cast<double>(e.end - e.begin + 1);
-    listeners_.desk->add_event({static_cast<double>(e.begin) / rate_,
-                                static_cast<std::size_t>(e.channel), word_of(e.kind), ticks / rate_,
-                                e.peak, e.threshold, e.train_time});
+    listeners_.buffer->add_event({static_cast<double>(e.begin) / rate_,
+                                  static_cast<std::size_t>(e.channel), word_of(e.kind),
+                                  ticks / rate_, e.peak, e.threshold, e.train_time});
   }
-  if (static_cast<double>(++in_column_) < MonitorDesk::kColumn * rate_) {
+  if (static_cast<double>(++in_column_) < MonitorBuffer::kColumn * rate_) {
     return;
   }
   in_column_ = 0;
@@ -139,19 +139,19 @@ void ThreadedNerves::show(const NerveTick& tick, bool heard) {
     shown.push_back({channel.name, channel.nerve, s.threshold, simulation_->muted(i), s.tone,
                      s.shown, s.frequency, s.train_time, s.events, s.artefacts});
   }
-  listeners_.desk->add_column(column_);
+  listeners_.buffer->add_column(column_);
   const Stimulator& probe = simulation_->stimulator();
-  listeners_.desk->show(std::move(shown), {probe.current(), probe.searching(), probe.found()},
-                        seconds, heard);
+  listeners_.buffer->show(std::move(shown), {probe.current(), probe.searching(), probe.found()},
+                          seconds, heard);
 }
 
 /// Carries out the technician's requests.
 void ThreadedNerves::obey() {
-  if (!listeners_.desk || !simulation_) {
+  if (!listeners_.buffer || !simulation_) {
     return;
   }
   using What = MonitorOrder::What;
-  for (const MonitorOrder& order : listeners_.desk->take_orders()) {
+  for (const MonitorOrder& order : listeners_.buffer->take_orders()) {
     if (order.what == What::kStimulus) {
       simulation_->stimulator().set(order.current);
     } else if (order.channel >= simulation_->channels().size()) {

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/nerve/beside/monitor_desk.h"
+#include "core/nerve/beside/monitor_buffer.h"
 #include "core/nerve/beside/nerve_simulation.h"
 #include "core/nerve/beside/nerve_voice.h"
 #include "core/realtime/block_log.h"
@@ -17,8 +17,8 @@ namespace haptrial::nerve {
 
 /// Further receivers of the monitor's output.
 struct NerveListeners {
-  std::shared_ptr<MonitorDesk> desk;  // a technician's; may be null
-  std::shared_ptr<NerveVoice> voice;  // of a sound card; may be null
+  std::shared_ptr<MonitorBuffer> buffer;  // a technician's; may be null
+  std::shared_ptr<NerveVoice> voice;      // of a sound card; may be null
 };
 
 /// The monitor beside the servo thread: gets every tick, makes electromyograms and rows.

@@ -46,11 +46,11 @@ void ReliableStream::hear(const StreamPart& part) noexcept {
   }
 }
 
-void ReliableStream::deliver(ReliablePayload& freight) noexcept {
+void ReliableStream::deliver(ReliablePayload& payload) noexcept {
   for (ReceivedChunk* come = &in_[slot(taken_ + 1)]; come->here; come = &in_[slot(taken_ + 1)]) {
     come->here = false;
     ++taken_;
-    freight.take({come->chunk.bytes.data(), come->chunk.size});
+    payload.take({come->chunk.bytes.data(), come->chunk.size});
   }
 }
 
@@ -68,12 +68,12 @@ std::uint64_t ReliableStream::missing(std::int64_t now_ns,
   return 0;
 }
 
-std::uint64_t ReliableStream::next(ReliablePayload& freight) noexcept {
+std::uint64_t ReliableStream::next(ReliablePayload& payload) noexcept {
   if (given_ - heard_ >= kSpan) {
     return 0;
   }
   SentChunk& given = out_[slot(given_ + 1)];
-  const std::size_t size = freight.give(given.chunk.bytes);
+  const std::size_t size = payload.give(given.chunk.bytes);
   if (size == 0) {
     return 0;
   }
@@ -82,11 +82,11 @@ std::uint64_t ReliableStream::next(ReliablePayload& freight) noexcept {
   return ++given_;
 }
 
-bool ReliableStream::wants(ReliablePayload& freight, std::int64_t now_ns,
+bool ReliableStream::wants(ReliablePayload& payload, std::int64_t now_ns,
                            std::int64_t round_trip_ns) noexcept {
   chosen_ = missing(now_ns, round_trip_ns);
   again_ += chosen_ != 0 ? 1 : 0;
-  chosen_ = chosen_ != 0 ? chosen_ : next(freight);
+  chosen_ = chosen_ != 0 ? chosen_ : next(payload);
   return chosen_ != 0 || answer_due_;
 }
 

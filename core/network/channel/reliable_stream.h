@@ -32,10 +32,10 @@ class ReliableStream {
   /// Takes the stream's part of a message that came.
   void hear(const StreamPart& part) noexcept;
   /// Hands over what has come, as far as nothing is missing before it.
-  void deliver(ReliablePayload& freight) noexcept;
+  void deliver(ReliablePayload& payload) noexcept;
 
   /// Looks whether a message is needed now. @param round_trip_ns  negative: not known
-  bool wants(ReliablePayload& freight, std::int64_t now_ns, std::int64_t round_trip_ns) noexcept;
+  bool wants(ReliablePayload& payload, std::int64_t now_ns, std::int64_t round_trip_ns) noexcept;
   /// Fills the stream's part of a message that leaves in the same tick.
   void fill(StreamPart& part, std::int64_t now_ns) noexcept;
 
@@ -64,7 +64,7 @@ class ReliableStream {
   }
   void note_heard(std::uint64_t number) noexcept;
   std::uint64_t missing(std::int64_t now_ns, std::int64_t round_trip_ns) const noexcept;
-  std::uint64_t next(ReliablePayload& freight) noexcept;
+  std::uint64_t next(ReliablePayload& payload) noexcept;
 
   std::vector<SentChunk> out_;    // at number % kSpan
   std::uint64_t given_{0};        // chunks so far

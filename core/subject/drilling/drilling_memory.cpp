@@ -127,7 +127,7 @@ double DrillingMemory::left() const noexcept {
 
 /// How many columns from a place on, in a direction, are worth a stroke.
 int DrillingMemory::run(const Cell& from, double angle, float highest,
-                        const BoutChoice& choice) const noexcept {
+                        const StrokeChoice& choice) const noexcept {
   const int most = static_cast<int>(choice.length / chart_.cell);
   int steps = 0;
   for (int s = 1; s <= most; ++s) {
@@ -145,8 +145,8 @@ int DrillingMemory::run(const Cell& from, double angle, float highest,
   return steps;
 }
 
-bool DrillingMemory::choose(const BoutChoice& choice, const Eigen::Vector2d& now,
-                            RandomStream& random, StrokeSeries& bout) noexcept {
+bool DrillingMemory::choose(const StrokeChoice& choice, const Eigen::Vector2d& now,
+                            RandomStream& random, StrokeSeries& strokes) noexcept {
   double best = 1e9;
   Cell at{-1, -1};
   for (int j = 0; j < chart_.size[1]; ++j) {
@@ -181,27 +181,27 @@ bool DrillingMemory::choose(const BoutChoice& choice, const Eigen::Vector2d& now
       longest = ahead + back;
       const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
       const Eigen::Vector2d middle(at.i * chart_.cell, at.j * chart_.cell);
-      bout.from = middle - back * chart_.cell * along;
-      bout.to = middle + ahead * chart_.cell * along;
+      strokes.from = middle - back * chart_.cell * along;
+      strokes.to = middle + ahead * chart_.cell * along;
     }
   }
-  const double length = (bout.to - bout.from).norm();
+  const double length = (strokes.to - strokes.from).norm();
   if (length > choice.length) {
-    const Eigen::Vector2d middle = 0.5 * (bout.from + bout.to);
-    const Eigen::Vector2d half = 0.5 * choice.length / length * (bout.to - bout.from);
-    bout.from = middle - half;
-    bout.to = middle + half;
+    const Eigen::Vector2d middle = 0.5 * (strokes.from + strokes.to);
+    const Eigen::Vector2d half = 0.5 * choice.length / length * (strokes.to - strokes.from);
+    strokes.from = middle - half;
+    strokes.to = middle + half;
   }
-  bout.under = false;
+  strokes.under = false;
   if (random.uniform() < choice.undercut) {
-    choose_under(at, choice, random, bout);
+    choose_under(at, choice, random, strokes);
   }
   return true;
 }
 
 /// Chooses strokes from the deepest place nearby to beyond the edge that is next to it.
-void DrillingMemory::choose_under(const Cell& at, const BoutChoice& choice, RandomStream& random,
-                                  StrokeSeries& bout) noexcept {
+void DrillingMemory::choose_under(const Cell& at, const StrokeChoice& choice, RandomStream& random,
+                                  StrokeSeries& strokes) noexcept {
   const int reach = static_cast<int>(choice.length / chart_.cell);
   Cell deepest = at;
   float depth = -1.0F;
@@ -227,28 +227,28 @@ void DrillingMemory::choose_under(const Cell& at, const BoutChoice& choice, Rand
     const Cell there = cell_at(place);
     const float standing = height_[chart_.column(there.i, there.j)];
     if (standing < bottom - static_cast<float>(2.0 * radius_)) {
-      bout = {start, place + kBeyond * along, true};
+      strokes = {start, place + kBeyond * along, true};
       return;
     }
   }
 }
 
-void DrillingMemory::end_bout(const StrokeSeries& bout) noexcept {
-  if (bout.under) {
+void DrillingMemory::end_strokes(const StrokeSeries& strokes) noexcept {
+  if (strokes.under) {
     return;
   }
-  const Eigen::Vector2d middle = 0.5 * (bout.from + bout.to);
-  const double reach = 0.5 * (bout.to - bout.from).norm() + 0.5 * radius_;
+  const Eigen::Vector2d middle = 0.5 * (strokes.from + strokes.to);
+  const double reach = 0.5 * (strokes.to - strokes.from).norm() + 0.5 * radius_;
   const Cell low = cell_at(middle.array() - reach);
   const Cell high = cell_at(middle.array() + reach);
-  const Eigen::Vector2d way = bout.to - bout.from;
+  const Eigen::Vector2d way = strokes.to - strokes.from;
   const double square = std::max(way.squaredNorm(), 1e-12);
   for (int j = low.j; j <= high.j; ++j) {
     for (int i = low.i; i <= high.i; ++i) {
       const Eigen::Vector2d place(i * chart_.cell, j * chart_.cell);
-      const double along = std::clamp((place - bout.from).dot(way) / square, 0.0, 1.0);
+      const double along = std::clamp((place - strokes.from).dot(way) / square, 0.0, 1.0);
       const std::size_t column = chart_.column(i, j);
-      const bool passed = (bout.from + along * way - place).norm() < 0.5 * radius_;
+      const bool passed = (strokes.from + along * way - place).norm() < 0.5 * radius_;
       if (passed && height_[column] < before_[column] + kProgress && ++tries_[column] >= 3) {
         height_[column] = std::max(height_[column], floor_[column]);
       }

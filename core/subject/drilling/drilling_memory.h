@@ -17,7 +17,7 @@ struct StrokeSeries {
 };
 
 /// How the next bout is chosen.
-struct BoutChoice {
+struct StrokeChoice {
   double evenness{1.0};  // as DrillingSkill
   double length{8e-3};   // of strokes [m]
   double bite{1e-3};     // bone that is so much deeper is no part of a stroke [m]
@@ -49,10 +49,10 @@ class DrillingMemory {
   /// The share of the bone that this burr is to take and that is still there: 0 to 1.
   double left() const noexcept;
   /// @returns false where nothing is left. @param now  where the hand is
-  bool choose(const BoutChoice& choice, const Eigen::Vector2d& now, RandomStream& random,
-              StrokeSeries& bout) noexcept;
+  bool choose(const StrokeChoice& choice, const Eigen::Vector2d& now, RandomStream& random,
+              StrokeSeries& strokes) noexcept;
   /// Takes as gone, after a bout, the bone that it did not get any deeper after a third try.
-  void end_bout(const StrokeSeries& bout) noexcept;
+  void end_strokes(const StrokeSeries& strokes) noexcept;
 
   /// The middle of all that is to go, (u, v, w) with w at the surface.
   const Eigen::Vector3d& opening() const noexcept { return opening_; }
@@ -66,9 +66,9 @@ class DrillingMemory {
     return i >= 0 && j >= 0 && i < chart_.size[0] && j < chart_.size[1];
   }
   float to_go(std::size_t column) const noexcept;
-  int run(const Cell& from, double angle, float highest, const BoutChoice& choice) const noexcept;
-  void choose_under(const Cell& at, const BoutChoice& choice, RandomStream& random,
-                    StrokeSeries& bout) noexcept;
+  int run(const Cell& from, double angle, float highest, const StrokeChoice& choice) const noexcept;
+  void choose_under(const Cell& at, const StrokeChoice& choice, RandomStream& random,
+                    StrokeSeries& strokes) noexcept;
 
   const DrillingChart& chart_;
   std::vector<float> height_;  // (u x v) depth at which bone begins now

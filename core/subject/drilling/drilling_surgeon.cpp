@@ -139,7 +139,7 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
     }
     works_ = true;
     goal_ = now().chart->place(view.tip);
-    next_bout(view);
+    next_strokes(view);
   }
   velocity_ =
       place_known_
@@ -147,7 +147,7 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
           : Eigen::Vector3d::Zero();
   last_ = place;
   place_known_ = true;
-  if (view.power && (doing_ == Doing::kDescend || doing_ == Doing::kBout) && !bout_.under) {
+  if (view.power && (doing_ == Doing::kDescend || doing_ == Doing::kStrokes) && !strokes_.under) {
     now().memory.sweep(place);
   }
   listen(view, place, dt);
@@ -164,14 +164,14 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
 /// Off the bone when the monitor has sounded for as long as it takes to react.
 void DrillingSurgeon::listen(const bone::DrillingView& seen, const Eigen::Vector3d& place,
                              double dt) noexcept {
-  const bool works = doing_ == Doing::kDescend || doing_ == Doing::kBout;
+  const bool works = doing_ == Doing::kDescend || doing_ == Doing::kStrokes;
   heard_ = works && (seen.tone || heard_ > 0.0) ? heard_ + dt : 0.0;
   if (heard_ < parameters_.reaction) {
     return;
   }
   heard_ = 0.0;
-  if (doing_ == Doing::kBout) {
-    now().memory.end_bout(bout_);
+  if (doing_ == Doing::kStrokes) {
+    now().memory.end_strokes(strokes_);
   }
   lift_to_ = place.z() - kWithdrawn;
   begin(Doing::kWithdraw);
@@ -179,8 +179,8 @@ void DrillingSurgeon::listen(const bone::DrillingView& seen, const Eigen::Vector
 
 /// Drilling ends if the tip is too fast, or hidden; with less force it goes on.
 void DrillingSurgeon::heed(const bone::DrillingView& seen, double dt) noexcept {
-  if (now().heeding.notice(seen.hints, dt) && doing_ == Doing::kBout) {
-    now().memory.end_bout(bout_);
+  if (now().heeding.notice(seen.hints, dt) && doing_ == Doing::kStrokes) {
+    now().memory.end_strokes(strokes_);
     begin(Doing::kPause);
   }
 }
@@ -192,7 +192,7 @@ bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
   }
   // The approach goes through the middle of the opening, so that the least bone is in the way.
   const DrillingChart& chart = *p.chart;
-  const Eigen::Vector2d middle = 0.5 * (bout_.from + bout_.to);
+  const Eigen::Vector2d middle = 0.5 * (strokes_.from + strokes_.to);
   const Eigen::Vector3d there(middle.x(), middle.y(), p.memory.touch(middle) + burr().radius);
   Eigen::Vector3d outside = p.memory.opening();
   outside.z() -= 0.02;
@@ -210,14 +210,14 @@ bool DrillingSurgeon::wants_to_look(const bone::DrillingView& seen) noexcept {
   return true;
 }
 
-void DrillingSurgeon::next_bout(const bone::DrillingView& seen) noexcept {
+void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
   Procedure& p = now();
   // Bone that the rough burr leaves is for the fine one.
   const double share = p.careful && !fine_ ? kRoughShare : 1.0;
   const bool enough = p.memory.left() < 1.0 - share * p.skill.completeness;
-  const BoutChoice choice{p.skill.evenness, p.skill.stroke_length, p.skill.bite,
-                          p.heeding.looks() ? 0.0 : p.skill.undercut};
-  if (enough || !p.memory.choose(choice, last_.head<2>(), p.random, bout_)) {
+  const StrokeChoice choice{p.skill.evenness, p.skill.stroke_length, p.skill.bite,
+                            p.heeding.looks() ? 0.0 : p.skill.undercut};
+  if (enough || !p.memory.choose(choice, last_.head<2>(), p.random, strokes_)) {
     lift_to_ = p.memory.opening().z() - 4.0 * parameters_.rough.radius;
     if (p.careful && !fine_) {
       fine_ = true;
@@ -229,7 +229,7 @@ void DrillingSurgeon::next_bout(const bone::DrillingView& seen) noexcept {
     return;
   }
   looks_ = wants_to_look(seen);
-  lift_to_ = p.memory.over(last_.head<2>(), bout_.from) - kHover;
+  lift_to_ = p.memory.over(last_.head<2>(), strokes_.from) - kHover;
   if (looks_) {
     lift_to_ = std::min(lift_to_, p.memory.opening().z() - kRoomToLook);
   }
@@ -246,25 +246,25 @@ void DrillingSurgeon::decide(const bone::DrillingView& seen,
       }
       break;
     case Doing::kTravel:
-      if ((place.head<2>() - bout_.from).norm() < kThere || time_ > kLookLonger) {
+      if ((place.head<2>() - strokes_.from).norm() < kThere || time_ > kLookLonger) {
         begin(Doing::kDescend);
       }
       break;
     case Doing::kDescend:
       if (seen.contact || place.z() > depth_limit(place) - 0.3e-3 || time_ > kLookLonger) {
-        bout_depth_ = place.z();
+        stroke_depth_ = place.z();
         idle_ = 0.0;
-        ++bouts_;
-        bout_rate_ = p.skill.stroke_rate * p.heeding.pace();
-        begin(Doing::kBout);
+        ++series_;
+        stroke_rate_ = p.skill.stroke_rate * p.heeding.pace();
+        begin(Doing::kStrokes);
       }
       break;
-    case Doing::kBout:
-      decide_bout(seen, place);
+    case Doing::kStrokes:
+      decide_strokes(seen, place);
       break;
     case Doing::kPause:
       if (time_ > p.skill.pause) {
-        next_bout(seen);
+        next_strokes(seen);
       }
       break;
     case Doing::kLook: {
@@ -273,19 +273,19 @@ void DrillingSurgeon::decide(const bone::DrillingView& seen,
       if (std::acos(std::clamp(look_.dot(from), -1.0, 1.0)) < kSeenWell || time_ > kLookLonger ||
           low || (seen.tip * scale_).norm() > kArm) {
         looks_ = false;
-        lift_to_ = p.memory.over(place.head<2>(), bout_.from) - kHover;
+        lift_to_ = p.memory.over(place.head<2>(), strokes_.from) - kHover;
         begin(Doing::kLift);
       }
       break;
     }
     case Doing::kChange:
       if (seen.tool == burr().tool && place.z() < lift_to_ + kThere) {
-        next_bout(seen);
+        next_strokes(seen);
       }
       break;
     case Doing::kWithdraw:
       if (time_ > kQuiet && !seen.tone) {
-        next_bout(seen);
+        next_strokes(seen);
       }
       break;
     case Doing::kFinish:
@@ -293,13 +293,13 @@ void DrillingSurgeon::decide(const bone::DrillingView& seen,
   }
 }
 
-void DrillingSurgeon::decide_bout(const bone::DrillingView& seen,
-                                  const Eigen::Vector3d& place) noexcept {
-  const int sweeps = bout_.under ? kSweepsUnder : kSweeps;
+void DrillingSurgeon::decide_strokes(const bone::DrillingView& seen,
+                                     const Eigen::Vector3d& place) noexcept {
+  const int sweeps = strokes_.under ? kSweepsUnder : kSweeps;
   const bool at_bottom = place.z() > depth_limit(place) - 0.2e-3;
   idle_ = seen.contact && !at_bottom ? 0.0 : idle_ + 1e-3;
-  if (time_ * bout_rate_ > sweeps || (!bout_.under && idle_ * bout_rate_ > kPatience)) {
-    now().memory.end_bout(bout_);
+  if (time_ * stroke_rate_ > sweeps || (!strokes_.under && idle_ * stroke_rate_ > kPatience)) {
+    now().memory.end_strokes(strokes_);
     begin(Doing::kPause);
   }
 }
@@ -316,15 +316,15 @@ void DrillingSurgeon::go_to(const Eigen::Vector3d& place, double speed, double d
 
 /// Follows a bout to and fro, each stroke beginning and ending at rest, and a little beside the one
 /// before.
-void DrillingSurgeon::follow_bout() noexcept {
-  const double rate = bout_rate_;
+void DrillingSurgeon::follow_strokes() noexcept {
+  const double rate = stroke_rate_;
   const double strokes = time_ * rate;
   const int stroke = static_cast<int>(strokes);
   const double angle = std::numbers::pi * strokes;
-  const Eigen::Vector2d way = bout_.to - bout_.from;
-  const Eigen::Vector2d middle = bout_.from + 0.5 * way;
+  const Eigen::Vector2d way = strokes_.to - strokes_.from;
+  const Eigen::Vector2d middle = strokes_.from + 0.5 * way;
   const Eigen::Vector2d aside = Eigen::Vector2d(-way.y(), way.x()).normalized();
-  const double beside = bout_.under ? 0.0 : 0.4 * burr().radius * (stroke % 3 - 1);
+  const double beside = strokes_.under ? 0.0 : 0.4 * burr().radius * (stroke % 3 - 1);
   goal_.head<2>() = middle - 0.5 * std::cos(angle) * way + beside * aside;
   goal_.z() = last_.z();
   goal_velocity_.head<2>() = 0.5 * std::numbers::pi * rate * std::sin(angle) * way;
@@ -343,16 +343,16 @@ void DrillingSurgeon::move_goal(const bone::DrillingView& seen, double dt) noexc
       go_to(at(goal_.head<2>(), lift_to_), kTravel, dt);
       break;
     case Doing::kTravel:
-      go_to(at(bout_.from, lift_to_), kTravel, dt);
+      go_to(at(strokes_.from, lift_to_), kTravel, dt);
       break;
     case Doing::kDescend: {
-      const bool near = last_.z() > now().memory.touch(bout_.from) - kHover;
+      const bool near = last_.z() > now().memory.touch(strokes_.from) - kHover;
       const double depth = std::min(depth_limit(last_), last_.z() + 2e-3);
-      go_to(at(bout_.from, depth), near ? kOnto : kDown, dt);
+      go_to(at(strokes_.from, depth), near ? kOnto : kDown, dt);
       break;
     }
-    case Doing::kBout:
-      follow_bout();
+    case Doing::kStrokes:
+      follow_strokes();
       break;
     case Doing::kPause:
       go_to(at(goal_.head<2>(), last_.z()), kTravel, dt);
@@ -391,11 +391,12 @@ double DrillingSurgeon::press(const Eigen::Vector3d& place) noexcept {
 
 double DrillingSurgeon::depth_limit(const Eigen::Vector3d& place) const noexcept {
   const Procedure& p = now();
-  if (bout_.under) {
-    return p.memory.touch(bout_.from) + 0.5e-3;
+  if (strokes_.under) {
+    return p.memory.touch(strokes_.from) + 0.5e-3;
   }
   // Beside the bone there is nothing to stop at.
-  const double begun = doing_ == Doing::kBout ? bout_depth_ : p.memory.touch(bout_.from) + kHover;
+  const double begun =
+      doing_ == Doing::kStrokes ? stroke_depth_ : p.memory.touch(strokes_.from) + kHover;
   // A wall is met before the burr is in it.
   const Eigen::Vector2d soon = place.head<2>() + kAhead * velocity_.head<2>();
   const double limit = std::min(p.memory.limit(place.head<2>()), p.memory.limit(soon));
@@ -407,7 +408,7 @@ Eigen::Vector3d DrillingSurgeon::push(const bone::DrillingView& seen,
   const Eigen::Vector3d follow = kStiffness * scale_ * (goal_ - place) +
                                  kDamping * scale_ * (goal_velocity_ - velocity_) +
                                  kDrag * scale_ * goal_velocity_;
-  if (doing_ != Doing::kBout) {
+  if (doing_ != Doing::kStrokes) {
     return saturated(follow, kStrongest);
   }
   const double room = depth_limit(place) - place.z();
@@ -435,7 +436,7 @@ std::uint32_t DrillingSurgeon::fingers(const bone::DrillingView& seen) const noe
   const SurgeonParameters& p = parameters_;
   switch (doing_) {
     case Doing::kDescend:
-    case Doing::kBout:
+    case Doing::kStrokes:
       return seen.tool == burr().tool ? held(p.power_button) : 0U;
     case Doing::kLook:
       return held(p.look_button);

@@ -59,7 +59,7 @@ class DrillingSurgeon final : public stimulus::Observer {
                double dt) noexcept override;
 
   double skill(std::size_t procedure) const { return procedures_[procedure].skill_number; }
-  std::uint64_t bouts() const noexcept { return bouts_; }
+  std::uint64_t series() const noexcept { return series_; }
 
  private:
   /// Made up beforehand: nothing allocates while a procedure runs.
@@ -76,7 +76,17 @@ class DrillingSurgeon final : public stimulus::Observer {
     HintHeeding heeding;
     DrillingMemory memory;
   };
-  enum class Doing { kLift, kTravel, kDescend, kBout, kPause, kLook, kChange, kWithdraw, kFinish };
+  enum class Doing {
+    kLift,
+    kTravel,
+    kDescend,
+    kStrokes,
+    kPause,
+    kLook,
+    kChange,
+    kWithdraw,
+    kFinish
+  };
 
   static Procedure plan(const SurgeonParameters& p, std::shared_ptr<const DrillingChart> chart,
                         std::uint64_t seed, int number, double step);
@@ -84,12 +94,12 @@ class DrillingSurgeon final : public stimulus::Observer {
   void begin_procedure() noexcept;
   void listen(const bone::DrillingView& seen, const Eigen::Vector3d& place, double dt) noexcept;
   void heed(const bone::DrillingView& seen, double dt) noexcept;
-  void next_bout(const bone::DrillingView& seen) noexcept;
+  void next_strokes(const bone::DrillingView& seen) noexcept;
   bool wants_to_look(const bone::DrillingView& seen) noexcept;
   void decide(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
-  void decide_bout(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
+  void decide_strokes(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
   void move_goal(const bone::DrillingView& seen, double dt) noexcept;
-  void follow_bout() noexcept;
+  void follow_strokes() noexcept;
   void go_to(const Eigen::Vector3d& place, double speed, double dt) noexcept;
   Eigen::Vector3d push(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
   double press(const Eigen::Vector3d& place) noexcept;
@@ -111,10 +121,10 @@ class DrillingSurgeon final : public stimulus::Observer {
   Doing doing_{Doing::kLift};
   double time_{0.0};  // in it [s]
   bool fine_{false};
-  std::uint64_t bouts_{0};
-  StrokeSeries bout_;
-  double bout_rate_{1.0};                           // of its strokes [1/s]
-  double bout_depth_{0.0};                          // of the burr's centre where the bout began [m]
+  std::uint64_t series_{0};
+  StrokeSeries strokes_;
+  double stroke_rate_{1.0};                         // of its strokes [1/s]
+  double stroke_depth_{0.0};                        // of the burr's centre where the bout began [m]
   double idle_{0.0};                                // of the bout, without bone under the burr [s]
   double heard_{0.0};                               // since when a tone goes on [s]
   double lift_to_{0.0};                             // depth of the centre [m]

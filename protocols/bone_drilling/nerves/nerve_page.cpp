@@ -42,7 +42,7 @@ json probe_json(const nerve::MonitorProbe& probe) {
 }
 
 /// The view as one line of JSON.
-std::string nerve_json(const nerve::MonitorDesk::View& view) {
+std::string nerve_json(const nerve::MonitorBuffer::View& view) {
   json channels = json::array();
   for (const nerve::MonitorChannel& channel : view.channels) {
     channels.push_back(channel_json(channel));
@@ -64,7 +64,7 @@ std::string nerve_json(const nerve::MonitorDesk::View& view) {
     columns.push_back(in_steps(column.high));
   }
   const json out{{"time", view.time},    {"heard", view.heard},
-                 {"simulated", true},    {"column", nerve::MonitorDesk::kColumn},
+                 {"simulated", true},    {"column", nerve::MonitorBuffer::kColumn},
                  {"channels", channels}, {"events", events},
                  {"columns", columns},   {"probe", probe_json(view.probe)}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -84,15 +84,15 @@ bool number(const json& body, std::size_t size, const char* name, double least, 
 }  // namespace
 
 AuxiliaryPage::Events NervePage::events() {
-  return [desk = desk_, column = std::uint64_t{0}, event = std::uint64_t{0}]() mutable {
-    const nerve::MonitorDesk::View view = desk->since(column, event);
+  return [buffer = buffer_, column = std::uint64_t{0}, event = std::uint64_t{0}]() mutable {
+    const nerve::MonitorBuffer::View view = buffer->since(column, event);
     column = view.next_column;
     event = view.next_event;
     return nerve_json(view);
   };
 }
 
-void NervePage::ask(const std::string& json) { desk_->ask(parse_nerve_order(json)); }
+void NervePage::ask(const std::string& json) { buffer_->ask(parse_nerve_order(json)); }
 
 nerve::MonitorOrder parse_nerve_order(const std::string& text) {
   using What = nerve::MonitorOrder::What;

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/nerve/beside/monitor_desk.h"
+#include "core/nerve/beside/monitor_buffer.h"
 #include "protocols/interface/auxiliary_page.h"
 
 namespace haptrial::protocols {
@@ -26,10 +26,10 @@ class NervePage final : public AuxiliaryPage {
   void ask(const std::string& json) override;
 
   /// Buffer in which the monitor shows its output and takes requests.
-  const std::shared_ptr<nerve::MonitorDesk>& desk() const { return desk_; }
+  const std::shared_ptr<nerve::MonitorBuffer>& buffer() const { return buffer_; }
 
  private:
-  std::shared_ptr<nerve::MonitorDesk> desk_{std::make_shared<nerve::MonitorDesk>()};
+  std::shared_ptr<nerve::MonitorBuffer> buffer_{std::make_shared<nerve::MonitorBuffer>()};
 };
 
 /// Reads a request for NervePage::ask().

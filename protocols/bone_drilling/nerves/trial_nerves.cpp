@@ -25,7 +25,7 @@ TrialNerves::TrialNerves(const BoneDefinition& definition, const SessionPlace& p
   };
   if (place.real) {
     const auto page = page_of<NervePage>(place.auxiliary_pages);
-    const nerve::NerveListeners listeners{page ? page->desk() : nullptr, voice};
+    const nerve::NerveListeners listeners{page ? page->buffer() : nullptr, voice};
     beside_ = std::make_unique<nerve::ThreadedNerves>(make, d_.rate, listeners);
   } else {
     beside_ = std::make_unique<nerve::SteppedNerves>(make);

@@ -80,9 +80,9 @@ std::vector<std::unique_ptr<psychometric::Procedure>> procedures_of(const Simula
 }
 
 /// One participant in one condition.
-class Sitting {
+class SimulatedSession {
  public:
-  Sitting(const SimulatedTrials& study, std::uint64_t seed, double person, double modulus)
+  SimulatedSession(const SimulatedTrials& study, std::uint64_t seed, double person, double modulus)
       : study_(study),
         person_(person),
         modulus_(modulus),
@@ -300,7 +300,7 @@ TrialsData simulated_trials(const SimulatedTrials& study) {
       base.condition = condition == 1 ? "on" : "off";
       base.variables = {{"light", 0, kNotKnown, base.condition}};
       const std::uint64_t seed = derived_seed(study.seed, fmt::format("{} {}", name, condition));
-      Sitting(study, seed, person, modulus).run(base, data.trials, number);
+      SimulatedSession(study, seed, person, modulus).run(base, data.trials, number);
     }
   }
   return data;

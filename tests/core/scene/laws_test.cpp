@@ -51,15 +51,15 @@ TEST(SceneLawTest, TheForceOfConservativeFieldsIsMinusTheGradientOfTheirEnergy) 
 
 // --- passive ----------------------------------------------------------------------------------
 
-struct Given {
+struct GivenEnergy {
   double energy{0.0};  // by the held forces, over one round [J]
   double travel{0.0};  // Σ |Δx|² / T: the least integral of |v|² of a hand that makes this way
 };
 
 /// Round three of a closed motion: filters and bristles have then found their cycle. The velocity
 /// is the last difference.
-Given round_three(const Law& law, const Motion& motion) {
-  Given given;
+GivenEnergy round_three(const Law& law, const Motion& motion) {
+  GivenEnergy given;
   Vector3d before = motion.back();
   for (int round = 0; round < 3; ++round) {
     given = {};
@@ -142,7 +142,7 @@ TEST(SceneLawTest, PassiveFieldsGiveNoMoreThanTheNeededDampingTakes) {
     for (const Motion& motion : every_motion(example.name)) {
       Scene scene(example.fields, kRate);
       scene.switch_to(Scene::kAll);
-      const Given given = round_three(law_of(scene), motion);
+      const GivenEnergy given = round_three(law_of(scene), motion);
       ASSERT_LE(given.energy, needed * given.travel + 1e-9) << example.name;
     }
   }
@@ -159,7 +159,7 @@ TEST(SceneLawTest, InSlowMotionTheirDampersAskForNothing) {
     for (int i = 0; i < 10; ++i) {
       Scene scene(example.fields, kRate);
       scene.switch_to(Scene::kAll);
-      const Given given = round_three(law_of(scene), smooth_motion(random, 0.012, 4.0));
+      const GivenEnergy given = round_three(law_of(scene), smooth_motion(random, 0.012, 4.0));
       ASSERT_LE(given.energy, springs * given.travel + 1e-9) << example.name;
     }
   }
@@ -175,7 +175,7 @@ TEST(SceneLawTest, TheBoundIsReachedByASpringAndADamperThatAreShaken) {
   for (std::size_t i = 0; i < shaken.size(); i += 2) {
     shaken[i] *= -1.0;
   }
-  const Given given = round_three(law_of(scene), shaken);
+  const GivenEnergy given = round_three(law_of(scene), shaken);
   EXPECT_NEAR(given.energy, needed_by(fields) * given.travel, 1e-9 * given.energy);
 }
 
@@ -191,7 +191,7 @@ TEST(SceneLawTest, BelowAFrequencyTheDamperHelpsAsStated) {
       motion[i] = Vector3d(
           0.001 * std::cos(2.0 * M_PI * frequency * static_cast<double>(i) / kRate), 0.0, 0.0);
     }
-    const Given given = round_three(law_of(scene), motion);
+    const GivenEnergy given = round_three(law_of(scene), motion);
     EXPECT_NEAR(given.energy / given.travel,
                 needed_damping_below(frequency, stiffness_bound(fields, 0), kRate), 1e-7)
         << frequency;
@@ -203,7 +203,7 @@ TEST(SceneLawTest, TheLawFindsFieldsThatGiveEnergy) {
   const Motion slow = smooth_motion(random, 0.012, 4.0);
   // A spring whose force is five ticks late.
   std::vector<Vector3d> late(5, Vector3d::Zero());
-  const Given spring = round_three(
+  const GivenEnergy spring = round_three(
       [&](const PointState& hand) {
         late.push_back(-1000.0 * hand.position);
         const Vector3d force = late.front();

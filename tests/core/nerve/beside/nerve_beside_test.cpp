@@ -150,30 +150,30 @@ TEST(NerveBesideTest, APushDoesNotAllocateAndFullLogsAreCounted) {
 }
 
 TEST(NerveBesideTest, ATechnicianMutesAndSetsThresholds) {
-  const auto desk = std::make_shared<MonitorDesk>();
-  ThreadedNerves beside(maker(), 1000.0, {desk, nullptr});
+  const auto buffer = std::make_shared<MonitorBuffer>();
+  ThreadedNerves beside(maker(), 1000.0, {buffer, nullptr});
   const std::vector<NerveTick> ticks = plan(4000);
   for (std::size_t i = 0; i < 2000; ++i) {
     beside.after_tick(ticks[i]);
   }
   beside.settle();
   using What = MonitorOrder::What;
-  desk->ask({.what = What::kMute, .channel = 0, .muted = true});
-  desk->ask({.what = What::kThreshold, .channel = 1, .threshold = 250e-6});
-  desk->ask({.what = What::kMute, .channel = 99, .muted = true});
+  buffer->ask({.what = What::kMute, .channel = 0, .muted = true});
+  buffer->ask({.what = What::kThreshold, .channel = 1, .threshold = 250e-6});
+  buffer->ask({.what = What::kMute, .channel = 99, .muted = true});
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   for (std::size_t i = 2000; i < 4000; ++i) {
     beside.after_tick(ticks[i]);
   }
   beside.settle();
-  const MonitorDesk::View view = desk->since(0, 0);
+  const MonitorBuffer::View view = buffer->since(0, 0);
   ASSERT_EQ(view.channels.size(), 3u);
   EXPECT_TRUE(view.channels[0].muted);
   EXPECT_FALSE(view.channels[1].muted);
   EXPECT_DOUBLE_EQ(view.channels[1].threshold, 250e-6);
   EXPECT_EQ(view.channels[2].name, "drawn");
   EXPECT_EQ(view.columns.size(), 4000u / 5 * 3);
-  EXPECT_TRUE(desk->since(view.next_column, view.next_event).columns.empty());
+  EXPECT_TRUE(buffer->since(view.next_column, view.next_event).columns.empty());
   std::size_t technician = 0;
   for (const auto& row : beside.take().thresholds) {
     technician += row.cause == record::NerveThresholdRow::Cause::kTechnician ? 1 : 0;

@@ -31,9 +31,9 @@ TEST(ThresholdSearchTest, FindsTheThresholdWithinATwentieth) {
 
 /// A probe that gives five pulses a second at 1 kHz, on a nerve that answers from a current on. The
 /// answer begins after 6 ms and is known as an event 0.11 s later.
-class Bench {
+class StimulatorRun {
  public:
-  explicit Bench(double threshold) : threshold_(threshold) {}
+  explicit StimulatorRun(double threshold) : threshold_(threshold) {}
 
   void run(double seconds) {
     for (const std::uint64_t end = now_ + static_cast<std::uint64_t>(1e3 * seconds); now_ < end;
@@ -72,7 +72,7 @@ class Bench {
 
 TEST(StimulatorTest, ASearchFindsTheCurrentFromPulsesAndAnswers) {
   for (const double threshold : {0.06e-3, 0.2e-3, 0.8e-3, 2.5e-3}) {
-    Bench bench(threshold);
+    StimulatorRun bench(threshold);
     bench.run(0.3);
     bench.stimulator.search(1);
     bench.run(3.0);
@@ -91,7 +91,7 @@ TEST(StimulatorTest, ASearchFindsTheCurrentFromPulsesAndAnswers) {
 }
 
 TEST(StimulatorTest, ASearchWaitsUntilAnEventOfTheChannelIsOver) {
-  Bench bench(0.2e-3);
+  StimulatorRun bench(0.2e-3);
   bench.busy_until = 1500;
   bench.stimulator.search(1);
   bench.run(1.4);
@@ -103,13 +103,13 @@ TEST(StimulatorTest, ASearchWaitsUntilAnEventOfTheChannelIsOver) {
 }
 
 TEST(StimulatorTest, ANerveOutOfReachIsSaidToBe) {
-  Bench deaf(1.0);
+  StimulatorRun deaf(1.0);
   deaf.stimulator.search(1);
   deaf.run(1.0);
   ASSERT_TRUE(deaf.stimulator.found());
   EXPECT_TRUE(deaf.stimulator.found()->out_of_range);
   EXPECT_NEAR(deaf.stimulator.found()->current, kMostStimulus, 1e-9);
-  Bench bare(0.01e-3);
+  StimulatorRun bare(0.01e-3);
   bare.stimulator.search(1);
   bare.run(1.5);
   ASSERT_TRUE(bare.stimulator.found());
@@ -119,7 +119,7 @@ TEST(StimulatorTest, ANerveOutOfReachIsSaidToBe) {
 }
 
 TEST(StimulatorTest, AnAnswerOfAnotherChannelIsNone) {
-  Bench bench(0.2e-3);
+  StimulatorRun bench(0.2e-3);
   bench.stimulator.search(0);
   bench.run(1.0);
   ASSERT_TRUE(bench.stimulator.found());
@@ -127,7 +127,7 @@ TEST(StimulatorTest, AnAnswerOfAnotherChannelIsNone) {
 }
 
 TEST(StimulatorTest, ACurrentThatIsSetEndsASearchAndStaysWithinWhatAProbeGives) {
-  Bench bench(0.2e-3);
+  StimulatorRun bench(0.2e-3);
   bench.stimulator.search(1);
   bench.run(0.5);
   bench.stimulator.set(1.0);

@@ -53,15 +53,15 @@ struct Two {
     one(b, none, there, back);
     ++now;
   }
-  void one(ReliableStream& stream, Numbers& freight, SimulatedChannel& in, SimulatedChannel& out) {
+  void one(ReliableStream& stream, Numbers& payload, SimulatedChannel& in, SimulatedChannel& out) {
     while (const auto bytes = in.receive(1e-3 * now)) {
       stream.hear(decode(*bytes)->stream);
     }
-    stream.deliver(freight);
-    freight.ready = std::min(freight.ready + 15, 100'000);  // three fit for each two ticks
+    stream.deliver(payload);
+    payload.ready = std::min(payload.ready + 15, 100'000);  // three fit for each two ticks
     TickMessage message;
     message.sequence = static_cast<std::uint64_t>(now) + 1;
-    if (stream.wants(freight, now * kMillisecond, round_trip)) {
+    if (stream.wants(payload, now * kMillisecond, round_trip)) {
       stream.fill(message.stream, now * kMillisecond);
       out.send(encode(message), 1e-3 * now);
       ++messages;

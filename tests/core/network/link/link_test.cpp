@@ -347,11 +347,11 @@ TEST(LinkThreadTest, EverythingArrivesAndAFloodOfStrangersIsCounted) {
   });
   constexpr std::uint64_t kMessages = 1000;
   std::vector<std::uint64_t> came;
-  struct Taker final : Listener {
+  struct MessageTaker final : Listener {
     std::vector<std::uint64_t>* came;
     void hear(const Arrived& a) noexcept override { came->push_back(a.message.sequence); }
   };
-  Taker taker;
+  MessageTaker taker;
   taker.came = &came;
   const auto take = [&] { guest.receive(taker); };
   guest.tick();

@@ -32,9 +32,9 @@ struct Flat {
 };
 
 /// Goes along a bout as deep as allowed.
-void drill(DrillingMemory& memory, const StrokeSeries& bout, double deepest) {
+void drill(DrillingMemory& memory, const StrokeSeries& strokes, double deepest) {
   for (int step = 0; step <= 40; ++step) {
-    const Eigen::Vector2d at = bout.from + (bout.to - bout.from) * step / 40.0;
+    const Eigen::Vector2d at = strokes.from + (strokes.to - strokes.from) * step / 40.0;
     memory.sweep({at.x(), at.y(), std::min(memory.limit(at), deepest)});
   }
 }
@@ -61,16 +61,16 @@ TEST(DrillingMemoryTest, BoutsComeToAnEndWithAllOfItGone) {
   memory.begin(flat.chart.surface);
   memory.begin_burr(flat.reach, kRadius);
   RandomStream random(1, "bouts");
-  StrokeSeries bout;
-  int bouts = 0;
-  while (memory.choose({}, {0.0, 0.0}, random, bout) && bouts < 2000) {
-    drill(memory, bout, memory.touch(bout.from) + 1e-3);
-    memory.end_bout(bout);
-    ++bouts;
+  StrokeSeries strokes;
+  int series = 0;
+  while (memory.choose({}, {0.0, 0.0}, random, strokes) && series < 2000) {
+    drill(memory, strokes, memory.touch(strokes.from) + 1e-3);
+    memory.end_strokes(strokes);
+    ++series;
   }
   EXPECT_LT(memory.left(), 0.01);
-  EXPECT_GT(bouts, 20);
-  EXPECT_LT(bouts, 2000);
+  EXPECT_GT(series, 20);
+  EXPECT_LT(series, 2000);
 }
 
 TEST(DrillingMemoryTest, WhoWorksEvenlyGoesFarForTheHighestBone) {
@@ -80,18 +80,18 @@ TEST(DrillingMemoryTest, WhoWorksEvenlyGoesFarForTheHighestBone) {
     memory.begin(flat.chart.surface);
     memory.begin_burr(flat.reach, kRadius);
     RandomStream random(1, "bouts");
-    StrokeSeries bout;
+    StrokeSeries strokes;
     Eigen::Vector2d hand(10e-3, 15e-3);
     double sum = 0.0;
     for (int n = 0; n < 12; ++n) {
-      BoutChoice choice;
+      StrokeChoice choice;
       choice.evenness = evenness;
       choice.length = 3e-3;
-      EXPECT_TRUE(memory.choose(choice, hand, random, bout));
-      sum += (0.5 * (bout.from + bout.to) - hand).norm();
-      drill(memory, bout, memory.touch(bout.from) + 1e-3);
-      memory.end_bout(bout);
-      hand = bout.to;
+      EXPECT_TRUE(memory.choose(choice, hand, random, strokes));
+      sum += (0.5 * (strokes.from + strokes.to) - hand).norm();
+      drill(memory, strokes, memory.touch(strokes.from) + 1e-3);
+      memory.end_strokes(strokes);
+      hand = strokes.to;
     }
     return sum;
   };
@@ -109,15 +109,15 @@ TEST(DrillingMemoryTest, BoutsUnderAnEdgeGoBeyondIt) {
       memory.sweep({i * 0.5e-3, j * 0.5e-3, 14e-3});
     }
   }
-  BoutChoice choice;
+  StrokeChoice choice;
   choice.undercut = 1.0;
-  StrokeSeries bout;
+  StrokeSeries strokes;
   int under = 0;
   for (int n = 0; n < 20; ++n) {
-    ASSERT_TRUE(memory.choose(choice, {15e-3, 15e-3}, random, bout));
-    if (bout.under) {
+    ASSERT_TRUE(memory.choose(choice, {15e-3, 15e-3}, random, strokes));
+    if (strokes.under) {
       ++under;
-      EXPECT_NEAR(memory.touch(bout.to), 8e-3, 0.5e-3) << "bone stands where the stroke ends";
+      EXPECT_NEAR(memory.touch(strokes.to), 8e-3, 0.5e-3) << "bone stands where the stroke ends";
     }
   }
   EXPECT_GT(under, 10);
@@ -127,14 +127,14 @@ TEST(DrillingMemoryTest, NothingAllocatesWhileItWorks) {
   const Flat flat;
   DrillingMemory memory(flat.chart);
   RandomStream random(1, "bouts");
-  StrokeSeries bout;
+  StrokeSeries strokes;
   const test::AllocationGuard guard;
   memory.begin(flat.chart.surface);
   memory.begin_burr(flat.reach, kRadius);
   for (int n = 0; n < 5; ++n) {
-    memory.choose({}, {0.0, 0.0}, random, bout);
-    drill(memory, bout, memory.touch(bout.from) + 1e-3);
-    memory.end_bout(bout);
+    memory.choose({}, {0.0, 0.0}, random, strokes);
+    drill(memory, strokes, memory.touch(strokes.from) + 1e-3);
+    memory.end_strokes(strokes);
   }
 }
 

@@ -128,7 +128,7 @@ TEST(DrillingSurgeonTest, AnExpertDrillsTheCavityStopsShortOfTheStructureAndSays
   }
   EXPECT_TRUE(scene.finish_);
   EXPECT_EQ(scene.tool_, 1) << "the fine burr comes last";
-  EXPECT_GT(scene.surgeon_.bouts(), 10U);
+  EXPECT_GT(scene.surgeon_.series(), 10U);
   const float middle = scene.heights_[scene.chart_->column(20, 20)];
   EXPECT_GT(middle, 12.5e-3F);
   EXPECT_LT(scene.deepest_, 16e-3);
@@ -141,7 +141,7 @@ TEST(DrillingSurgeonTest, NobodyWorksUnlessToldTo) {
     scene.tick(false);
   }
   EXPECT_EQ(scene.powered_, 0);
-  EXPECT_EQ(scene.surgeon_.bouts(), 0U);
+  EXPECT_EQ(scene.surgeon_.series(), 0U);
 }
 
 TEST(DrillingSurgeonTest, OneSeedOneProcedureAnotherSeedAnother) {

@@ -1,4 +1,4 @@
-#include "core/nerve/beside/monitor_desk.h"
+#include "core/nerve/beside/monitor_buffer.h"
 
 #include <algorithm>
 #include <utility>
@@ -14,8 +14,8 @@ std::size_t begin_of(std::uint64_t count, std::uint64_t all, std::size_t kept) {
 
 }  // namespace
 
-void MonitorDesk::show(std::vector<MonitorChannel> channels, const MonitorProbe& probe, double time,
-                       bool heard) {
+void MonitorBuffer::show(std::vector<MonitorChannel> channels, const MonitorProbe& probe,
+                         double time, bool heard) {
   const std::lock_guard lock(mutex_);
   probe_ = probe;
   channels_ = std::move(channels);
@@ -23,7 +23,7 @@ void MonitorDesk::show(std::vector<MonitorChannel> channels, const MonitorProbe&
   heard_ = heard;
 }
 
-void MonitorDesk::add_column(const std::vector<MonitorColumn>& by_channel) {
+void MonitorBuffer::add_column(const std::vector<MonitorColumn>& by_channel) {
   const std::lock_guard lock(mutex_);
   columns_.push_back(by_channel);
   ++column_count_;
@@ -32,7 +32,7 @@ void MonitorDesk::add_column(const std::vector<MonitorColumn>& by_channel) {
   }
 }
 
-void MonitorDesk::add_event(const MonitorEvent& event) {
+void MonitorBuffer::add_event(const MonitorEvent& event) {
   const std::lock_guard lock(mutex_);
   events_.push_back(event);
   ++event_count_;
@@ -41,12 +41,12 @@ void MonitorDesk::add_event(const MonitorEvent& event) {
   }
 }
 
-std::vector<MonitorOrder> MonitorDesk::take_orders() {
+std::vector<MonitorOrder> MonitorBuffer::take_orders() {
   const std::lock_guard lock(mutex_);
   return std::exchange(orders_, {});
 }
 
-MonitorDesk::View MonitorDesk::since(std::uint64_t column, std::uint64_t event) const {
+MonitorBuffer::View MonitorBuffer::since(std::uint64_t column, std::uint64_t event) const {
   const std::lock_guard lock(mutex_);
   View view;
   view.time = time_;
@@ -64,7 +64,7 @@ MonitorDesk::View MonitorDesk::since(std::uint64_t column, std::uint64_t event) 
   return view;
 }
 
-void MonitorDesk::ask(const MonitorOrder& order) {
+void MonitorBuffer::ask(const MonitorOrder& order) {
   constexpr std::size_t kMostOrders = 100;  // that nobody has taken yet
   const std::lock_guard lock(mutex_);
   if (orders_.size() < kMostOrders) {

@@ -60,7 +60,7 @@ struct MonitorColumn {
 
 /// Buffer between the thread that makes electromyograms and pages that show them. Any thread but
 /// the servo's: it locks.
-class MonitorDesk {
+class MonitorBuffer {
  public:
   static constexpr double kColumn = 0.005;       // of the screen [s]
   static constexpr std::size_t kColumns = 1200;  // kept: 6 s
