@@ -118,7 +118,7 @@ double seconds_of(int runs, Work work, double (*clock)() = thread_seconds) {
   return seconds[static_cast<std::size_t>(runs) / 2];
 }
 
-/// From a chain of six dependent one-cycle operations, best of several.
+/// Frequency of the processor from a chain of six dependent one-cycle operations, best of several.
 double cycles_per_second() {
   constexpr long kRounds = 2'000'000;
   double best = std::numeric_limits<double>::infinity();

@@ -142,7 +142,7 @@ int main(int argc, char** argv) {
   const double time = seconds() - start;
   const geometry::Mesh ours = mesh_of(surface);
   print("cells", ours, time, voxels);
-  // From the vertex that is farthest to the right of the patient.
+  // The picture is seen from the vertex that is farthest to the right of the patient.
   const auto side = std::min_element(ours.vertices.begin(), ours.vertices.end(),
                                      [](const auto& a, const auto& b) { return a.x() < b.x(); });
   const Eigen::Vector3d middle = *side + Eigen::Vector3d(0.001, 0.0, 0.0);

@@ -34,7 +34,7 @@ class Unguarded final : public protocols::Pass {
   protocols::Pass& inner_;
 };
 
-/// Along y, from 100 ms before the handle is let go.
+/// Positions along y, from 100 ms before the handle is let go.
 std::vector<double> let_go(const stimulus::Stimulus& stimulus, bool guarded) {
   const test::Loop loop{1000.0, 1};
   protocols::RecallTest recall(stimulus, protocols::GuidanceParameters{}, 1);

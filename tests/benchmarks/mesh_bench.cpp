@@ -1,4 +1,4 @@
-// From a surface to tetrahedra: Table 2 of the source repeated, beside what memory allows. One
+// Way from a surface to tetrahedra: Table 2 of the source repeated, beside what memory allows. One
 // core; times are processor time of this thread, medians. With HAPTRIAL_DATA set to a folder that
 // has meshes/, the Stanford bunny and dragon take part.
 //

@@ -73,7 +73,7 @@ class PiecesFigures {
     return halved(context_.read());
   }
 
-  /// Until nothing is left to do.
+  /// Searches until nothing is left to do.
   void settle() {
     for (int quiet = 0; quiet < 4; ++quiet) {
       world_.search();

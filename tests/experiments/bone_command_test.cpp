@@ -137,7 +137,7 @@ TEST_F(BoneCommandTest, TheLabelsOfADrilledBoneSayWhatTheSessionRemoved) {
           "haptrial bone export out/S01.h5 drilled.stl && haptrial mesh info drilled.stl");
   ASSERT_EQ(drilled.status, 0) << drilled.errors << drilled.output;
   EXPECT_THAT(drilled.output, HasSubstr("removed     bone: "));
-  // As another program reads the file: a head of text, an empty line, bytes in gzip.
+  // The file is read as by another program: a head of text, an empty line, bytes in gzip.
   const auto counts = run(
       "export LC_ALL=C; sed '1,/^$/d' drilled.seg.nrrd | gzip -dc | od -An -v -tu1 -w1 | sort -n | "
       "uniq -c; grep -a -A4 'Segment2_ID' drilled.seg.nrrd; grep -a '^sizes' drilled.seg.nrrd");

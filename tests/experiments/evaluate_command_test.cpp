@@ -337,7 +337,8 @@ TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
       "{ printf \"%s,%g,0,0\\n\", $1, 1e-4 * (NR % 7) }' rubbed/forces.csv > air/forces.csv");
   refused("air --mesh body.obj --lag 0", "0 of 1000 poses are in contact");
   refused(good + "--load 0 0 0 0 0 0 --free 0 1", "--load stands beside --free");
-  // Too short for its lag, without any change, and forces in another unit.
+  // The recordings are too short for their lag, without any change, and with forces in another
+  // unit.
   run("mkdir short still strong; cp rubbed/poses.csv strong; cp rubbed/forces.csv short; "
       "cp rubbed/forces.csv still; awk 'NR <= 201' rubbed/poses.csv > short/poses.csv; "
       "awk -F, 'NR == 1 { print; next } { print $1 \",1,2,3\" }' rubbed/poses.csv > "

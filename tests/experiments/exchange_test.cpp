@@ -302,7 +302,7 @@ TEST(WorkedScriptTest, RGivesTheNumbersOfTheReport) {
   expect_the_reports_numbers("Rscript", "analysis.R");
 }
 
-/// From the tidy tables, by a search of R's own.
+/// R finds the thresholds from the tidy tables, by a search of its own.
 TEST_F(ExchangeTest, RFindsTheThresholdsOfTheReport) {
   const fs::path source = HAPTRIAL_SOURCE_DIR;
   const CommandResult run = run_command(

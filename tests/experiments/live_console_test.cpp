@@ -23,7 +23,8 @@ using record::Phase;
 using test::CommandResult;
 using testing::HasSubstr;
 
-/// For the docs: passes at the shipped speed, pictures kept there, and a plot that is full.
+/// Folder for the docs' pictures: passes at the shipped speed, pictures kept there, and a plot that
+/// is full.
 const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }
 
 class LiveConsoleTest : public testing::Test {

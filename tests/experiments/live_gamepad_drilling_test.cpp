@@ -36,7 +36,8 @@ using testing::HasSubstr;
 
 constexpr const char* kTitle = "haptrial";
 
-/// For the documents: the whole window and the bone as it is shipped, pictures kept there.
+/// Folder for the documents' pictures: the whole window and the bone as it is shipped, pictures
+/// kept there.
 const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }
 
 std::string with(std::string text, const std::string& what, const std::string& by) {

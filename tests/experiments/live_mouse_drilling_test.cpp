@@ -32,7 +32,8 @@ constexpr unsigned kWheelDown = 5;
 constexpr unsigned long kRightKey = 0xff53;
 constexpr const char* kTitle = "haptrial";
 
-/// For the documents: the whole window and the bone as it is shipped, pictures kept there.
+/// Folder for the documents' pictures: the whole window and the bone as it is shipped, pictures
+/// kept there.
 const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }
 
 std::string with(std::string text, const std::string& what, const std::string& by) {

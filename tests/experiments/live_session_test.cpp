@@ -43,7 +43,7 @@ class LiveSessionTest : public testing::Test {
     test::wait_until([&] { return what(control_.status()); });
     control_.ask(then);
   }
-  /// For a session in whose passes something is done.
+  /// Sets the speed of a session in whose passes something is done.
   void run_at(double speed) {
     definition_ = protocols::parse_force_definition(
         test::shipped_with("speed", "speed = " + std::to_string(speed)), "slow.toml");
@@ -222,7 +222,7 @@ TEST_F(LiveSessionTest, AnEmergencyStopStaysUntilItIsClearedAndTheTrialComesAgai
   ASSERT_EQ(passes.size(), 2u);
   EXPECT_EQ(passes[1].trial, 1);
   EXPECT_EQ(passes[1].attempt, 2);
-  // From the last sample of the stopped pass to the first of the next: no force at all.
+  // The samples from the last of the stopped pass to the first of the next have no force at all.
   const auto between =
       reader.samples(passes[0].last_sample, passes[1].first_sample - passes[0].last_sample);
   EXPECT_GT(between.size(), 200u);

@@ -70,8 +70,8 @@ class LiveStopTest : public testing::Test {
     ASSERT_TRUE(person.sees("instructions"));
     ASSERT_TRUE(person.ask("start"));
   }
-  /// That the force went to zero in one tick, and stayed there: the last one is no fading one,
-  /// which would be a small part of what it was ten commands before.
+  /// Expects that the force went to zero in one tick, and stayed there: the last one is no fading
+  /// one, which would be a small part of what it was ten commands before.
   void expect_cut() const {
     const auto all = forces();
     const auto last = std::find_if(all.rbegin(), all.rend(),
@@ -83,7 +83,7 @@ class LiveStopTest : public testing::Test {
       EXPECT_GT(last->force, 0.8 * each->force);
     }
   }
-  /// That it faded to zero, and stayed there.
+  /// Expects that the force faded to zero, and stayed there.
   void expect_fade() const {
     const auto all = forces();
     ASSERT_GT(all.size(), 1u);

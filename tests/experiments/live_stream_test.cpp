@@ -53,7 +53,7 @@ class LiveStreamTest : public testing::Test {
     return "run '" + (folder_ / "study.toml").string() + "' --subject S01 --trials 1 --out '" +
            (folder_ / "out").string() + "' " + options;
   }
-  /// For a library of that name on the loader's path.
+  /// Environment with a library of that name on the loader's path.
   std::string with_the_layer() const {
     fs::create_directory(folder_ / "lib");
     fs::create_symlink(fs::path(HAPTRIAL_BINARY_DIR) / "libstand_in_lsl.so",
@@ -61,7 +61,7 @@ class LiveStreamTest : public testing::Test {
     return "export LD_LIBRARY_PATH='" + (folder_ / "lib").string() + "' STAND_IN_LSL_FILE='" +
            (folder_ / "heard").string() + "'";
   }
-  /// For none: an empty file of that name hides a library that the machine has.
+  /// Environment without one: an empty file of that name hides a library that the machine has.
   std::string without_the_layer() const {
     fs::create_directory(folder_ / "lib");
     test::write_text(folder_ / "lib/liblsl.so", "");

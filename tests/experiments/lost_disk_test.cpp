@@ -28,8 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 const std::string kLibrary = std::string(HAPTRIAL_BINARY_DIR) + "/libstand_in_dhd.so";
 
-/// In a process of its own, whose files may not grow far. Leaves every force that the motors were
-/// given and the error.
+/// Runs a session in a process of its own, whose files may not grow far. Leaves every force that
+/// the motors were given and the error.
 void run_until_the_disk_is_full(const SessionRequest& request, const fs::path& folder) {
   ::setenv("STAND_IN_FORCES", (folder / "forces").c_str(), 1);
   const device::DynamicLibrary library(kLibrary, "the stand-in");  // its record is mapped now

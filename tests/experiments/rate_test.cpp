@@ -88,7 +88,7 @@ class RateTest : public testing::Test {
     EXPECT_EQ(rate_prepare(options), 0);
   }
 
-  /// Made once.
+  /// Folder with the films, made once.
   static fs::path films() {
     const fs::path made = *folder_ / "films";
     if (!fs::exists(made)) {

@@ -136,7 +136,7 @@ TEST_P(RealAnatomyTest, TheCavityLiesWhereSurgeonsOpenTheMastoidInSightAndReach)
   EXPECT_LT(volume, 10e-6);
   EXPECT_LT(outermost, 1.0);
   EXPECT_LT(farthest, d_.envelope.workspace_radius - 0.01);
-  // In the patient's axes: x to the left, y to the back, z up.
+  // Places are in the patient's axes: x to the left, y to the back, z up.
   const Eigen::Vector3d canal = middle_of("external auditory canal");
   const double outwards = GetParam().left ? 1.0 : -1.0;
   EXPECT_GT(outwards * (opening.x() - middle_of("incus").x()), 5e-3)

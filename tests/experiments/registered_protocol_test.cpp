@@ -183,7 +183,7 @@ class KilledTest : public testing::Test {
     request.clock = clock;
     return request;
   }
-  /// In a process of its own, which is killed once it has done so many ticks.
+  /// Runs a session in a process of its own, which is killed once it has done so many ticks.
   void run_and_kill(const std::string& name, std::uint64_t at_tick) const {
     const pid_t child = fork();
     ASSERT_GE(child, 0);

@@ -88,7 +88,8 @@ class ScanGuideTest : public testing::Test {
     EXPECT_NE(found, ear_.structures.end()) << name;
     return static_cast<std::uint8_t>(found - ear_.structures.begin());
   }
-  /// Without plain bone and the nerve; ossicles in a layer of their own, one with a clinic's name.
+  /// Writes segments without plain bone and the nerve; ossicles in a layer of their own, one with a
+  /// clinic's name.
   void write_segments() {
     std::string keys;
     int number = 0;

@@ -115,7 +115,7 @@ TEST_F(SessionsTest, ADryRunHasEverySessionOfEveryPerson) {
     // The same person: without noise the answers change at one level, on every day.
     EXPECT_EQ(threshold_of(first), threshold_of(second));
     thresholds[name] = threshold_of(first);
-    // On another day: the levels come in another order.
+    // The levels come in another order on another day.
     std::vector<double> high = asked_in(first);
     high.erase(high.begin(), high.begin() + 24);
     EXPECT_NE(high, asked_in(second));

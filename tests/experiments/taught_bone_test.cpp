@@ -304,7 +304,7 @@ TEST_F(LiveTaughtBoneTest, AnotherBoneInTheFileIsSaidOnBothSides) {
 /// Which side is killed while both drill their second bone.
 class KilledBoneTest : public LiveTaughtBoneTest, public testing::WithParamInterface<const char*> {
  protected:
-  /// Until the side that learns has followed ticks of the second trial.
+  /// Whether the side that learns has followed ticks of the second trial.
   bool is_in_second_trial() {
     const fs::path partial = folder_ / "learning" / "P01.h5.partial";
     return learns_->reaches([&] {

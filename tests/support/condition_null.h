@@ -225,7 +225,7 @@ inline std::vector<NullTests> null_studies(const Scores& scores, NullScheme sche
   return result;
 }
 
-/// In how many studies a test came out below 0.05. @param p  of a study.
+/// Number of studies in which a test came out below 0.05. @param p  of a study.
 template <class P>
 int count_below(const std::vector<NullTests>& studies, P&& p) {
   return static_cast<int>(std::count_if(studies.begin(), studies.end(),

@@ -25,11 +25,12 @@ class VirtualDisplay {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// To the window of that title. @param keysym  as X names it: 'p', ' ', 0xff1b for Escape
+  /// Presses a key in the window of that title. @param keysym  as X names it: 'p', ' ', 0xff1b for
+  /// Escape
   void press_key(const std::string& title, unsigned long keysym) const;  // and let it go
   static constexpr unsigned long kEnter = 0xff0d;
   static constexpr unsigned long kEscape = 0xff1b;
-  /// As press_key, if the window is there yet.
+  /// Presses a key if the window is there yet.
   void try_key(const std::string& title, unsigned long keysym) const;
   void hold_key(const std::string& title, unsigned long keysym) const;
   void release_key(const std::string& title, unsigned long keysym) const;

@@ -42,7 +42,7 @@ TEST(SwingCounterTest, ASineTurnsTwiceAPeriodAndSwingsByTwiceItsAmplitude) {
   }
 }
 
-/// As a hand that trembles at a wall and leaves it in between.
+/// The force is that of a hand that trembles at a wall and leaves it in between.
 TEST(SwingCounterTest, AForceThatStaysAtItsExtremeTurnsInTheMiddleOfThat) {
   const auto train =
       longest([](double t) { return std::max(0.0, 3.0 * sine(10.0, t) - 0.5); }, kNothing);

@@ -24,7 +24,7 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kPi = std::numbers::pi;
 
-/// When a force of this course in time becomes a fault [s]; -1: never within `seconds`.
+/// Time at which a force of this course becomes a fault [s]; -1: never within `seconds`.
 template <typename Course>
 double found_after(double rate, Fault expected, double seconds, Course course,
                    const std::function<Vector3d(double)>& stimulus = nullptr) {

@@ -82,7 +82,7 @@ TEST_F(PointerHandTest, WheelAndKeysTakeItIntoWhatIsSeenAndBack) {
   EXPECT_NEAR(pose_.position.y(), 0.05 - 0.5 * parameters().depth_speed, 1e-9);
 }
 
-/// Else it would have to come all the way back before it lets go.
+/// A hand that went on would have to come all the way back before it lets go.
 TEST_F(PointerHandTest, AHandThatIsHeldBackGoesNotMuchFurther) {
   at(400, 300);
   held_back_ = Eigen::Vector3d(0.0, 0.04, 0.0);

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// When a fault is found, after `before` ticks of good readings; -1: never.
+/// Time at which a fault is found [s]; -1: never.
 template <typename Position, typename Force>
 double found_after(double rate, Fault expected, Position position, Force force) {
   ReadingWatch watch(0.5);

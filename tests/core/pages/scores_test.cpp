@@ -57,9 +57,9 @@ TEST(TlxTest, AsksEveryPairOfScalesOnce) {
   }
 }
 
-// By hand, with the rule of the manual (Hart 1986, section 2.4): ratings 30, 15, 60, 40, 40, 30 of
-// mental, physical, temporal, performance, effort, frustration with the weights 3, 0, 5, 1, 3, 3:
-// (90 + 0 + 300 + 40 + 120 + 90) / 15 = 42.67.
+// The expected score by hand, with the rule of the manual (Hart 1986, section 2.4): ratings 30, 15,
+// 60, 40, 40, 30 of mental, physical, temporal, performance, effort, frustration with the weights
+// 3, 0, 5, 1, 3, 3: (90 + 0 + 300 + 40 + 120 + 90) / 15 = 42.67.
 TEST(TlxTest, WeighsRatingsByTheChoicesOfThePairs) {
   std::vector<GivenAnswer> answers = filled({30, 15, 60, 40, 40, 30}, {});
   const std::map<std::string, std::string> chosen{

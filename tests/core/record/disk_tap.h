@@ -18,15 +18,15 @@ struct DiskStep {
 /// here, for our objects and for the library of HDF5 alike.
 class DiskTap {
  public:
-  /// From now on, every step of the file of this name or of one that it gets later.
+  /// Records, from now on, every step of the file of this name or of one that it gets later.
   static void start(const std::string& path);
   static void mark(std::uint64_t number);
   static std::vector<DiskStep> stop();
 
-  /// Called before each write, truncation, sync and renaming of any file, while it is set; null: no
-  /// more. For one thread.
+  /// Sets a callback before each write, truncation, sync and renaming of any file; null: no more.
+  /// For one thread.
   static void before_each(std::function<void()> step);
-  /// Called in the place of fdatasync(), on whatever thread; null: the system's own.
+  /// Sets a function in the place of fdatasync(), on whatever thread; null: the system's own.
   static void instead_of_fdatasync(std::function<int(int)> sync);
 };
 

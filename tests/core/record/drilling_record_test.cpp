@@ -231,7 +231,7 @@ TEST(DrillingRecordTest, AfterAKillEveryTableEndsWithTheSameTickAndGoesOn) {
       ASSERT_GE(row.sequence, next);
       next = row.sequence + 1;
     }
-    // On every tenth tick from where each run began.
+    // A removal is on every tenth tick from where each run began.
     EXPECT_EQ(removals.size(),
               (found.next_sequence + 9) / 10 + (9000 - found.next_sequence + 9) / 10);
     EXPECT_EQ(recorded_bones(reader).size(), 1u);

@@ -45,7 +45,7 @@ TEST(PassRowsKillTest, APassThatIsThereHasItsRows) {
   const TemporaryFolder folder;
   RandomStream random(1, "kills");
   std::size_t most = 0;
-  // Until there was a whole chunk of passes, too; later and later on a slow machine.
+  // Kills go on until there was a whole chunk of passes, too; later and later on a slow machine.
   for (int kill_number = 0; kill_number < kKills || most <= 64; ++kill_number) {
     const fs::path file = folder / fmt::format("{:02}.h5", kill_number);
     const pid_t child = fork();

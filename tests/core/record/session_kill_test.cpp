@@ -175,7 +175,7 @@ TEST(SessionKillTest, HundredKillsLoseAtMostASecondAndTheSessionGoesOn) {
       2 * kKills, doing[kStarting], doing[kWriting], doing[kFlushing], doing[kSyncing],
       doing[kPausing], without_file, 1e-3 * static_cast<double>(most_lost));
 
-  // As a user without our code opens them: all in one process.
+  // The files are opened as a user without our code opens them: all in one process.
   std::ofstream(folder / "open.py")
       << "import h5py,sys\n"
          "for name in open(sys.argv[1]).read().split():\n"

@@ -96,7 +96,7 @@ TEST(SessionLiveTest, WithoutAnyFlushALiveFileLacksLessThanASecond) {
     if (at % 1900 != 0) {
       continue;
     }
-    // As another process would open it, from a copy: HDF5 shares files within one.
+    // The file is opened as another process would, from a copy: HDF5 shares files within one.
     fs::copy_file(folder / "a.h5.partial", folder / "copy.h5",
                   fs::copy_options::overwrite_existing);
     const std::uint64_t rows = SessionReader(folder / "copy.h5").sample_count();

@@ -79,7 +79,7 @@ inline std::vector<Example> conservative_scenes() {
   };
 }
 
-/// Those, and the others that take energy from every hand.
+/// Passive scenes: those of springs, and the others that take energy from every hand.
 inline std::vector<Example> passive_scenes() {
   std::vector<Example> all = conservative_scenes();
   using Model = FrictionParameters::Model;

@@ -100,7 +100,8 @@ Motion scattered_motion(RandomStream& random, double size) {
   return motion;
 }
 
-/// To and fro on every tick, the fastest that a sampled loop can see, while the middle wanders.
+/// Motion to and fro on every tick, the fastest that a sampled loop can see, while the middle
+/// wanders.
 Motion shaking_motion(RandomStream& random, double size) {
   Motion motion = smooth_motion(random, 0.01, 2.0);
   const Vector3d aside = random_vector(random, size);

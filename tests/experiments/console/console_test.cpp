@@ -70,8 +70,8 @@ class ConsoleTest : public ::testing::Test {
     return all;
   }
 
-  /// That a request is refused with this status, is logged once, reaches nobody, and leaves the
-  /// console at work.
+  /// Expects that a request is refused with this status, is logged once, reaches nobody, and leaves
+  /// the console at work.
   void expect_refused(const Console& console, const std::string& request, int status,
                       const std::string& sentence) {
     const std::uint64_t before = console.refused();

@@ -198,7 +198,8 @@ TEST_F(SessionTest, IntegratorsAgree) {
 
 class WithoutNoiseTest : public SessionTest, public testing::WithParamInterface<bool> {};
 
-// On the shipped device, and on one without quantum and friction, whose forces are smooth.
+// Both devices are tried: the shipped one, and one without quantum and friction, whose forces are
+// smooth.
 INSTANTIATE_TEST_SUITE_P(IdealDevice, WithoutNoiseTest, testing::Bool());
 
 TEST_P(WithoutNoiseTest, RecallIsNearPerfectInEveryCondition) {

@@ -65,7 +65,7 @@ class BoneRestoreTest : public testing::Test {
   }
   static record::SessionReader whole() { return record::SessionReader(*shared_ / "whole.h5"); }
 
-  /// That a session of drilling has.
+  /// Tables that a session of drilling has.
   static record::TableList tables() {
     return record::with_tables(record::drilling_tables(),
                                {&record::table_of<record::DampingRow>(),

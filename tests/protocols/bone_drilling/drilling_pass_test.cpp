@@ -222,7 +222,8 @@ TEST(DrillingPassTest, WhatIsSimulatedIsOnTheGridsOfTheFile) {
   }
 }
 
-/// Through the task, as a session has it: a jump of the device while the burr is pressed in.
+/// The pass runs in the task, as a session has it: a jump of the device while the burr is pressed
+/// in.
 TEST(DrillingPassTest, AFaultBringsTheForceToZeroAndEveryTickIsLoggedAllTheSame) {
   Workshop shop;
   test::ScriptedDevice device;
@@ -280,7 +281,7 @@ TEST(DrillingPassTest, TheCameraMovesWithTheHandWhileItsButtonIsHeldAndNothingIs
   shop.pass->tick(at(away), kDt);
   const Camera start = shop.simulator->camera();
   shop.pass->tick(at(away, 4u), kDt);
-  // Into the bone: while the camera is steered there is no force.
+  // The hand goes into the bone: while the camera is steered there is no force.
   const PassOutput out = shop.pass->tick(at({0.01, 0.0, 0.0}, 4u | 1u), kDt);
   EXPECT_EQ(out.force, Vector3d::Zero());
   EXPECT_EQ(shop.logs.tool_now().mode, 1);

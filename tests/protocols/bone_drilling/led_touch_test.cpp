@@ -100,7 +100,7 @@ class LedTouchTest : public testing::Test {
     }
     led_out_ = led_->tick(is_led, 1e-3);
   }
-  /// In the air. @param times  the next tool is taken in hand
+  /// Takes a tool in the air. @param times  the next tool is taken in hand
   void take_tool(int times) {
     const Vector3d above(0.0, 0.01, 0.0);
     tick(test::at(above), test::at(above));
@@ -109,7 +109,7 @@ class LedTouchTest : public testing::Test {
       tick(test::at(above), test::at(above));
     }
   }
-  /// Both hands go down to a depth of the tool's middle and up again, in the same way.
+  /// Moves both hands down to a depth of the tool's middle and up again, in the same way.
   /// @returns the greatest force
   double press_both(const Vector3d& from, double lowest, std::uint32_t buttons = 0) {
     double most = 0.0;

@@ -26,7 +26,7 @@ TEST(TutorChoiceTest, FileTrialAndMark) {
   }
 }
 
-/// At x = t² along a line, with a force of t.
+/// A motion at x = t² along a line, with a force of t.
 ModelMotion accelerating() {
   ModelMotion m;
   m.rate = 100.0;

@@ -13,7 +13,8 @@ class SmoothSurface {
  public:
   virtual ~SmoothSurface() = default;
 
-  /// Above 0 outside; in size no more than the distance from the surface [m].
+  /// Height above the surface, positive outside; in size no more than the distance from the surface
+  /// [m].
   virtual double height(const Eigen::Vector3d& p) const = 0;
   /// The point of the surface that belongs to a point beside it.
   virtual Eigen::Vector3d onto(const Eigen::Vector3d& p) const = 0;

@@ -20,7 +20,7 @@ class Pseudonormals {
   /// @throws InputError when a triangle names a vertex that does not exist.
   explicit Pseudonormals(const Mesh& mesh);
 
-  /// At a nearest point, not of unit length; zero where only triangles without area meet.
+  /// Pseudonormal at a nearest point, not of unit length; zero if only triangles without area meet.
   const Eigen::Vector3d& at(const ClosestPoint& nearest) const;
 
   /// The distance to the mesh, negative inside: `nearest` is the answer of a Bvh of the same mesh

@@ -135,7 +135,8 @@ TEST(SafeValuesTest, FaultsOfADrillingAreThoseOfACountByHand) {
   const Findings f = findings_of(trainee, learned, bones);
   EXPECT_EQ(f.structures, (std::vector<std::string>{"nerve", "sinus"}));
 
-  // By hand: all forces of both experts by rod and interval, each weighed by its expert's number.
+  // The expected values by hand: all forces of both experts by rod and interval, each weighed by
+  // its expert's number.
   const auto interval = [](double d) { return std::floor(static_cast<float>(d) / 2e-3); };
   std::map<std::pair<int, double>, std::array<std::vector<double>, 2>> pressed;
   for (std::size_t e = 0; e < 2; ++e) {

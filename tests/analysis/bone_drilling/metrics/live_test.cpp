@@ -81,7 +81,7 @@ TEST(LiveMetricsTest, EqualsTheAnalysisOfTheFile) {
   EXPECT_EQ(now.visible_share, after.value("visible_share"));
   EXPECT_EQ(static_cast<double>(now.injured_voxels), after.value("injured_voxels"));
   EXPECT_EQ(now.injuries, after.injuries);
-  // And these say something.
+  // The equal figures say something.
   EXPECT_NEAR(now.time, 5.0, 1e-9);
   EXPECT_GT(now.voxels, 100u);
   EXPECT_GT(*now.visible_share, 0.02);

@@ -11,7 +11,7 @@
 namespace haptrial::analysis::drilling {
 namespace {
 
-/// From 0 to 1 with the least jerk. Source: Flash and Hogan 1985.
+/// A way from 0 to 1 with the least jerk. Source: Flash and Hogan 1985.
 double minimum_jerk(double s) { return s * s * s * (10.0 + s * (-15.0 + 6.0 * s)); }
 double minimum_jerk_rate(double s) { return s * s * (30.0 + s * (-60.0 + 30.0 * s)); }
 

@@ -95,8 +95,8 @@ bone::BoneModel bone_over_vein() {
   return model;
 }
 
-/// From the top down: on the right a saucer; on the left a shaft, and from its bottom a cave to the
-/// left under 4 mm of bone that stays.
+/// A procedure that drills from the top down: on the right a saucer; on the left a shaft, and from
+/// its bottom a cave to the left under 4 mm of bone that stays.
 Procedure saucer_and_cave() {
   Procedure p = test::procedure_on(bone_over_vein());
   p.tools[0].burr_radius = 1e-3;
@@ -181,7 +181,8 @@ TEST(VisibilityPictureTest, TheSectionShowsTheShelfOverTheCave) {
   // cuts 13 x 9 hidden voxels, that across y 14 x 9.
   const Patch cave = patch(image, hidden);
   EXPECT_EQ(cave.pixels, 14 * 9 * 100);
-  // From x = 3 to 16 and z = 12 to 20 of 30 layers that fill 300 of 400 pixels, z upwards.
+  // The cave reaches from x = 3 to 16 and z = 12 to 20 of 30 layers that fill 300 of 400 pixels, z
+  // upwards.
   EXPECT_NEAR(cave.x, 100.0, 1.0);
   EXPECT_NEAR(cave.y, 350.0 - 10.0 * 16.5, 1.0);
   int over = 0;
@@ -204,7 +205,7 @@ TEST(VisibilityPictureTest, TheFigureLooksFromTheEyeAndIsUpright) {
   const Procedure p = saucer_and_cave();
   const ProcedureSummary summary = summarize(p, {}, study);
   const SeenRemovals removals{p.bone.get(), summary.removed, summary.removed_seen};
-  // On the left half; the voxels are shaded, so by which channels are strong.
+  // Pixels on the left half; the voxels are shaded, so by which channels are strong.
   const auto strong = [](const render::Image& image, bool hidden) {
     return patch(image, [&image, hidden](int x, int y) {
       const auto* c = image.rgb.data() +

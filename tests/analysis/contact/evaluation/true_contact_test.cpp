@@ -43,7 +43,7 @@ TEST(TrueContactTest, AgreesWithASearchOverTheSurface) {
     int touching = 0, landings = 0;
     double worst = 0.0;
     std::array<double, 2> place{};
-    // Too short to jump over an edge before the tool has passed it.
+    // The steps are too short to jump over an edge before the tool has passed it.
     const bool edge = std::holds_alternative<TrueWedge>(one.body) ||
                       std::holds_alternative<TrueThinPlate>(one.body);
     const double step = edge ? 1e-7 : 1e-5;

@@ -36,7 +36,7 @@ class ImportCurvesTest : public testing::Test {
     return folder_ / name;
   }
 
-  /// Both curves of a trial in one table. @param offset  of the applied force [N]
+  /// Table with both curves of a trial. @param offset  of the applied force [N]
   std::string curves(double offset, const char* heading = "time,target_force,applied_force\n") {
     std::string text = heading;
     for (int k = 0; k < 500; ++k) {

@@ -45,7 +45,7 @@ TEST(StudyStatistics, AnalysesPooledTrialsAndParticipantsMeans) {
   EXPECT_DOUBLE_EQ(*study.summaries[0].mean, 8.0);
   EXPECT_DOUBLE_EQ(*study.summaries[2].mean, 2.0);
   EXPECT_EQ(study.anova->df_within, 15.0);
-  // Between: 6 (9 + 9); within: column squares 14, 14, 2 twice and 18 quarters.
+  // The squares between are 6 (9 + 9); within: column squares 14, 14, 2 twice and 18 quarters.
   EXPECT_DOUBLE_EQ(study.anova->squares_between, 108.0);
   EXPECT_DOUBLE_EQ(study.anova->squares_within, 64.5);
   EXPECT_DOUBLE_EQ(study.repeated->f, 18.0);

@@ -1,4 +1,4 @@
-// From session files to a study, end to end.
+// Analysis from session files to a study, end to end.
 #include "analysis/force_training/study/study.h"
 
 #include <gmock/gmock.h>

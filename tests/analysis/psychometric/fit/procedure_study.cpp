@@ -48,7 +48,7 @@ analysis::LikelihoodOptions options_of(Task task) {
   return options;
 }
 
-/// To the end; every trial goes to the blocks of the session.
+/// Runs the procedure to the end; every trial goes to the blocks of the session.
 void run(Procedure& procedure, ResponseObserver& observer, Session& session) {
   while (!procedure.finished()) {
     const Level level = procedure.next();
@@ -59,7 +59,7 @@ void run(Procedure& procedure, ResponseObserver& observer, Session& session) {
   }
 }
 
-/// With the interval that the procedure states itself, or Student's of its error.
+/// Result with the interval that the procedure states itself, or Student's of its error.
 Found found_of(const Estimate& e, double truth) {
   if (e.interval) {
     return {e.value, truth, true, e.interval->low, e.interval->high};

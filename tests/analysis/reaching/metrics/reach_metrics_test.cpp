@@ -18,7 +18,8 @@ constexpr double kDistance = 0.1;
 constexpr double kDuration = 0.5;
 constexpr double kBegin = 0.5;
 
-/// When a minimum-jerk reach rises above (or, mirrored, falls below) a speed, after its begin.
+/// Time at which a minimum-jerk reach rises above (or, mirrored, falls below) a speed, after its
+/// begin.
 double time_of_speed(double speed) {
   double low = 0.0, high = 0.5;
   for (int i = 0; i < 60; ++i) {
@@ -66,7 +67,8 @@ TEST(ReachMetricsTest, AnArcHasTheAreaOfItsSegment) {
   EXPECT_NEAR(*m.maximum_perpendicular_error, radius * (1.0 - std::cos(0.5 * kAngle)), 1e-9);
   EXPECT_NEAR(*m.peak_speed_error, *m.maximum_perpendicular_error, 1e-9);
   EXPECT_NEAR(*m.path_length, radius * kAngle, 1e-7);
-  // From the begin of an arc to a point of it: the chord, turned by half of the angle that is left.
+  // The direction from the begin of an arc to a point of it is the chord's, turned by half of the
+  // angle that is left.
   const double done = kAngle * test::minimum_jerk((*m.onset + 0.15 - kBegin) / kDuration);
   EXPECT_NEAR(*m.direction_error, 0.5 * (kAngle - done), 1e-4);
 }

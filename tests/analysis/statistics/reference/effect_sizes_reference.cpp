@@ -10,7 +10,7 @@ namespace {
 
 using Values = std::vector<double>;
 
-// Also behind an offset, which is exact for multiples of 1/64.
+// The values behind an offset, which is exact for multiples of 1/64.
 Values moved(Values values, double offset) {
   for (auto& value : values) {
     value += offset;

@@ -95,7 +95,7 @@ struct Topic {
   void (*compare)(Answers&);
 };
 void PrintTo(const Topic& topic, std::ostream* out);  // for messages of failed tests
-/// By name.
+/// All topics by name.
 std::vector<Topic> topics();
 
 }  // namespace haptrial::analysis::reference

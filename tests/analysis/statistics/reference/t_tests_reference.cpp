@@ -24,7 +24,7 @@ void compare_case(Answers& r, const std::string& procedure, const std::string& n
   r.at(procedure, name + " 99 %").is("low", wide->low).is("high", wide->high);
 }
 
-// Also behind an offset, which is exact for multiples of 1/64.
+// Compares both samples, also behind an offset, which is exact for multiples of 1/64.
 void compare_both(Answers& r, const std::string& procedure, const std::string& name, Test& test,
                   Values a, Values b) {
   compare_case(r, procedure, name, test, a, b);

@@ -25,7 +25,7 @@ MatrixXd classic_table() {
   return ratings;
 }
 
-// As printed in Shrout and Fleiss 1979, tables 2 and 4.
+// The table is that of Shrout and Fleiss 1979, tables 2 and 4.
 TEST(Intraclass, GivesThePublishedTable) {
   const auto c = intraclass_correlation(classic_table());
   ASSERT_TRUE(c);

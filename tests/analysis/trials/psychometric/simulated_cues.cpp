@@ -47,7 +47,8 @@ class Answers {
 
   void add(StudyTrial base, const Shown& shown, std::vector<StudyTrial>& trials) {
     const double half = 0.5 * shown.conflict;
-    // As sessions have them: what the whole trial has, and in which place the standard came.
+    // Variables as sessions have them: those of the whole trial, and the place in which the
+    // standard came.
     base.variables = {{"modality", 0, kNotKnown, shown.modality},
                       {"noise", 0, static_cast<double>(shown.noise), ""},
                       {"conflict", 0, shown.conflict, ""},

@@ -1,4 +1,4 @@
-// In which trials something is given, and what their conditions are called.
+// Trials in which something is given, and the names of their conditions.
 
 #include "core/base/conditions/given_in.h"
 

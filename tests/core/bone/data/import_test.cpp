@@ -255,7 +255,7 @@ TEST_F(ImportTest, WhatCannotBeABoneIsRefusedInASentence) {
   EXPECT_THAT(refusal("v.nrrd", nrrd_of(volume)), HasSubstr("whole numbers from 0 to 255"));
   volume.at(1, 1, 1) = 1;
   const std::string good = nrrd_of(volume);
-  // In our own words, and not in those of a library's functions.
+  // Sentences are in our own words, and not in those of a library's functions.
   EXPECT_THAT(refusal("v.nrrd", good.substr(0, good.size() - 5)),
               HasSubstr("v.nrrd: its values are damaged or incomplete"));
   EXPECT_THAT(refusal("v.nrrd", good.substr(0, 40)),

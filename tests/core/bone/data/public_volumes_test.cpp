@@ -134,7 +134,7 @@ std::string nrrd_in(const std::string& unit, double millimetres) {
   return nrrd_of(volume);
 }
 
-/// Without space: the first voxel lies at the origin.
+/// A NRRD file without space: the first voxel lies at the origin.
 std::string nrrd_of_spacings() {
   const PlainVolume volume = body();
   const std::string bytes = nrrd_of(volume);

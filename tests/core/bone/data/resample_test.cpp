@@ -105,7 +105,7 @@ TEST(ResampleTest, CoarserVoxelsTakeTheLabelOfMost) {
   const auto set = [&](std::size_t i, std::size_t j, std::size_t k, std::uint8_t label) {
     labels[i + 4 * (j + 2 * k)] = label;
   };
-  // To the left five of eight hold something, three of them 2; to the right three of eight.
+  // Five of eight voxels to the left hold something, three of them 2; to the right three of eight.
   set(0, 0, 0, 2), set(1, 0, 0, 2), set(0, 1, 0, 2), set(0, 0, 1, 5), set(1, 1, 1, 5);
   set(2, 0, 0, 2), set(3, 0, 0, 2), set(2, 1, 0, 2);
   const geometry::VoxelGrid grid{

@@ -150,7 +150,8 @@ TEST_P(DustPileTest, IsSymmetricAndAsSteepAsStated) {
       EXPECT_EQ(h, height(dust, j, i)) << i << ' ' << j;
     }
   }
-  // Along an axis and along a diagonal, from a little below the top to a little above the foot.
+  // Heights along an axis and along a diagonal, from a little below the top to a little above the
+  // foot.
   const int from = 2;
   const int to = foot - 3;
   ASSERT_GT(to, from + 4);
@@ -251,7 +252,7 @@ TEST(DustTest, AToolPushesDustOutOfItsWay) {
   count_inside();
   EXPECT_LT(inside, 0.5);
   EXPECT_NEAR(dust.balance().lying, 900.0, 1e-4);
-  // And it flows back into the hole.
+  // Dust flows back into the hole.
   dust.place({});
   settle(dust);
   tools.tools[0].length = 0.0;
@@ -272,7 +273,7 @@ std::vector<double> heights_in_basin(Dust& dust) {
   return heights;
 }
 
-/// Into a corner, until all is at rest.
+/// Pours dust into a corner, until all is at rest.
 void pour(Dust& dust) {
   for (int i = 0; i < 300; ++i) {
     dust.deposit({middle(12, 12, 9), 0.0, 1.0});

@@ -83,7 +83,7 @@ TEST(ThicknessTest, ThickBoneCountsAsTheLimitAndDrillingThinsIt) {
   parameters.limit = 3e-3;
   ASSERT_GT(volume.density(top), 0.0F);
   EXPECT_DOUBLE_EQ(*thickness_at(volume, top, parameters), 3e-3);
-  // From below, a hole of four voxels' radius up to four voxels under the top.
+  // A hole from below, of four voxels' radius, reaches up to four voxels under the top.
   for (int k = 14; k < 30; ++k) {
     for (int j = 16; j <= 32; ++j) {
       for (int i = 16; i <= 32; ++i) {

@@ -33,7 +33,7 @@ void wear(BoneVolume& volume, Left&& left) {
   }
 }
 
-/// In voxels from the grid's first.
+/// Position of a vertex in voxels from the grid's first.
 Vector3d in_voxels(const BoneVolume& volume, const SurfaceVertex& vertex) {
   return (place_of(vertex) - volume.grid().origin) / volume.grid().spacing;
 }

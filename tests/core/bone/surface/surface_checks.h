@@ -83,7 +83,8 @@ inline int branching_edges(std::span<const SurfaceTriangle> triangles) {
                                         [](const auto& edge) { return edge.second != 2; }));
 }
 
-/// By the divergence theorem; positive where triangles run anticlockwise seen from outside [m3].
+/// Enclosed volume by the divergence theorem; positive if triangles run anticlockwise seen from
+/// outside [m3].
 inline double enclosed_volume(std::span<const SurfaceVertex> vertices,
                               std::span<const SurfaceTriangle> triangles) {
   double volume = 0.0;

@@ -11,7 +11,7 @@
 namespace haptrial::bone {
 namespace {
 
-/// By the divergence theorem; above 0 where triangles face outwards.
+/// Volume by the divergence theorem; above 0 if triangles face outwards.
 double volume_of(const geometry::Mesh& mesh) {
   double sum = 0.0;
   for (const geometry::Triangle& t : mesh.triangles) {

@@ -30,7 +30,7 @@ int cut(BoneWorld& world, const CutPlane& plane, CutPlaneTool& tool, int most = 
   return ticks;
 }
 
-/// With z, the direction of the cut, along `normal`.
+/// Pose with z, the direction of the cut, along `normal`.
 Isometry3d looking(const Vector3d& normal, const Vector3d& at, double turn = 0.0) {
   Isometry3d pose(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal.normalized()) *
                   Eigen::AngleAxisd(turn, Vector3d::UnitZ()));
@@ -43,7 +43,7 @@ constexpr double kEdge = 0.5e-3;  // of a voxel of make_box [m]
 TEST(CutPlaneTest, ACutThroughABoxLeavesTwoPiecesOfExactSizes) {
   BoneWorld world(make_box({40, 20, 18}));
   const Vector3d middle = world.volume(0).grid().centre(25, 10, 9);
-  // From within layer 24 to within layer 26.
+  // The cut reaches from within layer 24 to within layer 26.
   const Vector3d from = middle - Vector3d(kEdge, 0, 0);
   CutPlaneTool tool;
   cut(world, {looking(Vector3d::UnitX(), from), 0.02, 0.02, 2 * kEdge}, tool);
@@ -213,7 +213,7 @@ TEST(CutPlaneTest, TheCutIsTheSameHoweverItIsSpreadAndThoughPiecesMoveAndSplitMe
   EXPECT_EQ(slow.removed().voxels, removed.voxels);
 }
 
-/// In slices, and thick enough that a single ray empties more than a step may.
+/// The cut goes in slices, and is thick enough that a single ray empties more than a step may.
 TEST(CutPlaneTest, EachVoxelIsToldOnceWithItsPieceAndLabelAndNoStepEmptiesTooMany) {
   BoneModel box = test::make_bone({30, 26, 700}, [](const Voxel& v) { return v.x() % 7 != 0; });
   for (std::size_t i = 0; i < box.labels.size(); ++i) {

@@ -59,7 +59,7 @@ class WildHand {
     } else if (kind < 0.45) {
       at_ += size_ * std::pow(10.0, random_.uniform(-14.0, 0.0)) * cube(1.0);
     } else if (kind < 0.7) {
-      // Through a point of the surface, exactly as far as rounding allows.
+      // The way goes through a point of the surface, exactly as far as rounding allows.
       const Vector3d target = on_surface();
       const double beyond = random_.below(2) == 0 ? 1.0 : random_.uniform(0.5, 3.0);
       at_ = target + beyond * (target - proxy);
@@ -114,7 +114,7 @@ struct Place {
   Vector3d by;
 };
 
-/// From the corners of a way to the surface, the least.
+/// Least distance from the corners of a way to the surface.
 double least_distance(const ContactSurface& surface, std::span<const Vector3d> way) {
   double least = std::numeric_limits<double>::infinity();
   for (const Vector3d& corner : way) {

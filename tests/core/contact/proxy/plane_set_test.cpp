@@ -24,7 +24,7 @@ class Planes {
     }
   }
   double uniform() { return random_.uniform(); }
-  /// Through the origin or below it; some nearly parallel to the one before.
+  /// A plane through the origin or below it; some nearly parallel to the one before.
   ContactPlane next() {
     const double turned = std::pow(10.0, random_.uniform(-1.0, 0.0));
     normal_ = random_.uniform() < 0.3 ? Vector3d((normal_ + turned * direction()).normalized())

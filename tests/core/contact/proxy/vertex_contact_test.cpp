@@ -83,7 +83,7 @@ class Corner {
     const Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
     const double start = random_->uniform(0.0, 2.0 * std::numbers::pi);
     const auto towards = [&](double a) -> Vector3d { return std::cos(a) * u + std::sin(a) * v; };
-    // From the foot of the origin to the side that is nearest.
+    // Distance from the foot of the origin to the side that is nearest.
     constexpr double kWithin = 0.15;
     const bool inside = random_->uniform(0.0, 1.0) < 0.5;
     const double side = inside ? kWithin : random_->uniform(-0.4, 4.0) * skin_.thickness;

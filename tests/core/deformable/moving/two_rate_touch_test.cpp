@@ -132,7 +132,7 @@ TEST(TwoRateTouchTest, HeldStillItFeelsWhatTheLoopsRateFeels) {
   }
 }
 
-/// Without friction, in and out of contact with up to 20 mm/s.
+/// The tool goes in and out of contact with up to 20 mm/s, without friction.
 TEST(TwoRateTouchTest, OnASmoothPathItFeelsWhatTheLoopsRateFeels) {
   TwoRateTouch two = slow_touch();
   MovingTouch one(soft_body(), ball(), kTick);
@@ -152,7 +152,7 @@ TEST(TwoRateTouchTest, OnASmoothPathItFeelsWhatTheLoopsRateFeels) {
   EXPECT_LT(two.counts().contact, 3900u);
 }
 
-/// As MovingTouchTest's: closed paths of a hand, smooth and shaking.
+/// The paths are those of MovingTouchTest: closed ones of a hand, smooth and shaking.
 TEST(TwoRateTouchTest, AClosedPathGivesNoEnergy) {
   for (const double shake : {0.0, 1e-4, 5e-4}) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {

@@ -57,7 +57,8 @@ TEST_F(SpringTangentTest, AtRestItSolvesAsCholmodDoes) {
   EXPECT_LT(apart, 1e-8 * largest);
 }
 
-// From a squeeze at which CHOLMOD finds the Hessian indefinite: not definite, and downhill.
+// The body is squeezed so far that CHOLMOD finds the Hessian indefinite: not definite, and
+// downhill.
 TEST_F(SpringTangentTest, ASqueezedBodyIsSeenToBeIndefinite) {
   const Vectors x = squeezed(0.7);
   ASSERT_FALSE(small_displacements(body_, holds_, x, force_));
@@ -73,7 +74,7 @@ TEST_F(SpringTangentTest, ASqueezedBodyIsSeenToBeIndefinite) {
   EXPECT_GT(work, 0);
 }
 
-// Between the two: whatever CHOLMOD says of a squeeze, it says too.
+// For squeezes between the two CHOLMOD and the tangent agree.
 TEST_F(SpringTangentTest, ItIsDefiniteWhereCholmodSaysSo) {
   for (const double share : {0.95, 0.85}) {
     SpringTangent tangent(body_, held_flags(body_.rest.size(), holds_));

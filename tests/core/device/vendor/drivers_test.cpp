@@ -32,7 +32,7 @@ std::vector<std::string> calls(const test::StandInSetup& setup) {
   return {std::istream_iterator<std::string>(text), {}};
 }
 
-/// Those of `wanted` that were called, in the order of the calls.
+/// Functions of `wanted` that were called, in the order of the calls.
 std::vector<std::string> order(const test::StandInSetup& setup,
                                const std::vector<std::string>& wanted) {
   std::vector<std::string> found;

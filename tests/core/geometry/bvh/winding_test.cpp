@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kExact = std::numeric_limits<double>::infinity();
 
-/// Without every `step`-th triangle.
+/// The mesh without every `step`-th triangle.
 Mesh with_holes(Mesh mesh, std::size_t step) {
   std::vector<Triangle> kept;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

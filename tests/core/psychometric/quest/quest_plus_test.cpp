@@ -127,7 +127,7 @@ PsiParameters wide_psi() {
   return p;
 }
 
-/// As after many trials: most cells have next to nothing.
+/// Sharpens a posterior as many trials do: most cells have next to nothing.
 void sharpen(std::vector<double>& posterior, double power) {
   double sum = 0.0;
   const double most = *std::max_element(posterior.begin(), posterior.end());
@@ -205,7 +205,7 @@ TEST(QuestPlusTest, ThePosteriorIsBayesRule) {
   const auto tables = std::make_shared<QuestTables>(definition);
   QuestPlus quest(tables, {10, 0.0});
   std::vector<double> expected = tables->prior();
-  // On the grid, then off it.
+  // The outcomes are on the grid, then off it.
   const std::vector<Outcome> outcomes{{2.0, quest.next()}, {0.0, {0.3, 1.1}}, {1.0, {-4.0, 0.0}}};
   for (const Outcome& outcome : outcomes) {
     double sum = 0.0;

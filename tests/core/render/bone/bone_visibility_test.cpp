@@ -17,7 +17,7 @@ using bone::Surface;
 using bone::SurfaceTriangle;
 using bone::Voxel;
 
-/// By the angle, in degrees, one triangle after the other.
+/// Triangles that face the eye by the angle, in degrees, one after the other.
 std::set<SurfaceTriangle> by_angles(const Surface& surface, const Eigen::Vector3d& eye) {
   std::set<SurfaceTriangle> visible;
   for (const SurfaceTriangle& t : bone::living(surface.triangles())) {

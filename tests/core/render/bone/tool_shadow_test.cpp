@@ -43,8 +43,8 @@ double distance_to(const Capsule& capsule, const Eigen::Vector3d& p) {
   return distance_of_segments(p, p, capsule.from, capsule.to);
 }
 
-/// As bone-look.md has it: nearness up to four radii; a shadow after a way s between r + 0.25 s +
-/// 0.1 r, up to 40 mm.
+/// Whether a point may be darker by the law of bone-look.md: nearness up to four radii; a shadow
+/// after a way s between r + 0.25 s + 0.1 r, up to 40 mm.
 bool may_be_darker(const Capsule& capsule, const Eigen::Vector3d& p) {
   if (distance_to(capsule, p) < 4.0 * capsule.radius) {
     return true;

@@ -153,7 +153,7 @@ TEST_F(PowerSimulateTest, TheBatchScriptNamesTheQuestionAsItIs) {
   ASSERT_EQ(plan.status, 0) << plan.errors;
   EXPECT_THAT(plan.output, HasSubstr("8 parts of about "));
   EXPECT_THAT(read_text(folder_ / "plan.sbatch"), HasSubstr("#SBATCH --array=1-3\n"));
-  // To the script itself, which the program has become by exec.
+  // The signal goes to the script itself, which the program has become by exec.
   EXPECT_THAT(read_text(folder_ / "plan.sbatch"), HasSubstr("#SBATCH --signal=B:TERM@60\n"));
   // The command that Slurm runs, three times: the last task makes what was missing.
   const CommandResult tasks =

@@ -62,7 +62,7 @@ std::span<const Row> piece(const std::vector<Row>& rows, std::uint64_t first, st
   return {low, std::lower_bound(low, rows.end(), end, before)};
 }
 
-/// As the logs are emptied: other rows are up to some ticks ahead of the samples.
+/// Gives rows as the logs are emptied: other rows are up to some ticks ahead of the samples.
 void give(LiveDrilling& live, const test::DrillingRows& rows, std::uint64_t slice,
           std::uint64_t ahead) {
   const std::uint64_t end = rows.samples.back().sequence + 1;

@@ -31,7 +31,7 @@ std::shared_ptr<const BoneStage> stage() {
 struct View {
   explicit View(const BoneDefinition& definition)
       : drawing(bone_drawing(definition, stage(), nullptr)(context.gl(), kWidth, kHeight)) {}
-  /// At rest: from the second picture on only what faces the eye is drawn.
+  /// Picture of a bone at rest: from the second picture on only what faces the eye is drawn.
   std::vector<std::uint8_t> picture() {
     drawing->draw({});
     drawing->draw({});

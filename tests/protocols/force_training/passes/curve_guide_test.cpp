@@ -122,7 +122,7 @@ TEST(CurveGuideTest, ItHoldsAcrossThePathAndIsFreeAlongIt) {
       ASSERT_NEAR(m.out.force.y(), 2000.0 * 0.001, 1e-6) << "the plane holds";
     }
   }
-  // In the plane, beside the path.
+  // The hand is in the plane, beside the path.
   GuidanceParameters gains = own_pace();
   gains.trajectory = {900.0, 0.0};
   const auto other = pass_of("visual", Phase::kTraining, gains);

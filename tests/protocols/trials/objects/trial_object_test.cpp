@@ -37,7 +37,7 @@ std::vector<TrialObject> read(const std::string& text) {
   return objects;
 }
 
-/// By the divergence theorem.
+/// Volume by the divergence theorem.
 double signed_volume(const geometry::Mesh& mesh) {
   double sum = 0.0;
   for (const geometry::Triangle& t : mesh.triangles) {
@@ -219,7 +219,7 @@ TEST(TrialObjectTest, CalibratedConstantsAreThoseOfABodyOfTheSameCells) {
         "thing = { kind = \"deformable\", shape = \"box\", size = [0.04, 0.04, 0.03], cells = " +
         std::to_string(cells) + ", model = \"springs\", calibrated = \"constants.csv\" }");
   };
-  // As haptrial deform calibrate makes them for [body] block = [0.04, 0.04, 0.03].
+  // Constants as haptrial deform calibrate makes them for [body] block = [0.04, 0.04, 0.03].
   const deformable::SpringBody body = deformable::spring_body(
       deformable::block_body({0.04, 0.04, 0.03}, 4), 1000.0, {1.0, 2.0, 3.0});
   deformable::SpringConstants constants = body.constants;

@@ -18,7 +18,8 @@ constexpr double kDt = 1e-3;
 constexpr std::uint64_t kFirst = 5000;  // sequence number
 constexpr int kStage = 10;              // ticks before the question
 
-/// Left at x = -30 mm, right at x = 30 mm, both of radius 10 mm; not sure by the pedal.
+/// A question by hand: left at x = -30 mm, right at x = 30 mm, both of radius 10 mm; not sure by
+/// the pedal.
 Question by_hand() {
   Question q;
   q.name = "side";
@@ -83,7 +84,7 @@ TEST_F(AnswersTest, APlaceAnswersWhenTheTipStaysInItAndIsTimedWhenItComesIn) {
   EXPECT_EQ(answer.choice, 1);
   EXPECT_EQ(answer.source, ResponseSource::kPlace);
   EXPECT_EQ(answer.code, 1);
-  // It came in on tick 10 + 300 + 49 + 40, counted from 0, 390 ticks of the question.
+  // The answer came in on tick 10 + 300 + 49 + 40, counted from 0, 390 ticks of the question.
   EXPECT_EQ(answer.sequence, kFirst + kStage + 389);
   EXPECT_DOUBLE_EQ(answer.reaction_time, 390 * kDt);
   EXPECT_EQ(ticks_, kStage + 389 + 51);  // and had stayed for 50 ms

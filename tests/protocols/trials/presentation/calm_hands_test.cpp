@@ -123,7 +123,7 @@ device::EnvelopeLimits limits() {
   return wide;
 }
 
-/// As a pass of trials does it.
+/// Feels a scene as a pass of trials does.
 PassOutput feel(scene::Scene& scene, const device::DeviceReading& reading,
                 std::uint64_t gives_way) {
   PassOutput out;

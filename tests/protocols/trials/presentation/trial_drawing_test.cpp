@@ -187,7 +187,7 @@ TEST_F(TrialDrawingTest, ShowsEachEyeItsOwnDotsInItsHalf) {
   view.dots.dots.height = 0.03;
   view.dots.dots.width = 0.08;
   const render::Image image = picture_of(view, "random-dots");
-  // In pixels of ink, those that an edge covers in part counted in part.
+  // Area in pixels of ink, those that an edge covers in part counted in part.
   const double paper = image.rgb[0];
   const double ink = *std::min_element(image.rgb.begin(), image.rgb.end());
   const auto dark_in = [&](int from, int to) {

@@ -74,7 +74,7 @@ TEST_F(StageMachineTest, WhatHasToHoldHoldsWithoutABreak) {
   stage.until.inside = 0b1;
   stage.until.hold = 0.1;
   StageMachine m = machine({stage});
-  // In the ball from 0.2 s on, but for one tick at 0.25 s.
+  // The hand is in the ball from 0.2 s on, but for one tick at 0.25 s.
   const int ticks = run(m, [](double t) {
     const bool out = t < 0.2 - 1e-9 || std::abs(t - 0.25) < 1e-9;
     return at_height(out ? 0.02 : 0.005);
@@ -167,7 +167,7 @@ TEST_F(StageMachineTest, TheOnsetOfAMovementIsKnownToTheTick) {
   reach.until.inside = 0b1;
   reach.onset_speed = 0.03;
   StageMachine m = machine({reach});
-  // From rest with 0.2 m/s²: faster than 0.03 m/s after 0.15 s.
+  // The hand starts from rest with 0.2 m/s²: faster than 0.03 m/s after 0.15 s.
   run(m, [](double t) { return at_height(0.1 - 0.1 * t * t, -0.2 * t); });
   EXPECT_EQ(m.times()[0].onset, 151);
   EXPECT_NEAR(static_cast<double>(m.times()[0].end), 1e3 * std::sqrt(0.09 / 0.1), 1.0);
