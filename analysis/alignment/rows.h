@@ -28,7 +28,7 @@ class RowSearch {
  private:
   const kernel::Kernels& kernels_;
   WorkBuffer<double> values_;
-  WorkBuffer<std::uint8_t> ways_;
+  WorkBuffer<std::uint8_t> directions_;
 };
 
 /// Sakoe and Chiba's band around the straight line from (0,0) to (rows - 1, columns - 1).

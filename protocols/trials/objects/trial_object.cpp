@@ -181,7 +181,7 @@ void load_mesh(TrialObject& object, const std::filesystem::path& file) {
   object.file_bytes = bytes.size();
   object.file_checksum = fnv1a(bytes);
   if (object.yields) {
-    object.felt = std::make_shared<const deformable::HapticMesh>(deformable::felt_object(
+    object.felt = std::make_shared<const deformable::HapticMesh>(deformable::felt_solid(
         object.body->mesh, object.cells, object.sides, "objects." + object.name));
   }
 }
