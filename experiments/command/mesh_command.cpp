@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kGigabyte = 1e9;
 
-/// What Linux could give without swapping; infinite where it does not say.
+/// Memory that Linux could give without swapping; infinite if it does not say.
 double available_memory() {
   std::ifstream info("/proc/meminfo");
   std::string key;

@@ -11,7 +11,7 @@
 
 namespace haptrial::experiments {
 
-/// What every subcommand of haptrial mesh takes.
+/// Input of every subcommand of haptrial mesh.
 struct MeshInput {
   std::string file;
   double scale{1.0};                 // metres to the file's unit

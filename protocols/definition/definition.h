@@ -33,11 +33,11 @@ namespace haptrial::protocols {
 
 enum class Integrator { kExact, kCvode };
 
-/// What an analog pedal is for: nothing; something that keys or buttons do as well; something that
+/// Use of an analog pedal: nothing; something that keys or buttons do as well; something that
 /// nothing else does.
 enum class PedalUse : std::uint8_t { kNone, kBeside, kOnly };
 
-/// What a definition file states, read and valid as a whole: here what every protocol's does, loop,
+/// A definition file, read and valid as a whole: here the parts that every protocol has, loop,
 /// plan, devices, hand, screen. A protocol derives its own, and answers what is asked of it.
 struct Definition {
   virtual ~Definition() = default;
@@ -59,8 +59,8 @@ struct Definition {
   SessionTexts texts;
   haptrial::pages::PagePlan pages;  // beside the trials
   std::string language;             // of the texts; empty: the definition's own
-  // Of the devices that may take the virtual one's place; a table that is left out has its
-  // defaults.
+  // Parameters of the devices that may take the virtual one's place; a table that is left out has
+  // its defaults.
   device::ForceDimensionParameters force_dimension{};
   device::OpenHapticsParameters open_haptics{};
   device::MouseParameters mouse{};
@@ -80,26 +80,26 @@ struct Definition {
   virtual std::vector<std::string> margins() const { return {}; }
   /// Sentences on what is allowed but spoils the data without a word. None where all is well.
   virtual std::vector<std::string> warnings() const { return {}; }
-  /// What a session leaves out when its participant is virtual, in sentences.
+  /// Parts that a session leaves out when its participant is virtual, in sentences.
   virtual std::vector<std::string> left_out_of_dry_runs() const { return {}; }
-  /// What scripts beside it hold on which its sessions depend; empty: it has none.
+  /// Texts of the scripts beside the definition on which its sessions depend; empty: it has none.
   virtual std::string scripts() const { return {}; }
   /// Time of a participant's session at most, roughly, without breaks [s]. @param trials  of it
   virtual double longest(int trials) const = 0;
 
-  /// What the codes of its markers stand for: here a trial and the stages of /samples.
+  /// Meanings of the codes of its markers: here a trial and the stages of /samples.
   virtual std::vector<markers::MarkerMeaning> marker_meanings() const;
-  /// What it plays beside what the protocol sounds like itself; null: nothing.
+  /// Sounds that the session plays beside those of the protocol itself; null: none.
   virtual const sound::CueSet* sounds() const { return nullptr; }
   /// Whether a session with a person wants a sound card.
   virtual bool is_heard() const { return sounds() != nullptr; }
 
-  /// What a session streams beside its samples, from tables of the protocol's own.
+  /// Streams of a session beside its samples, from tables of the protocol's own.
   virtual std::vector<stream::SideStream> side_streams() const { return {}; }
 
   /// Whether there is a force that the participant is to follow or to recall.
   virtual bool has_target() const { return true; }
-  /// What the participant reads before the first trial.
+  /// Text that the participant reads before the first trial.
   virtual std::string instructions() const { return texts.instructions; }
   /// The functions of the protocol's own that held keys of the participant's window stand for, a
   /// bit each but kPauseBit. @param held  codes of the window
@@ -107,7 +107,7 @@ struct Definition {
     static_cast<void>(held);
     return 0;
   }
-  /// What DeviceReading::keys has while keys are held: functions_of(held), and kPauseBit.
+  /// Bits of DeviceReading::keys while keys are held: functions_of(held), and kPauseBit.
   std::uint32_t bits_of(const std::vector<int>& held) const;
 };
 

@@ -32,7 +32,7 @@ void refuse_key_outside_tables(const std::string& text, const std::string& file)
   }
 }
 
-/// What is not a machine's, or is in the definition as well.
+/// Checks for tables that are not a machine's, or are in the definition as well.
 void check_tables(Table& lab, const Table& definition, const std::string& definition_file) {
   const std::vector<std::string>& allowed = machine_tables();
   for (const std::string& key : lab.keys()) {

@@ -21,7 +21,8 @@ std::string own_begin(const fs::path& definition) { return definition.stem().str
 constexpr std::string_view kCommonBegin = "texts.";
 constexpr std::string_view kEnd = ".toml";
 
-/// What stands between the two; empty if it is another name or no language's.
+/// Language between the beginning and the end of a file's name; empty if it is another name or no
+/// language's.
 std::string between(const std::string& name, std::string_view begin) {
   if (!name.starts_with(begin) || !name.ends_with(kEnd) ||
       name.size() <= begin.size() + kEnd.size()) {

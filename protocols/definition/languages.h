@@ -23,7 +23,7 @@ void check_language(const std::string& language);
 /// The languages for which a definition has a file of its own or its folder has one, by name.
 std::vector<std::string> languages_of(const std::filesystem::path& definition);
 
-/// What a definition's texts are in a language: those of its file, and the program's own words.
+/// Texts of a definition in a language: those of its file, and the program's own words.
 /// @throws InputError if there is neither, or the file is wrong
 Translations translations_for(const std::filesystem::path& definition, const std::string& language);
 

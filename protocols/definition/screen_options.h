@@ -31,7 +31,7 @@ struct ScreenOptions {
   bool participant_steers{false};  // by its keys: start, pause, repeat, skip, clear, abort
 };
 
-/// What the participant reads. The first line of a text is its title.
+/// Texts that the participant reads. The first line of a text is its title.
 struct SessionTexts {
   std::string instructions;  // before the first trial
   std::string practice;      // before the practice trials

@@ -56,7 +56,7 @@ const Schema<TutoringOptions>& tutoring_schema();
 /// Whether who is led asks a playback to wait. Servo thread.
 bool asks_to_wait(const TutoringOptions& options, const device::DeviceReading& reading) noexcept;
 
-/// What one side of a link is made of.
+/// Parameters of one side of a link.
 network::SideParameters side_parameters(const TutoringOptions& options);
 
 }  // namespace haptrial::protocols

@@ -21,8 +21,8 @@ struct BoundKey {
   std::string absent{};  // the value that leaving the key out means, "1"; empty: none is known
 };
 
-/// What may change between sessions of one study, which the caller knows from what its tables mean.
-/// A key that no list has may not change, an unknown one neither.
+/// Changes that sessions of one study may have, which the caller knows from the meaning of its
+/// tables. A key that no list has may not change, an unknown one neither.
 struct DefinitionRules {
   std::vector<std::string> free{};  // tables with all they hold, "screen", and keys, "design.seats"
   std::vector<BoundKey> bound{};    // exceptions among them
@@ -33,7 +33,7 @@ struct DefinitionRules {
   void add(const DefinitionRules& more);
 };
 
-/// What two definitions differ in. Comments, layout, the order of keys, and whether a number is
+/// Differences of two definitions. Comments, layout, the order of keys, and whether a number is
 /// written 1 or 1.0, are no differences.
 struct DefinitionChanges {
   std::vector<DefinitionChange> binding;  // of what is presented, recorded or scored

@@ -18,7 +18,7 @@
 
 namespace haptrial {
 
-// What a Table is made of; for the files that implement it.
+// Parts of a Table; for the files that implement it.
 
 /// 0 where nothing is written.
 inline unsigned line_of(const toml::node* node) {

@@ -20,7 +20,7 @@ namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
 
-/// Where the report of a folder of sessions goes: that of its pilots must not replace the study's.
+/// Folder for the report of a folder of sessions: that of its pilots must not replace the study's.
 fs::path report_folder(const fs::path& folder, Pilots pilots) {
   return pilots == Pilots::kAlone ? folder / "pilots" : folder;
 }

@@ -167,7 +167,7 @@ struct GivenRecording {
   evaluation::EvaluationNames names;
 };
 
-/// What a session file keeps has one clock and no load.
+/// Reads the given recording; the streams of a session file have one clock and no load.
 GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& prepare) {
   const fs::path first(o.recording.front());
   evaluation::EvaluationNames names{first.filename().string(), fs::path(o.mesh).filename().string(),

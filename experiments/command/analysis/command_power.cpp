@@ -139,7 +139,7 @@ T value_of(const analysis::Defined<T>& result) {
   return *result;
 }
 
-/// What is known once the third of effect, size and power is computed.
+/// Plan once the third of effect, size and power is computed.
 struct Plan {
   double effect{0.0};
   long n{0};

@@ -7,7 +7,7 @@
 #include "core/deformable/calibration/calibrate.h"
 namespace haptrial::experiments {
 
-/// What a calibration is judged by under one load.
+/// Measures of a calibration under one load.
 struct JudgedLoad {
   std::string name;
   bool unseen{false};

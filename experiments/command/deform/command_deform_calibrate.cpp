@@ -94,7 +94,7 @@ void check_together(const DeformCalibrateOptions& o) {
   }
 }
 
-/// Where the body is under each load, by elements or by a file.
+/// Positions of the body under each load, by elements or by a file.
 std::vector<CalibrationLoad> answered(const DeformBody& body, const std::vector<NamedLoad>& loads,
                                       const MemoryBudget& budget) {
   const deformable::ElasticBody elastic(body.mesh, body.elasticity);

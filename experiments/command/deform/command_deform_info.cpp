@@ -58,7 +58,7 @@ Shape shape_of(const TetMesh& mesh, const Tetrahedron& t) {
   return shape;
 }
 
-/// What the tetrahedra are like; whether all are good.
+/// Prints the shapes of the tetrahedra.
 bool print_shapes(const TetMesh& mesh) {
   double volume = 0.0, angle = std::numbers::pi;
   std::size_t inverted = 0, flat = 0, first_bad = mesh.tetrahedra.size();
@@ -116,7 +116,8 @@ void print_memory(const TetMesh& mesh) {
              needs(deformable::LinearSolver::kCholesky));
 }
 
-/// Of elements at rest with lumped masses, as an explicit method would need.
+/// Prints mass and the longest step of elements at rest with lumped masses, as an explicit method
+/// would need it.
 void print_material(const DeformBody& body) {
   const deformable::ElasticBody elastic(body.mesh, body.elasticity);
   double mass = 0.0;

@@ -21,7 +21,7 @@ namespace {
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-/// What one load gave.
+/// Answer to one load.
 struct Answer {
   std::string load;
   std::vector<Vector3d> displacement;

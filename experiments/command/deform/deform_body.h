@@ -11,7 +11,7 @@
 
 namespace haptrial::experiments {
 
-/// What a file states, made.
+/// Body of a file, ready for use.
 struct DeformBody {
   deformable::DeformSetup setup;
   geometry::TetMesh mesh;

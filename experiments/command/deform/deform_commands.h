@@ -9,7 +9,7 @@ namespace haptrial::experiments {
 /// The subcommands of haptrial deform: each prints to standard output and returns an exit status.
 /// Bad input and failures come as InputError and RunError.
 
-/// What every one of them takes.
+/// Input of every one of these commands.
 struct DeformInput {
   std::string file;                  // .toml that states a body; of info also a mesh
   std::optional<double> max_memory;  // [GB]; default: what the system has free

@@ -89,7 +89,7 @@ std::vector<NamedLoad> touches_of(const DeformBody& body, const deformable::Setu
       throw InputError(fmt::format("load '{}': the tool touches vertex {}, which is held",
                                    touch.load.name, vertex));
     }
-    // What the object does to the tool the tool does to the object.
+    // The tool acts on the object as the object on the tool, the other way round.
     touch.load.forces.push_back({vertex, Vector3d(-force.force[i])});
     touches.push_back(std::move(touch));
   }

@@ -61,7 +61,7 @@ std::string instructions(bool sheets, bool halves) {
              kSheetFile, halves ? " or half" : "");
 }
 
-/// What happened to the bone and when, without who did it.
+/// Fingerprint of the bone's changes and their times, without the participant.
 std::uint64_t fingerprint(const record::SessionReader& session, int trial) {
   Fnv1a hash;
   const std::vector<record::RemovalRow> removals = session.rows<record::RemovalRow>();

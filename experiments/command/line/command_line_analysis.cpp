@@ -1,4 +1,5 @@
-// What was recorded, here or elsewhere: scores, tests, other programs' forms; sizes of studies.
+// Commands on recorded data, of here or elsewhere: scores, tests, other programs' forms; sizes of
+// studies.
 #include "experiments/command/analysis_commands.h"
 #include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"

@@ -13,7 +13,7 @@ namespace haptrial::experiments {
 /// @throws InputError for a missing or unknown subcommand and for an unknown option.
 void check_words(const CLI::App& app, std::span<char* const> words);
 
-/// What CLI11 found wrong with the words, with the page of help that tells more.
+/// CLI11's sentence about the words, with the page of help that tells more.
 std::string sentence_of(const CLI::App& app, std::span<char* const> words,
                         const CLI::ParseError& error);
 

@@ -8,7 +8,7 @@ namespace haptrial::experiments {
 
 // How a file that adds subcommands describes them. `status` is that of declare_subcommands().
 
-/// What the help says below the options, apart from the example.
+/// Notes of the help below the options, apart from the example.
 struct HelpNotes {
   const char* writes{""};  // files: "Writes WRITES."
   const char* page{""};    // below docs/

@@ -30,7 +30,7 @@ double seconds_of_a_unit(const PowerQuestion& question, const std::vector<PowerU
   return longest;
 }
 
-/// What a task may take [MB]: twice what this process took for a few units, in steps of 256.
+/// Memory that a task may take [MB]: twice what this process took for a few units, in steps of 256.
 int megabytes_of_a_task() {
   constexpr double kMargin = 2.0, kStep = 256.0, kKilobytes = 1024.0;
   rusage used{};

@@ -43,7 +43,7 @@ struct DeviceUnderTest {
 /// A hand that is firm enough to try the workspace within a second.
 constexpr device::CoupledMassParameters kFirmHand{1.0, 2000.0, 90.0};
 
-/// Where a hand goes that tries one axis after the other, there and back.
+/// Path of a hand that tries one axis after the other, there and back.
 Eigen::Vector3d sweep(CheckPart part, double share, double radius) {
   const double start = DeviceCheck::start_of(CheckPart::kMove);
   const double sweep = (share - start) / (DeviceCheck::start_of(CheckPart::kPush) - start);

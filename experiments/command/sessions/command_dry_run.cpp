@@ -99,7 +99,7 @@ static std::string first_abort(const fs::path& session) {
   return "without a reason";
 }
 
-/// Where pictures were written; an empty folder for them goes.
+/// Sentence about the folder with pictures; an empty one is removed.
 static std::string pictures_in(const fs::path& folder) {
   const fs::path frames = folder / "frames";
   if (!fs::is_empty(frames)) {

@@ -90,7 +90,7 @@ void print_progress(const record::SessionReader& reader, const record::Integrity
                                                              : "; the session is unfinished");
 }
 
-/// What a person did or has to know; the rest is in /events.
+/// Whether a kind of event is one that a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
   constexpr std::array<std::string_view, 17> kTold{"consent_declined",
                                                    "consent_by_experimenter",

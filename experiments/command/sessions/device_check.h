@@ -15,7 +15,7 @@ namespace haptrial::experiments {
 /// The parts of a device's check, in their order.
 enum class CheckPart : std::uint8_t { kRest, kMove, kPush, kButton, kDone };
 
-/// What a check found.
+/// Result of a check.
 struct DeviceFindings {
   device::Fault fault{device::Fault::kNone};
   const char* trouble{""};                           // the device's own words for it

@@ -17,7 +17,7 @@
 namespace haptrial::experiments {
 namespace {
 
-/// What both sides present follows from it.
+/// Checksum of all that both sides' presentation follows from.
 std::array<unsigned char, 32> study_of(const SessionRequest& request,
                                        const protocols::Definition& definition) {
   return network::checksum_of(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", program_version(),

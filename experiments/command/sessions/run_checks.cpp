@@ -114,8 +114,8 @@ struct EarlierSession {
   record::SessionInfo info;
 };
 
-/// Of the folder that are of the same kind, finished or not, by name. What cannot be read says
-/// nothing about the study: `analyze` names it.
+/// Sessions of the same kind in the folder, finished or not, by name. A file that cannot be read
+/// says nothing about the study: `analyze` names it.
 /// @param own  file of the session that is to be recorded
 std::vector<EarlierSession> earlier_sessions(const RunOptions& options, const fs::path& own) {
   std::vector<EarlierSession> sessions;

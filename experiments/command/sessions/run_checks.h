@@ -12,7 +12,7 @@ class Protocol;
 
 namespace haptrial::experiments {
 
-/// What `run` refuses before a device is opened or anything moves, in the words of its options.
+/// Refusals of `run` before a device is opened or anything moves, in the words of its options.
 
 /// @throws InputError for options that contradict each other or would have no effect.
 void check_run_options(const RunOptions& options);

@@ -61,7 +61,7 @@ int run(const RunOptions& options);
 /// Makes the file of a secret that two sides of a link share.
 int make_secret(const std::string& file);
 
-/// Who has done what in a study, and who is next.
+/// Options of the roster: past sessions of a study, and the next one.
 struct RosterOptions {
   std::string definition;
   std::string folder;               // of session files

@@ -14,7 +14,7 @@
 namespace haptrial::experiments {
 namespace {
 
-/// What follows the comment's sign; the line is one of a comment.
+/// Text after the comment's sign; the line is one of a comment.
 std::string_view words_of(std::string_view line) {
   const std::size_t first = line.find_first_not_of("# ");
   return first == std::string_view::npos ? std::string_view() : line.substr(first);

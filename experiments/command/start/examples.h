@@ -25,7 +25,7 @@ std::string definition_or_example(const std::string& given);
 /// The first sentence of its first comment: what it is.
 std::string what_of(const Example& example);
 
-/// Its text with another name of the experiment, all else as it stands.
+/// Text of the example with another name of the experiment, all else as it stands.
 std::string renamed(const Example& example, std::string_view name);
 
 }  // namespace haptrial::experiments

@@ -10,7 +10,7 @@ namespace haptrial::experiments {
 /// @throws InputError where OUT is no .nrrd, or is there and not to be overwritten.
 void check_new_bone(const BoneOptions& options);
 
-/// What --as, --spacing, --threshold, --dense, --labels, --without and --mirror say.
+/// Options of --as, --spacing, --threshold, --dense, --labels, --without and --mirror.
 /// @param budget  outlives the options
 /// @throws InputError
 bone::LoadOptions load_options(const BoneOptions& options, const MemoryBudget& budget);

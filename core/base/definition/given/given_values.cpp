@@ -58,7 +58,8 @@ std::string refusal(std::string_view file_name, const std::string& key, const st
                      file_name, part, key);
 }
 
-/// What a table's own keys begin with: behind its header, or behind the brace of an inline one.
+/// Offset at which a table's own keys begin: behind its header, or behind the brace of an inline
+/// one.
 std::size_t inside(std::string_view text, const toml::table& table) {
   const std::size_t begin = byte_of(text, table.source().begin);
   if (table.is_inline()) {
