@@ -15,9 +15,9 @@
 #include "core/base/text/exception_words.h"
 #include "core/realtime/histogram.h"
 #include "core/realtime/latest_value.h"
-#include "experiments/screen/participant_canvas.h"
 #include "experiments/screen/frame_pacing.h"
 #include "experiments/screen/pad_pointer.h"
+#include "experiments/screen/participant_canvas.h"
 
 namespace haptrial::experiments {
 namespace {

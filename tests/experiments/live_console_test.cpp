@@ -84,7 +84,8 @@ TEST_F(LiveConsoleTest, WhatIsClickedIsDoneAndIsInTheFile) {
                                              "trial 1 attempt 2 training aborted",
                                              "trial 2 attempt 1 training aborted",
                                              "trial 2 attempt 2 training aborted"));
-  EXPECT_THAT(texts_of(reader, "note"), testing::ElementsAre("trial 1: hand rested, \u00e9 <b>&amp;"));
+  EXPECT_THAT(texts_of(reader, "note"),
+              testing::ElementsAre("trial 1: hand rested, \u00e9 <b>&amp;"));
   EXPECT_THAT(texts_of(reader, "emergency_stop"), testing::SizeIs(1));
   EXPECT_THAT(
       texts_of(reader, "aborted"),

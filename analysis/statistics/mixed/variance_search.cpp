@@ -53,8 +53,8 @@ std::optional<VectorXd> descent(const MatrixXd& matrix, const VectorXd& slope) {
     return std::nullopt;
   }
   const VectorXd scale = diagonal.cwiseSqrt().cwiseInverse();
-  const std::optional<MatrixXd> solved = solve_positive(
-      scale.asDiagonal() * matrix * scale.asDiagonal(), scale.cwiseProduct(slope));
+  const std::optional<MatrixXd> solved =
+      solve_positive(scale.asDiagonal() * matrix * scale.asDiagonal(), scale.cwiseProduct(slope));
   if (!solved) {
     return std::nullopt;
   }

@@ -19,7 +19,7 @@ struct SerialEffects {
   SerialCoefficients effects;              // less those by chance
   std::size_t easy{0};                     // trials at levels where S > 0.99
   std::size_t easy_wrong{0};               // of them with answer 0
-  std::size_t limited{0};  // trials whose level is not the one that was asked for
+  std::size_t limited{0};                  // trials whose level is not the one that was asked for
 };
 
 /// The regressions of serial_coefficients() beside the fitted function of each series. Where levels

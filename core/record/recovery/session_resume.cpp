@@ -4,8 +4,8 @@
 #include <iterator>
 
 #include "core/base/error.h"
-#include "core/record/read/tick_rows.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/read/trial_facts_of.h"
 #include "core/record/recovery/repair.h"
 #include "core/record/table/schema.h"

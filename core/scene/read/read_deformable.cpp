@@ -124,7 +124,7 @@ void read_material(Table& table, DeformableObjectParameters& p) {
 }  // namespace
 
 Field read_deformable(Table& table, std::string name, const deformable::SharedHapticMesh& mesh,
-                    std::shared_ptr<const deformable::SpringConstants> calibrated) {
+                      std::shared_ptr<const deformable::SpringConstants> calibrated) {
   Field field;
   field.name = std::move(name);
   read_limits(table, field);

@@ -18,6 +18,6 @@ namespace haptrial::scene {
 /// @param mesh  null: it is not known yet, nothing is felt
 /// @param calibrated  the constants of `calibrated`; null: they are not known yet
 Field read_deformable(Table& table, std::string name, const deformable::SharedHapticMesh& mesh,
-                    std::shared_ptr<const deformable::SpringConstants> calibrated = nullptr);
+                      std::shared_ptr<const deformable::SpringConstants> calibrated = nullptr);
 
 }  // namespace haptrial::scene

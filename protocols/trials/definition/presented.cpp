@@ -24,7 +24,7 @@ std::vector<scene::Field> read_felt_objects(Table& table, const TrialsDefinition
     if (known && object->moves && d.devices() > 1 && !own.has("device")) {
       own.reject("device", "is missing; name the device whose tool feels the body of springs");
     }
-    objects.push_back(known && object->deformable
+    objects.push_back(known && object->yields
                           ? scene::read_deformable(own, name, object->felt, object->constants)
                           : scene::read_rigid(own, name, known ? object->body : nullptr));
   }

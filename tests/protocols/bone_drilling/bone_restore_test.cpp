@@ -11,10 +11,10 @@
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
-#include "core/record/rows/common_tables.h"
-#include "core/record/rows/trial_facts.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/common_tables.h"
+#include "core/record/rows/trial_facts.h"
 #include "core/record/write/session_writer.h"
 #include "experiments/runner/session.h"
 #include "protocols/bone_drilling/bone_protocol.h"
@@ -67,10 +67,9 @@ class BoneRestoreTest : public testing::Test {
 
   /// Tables that a session of drilling has.
   static record::TableList tables() {
-    return record::with_tables(record::drilling_tables(),
-                               {&record::table_of<record::DampingRow>(),
-                                &record::table_of<record::OpeningRow>(),
-                                &record::table_of<record::FieldRow>()});
+    return record::with_tables(record::drilling_tables(), {&record::table_of<record::DampingRow>(),
+                                                           &record::table_of<record::OpeningRow>(),
+                                                           &record::table_of<record::FieldRow>()});
   }
 
   /// FILE.partial as a crash leaves it: without a row for the pass that was under way.

@@ -1,5 +1,5 @@
-#include "protocols/definition/handle_loop.h"
 #include "protocols/interface/study_rules.h"
+#include "protocols/definition/handle_loop.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

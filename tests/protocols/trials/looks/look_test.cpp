@@ -106,8 +106,7 @@ TEST(RandomDotsTest, NeitherEyeAloneTellsTheHeight) {
 }
 
 TEST(RandomDotsTest, RefusesImpossibleEyes) {
-  EXPECT_THROW(dots_for_eye(bar(), kScreen, {0.0, 0.0}, {0.06, 0.0}, -1, 1),
-               std::invalid_argument);
+  EXPECT_THROW(dots_for_eye(bar(), kScreen, {0.0, 0.0}, {0.06, 0.0}, -1, 1), std::invalid_argument);
 }
 
 }  // namespace
