@@ -101,8 +101,12 @@ std::vector<Phenotype> phenotypes(std::span<const Session> sessions) {
   for (const Session& session : sessions) {
     several = several || !session.session.empty();
     const record::SessionReader reader(session.source.file);
-    for (const AnswerRow& row : reader.rows<AnswerRow>()) {
-      add_answer(session, row, pages);
+    const std::vector<AnswerRow> rows = reader.rows<AnswerRow>();
+    const std::vector<bool> standing = record::standing_answers(rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (standing[i]) {
+        add_answer(session, rows[i], pages);
+      }
     }
   }
   std::vector<Phenotype> made;

@@ -187,8 +187,16 @@ void add_rows(ProtocolTable& own, const ExportSession& session,
   if (own.text.empty()) {
     own.text = heading(column_docs(*own.table), Delimited::kCsv);
   }
+  std::vector<bool> counts(reader.count(*own.table), true);
+  if (own.table == &record::table_of<record::AnswerRow>()) {
+    counts = record::standing_answers(reader.rows<record::AnswerRow>());
+  }
   RowText row(own.text, Delimited::kCsv);
+  std::size_t place = 0;
   reader.each_row(*own.table, [&](const std::vector<record::Cell>& cells) {
+    if (!counts[place++]) {
+      return;
+    }
     row.add(session.info.subject).add(session.number);
     for (const record::Cell& cell : cells) {
       std::visit([&](const auto& value) { row.add(value); }, cell);

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::pair<Request, const char*>, 10> kNames{{
+constexpr std::array<std::pair<Request, const char*>, 11> kNames{{
     {Request::kStart, "start"},
     {Request::kPause, "pause"},
     {Request::kRepeatTrial, "repeat"},
@@ -24,6 +24,7 @@ constexpr std::array<std::pair<Request, const char*>, 10> kNames{{
     {Request::kClear, "clear"},
     {Request::kTakeLead, "take_lead"},
     {Request::kHandOver, "hand_over"},
+    {Request::kBack, "back"},
 }};
 
 /// The one string that an object holds.
@@ -53,6 +54,8 @@ json asked_json(const AskedItem& asked) {
           {"step", asked.step},
           {"low_end", asked.low_end},
           {"high_end", asked.high_end},
+          {"back", asked.back},
+          {"given", asked.given},
           {"picture", asked.picture != nullptr}};
 }
 

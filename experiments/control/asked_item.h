@@ -17,7 +17,9 @@ struct AskedItem {
   double low{0.0}, high{0.0}, step{0.0};
   std::string low_end, high_end;
   std::string hint;
-  std::string picture_file;                    // as the definition names it; empty: none
+  bool back{false};          // the participant may go back to the item before
+  std::string given;         // the answer so far, as PageInput::give() takes it; empty: none yet
+  std::string picture_file;  // as the definition names it; empty: none
   std::shared_ptr<const std::string> picture;  // its bytes, a PNG file; null: none
 };
 

@@ -260,6 +260,10 @@ class Keyboard::Implementation {
     if (!asked.low_end.empty()) {
       lines += "  " + asked.low_end + " ... " + asked.high_end + "\n";
     }
+    if (!asked.given.empty()) {
+      lines += "  answer so far: " + asked.given + "\n";
+    }
+    lines += asked.back ? "Backspace: back\n" : "";
     show(lines + (asked.kind == "consent"
                       ? "The participant answers in the window. If a paper form is signed: Enter, "
                         "then 1: and the reason\n"
@@ -289,6 +293,12 @@ class Keyboard::Implementation {
       case '\n':
       case '\r':
         begin_answer();
+        break;
+      case '\b':
+      case '\x7f':
+        if (control_.status().asked.back) {
+          ask(Request::kBack, "back\n");
+        }
         break;
       case 'p':
         ask(Request::kPause, "pause\n");

@@ -30,6 +30,7 @@ enum class Request : std::uint8_t {
   kClear,          // the experimenter has seen to the cause
   kTakeLead,       // of both hands, where a partner's session is linked
   kHandOver,       // gives it back
+  kBack,           // to the item of a page before the present one
 };
 
 /// Status of a session, sent about 20 times a second.

@@ -80,6 +80,9 @@ void SessionController::heed(Request request, RequestSource by) {
       actions_.clear_fault();
       actions_.event("clear", who);
       break;
+    case Request::kBack:
+      requests_.back = true;
+      break;
     case Request::kTakeLead:
     case Request::kHandOver:
       if (actions_.lead) {

@@ -21,6 +21,7 @@ struct PendingRequests {
   bool skip{false};      // the present trial
   bool abort{false};     // the session
   bool for_good{false};  // with abort: nobody goes on with it
+  bool back{false};      // to the item of a page before the present one
   bool stopped{false};   // by a fault or an emergency stop, until it is cleared
 };
 

@@ -62,8 +62,31 @@ const char* kind_of(const pages::Item& item) {
 
 }  // namespace
 
-PageInput::PageInput(const pages::Item& item, const protocols::SessionTexts& words)
-    : item_(item), words_(words) {}
+PageInput::PageInput(const pages::Item& item, const protocols::SessionTexts& words,
+                     bool may_go_back)
+    : item_(item), words_(words), may_go_back_(may_go_back) {}
+
+void PageInput::show_earlier(const PageAnswer& earlier) {
+  if (chooses()) {
+    const auto same = [&](const pages::ItemChoice& each) { return each.value == earlier.text; };
+    const auto found = std::ranges::find_if(item_.choices, same);
+    chosen_ = found == item_.choices.end() ? -1 : static_cast<int>(found - item_.choices.begin());
+  } else if (item_.kind == ItemKind::kScale) {
+    chosen_ = static_cast<int>(std::lround((earlier.value - item_.low) / item_.step));
+  } else if (item_.kind == ItemKind::kNumber) {
+    typed_ = fmt::format("{}", earlier.value);
+  } else {
+    typed_ = earlier.text;
+  }
+}
+
+/// The answer that is chosen or typed at the moment.
+std::string PageInput::given() const {
+  if (item_.kind == ItemKind::kScale) {
+    return chosen_ < 0 ? "" : fmt::format("{:g}", item_.low + item_.step * chosen_);
+  }
+  return chooses() ? (chosen_ < 0 ? "" : fmt::format("{}", chosen_ + 1)) : typed_;
+}
 
 bool PageInput::chooses() const {
   return item_.kind == ItemKind::kChoice || item_.kind == ItemKind::kConsent;
@@ -80,9 +103,18 @@ bool PageInput::hears(const KeyPress& key) const {
   return types ? key.character != 0 || edits : key.character == 0;
 }
 
+bool PageInput::is_way_back(const KeyPress& key) const {
+  const bool types = item_.kind == ItemKind::kNumber || item_.kind == ItemKind::kText;
+  return may_go_back_ && key.key == KeyPress::kBackspace && (!types || typed_.empty());
+}
+
 bool PageInput::press(const KeyPress& key) {
   if (!hears(key)) {
     return false;
+  }
+  goes_back_ = is_way_back(key);
+  if (goes_back_) {
+    return true;
   }
   const bool urgent = std::exchange(urgent_, false);
   const bool changed = press_item(key);
@@ -279,7 +311,7 @@ render::TextPage PageInput::page(std::shared_ptr<const render::Image> picture) c
   render::TextPage page;
   page.title = item_.title;
   page.body = item_.text;
-  page.hint = hint();
+  page.hint = hint() + (may_go_back_ ? "\n" + words_.go_back : "");
   page.hint_is_urgent = urgent_;
   page.picture = std::move(picture);
   page.chosen = chosen_;
@@ -321,6 +353,8 @@ AskedItem PageInput::asked(int number) const {
     asked.high_end = item_.high_end;
   }
   asked.hint = hint();
+  asked.back = may_go_back_;
+  asked.given = given();
   return asked;
 }
 

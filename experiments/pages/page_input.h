@@ -22,11 +22,15 @@ struct PageAnswer {
 /// from the console or the terminal. Any one thread.
 ///
 /// Keys: digits and arrows choose and move the mark of a scale, characters are typed, Enter gives
-/// the answer. A key that does nothing makes the hint urgent.
+/// the answer; Backspace goes back where nothing is typed. A key that does nothing makes the hint
+/// urgent.
 class PageInput {
  public:
-  /// @param item, words  outlive the input
-  PageInput(const pages::Item& item, const protocols::SessionTexts& words);
+  /// Both outlive the input. @param may_go_back  there is an item before this one
+  PageInput(const pages::Item& item, const protocols::SessionTexts& words,
+            bool may_go_back = false);
+  /// Shows an answer that was given before, for the participant to keep or to change.
+  void show_earlier(const PageAnswer& earlier);
 
   /// A key of the participant's window. @returns whether what is shown has changed
   bool press(const render::KeyPress& key);
@@ -35,6 +39,8 @@ class PageInput {
   /// a reason, "1: paper form signed". @returns a sentence if it is not allowed; else empty
   std::string give(const std::string& answer);
 
+  /// Whether the participant asked for the item before.
+  bool goes_back() const { return goes_back_; }
   /// The answer, once it was given.
   const std::optional<PageAnswer>& answer() const { return answer_; }
   /// The page as the participant sees it. @param picture  of the item, or null
@@ -50,6 +56,8 @@ class PageInput {
   bool type_mark(char digit);
   bool press_scale(int key);
   bool press_typed(const render::KeyPress& key);
+  bool is_way_back(const render::KeyPress& key) const;
+  std::string given() const;
   void enter();
   int steps() const;
   std::string give_choice(const std::string& answer);
@@ -59,6 +67,8 @@ class PageInput {
 
   const pages::Item& item_;
   const protocols::SessionTexts& words_;
+  bool may_go_back_;
+  bool goes_back_{false};
   int chosen_{-1};  // choice, or step of a scale
   std::string typed_;
   bool urgent_{false};  // the last key did nothing

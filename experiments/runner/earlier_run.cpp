@@ -52,17 +52,6 @@ int attempts_of(const record::Resumed& before, const PlannedTrial& trial) {
   return most;
 }
 
-std::optional<record::AnswerRow> answer_to(const record::Resumed& before,
-                                           const record::AnswerRow& asked) {
-  for (const record::AnswerRow& row : before.answers) {
-    if (row.when == asked.when && row.block == asked.block &&
-        row.questionnaire == asked.questionnaire && row.item == asked.item) {
-      return row;
-    }
-  }
-  return std::nullopt;
-}
-
 std::int64_t last_time(const record::Resumed& before) {
   std::int64_t last = before.last_time_ns;
   for (const record::EventRow& event : before.events) {

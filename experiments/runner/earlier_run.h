@@ -28,10 +28,6 @@ int finished_trials(const record::Resumed& before, const record::Phase& last);
 /// 0 where the trial has none.
 int attempts_of(const record::Resumed& before, const protocols::PlannedTrial& trial);
 
-/// Earlier answer to the same item on the same occasion.
-std::optional<record::AnswerRow> answer_to(const record::Resumed& before,
-                                           const record::AnswerRow& asked);
-
 /// The time of the youngest record [ns]: events may be younger than the last ticks that reached
 /// the file.
 std::int64_t last_time(const record::Resumed& before);

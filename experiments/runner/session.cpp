@@ -20,6 +20,7 @@
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/next_trial.h"
+#include "experiments/runner/reported_mistakes.h"
 #include "experiments/runner/session_notices.h"
 #include "experiments/runner/session_opening.h"
 #include "experiments/runner/session_pages.h"
@@ -88,6 +89,7 @@ class Session {
   std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
   std::atomic<bool> begin_pressed_{false};   // likewise, without an experimenter
   PageKeys page_keys_;                       // likewise
+  ReportedMistakes mistakes_;                // likewise
   std::unique_ptr<Screen> screen_;
   std::unique_ptr<record::LiveFigures> live_;
   SessionRecord record_;  // opened when everything else is there
@@ -149,7 +151,13 @@ Session::Session(const SessionRequest& request)
       trials_(trials_of(request, place_)),
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
       pedal_(choices_of(request).front(), d_, real_),
-      screen_(open_screen(request, *rig_, &held_keys_, &begin_pressed_, &page_keys_)),
+      mistakes_([this](const std::string& trial) {
+        record_.event("participant_error", trial);
+        notices_.note(
+            fmt::format("the participant says that the answer of {} is a mistake", trial));
+      }),
+      screen_(open_screen(request, *rig_, &held_keys_, &begin_pressed_, &page_keys_,
+                          [this] { mistakes_.press(loop_.elapsed_ns()); })),
       live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
       controller_(request.control, controller_actions()),
@@ -223,6 +231,9 @@ void Session::hear_inputs() {
   for (const InputNews& news : all) {
     record_.event(news.event, news.text);
     notices_.note(news.notice);
+  }
+  if (!record_.in_pass()) {  // else its end shows whether it was answered before
+    mistakes_.see_to(record_.pass());
   }
 }
 
@@ -464,6 +475,11 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
 
 void Session::keep_responses() {
   std::vector<record::ResponseRow> rows = trials_->responses();
+  std::optional<std::int64_t> answered;
+  if (!rows.empty()) {
+    answered = record_.time_of(rows.front().sequence) - record_.session_time(0);
+  }
+  mistakes_.close_pass(record_.pass(), answered);
   if (!rows.empty()) {
     responses_.insert(responses_.end(), rows.begin(), rows.end());
     record_.keep_responses(std::move(rows));

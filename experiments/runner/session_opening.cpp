@@ -198,16 +198,25 @@ static SessionMark mark_of(const SessionRequest& request, protocols::Rig& rig) {
 
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
-                                    PageKeys* pages) {
+                                    PageKeys* pages, std::function<void()> mistake) {
   if (!request.window) {
     return nullptr;
   }
+  const auto says_mistake = [key = request.definition->screen.mistake_key,
+                             mistake = std::move(mistake)](const render::KeyPress& press) {
+    const bool says = key != 0 && press.key == key;
+    if (says) {
+      mistake();
+    }
+    return says;
+  };
   ScreenCallbacks callbacks;
   SessionControl* control = request.control;
   if (control != nullptr) {
     const bool steers = request.definition->screen.participant_steers;
-    callbacks.key = [control, steers, begin, pages, &request](const render::KeyPress& press) {
-      if (pages->take(press) || press.character != 0) {
+    callbacks.key = [control, steers, begin, pages, says_mistake,
+                     &request](const render::KeyPress& press) {
+      if (pages->take(press) || press.character != 0 || says_mistake(press)) {
         return;
       }
       if (begins(press)) {  // heard in a break that the participant ends
@@ -224,8 +233,8 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
       control->ask(steers ? Request::kAbort : Request::kEmergencyStop, RequestSource::kWindow);
     };
   } else {  // nobody is there who could clear a stop or say that it goes on
-    callbacks.key = [begin, pages](const render::KeyPress& press) {
-      if (pages->take(press)) {
+    callbacks.key = [begin, pages, says_mistake](const render::KeyPress& press) {
+      if (pages->take(press) || says_mistake(press)) {
         return;
       }
       if (press.key == render::KeyPress::kEscape) {

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,9 +61,10 @@ std::filesystem::path resumed_file(const SessionRequest& request);
 /// @param held   receives the functions that keys of the window hold; outlives the screen
 /// @param begin  set by Enter and space where nobody attends; outlives the screen
 /// @param pages  take the keys while a page is open; outlive the screen
+/// @param mistake  called on the screen's thread when the key for mistakes is pressed
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
-                                    PageKeys* pages);
+                                    PageKeys* pages, std::function<void()> mistake);
 
 /// The streams, where they were asked for; null where they were not, and, with a sentence in
 /// `notice`, where they cannot be had and the session may do without them.

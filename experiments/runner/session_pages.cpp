@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -30,16 +32,39 @@ std::string occasion_of(PageTime when, int block) {
                                     : fmt::format("after block {}", block);
 }
 
-/// "3 / 10" on a page with several items; the item is one of the page's.
-std::string progress_of(const pages::Page& page, const pages::Item& item) {
-  return page.items.size() > 1
-             ? fmt::format("{} / {}", &item - page.items.data() + 1, page.items.size())
+/// "3 / 10" on a page with several items.
+std::string progress_of(const pages::Page* page, const pages::Item& item) {
+  return page != nullptr && page->items.size() > 1
+             ? fmt::format("{} / {}", &item - page->items.data() + 1, page->items.size())
              : "";
+}
+
+bool is_question(const pages::Item& item) {
+  return item.kind != ItemKind::kRead && item.kind != ItemKind::kConsent;
+}
+
+/// Whether an answer says the same as one that was given before.
+bool is_same(const PageAnswer& answer, const record::AnswerRow& earlier) {
+  const bool no_numbers = std::isnan(answer.value) && std::isnan(earlier.value);
+  return answer.text == earlier.text && (no_numbers || answer.value == earlier.value);
+}
+
+pages::Item last_look(const std::string& text) {
+  const render::TextPage shown = protocols::page_of(text);
+  pages::Item item;
+  item.name = "answered";
+  item.title = shown.title;
+  item.text = shown.body;
+  return item;
 }
 
 }  // namespace
 
-SessionPages::SessionPages(const Parts& parts) : p_(parts), d_(*parts.request.definition) {}
+SessionPages::SessionPages(const Parts& parts)
+    : p_(parts),
+      d_(*parts.request.definition),
+      last_look_(last_look(d_.texts.answered)),
+      answers_(parts.record.earlier().answers) {}
 
 bool SessionPages::before() { return show(d_.pages.before, PageTime::kBefore, 0); }
 
@@ -53,46 +78,82 @@ bool SessionPages::after_block(int block, const std::string& name, bool missed) 
 
 bool SessionPages::show(const std::vector<std::string>& names, PageTime when, int block,
                         bool missed) {
+  std::vector<Place> places;
   for (const std::string& name : names) {
     const pages::Page& page = d_.pages.page(name);
     for (const pages::Item& item : page.items) {
-      const bool read_before = missed && item.kind == ItemKind::kRead;
-      if (!read_before && !show_item(page, item, when, block)) {
-        return false;
+      if (!missed || item.kind != ItemKind::kRead) {
+        places.push_back({&page, &item, when, block});
       }
     }
+  }
+  const auto questions =
+      std::ranges::count_if(places, [](const Place& place) { return is_question(*place.item); });
+  if (questions > 1 && person_answers()) {
+    places.push_back({nullptr, &last_look_, when, block});
+  }
+  const std::size_t answers_before = answers_.size();
+  std::size_t reached = 0;  // all places before it were seen
+  for (std::size_t i = 0; i < places.size();) {
+    if (places[i].page == nullptr && answers_.size() == answers_before) {
+      break;  // nothing was asked
+    }
+    places[i].may_go_back = i > 0;
+    const Turn turn = show_item(places[i], i < reached);
+    if (turn == Turn::kEnd) {
+      return false;
+    }
+    i += turn == Turn::kBack ? -1 : 1;
+    reached = std::max(reached, i);
   }
   return true;
 }
 
 /// Answers of an earlier run stand; texts are shown again, as instructions are.
-bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, PageTime when,
-                             int block) {
+/// @param again  the participant has gone back to it
+SessionPages::Turn SessionPages::show_item(const Place& place, bool again) {
+  const pages::Item& item = *place.item;
   record::AnswerRow row;
-  row.when = when;
-  row.block = block;
-  row.questionnaire = page.name;
+  row.when = place.when;
+  row.block = place.block;
+  row.questionnaire = place.page == nullptr ? "" : place.page->name;
   row.item = item.name;
-  if (const auto earlier = answer_to(p_.record.earlier(), row)) {
+  const std::optional<record::AnswerRow> earlier = answer_to(row);
+  if (earlier && !again) {
     declined_ = declined_ || (item.kind == ItemKind::kConsent && earlier->value == 0.0);
-    return !declined_;
+    return declined_ ? Turn::kEnd : Turn::kOn;
   }
   PageAnswer answer;
   const auto begun = std::chrono::steady_clock::now();
   if (person_answers()) {
-    if (!ask(page, item, answer, row.source)) {
-      return false;
+    if (const Turn turn = ask(place, earlier, answer, row.source); turn != Turn::kOn) {
+      return turn;
     }
     row.duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   } else {
-    answer = virtual_answer(page, item, p_.session_seed, occasion_of(when, block));
+    answer =
+        virtual_answer(*place.page, item, p_.session_seed, occasion_of(place.when, place.block));
     row.source = AnsweredAt::kVirtual;
   }
-  if (item.kind != ItemKind::kRead) {
-    row.value = answer.value;
-    row.text = answer.text;
-    p_.record.keep_answer(row);
+  if (!earlier || !is_same(answer, *earlier)) {
+    keep(item, answer, std::move(row), earlier.has_value());
   }
+  return declined_ ? Turn::kEnd : Turn::kOn;
+}
+
+/// @param changed  the item was answered before
+void SessionPages::keep(const pages::Item& item, const PageAnswer& answer, record::AnswerRow row,
+                        bool changed) {
+  if (item.kind == ItemKind::kRead) {
+    return;
+  }
+  row.value = answer.value;
+  row.text = answer.text;
+  p_.record.keep_answer(row);
+  if (changed) {
+    p_.record.event("answer_changed", row.questionnaire + "." + row.item);
+  }
+  answers_.push_back(std::move(row));
   if (!answer.reason.empty()) {
     p_.record.event("consent_by_experimenter", answer.reason);
   }
@@ -100,17 +161,31 @@ bool SessionPages::show_item(const pages::Page& page, const pages::Item& item, P
     declined_ = true;
     p_.record.event("consent_declined", "the participant did not agree to take part");
   }
-  return !declined_;
+}
+
+/// The answer that counts so far.
+std::optional<record::AnswerRow> SessionPages::answer_to(const record::AnswerRow& asked) const {
+  for (std::size_t i = answers_.size(); i-- > 0;) {
+    if (record::is_same_item(answers_[i], asked)) {
+      return answers_[i];
+    }
+  }
+  return std::nullopt;
 }
 
 bool SessionPages::person_answers() const {
   return p_.controller.attended() || p_.screen != nullptr;
 }
 
-/// Shows the item until it is answered. @returns false if the session is ended meanwhile
-bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAnswer& answer,
-                       AnsweredAt& source) {
-  PageInput input(item, d_.texts);
+/// Shows the item until it is answered, left for the one before, or the session is ended.
+SessionPages::Turn SessionPages::ask(const Place& place,
+                                     const std::optional<record::AnswerRow>& earlier,
+                                     PageAnswer& answer, AnsweredAt& source) {
+  const pages::Item& item = *place.item;
+  PageInput input(item, d_.texts, place.may_go_back);
+  if (earlier) {
+    input.show_earlier({earlier->value, earlier->text});
+  }
   AskedItem asked = input.asked(++asked_);
   std::shared_ptr<const render::Image> picture;
   if (!item.picture.empty()) {
@@ -121,22 +196,24 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
   }
   const auto draw = [&] {
     render::TextPage shown = input.page(picture);
-    shown.progress = progress_of(page, item);
+    shown.progress = progress_of(place.page, item);
     p_.pacing.show_page(std::move(shown),
-                        item.title.empty() ? item.text : item.title + "\n" + item.text);
+                      item.title.empty() ? item.text : item.title + "\n" + item.text);
   };
   p_.keys.set_open(true);
   p_.controller.status().asked = std::move(asked);
+  PendingRequests& requests = p_.controller.requests();
+  requests.back = false;
   draw();
-  const PendingRequests& requests = p_.controller.requests();
-  while (!input.answer() && !requests.abort) {
+  bool back = false;
+  while (!input.answer() && !back && !requests.abort) {
     if (requests.stopped || requests.pause) {
       p_.pacing.pause_where_asked();
       draw();
     }
     p_.pacing.wait_a_little("page");
     for (const render::KeyPress& key : p_.keys.pressed()) {
-      if (!input.answer() && input.press(key)) {
+      if (!input.answer() && !input.goes_back() && input.press(key)) {
         source = AnsweredAt::kWindow;
         draw();
       }
@@ -146,6 +223,8 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
       input.give("");  // the experimenter goes on
       source = AnsweredAt::kConsole;
     }
+    const bool asked_back = std::exchange(requests.back, false);
+    back = !input.answer() && place.may_go_back && (input.goes_back() || asked_back);
   }
   p_.controller.status().asked = {};
   p_.keys.set_open(false);
@@ -153,7 +232,7 @@ bool SessionPages::ask(const pages::Page& page, const pages::Item& item, PageAns
   if (input.answer()) {
     answer = *input.answer();
   }
-  return input.answer().has_value();
+  return input.answer() ? Turn::kOn : back ? Turn::kBack : Turn::kEnd;
 }
 
 /// Takes answers from elsewhere than the window. An answer that is not allowed is refused with a

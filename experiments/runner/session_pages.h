@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/control/session_controller.h"
 #include "experiments/pages/page_input.h"
@@ -16,7 +18,8 @@ class Screen;
 
 /// Shows the pages of a definition and records what is answered: in the participant's window, on
 /// the console or in the terminal alike; without any of them, and on a simulated clock, a virtual
-/// participant answers. What an earlier run recorded is not asked again. Session's thread.
+/// participant answers. What an earlier run recorded is not asked again. Among pages that follow
+/// each other a participant may go back and change answers. Session's thread.
 class SessionPages {
  public:
   /// All of them outlive the pages.
@@ -42,17 +45,30 @@ class SessionPages {
   bool declined() const { return declined_; }
 
  private:
+  /// An item of the pages that follow each other, and when they do.
+  struct Place {
+    const pages::Page* page;  // null: the last look at all answers
+    const pages::Item* item;
+    record::PageTime when;
+    int block;
+    bool may_go_back{false};
+  };
+  enum class Turn { kOn, kBack, kEnd };
+
   bool show(const std::vector<std::string>& names, record::PageTime when, int block,
             bool missed = false);
-  bool show_item(const pages::Page& page, const pages::Item& item, record::PageTime when,
-                 int block);
-  bool ask(const pages::Page& page, const pages::Item& item, PageAnswer& answer,
+  Turn show_item(const Place& place, bool again);
+  Turn ask(const Place& place, const std::optional<record::AnswerRow>& earlier, PageAnswer& answer,
            record::AnsweredAt& source);
+  void keep(const pages::Item& item, const PageAnswer& answer, record::AnswerRow row, bool changed);
+  std::optional<record::AnswerRow> answer_to(const record::AnswerRow& asked) const;
   void take_answers(PageInput& input, record::AnsweredAt& source);
   bool person_answers() const;
 
   Parts p_;
   const protocols::Definition& d_;
+  pages::Item last_look_;                   // after several questions
+  std::vector<record::AnswerRow> answers_;  // of earlier runs and this one
   int asked_{0};
   bool declined_{false};
 };

@@ -76,6 +76,10 @@ class SessionRecord final : public protocols::SessionFile {
   /// @returns the number of records.
   using Follower = std::function<void(std::span<const record::Sample>)>;
   std::size_t collect(const Follower& follow);
+  bool in_pass() const { return row_open_; }
+  /// The time of a tick of the present pass, since the session's first tick [ns]; now, if the pass
+  /// has no such tick.
+  std::int64_t time_of(std::uint64_t sequence) const;
   /// A time since this run's first tick, since the session's.
   std::int64_t session_time(std::int64_t time_ns) const { return start_ns_ + time_ns; }
   /// @param frames  with times since this run's first tick
@@ -101,7 +105,6 @@ class SessionRecord final : public protocols::SessionFile {
  private:
   void put(const record::Rows& batch) override;
   std::int64_t now_ns() const;
-  std::int64_t time_of(std::uint64_t sequence) const;
   void mark(const std::string& text);
   void keep_definition();
   void append(std::span<const record::Sample> samples);

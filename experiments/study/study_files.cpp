@@ -73,9 +73,10 @@ std::string remark_on_programs(const std::vector<fs::path>& files) {
                      program_version(), program_commit());
 }
 
-/// Adds notes and marks of the experimenters.
+/// Adds notes and marks of the experimenters, and mistakes that participants reported.
 void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::string>& remarks) {
   std::vector<std::string> bad;
+  std::vector<std::string> mistakes;
   std::vector<std::string> notes;
   for (const fs::path& file : files) {
     const record::SessionReader reader(file);
@@ -83,6 +84,8 @@ void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::strin
       const std::string line = fmt::format("{}, {}", reader.info().subject, event.text);
       if (event.kind == "bad_trial") {
         bad.push_back(line);
+      } else if (event.kind == "participant_error") {
+        mistakes.push_back(line);
       } else if (event.kind == "note" && !event.text.starts_with("console: ")) {
         notes.push_back(line);
       }
@@ -93,6 +96,12 @@ void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::strin
         fmt::format("Marked as bad by the experimenter, and analysed all the same: "
                     "{}: {}.",
                     counted(bad.size(), "trial", "trials"), fmt::join(bad, "; ")));
+  }
+  if (!mistakes.empty()) {
+    remarks.push_back(
+        fmt::format("Answered by mistake as participants said at once, and analysed all the same: "
+                    "{}: {}.",
+                    counted(mistakes.size(), "trial", "trials"), fmt::join(mistakes, "; ")));
   }
   if (!notes.empty()) {
     remarks.push_back(fmt::format("Notes of the experimenter: {}.", fmt::join(notes, "; ")));

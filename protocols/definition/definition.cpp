@@ -90,6 +90,11 @@ void check_common(Table& root, const Definition& definition) {
                   "keys that the definition uses for nothing else");
     }
   }
+  if (definition.screen.mistake_key != 0 &&
+      definition.bits_of({definition.screen.mistake_key}) != 0) {
+    root.table("screen").reject("mistake_key", "a key that has another function",
+                                "a key that the definition uses for nothing else");
+  }
   const bool plain =
       std::all_of(definition.name.begin(), definition.name.end(),
                   [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/definition/schema.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -10,6 +11,17 @@ namespace {
 constexpr std::size_t kLongestText = 4000;  // [bytes]; more would not be legible on a screen
 
 }  // namespace
+
+static void read_mistake_key(Table& table, const std::string& key, ScreenOptions& options) {
+  const std::string name = table.text(key);
+  const auto code = name == "backspace" ? std::optional<int>(kBackspaceKey) : key_code(name);
+  if (!code || *code == kSpaceKey || *code == kEnterKey) {
+    table.reject(key, fmt::format("'{}'", name),
+                 "backspace, A to Z, 0 to 9, left, right, up, down");
+    return;
+  }
+  options.mistake_key = *code;
+}
 
 const Schema<ScreenOptions>& screen_schema() {
   using O = ScreenOptions;
@@ -24,6 +36,10 @@ const Schema<ScreenOptions>& screen_schema() {
           .flag("refresh_lock", &O::refresh_lock, "Whether pictures wait for the monitor's refresh")
           .flag("participant_steers", &O::participant_steers,
                 "Whether keys of the participant's window start, pause, repeat, skip and clear")
+          .custom("mistake_key",
+                  "Key by which participants say that their last answer was a mistake",
+                  read_mistake_key)
+          .otherwise("none")
           .choice("photodiode", &O::photodiode,
                   {{"off", Photodiode::kOff},
                    {"frames", Photodiode::kEveryFrame},
@@ -67,6 +83,9 @@ const Schema<SessionTexts>& text_schema() {
     add("take_again", &T::take_again, "Text at the end of a break");
     add("type_number", &T::type_number, "Small line below a question for a number");
     add("type_words", &T::type_words, "Small line below a question for words");
+    add("go_back", &T::go_back, "Second small line below a page that follows another one");
+    add("answered", &T::answered,
+        "Text after several questions, while answers may still be changed");
     add("declined", &T::declined, "Text for a participant who does not consent");
     return texts;
   }();

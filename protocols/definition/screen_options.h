@@ -29,6 +29,7 @@ struct ScreenOptions {
   Photodiode photodiode{Photodiode::kOff};
   double photodiode_time{0.05};    // for which it stays white after an onset > 0 [s]
   bool participant_steers{false};  // by its keys: start, pause, repeat, skip, clear, abort
+  int mistake_key{0};              // says that the last answer was a mistake; 0: none
 };
 
 /// Texts that the participant reads. The first line of a text is its title.
@@ -56,7 +57,9 @@ struct SessionTexts {
   std::string move_mark{"Move the mark with the arrow keys or type a number, then press Enter"};
   std::string type_number{"Type a number, then press Enter"};
   std::string type_words{"Type your answer, then press Enter"};
-  std::string declined{"Thank you\nThe session ends here."};  // who does not consent
+  std::string go_back{"Press Backspace to go back"};
+  std::string answered{"Thank you\nThese were all questions for now."};  // answers may be changed
+  std::string declined{"Thank you\nThe session ends here."};             // who does not consent
 };
 
 /// The keys of [screen].

@@ -156,7 +156,7 @@ TEST_F(LiveKilledPagesTest, AnswersAreKeptAndOnlyTheRestIsAsked) {
   run_and_kill(1, 5);  // after the text, consent and two of the ten activities
   const auto first = kept();
   ASSERT_EQ(first.size(), 3u) << "every answer that was given";
-  run_and_kill(2, 15);  // the text again, eight activities, the trial, five of the NASA-TLX
+  run_and_kill(2, 16);  // text, eight activities, last look, trial, five of the NASA-TLX
   const auto second = kept();
   ASSERT_EQ(second.size(), 16u);
   expect_begins_with(second, first);

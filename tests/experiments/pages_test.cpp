@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <thread>
 
@@ -214,6 +215,44 @@ TEST(PageInputTest, WordsOfAnyScriptAreTyped) {
   EXPECT_EQ(typed.answer()->value, 42.5);
 }
 
+TEST(PageInputTest, BackspaceGoesBackWhereNothingIsTyped) {
+  const protocols::SessionTexts words;
+  const KeyPress back{KeyPress::kBackspace};
+  const Item choice = item_of(ItemKind::kChoice);
+  PageInput first(choice, words);
+  first.press(back);
+  EXPECT_FALSE(first.goes_back()) << "nothing is before it";
+  PageInput second(choice, words, true);
+  EXPECT_THAT(second.page(nullptr).hint, HasSubstr(words.go_back));
+  second.press(back);
+  EXPECT_TRUE(second.goes_back());
+  const Item text = item_of(ItemKind::kText);
+  PageInput typed(text, words, true);
+  typed.press({KeyPress::kOther, U'x'});
+  typed.press(back);
+  EXPECT_FALSE(typed.goes_back()) << "it takes the x away";
+  EXPECT_EQ(typed.page(nullptr).typed, "");
+  typed.press(back);
+  EXPECT_TRUE(typed.goes_back());
+}
+
+TEST(PageInputTest, AnEarlierAnswerIsShownAndKeptByEnter) {
+  const protocols::SessionTexts words;
+  const auto kept = [&](const Item& item, const PageAnswer& earlier) {
+    PageInput input(item, words, true);
+    input.show_earlier(earlier);
+    PageInput console(item, words, true);
+    EXPECT_EQ(console.give(input.asked(1).given), "") << "what the console shows is an answer";
+    EXPECT_EQ(console.answer()->text, earlier.text);
+    input.press({KeyPress::kEnter});
+    return input.answer().value_or(PageAnswer{-1.0, "none"});
+  };
+  EXPECT_EQ(kept(item_of(ItemKind::kChoice), {2.0, "b"}).text, "b");
+  EXPECT_EQ(kept(item_of(ItemKind::kScale), {35.0, ""}).value, 35.0);
+  EXPECT_EQ(kept(item_of(ItemKind::kNumber), {42.5, ""}).value, 42.5);
+  EXPECT_EQ(kept(item_of(ItemKind::kText), {std::nan(""), "é!"}).text, "é!");
+}
+
 TEST(SessionPagesTest, VirtualParticipantsAnswerEveryPage) {
   const test::TemporaryFolder folder;
   const Experiment experiment = load_experiment(write_definition(folder.path()));
@@ -322,6 +361,110 @@ TEST(SessionPagesTest, WhatWasAnsweredIsNotAskedAgainAfterAResume) {
   };
   const auto remarks = study_files(folder.path(), Pilots::kLeftOut, protocol).remarks;
   EXPECT_THAT(remarks, testing::Contains(HasSubstr("Consent was entered by the experimenter")));
+}
+
+/// Answers two questions, goes back from the last look to the first one, changes it, and goes on.
+class ChangesTheMind {
+ public:
+  explicit ChangesTheMind(SessionControl& control)
+      : control_(control), thread_([this] { work(); }) {}
+  ~ChangesTheMind() {
+    stop_ = true;
+    thread_.join();
+  }
+  std::vector<std::string> seen() const { return seen_; }
+
+ private:
+  void work() {
+    int last = 0;
+    const std::vector<std::function<void(int)>> moves{
+        [&](int asked) { control_.answer(asked, "81"); },
+        [&](int asked) { control_.answer(asked, "tall"); },
+        [&](int) { control_.ask(Request::kBack); },
+        [&](int) { control_.ask(Request::kBack); },
+        [&](int asked) { control_.answer(asked, "18"); },
+        [&](int asked) { control_.answer(asked, "tall"); },
+        [&](int asked) { control_.answer(asked, ""); },
+        [&](int) { control_.ask(Request::kAbort); }};
+    while (!stop_ && seen_.size() < moves.size()) {
+      const SessionStatus status = control_.status();
+      const bool over = status.asked.number == 0 && status.state == "instructions";
+      if (status.asked.number > last || over) {
+        last = status.asked.number;
+        seen_.push_back((status.asked.back ? "back, " : "") + status.asked.kind + ": " +
+                        status.asked.given);
+        moves[seen_.size() - 1](last);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+  SessionControl& control_;
+  std::vector<std::string> seen_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+TEST(SessionPagesTest, WhoGoesBackChangesAnAnswerAndTheFileSaysSo) {
+  const test::TemporaryFolder folder;
+  const Experiment experiment = load_experiment(write_definition(folder.path(), R"(
+[pages]
+before = ["age", "more"]
+[pages.age]
+kind = "questions"
+[[pages.age.items]]
+name = "years"
+question = "How old are you?"
+number = [18, 99]
+[pages.more]
+kind = "questions"
+[[pages.more.items]]
+name = "size"
+question = "How tall are you?"
+words = true
+)"));
+  SessionControl control;
+  std::vector<std::string> seen;
+  {
+    const ChangesTheMind person(control);
+    EXPECT_TRUE(run_session(live_request(experiment, folder / "S01.h5", control)).stopped);
+    seen = person.seen();
+  }
+  EXPECT_THAT(seen, ElementsAre("number: ", "back, words: ", "back, read: ", "back, words: tall",
+                                "number: 81", "back, words: tall", "back, read: ", ": "));
+  const auto [rows, events] = [&] {
+    const record::SessionReader file(folder / "S01.h5.partial");
+    return std::pair(file.rows<AnswerRow>(), file.events());
+  }();
+  ASSERT_EQ(rows.size(), 3u) << "an answer that is given again as it was has no row";
+  EXPECT_EQ(rows[0].value, 81.0);
+  EXPECT_EQ(rows[1].text, "tall");
+  EXPECT_EQ(rows[2].value, 18.0);
+  EXPECT_EQ(rows[2].item, "years");
+  EXPECT_THAT(record::standing_answers(rows), ElementsAre(false, true, true));
+  std::vector<std::string> changes;
+  for (const record::EventRow& event : events) {
+    if (event.kind == "answer_changed") {
+      changes.push_back(event.text);
+    }
+  }
+  EXPECT_THAT(changes, ElementsAre("age.years"));
+  // A resumed session asks nothing again, and the analysis sees the last answer.
+  SessionControl again;
+  SessionRequest request = live_request(experiment, folder / "S01.h5", again);
+  request.resume = true;
+  request.max_trials = 1;
+  {
+    const AtTheConsole person(again, 0);
+    EXPECT_FALSE(run_session(request).stopped);
+  }
+  EXPECT_EQ(record::SessionReader(folder / "S01.h5").rows<AnswerRow>().size(), 3u);
+  const test::CommandResult exported = test::run_command(
+      "haptrial export '" + folder.path().string() + "' --csv '" + (folder / "csv").string() + "'");
+  ASSERT_EQ(exported.status, 0) << exported.errors;
+  const std::string table = file_text(folder / "csv/answers.csv");
+  EXPECT_THAT(table, HasSubstr(",18,"));
+  EXPECT_THAT(table, testing::Not(HasSubstr(",81,")));
 }
 
 TEST(SessionPagesTest, ThePictureOfAPageReachesTheConsole) {

@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <thread>
 
@@ -20,12 +22,16 @@
 #include "core/psychometric/procedure/staircase.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/page_answer.h"
 #include "core/record/trials/trial_rows.h"
 #include "experiments/control/live_status.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "experiments/study/study_files.h"
 #include "protocols/trials/definition/trials_definition.h"
+#include "protocols/trials/trials_protocol.h"
+#include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
@@ -317,6 +323,25 @@ void PrintTo(const AtTheWindow& at, std::ostream* out) { *out << at.name; }
 
 constexpr double kNotAsked = std::numeric_limits<double>::quiet_NaN();
 
+/// The shipped definition for a virtual hand and a person's keys, in a small window.
+std::string rehearsed(const std::string& name) {
+  std::string text = test::read_text(shipped(name));
+  const auto put = [&](const std::string& what, const std::string& instead) {
+    if (const std::size_t at = text.find(what); at != std::string::npos) {
+      text.replace(at, what.size(), instead);
+    }
+  };
+  put("[observer]", "[observer]\nreaction = 60.0");  // it waits: keys answer
+  put("trials = 4\nlevel = 550.0", "trials = 1\nlevel = 550.0");
+  put("practice = true\ntrials = 8", "practice = true\ntrials = 1");
+  const std::string display = "width = 600\nheight = 440\n";
+  if (text.find("[display]") == std::string::npos) {
+    text += "\n[display]\n";
+  }
+  put("[display]", "[display]\n" + display);
+  return text + "\n[screen]\nfull_screen = false\n";
+}
+
 class LiveTrialsTest : public testing::TestWithParam<AtTheWindow> {
  protected:
   void SetUp() override {
@@ -324,25 +349,92 @@ class LiveTrialsTest : public testing::TestWithParam<AtTheWindow> {
       GTEST_SKIP() << "takes half a minute; set HAPTRIAL_EVERY_WINDOW=1 to run it";
     }
   }
-  /// The shipped definition for a virtual hand and a person's keys, in a small window.
-  static std::string rehearsed(const std::string& name) {
-    std::string text = test::read_text(shipped(name));
-    const auto put = [&](const std::string& what, const std::string& instead) {
-      if (const std::size_t at = text.find(what); at != std::string::npos) {
-        text.replace(at, what.size(), instead);
-      }
-    };
-    put("[observer]", "[observer]\nreaction = 60.0");  // it waits: keys answer
-    put("trials = 4\nlevel = 550.0", "trials = 1\nlevel = 550.0");
-    put("practice = true\ntrials = 8", "practice = true\ntrials = 1");
-    const std::string display = "width = 600\nheight = 440\n";
-    if (text.find("[display]") == std::string::npos) {
-      text += "\n[display]\n";
-    }
-    put("[display]", "[display]\n" + display);
-    return text + "\n[screen]\nfull_screen = false\n";
-  }
 };
+
+/// A participant who goes back in pages, and who reports a wrong key, with an experimenter at the
+/// console who sees each step.
+TEST(LiveMistakesTest, AParticipantGoesBackInPagesAndReportsAWrongKey) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "study.toml",
+                   rehearsed("wall_detection") + "mistake_key = \"backspace\"\n" + R"(
+[pages]
+before = ["you"]
+[pages.you]
+kind = "questions"
+[[pages.you.items]]
+name = "glasses"
+question = "Do you wear glasses?"
+choices = [{ value = "yes" }, { value = "no" }]
+[[pages.you.items]]
+name = "tired"
+question = "How tired are you?"
+scale = [1, 7]
+)");
+  test::VirtualDisplay display(640, 480);
+  test::LiveCommand session("run '" + (folder / "study.toml").string() + "' --subject S01 --out '" +
+                            (folder / "out").string() + "' --window --console");
+  test::ConsolePerson experimenter(session.line_after("console: "));
+  int asked = 0;
+  const auto is_asked = [&](const char* kind, const char* given) {
+    ++asked;
+    return session.reaches([&] {
+      const auto now = experimenter.status();
+      return !now.is_null() && !now["asked"].is_null() && now["asked"]["number"] == asked &&
+             now["asked"]["kind"] == kind && now["asked"]["given"] == given;
+    });
+  };
+  const auto press = [&](std::initializer_list<unsigned long> keys) {
+    for (const unsigned long key : keys) {
+      display.press_key("haptrial", key);
+    }
+  };
+  constexpr unsigned long kBack = 0xff08;
+  ASSERT_TRUE(is_asked("choice", "")) << session.errors();
+  press({'2', test::VirtualDisplay::kEnter});
+  ASSERT_TRUE(is_asked("scale", "")) << session.errors();
+  press({kBack});
+  ASSERT_TRUE(is_asked("choice", "2")) << session.errors();
+  press({'1', test::VirtualDisplay::kEnter});
+  ASSERT_TRUE(is_asked("scale", "")) << session.errors();
+  press({'6', test::VirtualDisplay::kEnter});
+  ASSERT_TRUE(is_asked("read", "")) << session.errors();
+  press({test::VirtualDisplay::kEnter});
+  ASSERT_TRUE(experimenter.sees("instructions")) << session.errors();
+  ASSERT_TRUE(experimenter.ask("start"));
+  ASSERT_TRUE(session.reaches([&] {
+    press({'2', kBack});
+    const auto now = experimenter.status();
+    return !now.is_null() && now["notices"].dump().find("is a mistake") != std::string::npos;
+  })) << session.errors();
+  ASSERT_TRUE(experimenter.ask("end"));
+  ASSERT_EQ(session.wait().status, 0);
+  const record::SessionReader file(folder / "out/S01.h5");
+  EXPECT_TRUE(record::check_session(file, known_tables()).ok);
+  std::vector<std::string> texts;
+  for (const record::AnswerRow& row : file.rows<record::AnswerRow>()) {
+    texts.push_back(row.text.empty() ? std::to_string(std::lround(row.value)) : row.text);
+    EXPECT_EQ(row.source, record::AnsweredAt::kWindow);
+  }
+  EXPECT_THAT(texts, testing::ElementsAre("no", "yes", "6"));
+  std::set<std::string> answered;
+  for (const record::ResponseRow& row : file.responses()) {
+    const record::PassRow pass = file.passes().at(static_cast<std::size_t>(row.pass));
+    answered.insert((pass.practice ? "practice trial " : "trial ") + std::to_string(pass.trial));
+  }
+  std::size_t reported = 0;
+  for (const record::EventRow& event : file.events()) {
+    if (event.kind == "participant_error") {
+      ++reported;
+      EXPECT_TRUE(answered.contains(event.text)) << event.text;
+    }
+  }
+  EXPECT_GE(reported, 1u);
+  const ProtocolOf protocol = [&](const record::SessionInfo&) -> const protocols::Protocol& {
+    return protocols::trials_protocol();
+  };
+  EXPECT_THAT(study_files(folder / "out", Pilots::kLeftOut, protocol).remarks,
+              testing::Contains(testing::HasSubstr("Answered by mistake as participants said")));
+}
 
 TEST_P(LiveTrialsTest, APersonAnswersByKeysOfTheWindow) {
   const AtTheWindow& person_at = GetParam();

@@ -34,7 +34,13 @@ struct Filled {
 
 std::vector<Filled> filled_pages(const record::SessionReader& reader) {
   std::vector<Filled> all;
-  for (const record::AnswerRow& row : reader.rows<record::AnswerRow>()) {
+  const std::vector<record::AnswerRow> rows = reader.rows<record::AnswerRow>();
+  const std::vector<bool> standing = record::standing_answers(rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!standing[i]) {
+      continue;
+    }
+    const record::AnswerRow& row = rows[i];
     const std::string when = time_word(row);
     auto found = std::find_if(all.begin(), all.end(), [&](const Filled& each) {
       return each.page == row.questionnaire && each.when == when;

@@ -1,5 +1,7 @@
 #include "core/record/rows/page_answer.h"
 
+#include <algorithm>
+
 namespace haptrial::record {
 namespace {
 
@@ -24,13 +26,29 @@ EnumText places() {
 
 }  // namespace
 
+bool is_same_item(const AnswerRow& a, const AnswerRow& b) {
+  return a.when == b.when && a.block == b.block && a.questionnaire == b.questionnaire &&
+         a.item == b.item;
+}
+
+std::vector<bool> standing_answers(std::span<const AnswerRow> rows) {
+  std::vector<bool> standing;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto replaces = [&](const AnswerRow& row) { return is_same_item(row, rows[i]); };
+    standing.push_back(std::ranges::none_of(rows.subspan(i + 1), replaces));
+  }
+  return standing;
+}
+
 template <>
 const Table<AnswerRow>& table_of<AnswerRow>() {
   using R = AnswerRow;
   using T = Table<R>;
   static const T table(
       {"answers",
-       "one row for each answer to a page of the definition",
+       "one row for each answer to a page of the definition; a changed answer has a row of its "
+       "own, "
+       "and the last row of an item counts",
        24,
        RowsOf::kSession,
        {"time_ns"},

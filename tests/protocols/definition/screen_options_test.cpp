@@ -5,6 +5,7 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -55,6 +56,9 @@ TEST(ScreenOptionsTest, EveryKeyIsReadAndNoneIsNeeded) {
   EXPECT_EQ(screen("photodiode = \"run\"").photodiode, protocols::Photodiode::kRun);
   EXPECT_FALSE(screen("").participant_steers) << "only where the definition says so";
   EXPECT_TRUE(screen("participant_steers = true").participant_steers);
+  EXPECT_EQ(screen("").mistake_key, 0);
+  EXPECT_EQ(screen("mistake_key = \"X\"").mistake_key, 'X');
+  EXPECT_EQ(screen("mistake_key = \"backspace\"").mistake_key, protocols::kBackspaceKey);
 }
 
 TEST(ScreenOptionsTest, BadValuesAndUnknownKeysAreNamedWithTheirLine) {
@@ -62,6 +66,10 @@ TEST(ScreenOptionsTest, BadValuesAndUnknownKeysAreNamedWithTheirLine) {
   EXPECT_THAT(screen_problem("monitor = -1"), HasSubstr("screen.monitor is -1; allowed:"));
   EXPECT_THAT(screen_problem("photodiode = \"always\""),
               HasSubstr("allowed: off, frames, run, onset"));
+  for (const std::string key : {"enter", "space", "oops"}) {
+    EXPECT_THAT(screen_problem("mistake_key = \"" + key + "\""),
+                HasSubstr("screen.mistake_key is '" + key + "'; allowed: backspace, A to Z"));
+  }
   EXPECT_THAT(screen_problem("fullscreen = true"), HasSubstr("fullscreen"));
   EXPECT_THAT(screen_problem("title = 3"), HasSubstr("screen.title"));
   EXPECT_EQ(screen_problem("monitor = 0"), "");
