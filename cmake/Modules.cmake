@@ -201,15 +201,15 @@ function(haptrial_layer_tests)
   list(FILTER helpers EXCLUDE REGEX "_test[.]cpp$")
   foreach(layer protocols experiments)
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/${layer}/*.cpp)
-    list(FILTER sources EXCLUDE REGEX "/tests/protocols/trials/")
+    list(FILTER sources EXCLUDE REGEX "/tests/protocols/psychophysics/")
     list(APPEND sources ${helpers})
     list(REMOVE_DUPLICATES sources)
     haptrial_test(${layer} command_line ${sources})
     add_dependencies(test_${layer} haptrial)  # its tests run the command
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/protocols/trials/*.cpp)
-  haptrial_test(trials trials ${sources})  # needs no other protocol
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/protocols/psychophysics/*.cpp)
+  haptrial_test(psychophysics psychophysics ${sources})  # needs no other protocol
   # A protocol that only the tests and a page of the documents have.
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)
@@ -222,42 +222,39 @@ function(haptrial_test_needs)
   add_library(haptrial_test_references STATIC ${references})
   target_link_libraries(haptrial_test_references PUBLIC haptrial_geometry_bvh haptrial_bone_model)
   find_package(assimp REQUIRED)
-  target_link_libraries(test_geometry_files PRIVATE assimp::assimp haptrial_geometry_repair)
-  target_link_libraries(test_geometry_mesh PRIVATE haptrial_geometry_repair)
-  target_link_libraries(test_geometry_triangle PRIVATE haptrial_geometry_mesh)
+  target_link_libraries(test_geometry_files PRIVATE assimp::assimp haptrial_geometry_volume)
+  target_link_libraries(test_geometry_mesh PRIVATE haptrial_geometry_volume)
   target_link_libraries(test_geometry_bvh PRIVATE haptrial_test_references)
-  target_link_libraries(test_geometry_search PRIVATE haptrial_geometry_bvh)
   target_link_libraries(test_geometry_volume PRIVATE haptrial_test_references
                                                      haptrial_geometry_files)
   target_link_libraries(test_contact PRIVATE haptrial_geometry_files)
   target_link_libraries(test_deformable PRIVATE SUNDIALS::kinsol SUNDIALS::cvode
-                                                haptrial_base_files)  # solvers to compare with
+                                                haptrial_base)  # solvers to compare with
   target_link_libraries(test_bone_surface PRIVATE haptrial_bone_drill)
-  target_link_libraries(test_bone_anatomy PRIVATE haptrial_bone_data)
   target_link_libraries(test_bone_drill PRIVATE haptrial_test_references)
-  target_link_libraries(test_nerve_beside PRIVATE haptrial_sound)
+  target_link_libraries(test_bone_nerve PRIVATE haptrial_sound)
   pkg_check_modules(harfbuzz REQUIRED IMPORTED_TARGET harfbuzz)
   set_property(TARGET PkgConfig::harfbuzz PROPERTY INTERFACE_COMPILE_OPTIONS "")
   target_link_libraries(test_render_flat PRIVATE PkgConfig::harfbuzz)
-  target_link_libraries(test_render_gl PRIVATE haptrial_render_trial)
-  target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_trials  # tables to try
-                                            haptrial_nerve_record haptrial_hint PkgConfig::hdf5)
+  target_link_libraries(test_render_gl PRIVATE haptrial_render_flat)
+  target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_rows  # tables to try
+                                            haptrial_bone_nerve haptrial_bone_hint PkgConfig::hdf5)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   file(GLOB truth CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/contact_truth/*.cpp)
   target_sources(test_contact_analysis PRIVATE ${truth})
-  target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_repair)
-  target_link_libraries(test_trials PRIVATE haptrial_deformable_setup)  # bodies as they are calibrated
+  target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_volume)
+  target_link_libraries(test_psychophysics PRIVATE haptrial_deformable_elements)  # bodies as they are calibrated
   target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)
   target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
                                                       haptrial_psychometric)  # virtual sessions
   target_link_libraries(test_psychometric_models PRIVATE PkgConfig::gsl)
-  target_link_libraries(test_trials_analysis PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
-                                                     haptrial_record_write)
+  target_link_libraries(test_psychophysics_analysis PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
+                                                     haptrial_record_hdf5)
   target_sources(test_force_analysis
                  PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/exchange/small_session.cpp)
   add_dependencies(test_stream stand_in_lsl)
-  add_dependencies(test_device_vendor stand_in_dhd stand_in_dhd_only stand_in_hd)
+  add_dependencies(test_device stand_in_dhd stand_in_dhd_only stand_in_hd)
 endfunction()
 
 function(haptrial_tests)
@@ -270,7 +267,7 @@ function(haptrial_tests)
   add_library(haptrial_test_support STATIC ${support})
   target_include_directories(haptrial_test_support PUBLIC ${CMAKE_SOURCE_DIR})
   haptrial_stand_ins()
-  haptrial_together(bone_anatomy MandibleTest TemporalBoneTest)
+  haptrial_together(bone_data MandibleTest TemporalBoneTest)
   haptrial_together(deformable BallTouchTest)
   haptrial_together(experiments BoneSessionTest DesignReportsTest HintSessionTest NerveSessionTest RateTest
                                 SoftTissueSessionTest TwoHandsTest)

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "analysis/alignment/buffer.h"
-#include "analysis/alignment/kernels/error.h"
-#include "analysis/alignment/kernels/kernel.h"
+#include "analysis/alignment/error.h"
+#include "analysis/alignment/kernel.h"
 #include "analysis/alignment/rows.h"
 #include "core/base/parallel.h"
 

@@ -7,7 +7,7 @@
 
 #include "analysis/alignment/cost.h"
 #include "analysis/alignment/curves.h"
-#include "analysis/alignment/kernels/isa.h"
+#include "analysis/alignment/isa.h"
 #include "analysis/alignment/options.h"
 
 namespace haptrial::analysis {

@@ -1,7 +1,7 @@
 // Cost of a path, summed in double precision.
 
 #include "analysis/alignment/cost.h"
-#include "analysis/alignment/kernels/error.h"
+#include "analysis/alignment/error.h"
 
 namespace haptrial::analysis {
 namespace {

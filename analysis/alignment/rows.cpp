@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/alignment/kernels/error.h"
+#include "analysis/alignment/error.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "analysis/alignment/buffer.h"
 #include "analysis/alignment/curves.h"
-#include "analysis/alignment/kernels/kernel.h"
+#include "analysis/alignment/kernel.h"
 #include "analysis/alignment/options.h"
 
 namespace haptrial::analysis {

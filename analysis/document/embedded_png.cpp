@@ -7,7 +7,7 @@
 
 #include "analysis/document/base64.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {

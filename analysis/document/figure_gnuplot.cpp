@@ -11,9 +11,9 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
-#include "core/base/files/child_process.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/record/read/session_reader.h"
-#include "core/record/trials/trial_rows.h"
+#include "core/record/rows/trial_rows.h"
 
 namespace haptrial::exchange {
 namespace {

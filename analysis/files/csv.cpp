@@ -11,9 +11,9 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/base/text/nearest.h"
-#include "core/base/text/utf8.h"
+#include "core/base/file_text.h"
+#include "core/base/nearest.h"
+#include "core/base/utf8.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,7 +7,7 @@
 #include "analysis/power/depth_check.h"
 #include "analysis/power/power_report.h"
 #include "analysis/power/power_words.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {

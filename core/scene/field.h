@@ -4,20 +4,20 @@
 #include <string>
 #include <variant>
 
-#include "core/scene/field/detent.h"
-#include "core/scene/field/friction.h"
-#include "core/scene/field/hold.h"
-#include "core/scene/field/inertia.h"
-#include "core/scene/field/mover.h"
-#include "core/scene/field/path.h"
-#include "core/scene/field/push.h"
-#include "core/scene/field/registered_law.h"
-#include "core/scene/field/vibration.h"
-#include "core/scene/field/viscous.h"
-#include "core/scene/surface/deformable_object.h"
-#include "core/scene/surface/relief.h"
-#include "core/scene/surface/rigid_object.h"
-#include "core/scene/surface/surface.h"
+#include "core/scene/deformable_object.h"
+#include "core/scene/detent.h"
+#include "core/scene/friction.h"
+#include "core/scene/hold.h"
+#include "core/scene/inertia.h"
+#include "core/scene/mover.h"
+#include "core/scene/path.h"
+#include "core/scene/push.h"
+#include "core/scene/registered_law.h"
+#include "core/scene/relief.h"
+#include "core/scene/rigid_object.h"
+#include "core/scene/surface.h"
+#include "core/scene/vibration.h"
+#include "core/scene/viscous.h"
 
 namespace haptrial::scene {
 

@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "core/control/pd_controller.h"
-#include "core/scene/field/fade.h"
-#include "core/scene/shape/require.h"
+#include "core/scene/fade.h"
+#include "core/scene/require.h"
 
 namespace haptrial::scene {
 namespace {

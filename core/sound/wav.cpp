@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/base/files/whole_file.h"
+#include "core/base/file_text.h"
+#include "core/base/whole_file.h"
 
 namespace haptrial::sound {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/text/exception_words.h"
+#include "core/base/exception_words.h"
 #include "core/device/dynamic_library.h"
 
 namespace haptrial::stream {

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/render/gl/image.h"
 #include "experiments/control/interrupt.h"

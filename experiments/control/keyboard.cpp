@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/text/utf8.h"
+#include "core/base/utf8.h"
 #include "core/realtime/real_time.h"
 
 namespace haptrial::experiments {

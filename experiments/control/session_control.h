@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/record/link/partner_state.h"
 #include "core/record/rows/live_figures.h"
+#include "core/record/rows/partner_state.h"
 #include "experiments/control/asked_item.h"
 
 namespace haptrial::experiments {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/definition/given/given_values.h"
+#include "core/base/definition/given_values.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/fnv.h"
 #include "experiments/runner/version.h"
 #include "experiments/studies/experiment.h"

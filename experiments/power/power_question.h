@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "experiments/studies/power_plan.h"
 #include "experiments/studies/study.h"
-#include "experiments/studies/study_simulation/power_plan.h"
 
 namespace haptrial::experiments {
 

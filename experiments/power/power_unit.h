@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/power/power_question.h"
-#include "experiments/studies/study_simulation/study_simulation.h"
+#include "experiments/studies/study_simulation.h"
 
 namespace haptrial::experiments {
 

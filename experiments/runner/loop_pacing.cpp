@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/text/short_numbers.h"
+#include "core/base/short_numbers.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/screen/screen.h"
 

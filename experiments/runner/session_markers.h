@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "core/markers/marker_thread.h"
-#include "core/markers/marker_times.h"
 #include "core/record/rows/marker_row.h"
-#include "core/sound/cues/cue_player.h"
+#include "core/sound/cue_player.h"
 #include "core/stream/lsl_outlet.h"
+#include "core/stream/marker_thread.h"
+#include "core/stream/marker_times.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "core/base/text/short_numbers.h"
+#include "core/base/short_numbers.h"
 
 namespace haptrial::experiments {
 

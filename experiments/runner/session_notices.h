@@ -5,7 +5,7 @@
 
 #include "core/realtime/servo_loop.h"
 #include "experiments/control/session_controller.h"
-#include "experiments/loop/loop_watch.h"
+#include "experiments/runner/loop_watch.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"

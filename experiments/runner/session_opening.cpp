@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/fnv.h"
 #include "core/device/mouse.h"
 #include "core/record/read/session_reader.h"

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "core/base/definition/definition_changes.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/recovery/session_resume.h"
 #include "core/record/rows/live_figures.h"
-#include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
-#include "experiments/pages/page_keys.h"
+#include "experiments/runner/page_keys.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "protocols/interface/trials.h"

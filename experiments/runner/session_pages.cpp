@@ -9,10 +9,10 @@
 #include <memory>
 #include <utility>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/render/gl/image.h"
-#include "experiments/pages/virtual_answers.h"
 #include "experiments/runner/earlier_run.h"
+#include "experiments/runner/virtual_answers.h"
 #include "experiments/screen/screen.h"
 
 namespace haptrial::experiments {

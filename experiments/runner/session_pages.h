@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "experiments/control/session_controller.h"
-#include "experiments/pages/page_input.h"
-#include "experiments/pages/page_keys.h"
 #include "experiments/runner/loop_pacing.h"
+#include "experiments/runner/page_input.h"
+#include "experiments/runner/page_keys.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/runner/session_request.h"
 

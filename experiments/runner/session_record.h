@@ -10,9 +10,9 @@
 
 #include "core/device/device.h"
 #include "core/realtime/servo_loop.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/recovery/session_resume.h"
 #include "core/record/rows/live_figures.h"
-#include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/runner/session_markers.h"
 #include "experiments/runner/session_request.h"

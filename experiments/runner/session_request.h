@@ -12,7 +12,7 @@
 #include "core/realtime/servo_loop.h"
 #include "core/record/rows/live_figures.h"
 #include "experiments/control/session_control.h"
-#include "experiments/devices/devices.h"
+#include "experiments/runner/devices.h"
 #include "protocols/interface/protocol.h"
 #include "protocols/tutoring/linked_trials.h"
 #include "protocols/tutoring/model_motion.h"

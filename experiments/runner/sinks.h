@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/rows/sink.h"
-#include "core/record/write/session_writer.h"
 #include "core/stream/lsl_outlet.h"
 #include "core/stream/stream_rows.h"
 #include "experiments/runner/stream_markers.h"

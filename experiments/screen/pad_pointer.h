@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/device/gamepad/gamepad.h"
+#include "core/device/gamepad.h"
 #include "core/render/gl/window.h"
 
 namespace haptrial::experiments {

@@ -7,7 +7,7 @@
 
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text_screen.h"
-#include "core/render/trial/trial_display.h"
+#include "core/render/flat/trial_display.h"
 #include "experiments/screen/frame_pacing.h"
 #include "experiments/screen/screen_pointer.h"
 #include "experiments/screen/session_mark.h"

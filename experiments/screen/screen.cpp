@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/text/exception_words.h"
+#include "core/base/exception_words.h"
 #include "core/realtime/histogram.h"
 #include "core/realtime/latest_value.h"
 #include "experiments/screen/frame_pacing.h"

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "core/device/gamepad/gamepad.h"
-#include "core/markers/onset_log.h"
+#include "core/device/gamepad.h"
 #include "core/record/rows/session_types.h"
 #include "core/render/flat/text_screen.h"
+#include "core/render/flat/trial_display_style.h"
 #include "core/render/gl/window.h"
-#include "core/render/trial/trial_display_style.h"
 #include "core/stimulus/observer.h"
+#include "core/stream/onset_log.h"
 #include "experiments/control/session_control.h"
 #include "experiments/screen/screen_pointer.h"
 #include "experiments/screen/session_mark.h"

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/base/files/child_process.h"
-#include "core/base/files/whole_file.h"
+#include "core/base/child_process.h"
+#include "core/base/whole_file.h"
 #include "core/render/gl/image.h"
 
 namespace haptrial::experiments {

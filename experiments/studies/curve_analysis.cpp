@@ -5,7 +5,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "protocols/force_training/passes/training_pass.h"
+#include "protocols/force_training/training_pass.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -10,11 +10,11 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
+#include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
-#include "experiments/studies/study_simulation/power_plan.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/definition/languages.h"
 #include "protocols/definition/tutoring_warnings.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/definition/given/given_values.h"
+#include "core/base/definition/given_values.h"
 #include "core/base/definition/table.h"
 #include "core/base/definition/translations.h"
 #include "experiments/studies/study.h"

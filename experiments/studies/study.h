@@ -9,7 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/record/rows/live_figures.h"
 #include "experiments/studies/curve_analysis.h"
-#include "experiments/studies/study_simulation/study_simulation.h"
+#include "experiments/studies/study_simulation.h"
 #include "experiments/study/study_files.h"
 #include "protocols/interface/protocol.h"
 

@@ -7,8 +7,8 @@
 #include <iterator>
 #include <set>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/text/counted.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
 #include "experiments/runner/version.h"

@@ -8,7 +8,7 @@
 
 #include "core/base/one_processor.h"
 #include "core/base/random.h"
-#include "core/network/channel/simulated_link.h"
+#include "core/tutoring/simulated_link.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/bone/simulator/simulator.h"
 #include "core/device/device.h"
-#include "core/network/channel/packet.h"
+#include "core/tutoring/packet.h"
 
 namespace haptrial::protocols {
 

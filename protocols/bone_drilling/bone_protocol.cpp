@@ -5,14 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/text/counted.h"
+#include "core/bone/hint/hint_rows.h"
 #include "core/bone/model/nearest_structure.h"
+#include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/tear_row.h"
-#include "core/hint/hint_rows.h"
-#include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
 #include "core/sound/wav.h"
@@ -21,9 +21,9 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
-#include "protocols/bone_drilling/hints/replayed_hints.h"
-#include "protocols/bone_drilling/nerves/nerve_page.h"
-#include "protocols/bone_drilling/nerves/replayed_nerves.h"
+#include "protocols/bone_drilling/nerve_page.h"
+#include "protocols/bone_drilling/replayed_hints.h"
+#include "protocols/bone_drilling/replayed_nerves.h"
 
 namespace haptrial::protocols {
 namespace {

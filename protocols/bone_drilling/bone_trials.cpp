@@ -6,14 +6,14 @@
 #include <array>
 #include <cstdio>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/base/text/counted.h"
+#include "core/bone/hint/hint_rows.h"
+#include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
-#include "core/hint/hint_rows.h"
-#include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
 #include "protocols/bone_drilling/bone_restore.h"

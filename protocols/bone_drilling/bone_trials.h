@@ -10,10 +10,10 @@
 #include "protocols/bone_drilling/display/bone_sound.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 #include "protocols/bone_drilling/drilling_pass.h"
-#include "protocols/bone_drilling/hints/trial_hints.h"
 #include "protocols/bone_drilling/led_pass.h"
-#include "protocols/bone_drilling/nerves/trial_nerves.h"
 #include "protocols/bone_drilling/shared_bone.h"
+#include "protocols/bone_drilling/trial_hints.h"
+#include "protocols/bone_drilling/trial_nerves.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {

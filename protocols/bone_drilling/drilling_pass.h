@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <span>
 
+#include "core/bone/nerve/nerve_exposures.h"
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/drilling_view.h"
 #include "core/bone/simulator/simulator.h"
-#include "core/nerve/setup/nerve_exposures.h"
 #include "core/sound/drill_sound.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/bone_drilling/drilling_rows.h"

@@ -2,6 +2,9 @@
 
 #include <cstdint>
 
+#include "core/bone/hint/hints_beside.h"
+#include "core/bone/nerve/nerve_beside.h"
+#include "core/bone/nerve/nerve_exposures.h"
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/bone/record/field_row.h"
@@ -9,9 +12,6 @@
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/bone/simulator/simulator.h"
-#include "core/hint/hints_beside.h"
-#include "core/nerve/beside/nerve_beside.h"
-#include "core/nerve/setup/nerve_exposures.h"
 #include "core/realtime/block_log.h"
 #include "protocols/interface/pass.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/base/definition/given/given_values.h"
+#include "core/base/definition/given_values.h"
 #include "core/base/definition/table.h"
 
 namespace haptrial::protocols {

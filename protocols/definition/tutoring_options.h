@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/control/tutoring/tutoring_law.h"
-#include "core/network/channel/simulated_channel.h"
-#include "core/network/side/side_parameters.h"
+#include "core/tutoring/side_parameters.h"
+#include "core/tutoring/simulated_channel.h"
+#include "core/tutoring/tutoring_law.h"
 
 namespace haptrial {
 template <class T>

@@ -7,14 +7,14 @@
 #include <cmath>
 #include <set>
 
+#include "core/base/counted.h"
 #include "core/base/definition/schema.h"
-#include "core/base/text/counted.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "core/control/loop_margin.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/definition/lab_file.h"
-#include "protocols/force_training/passes/training_pass.h"
 #include "protocols/force_training/recorded_path.h"
+#include "protocols/force_training/training_pass.h"
 
 namespace haptrial::protocols {
 namespace {

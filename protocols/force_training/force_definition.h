@@ -11,7 +11,7 @@
 #include "core/subject/path_learner.h"
 #include "core/subject/subject_parameters.h"
 #include "protocols/definition/definition.h"
-#include "protocols/force_training/passes/trajectory_pass.h"
+#include "protocols/force_training/trajectory_pass.h"
 
 namespace haptrial {
 class Table;

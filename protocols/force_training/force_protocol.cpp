@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_replay.h"
 #include "protocols/force_training/force_trials.h"

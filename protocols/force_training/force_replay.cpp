@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/record/read/even_rows.h"
-#include "protocols/force_training/passes/recorded_pass.h"
+#include "protocols/force_training/recorded_pass.h"
 
 namespace haptrial::protocols {
 namespace {

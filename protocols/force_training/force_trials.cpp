@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "protocols/force_training/passes/recorded_pass.h"
 #include "protocols/force_training/path_drawing.h"
+#include "protocols/force_training/recorded_pass.h"
 #include "protocols/force_training/virtual_rig.h"
 #include "protocols/interface/session_file.h"
 

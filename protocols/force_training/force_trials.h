@@ -6,7 +6,7 @@
 #include "core/stimulus/stimulus.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/pass_pictures.h"
-#include "protocols/force_training/passes/trajectory_pass.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {

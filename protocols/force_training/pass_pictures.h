@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/record/rows/session_types.h"
-#include "core/render/trial/frames.h"
+#include "core/render/flat/frames.h"
 #include "protocols/force_training/frame_capture.h"
 #include "protocols/interface/trials.h"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/render/trial/trial_display.h"
+#include "core/render/flat/trial_display.h"
 #include "core/stimulus/presentation.h"
 
 namespace haptrial::protocols {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/render/trial/trial_display_style.h"
+#include "core/render/flat/trial_display_style.h"
 #include "protocols/interface/drawing.h"
 
 namespace haptrial::protocols {

@@ -8,9 +8,9 @@
 #include "core/device/device.h"
 #include "core/device/energy_watch.h"
 #include "core/device/fault.h"
-#include "core/markers/onset.h"
 #include "core/record/rows/session_types.h"
 #include "core/stimulus/shown.h"
+#include "core/stream/onset.h"
 
 namespace haptrial::protocols {
 

@@ -4,13 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/device/pedal/pedal.h"
-#include "core/markers/onset_log.h"
+#include "core/device/pedal.h"
 #include "core/realtime/block_log.h"
 #include "core/realtime/servo_loop.h"
 #include "core/record/rows/device_row.h"
 #include "core/record/rows/session_types.h"
 #include "core/stimulus/observer.h"
+#include "core/stream/onset_log.h"
 #include "protocols/interface/device_set.h"
 #include "protocols/interface/pass.h"
 

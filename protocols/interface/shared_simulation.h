@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/network/channel/reliable_stream.h"
+#include "core/tutoring/reliable_stream.h"
 
 namespace haptrial::protocols {
 

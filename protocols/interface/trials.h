@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/record/link/partner_state.h"
 #include "core/record/rows/live_figures.h"
+#include "core/record/rows/partner_state.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/rows.h"
 #include "core/record/rows/session_types.h"

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "core/network/channel/sequence_window.h"
-#include "core/network/channel/wire.h"
+#include "core/tutoring/sequence_window.h"
+#include "core/tutoring/wire.h"
 
 namespace haptrial::protocols {
 

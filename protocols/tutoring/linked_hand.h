@@ -5,16 +5,16 @@
 #include <functional>
 #include <memory>
 
-#include "core/control/tutoring/tutoring_law.h"
-#include "core/network/channel/reliable_stream.h"
-#include "core/network/channel/wire.h"
-#include "core/network/side/coupled_side.h"
-#include "core/network/side/pass_barrier.h"
 #include "core/realtime/block_log.h"
 #include "core/realtime/latest_value.h"
-#include "core/record/link/link_row.h"
-#include "core/record/link/partner_state.h"
+#include "core/record/rows/link_row.h"
+#include "core/record/rows/partner_state.h"
 #include "core/stimulus/observer.h"
+#include "core/tutoring/coupled_side.h"
+#include "core/tutoring/pass_barrier.h"
+#include "core/tutoring/reliable_stream.h"
+#include "core/tutoring/tutoring_law.h"
+#include "core/tutoring/wire.h"
 #include "protocols/definition/tutoring_options.h"
 #include "protocols/interface/pass.h"
 #include "protocols/tutoring/link_quality.h"

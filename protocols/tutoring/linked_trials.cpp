@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/record/link/link_row.h"
-#include "core/record/link/network_row.h"
+#include "core/record/rows/link_row.h"
+#include "core/record/rows/network_row.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/tutoring/linked_pass.h"
 #include "protocols/tutoring/network_order.h"

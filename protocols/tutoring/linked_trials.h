@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "core/network/channel/wire.h"
+#include "core/tutoring/wire.h"
 #include "protocols/definition/tutoring_options.h"
 #include "protocols/interface/trials.h"
 #include "protocols/tutoring/linked_hand.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/control/tutoring/tutoring_law.h"
+#include "core/tutoring/tutoring_law.h"
 
 namespace haptrial::protocols {
 

@@ -33,7 +33,7 @@ TEST(ExceptionsTest, OfTheLibraryBecomeSentences) {
       if (entry.path().extension() == ".cpp") {
         std::ifstream in(entry.path());
         EXPECT_EQ(raw_words({std::istreambuf_iterator<char>(in), {}}), "")
-            << entry.path() << ": write sentence_of(error) of core/base/text/exception_words.h";
+            << entry.path() << ": write sentence_of(error) of core/base/exception_words.h";
       }
     }
   }

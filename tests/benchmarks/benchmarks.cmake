@@ -35,12 +35,12 @@ foreach(source ${benchmarks})
   endif()
   if(name STREQUAL null_trials)
     target_sources(bench_null_trials
-                   PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/trials/simulated_trials.cpp
-                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_cues.cpp
-                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/null_trials.cpp
-                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/psychometric/simulated_cues.cpp
-                           ${CMAKE_SOURCE_DIR}/tests/analysis/trials/reaching/quantities/simulated_reaches.cpp)
-    target_link_libraries(bench_null_trials PRIVATE haptrial_trials_reach_quantities haptrial_record_write
+                   PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychophysics/simulated_trials.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/psychophysics/study/null_cues.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/psychophysics/study/null_trials.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/psychophysics/study/simulated_cues.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/psychophysics/study/simulated_reaches.cpp)
+    target_link_libraries(bench_null_trials PRIVATE haptrial_psychophysics_study haptrial_record_hdf5
                                                     PkgConfig::gsl)
     continue()
   endif()
@@ -51,12 +51,12 @@ target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_s
                                    ${CMAKE_SOURCE_DIR}/tests/support/temporary_folder.cpp)
 target_sources(bench_procedure_coverage
                PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/procedure_study.cpp
-                       ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/surface/surface_counts.cpp)
-target_link_libraries(bench_procedure_coverage PRIVATE haptrial_psychometric_surface PkgConfig::gsl)
-target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/statistics/null_reports.cpp)
+                       ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/surface_counts.cpp)
+target_link_libraries(bench_procedure_coverage PRIVATE haptrial_psychometric_fit PkgConfig::gsl)
+target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/study/null_reports.cpp)
 target_sources(bench_null_relabelled
-               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/comparison/null_comparisons.cpp
-                       ${CMAKE_SOURCE_DIR}/tests/analysis/bone_drilling/validity/null_validity.cpp)
+               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/report/null_comparisons.cpp
+                       ${CMAKE_SOURCE_DIR}/tests/analysis/bone_drilling/report/null_validity.cpp)
 target_compile_definitions(bench_servo PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 target_compile_definitions(bench_responses PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 target_compile_definitions(bench_mesh PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")

@@ -9,7 +9,7 @@
 
 #include "core/bone/data/load_bone.h"
 #include "core/bone/surface/surface.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/mesh_check.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/gl/offscreen.h"
 #include "experiments/command/tools/bone_carving.h"

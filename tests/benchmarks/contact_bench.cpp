@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/contact/objects/moving_objects.h"
-#include "core/contact/proxy/proxy.h"
-#include "core/contact/renderer/make_renderer.h"
+#include "core/contact/make_renderer.h"
+#include "core/contact/moving_objects.h"
+#include "core/contact/proxy.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/mesh/procedural.h"

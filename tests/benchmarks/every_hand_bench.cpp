@@ -11,7 +11,7 @@
 
 #include "core/control/handle_guard.h"
 #include "core/device/envelope.h"
-#include "protocols/force_training/passes/recall.h"
+#include "protocols/force_training/recall.h"
 #include "tests/support/pass_run.h"
 
 namespace {

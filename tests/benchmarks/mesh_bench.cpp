@@ -14,7 +14,7 @@
 
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/mesh_check.h"
 #include "core/geometry/volume/tetrahedralize.h"
 #include "core/geometry/volume/voxelize.h"
 #include "tests/support/shared_data.h"

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "analysis/force_training/score/scores_csv.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/support/condition_null.h"
 
 namespace {

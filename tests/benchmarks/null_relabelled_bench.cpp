@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "analysis/force_training/score/scores_csv.h"
-#include "core/base/files/file_text.h"
-#include "tests/analysis/bone_drilling/validity/null_validity.h"
-#include "tests/analysis/force_training/comparison/null_comparisons.h"
+#include "core/base/file_text.h"
+#include "tests/analysis/bone_drilling/report/null_validity.h"
+#include "tests/analysis/force_training/report/null_comparisons.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "analysis/force_training/score/scores_csv.h"
-#include "core/base/files/file_text.h"
-#include "tests/analysis/force_training/statistics/null_reports.h"
+#include "core/base/file_text.h"
+#include "tests/analysis/force_training/study/null_reports.h"
 
 int main(int argc, char** argv) {
   using haptrial::test::NullDesign;

@@ -6,9 +6,9 @@
 
 #include <cstdlib>
 
-#include "tests/analysis/trials/psychometric/null_cues.h"
-#include "tests/analysis/trials/psychometric/null_trials.h"
-#include "tests/analysis/trials/reaching/quantities/simulated_reaches.h"
+#include "tests/analysis/psychophysics/study/null_cues.h"
+#include "tests/analysis/psychophysics/study/null_trials.h"
+#include "tests/analysis/psychophysics/study/simulated_reaches.h"
 
 namespace {
 

@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/bone/anatomy/mandible.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/pieces/flood.h"
-#include "core/bone/pieces/world.h"
-#include "core/bone/tools/cut_plane.h"
-#include "core/bone/tools/plate.h"
-#include "core/bone/tools/plate_shapes.h"
+#include "core/bone/data/mandible.h"
+#include "core/bone/model/flood.h"
+#include "core/bone/model/world.h"
+#include "core/bone/simulator/cut_plane.h"
+#include "core/bone/simulator/plate.h"
+#include "core/bone/simulator/plate_shapes.h"
 #include "tests/benchmarks/pieces_figures.h"
 
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/bone/model/voxel_walk.h"
-#include "core/bone/pieces/world.h"
-#include "core/bone/tools/cut_plane.h"
-#include "core/bone/tools/plate.h"
-#include "core/bone/tools/plate_shapes.h"
+#include "core/bone/model/world.h"
+#include "core/bone/simulator/cut_plane.h"
+#include "core/bone/simulator/plate.h"
+#include "core/bone/simulator/plate_shapes.h"
 #include "core/geometry/mesh/procedural.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/bone/bone_tools.h"

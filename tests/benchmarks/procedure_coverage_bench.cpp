@@ -16,7 +16,7 @@
 
 #include "tests/analysis/psychometric/fit/coverage_grid.h"
 #include "tests/analysis/psychometric/fit/procedure_study.h"
-#include "tests/analysis/psychometric/surface/surface_counts.h"
+#include "tests/analysis/psychometric/fit/surface_counts.h"
 
 namespace {
 

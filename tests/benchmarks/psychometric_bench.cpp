@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/psychometric/function/response_observer.h"
-#include "core/psychometric/prediction/staircase_chain.h"
+#include "core/psychometric/procedure/psi_definition.h"
+#include "core/psychometric/procedure/quest_plus.h"
 #include "core/psychometric/procedure/staircase.h"
-#include "core/psychometric/quest/psi_definition.h"
-#include "core/psychometric/quest/quest_plus.h"
+#include "core/psychometric/procedure/staircase_chain.h"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "experiments/command/line/shipped_studies.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/study_run.h"
-#include "protocols/trials/response_session.h"
+#include "protocols/psychophysics/response_session.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/deformable/skin/skin.h"
+#include "core/deformable/body/skin.h"
 #include "core/deformable/springs/equilibrium.h"
 #include "core/deformable/springs/spring_motion.h"
 #include "core/deformable/springs/stable_step.h"

@@ -15,10 +15,10 @@
 #include <thread>
 #include <vector>
 
-#include "core/deformable/moving/moving_touch.h"
-#include "core/deformable/moving/two_rate_touch.h"
 #include "core/deformable/touch/ball_touch.h"
+#include "core/deformable/touch/moving_touch.h"
 #include "core/deformable/touch/prepared.h"
+#include "core/deformable/touch/two_rate_touch.h"
 #include "core/geometry/mesh/procedural.h"
 
 namespace {

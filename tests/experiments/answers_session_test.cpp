@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/trials/data/read_trials.h"
+#include "analysis/psychophysics/data/read_trials.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/trials/trial_rows.h"
+#include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"

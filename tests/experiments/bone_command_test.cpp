@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/record/read/session_reader.h"

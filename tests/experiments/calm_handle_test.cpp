@@ -17,7 +17,7 @@
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
-#include "protocols/trials/trials_protocol.h"
+#include "protocols/psychophysics/trials_protocol.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/swings.h"
 #include "tests/support/temporary_folder.h"

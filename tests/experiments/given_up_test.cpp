@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

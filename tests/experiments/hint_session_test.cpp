@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "analysis/bone_drilling/feedback/findings.h"
+#include "core/bone/hint/hint_rows.h"
 #include "core/bone/model/nearest_structure.h"
-#include "core/hint/hint_rows.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/expert_sessions.h"
@@ -21,7 +21,7 @@
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/display/bone_renderer.h"
-#include "protocols/bone_drilling/hints/replayed_hints.h"
+#include "protocols/bone_drilling/replayed_hints.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

@@ -1,6 +1,6 @@
 // The list of every key is what the readers ask for, each key with its words.
 
-#include "experiments/command/keys/key_list.h"
+#include "experiments/command/start/key_list.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <map>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "experiments/studies/registry.h"
 #include "tests/experiments/command.h"
 

@@ -12,7 +12,7 @@
 #include <csignal>
 #include <thread>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"

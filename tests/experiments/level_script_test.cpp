@@ -14,10 +14,10 @@
 
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/trials/trial_rows.h"
+#include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
-#include "protocols/trials/script/scripted_levels.h"
+#include "protocols/psychophysics/sequence/scripted_levels.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"

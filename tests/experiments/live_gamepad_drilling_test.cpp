@@ -14,8 +14,8 @@
 #include <filesystem>
 #include <thread>
 
+#include "core/bone/hint/hint_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/hint/hint_rows.h"
 #include "core/record/read/session_reader.h"
 #include "core/render/gl/image.h"
 #include "tests/experiments/command.h"

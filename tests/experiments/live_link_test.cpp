@@ -18,10 +18,10 @@
 #include <thread>
 #include <vector>
 
-#include "core/network/link/sockets.h"
-#include "core/record/link/link_row.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/link_row.h"
+#include "core/tutoring/sockets.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"

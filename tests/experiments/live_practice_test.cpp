@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "tests/experiments/console_person.h"

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "experiments/command/start/examples.h"
 #include "experiments/studies/experiment.h"

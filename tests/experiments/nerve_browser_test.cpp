@@ -11,9 +11,9 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/nerve/beside/nerve_beside.h"
+#include "core/bone/nerve/nerve_beside.h"
 #include "experiments/console/console.h"
-#include "protocols/bone_drilling/nerves/nerve_page.h"
+#include "protocols/bone_drilling/nerve_page.h"
 #include "tests/experiments/console_client.h"
 #include "tests/support/temporary_folder.h"
 

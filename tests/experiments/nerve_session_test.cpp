@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/bone_drilling/nerves/nerve_findings.h"
+#include "analysis/bone_drilling/report/nerve_findings.h"
 #include "core/base/error.h"
+#include "core/bone/nerve/monitor_buffer.h"
+#include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/nerve/beside/monitor_buffer.h"
-#include "core/nerve/record/nerve_rows.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/sound/wav.h"
@@ -28,7 +28,7 @@
 #include "experiments/studies/experiment.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
-#include "protocols/bone_drilling/nerves/nerve_page.h"
+#include "protocols/bone_drilling/nerve_page.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"

@@ -1,4 +1,4 @@
-#include "analysis/force_training/statistics/order_balance.h"
+#include "analysis/force_training/study/order_balance.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

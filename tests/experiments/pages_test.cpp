@@ -10,14 +10,14 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
 #include "experiments/control/session_control.h"
-#include "experiments/pages/page_input.h"
-#include "experiments/pages/virtual_answers.h"
+#include "experiments/runner/page_input.h"
 #include "experiments/runner/session.h"
+#include "experiments/runner/virtual_answers.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"

@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "core/record/read/session_reader.h"
-#include "core/record/trials/trial_rows.h"
+#include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "tests/experiments/shipped.h"

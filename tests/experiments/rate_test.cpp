@@ -11,9 +11,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "analysis/bone_drilling/validity/ratings.h"
+#include "analysis/bone_drilling/report/ratings.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "experiments/command/analysis_commands.h"
 #include "experiments/command/drilling/drilling_commands.h"
 #include "experiments/studies/drilling/drilling_study.h"

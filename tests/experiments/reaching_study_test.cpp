@@ -12,7 +12,7 @@
 #include <string>
 
 #include "analysis/files/csv.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/bone/anatomy/ear_side.h"
 #include "core/bone/data/bone_file.h"
+#include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/drilling_study.h"

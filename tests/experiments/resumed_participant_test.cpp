@@ -12,11 +12,11 @@
 #include <csignal>
 #include <thread>
 
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/session_resume.h"
-#include "core/record/trials/trial_rows.h"
-#include "core/record/write/session_writer.h"
+#include "core/record/rows/trial_rows.h"
 #include "core/subject/perceiver/two_rate.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"

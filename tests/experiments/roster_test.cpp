@@ -19,7 +19,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_name.h"
-#include "protocols/trials/definition/trials_definition.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/message_of.h"

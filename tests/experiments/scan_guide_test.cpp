@@ -13,9 +13,9 @@
 #include <regex>
 #include <sstream>
 
-#include "core/bone/anatomy/temporal_bone.h"
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/load_bone.h"
+#include "core/bone/data/temporal_bone.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/bone/surface/surface_mesh.h"
 #include "core/geometry/files/mesh_io.h"

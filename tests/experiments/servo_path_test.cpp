@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "protocols/force_training/frame_capture.h"
-#include "protocols/force_training/passes/recall.h"
-#include "protocols/force_training/passes/training_pass.h"
+#include "protocols/force_training/recall.h"
+#include "protocols/force_training/training_pass.h"
 #include "protocols/force_training/virtual_rig.h"
 #include "protocols/interface/session_task.h"
 #include "tests/experiments/shipped.h"

@@ -9,7 +9,7 @@
 
 #include "analysis/files/csv.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/trials/trial_rows.h"
+#include "core/record/rows/trial_rows.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "analysis/link/led_passes.h"
-#include "core/record/link/link_row.h"
-#include "core/record/link/network_row.h"
+#include "analysis/tutoring/led_passes.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/link_row.h"
+#include "core/record/rows/network_row.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"

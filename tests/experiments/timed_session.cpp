@@ -3,8 +3,8 @@
 #include <chrono>
 #include <thread>
 
-#include "core/record/write/session_writer.h"
-#include "protocols/force_training/passes/recall.h"
+#include "core/record/hdf5/session_writer.h"
+#include "protocols/force_training/recall.h"
 #include "protocols/force_training/virtual_rig.h"
 #include "protocols/interface/session_task.h"
 #include "tests/experiments/shipped.h"

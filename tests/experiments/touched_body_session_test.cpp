@@ -13,12 +13,12 @@
 #include "core/deformable/touch/ball_touch.h"
 #include "core/deformable/touch/prepared.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/trials/contact_row.h"
-#include "core/record/trials/trial_rows.h"
+#include "core/record/rows/contact_row.h"
+#include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
-#include "protocols/trials/definition/trials_definition.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::touched_body_session_test {

@@ -3,10 +3,10 @@
 #include <string>
 
 #include "core/base/definition/table.h"
-#include "core/base/files/file_text.h"
-#include "experiments/studies/trials/trials_analysis.h"
-#include "protocols/trials/definition/trials_definition.h"
-#include "protocols/trials/trials_protocol.h"
+#include "core/base/file_text.h"
+#include "experiments/studies/psychophysics/trials_analysis.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
+#include "protocols/psychophysics/trials_protocol.h"
 
 namespace haptrial::experiments {
 namespace {

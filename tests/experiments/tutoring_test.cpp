@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/control/tutoring/deadband.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/tutoring_row.h"
+#include "core/tutoring/deadband.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"
 

@@ -8,8 +8,8 @@
 
 #include "core/bone/record/drilling_tables.h"
 #include "core/realtime/servo_loop.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/write/session_writer.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "protocols/interface/session_task.h"
 #include "tests/protocols/drilling_fixture.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "protocols/force_training/passes/recall.h"
-#include "protocols/force_training/passes/training_pass.h"
+#include "protocols/force_training/recall.h"
+#include "protocols/force_training/training_pass.h"
 #include "tests/support/pass_run.h"
 
 namespace haptrial::protocols {

@@ -7,8 +7,8 @@
 #include "core/base/random.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/virtual_device.h"
-#include "protocols/force_training/passes/recall.h"
-#include "protocols/force_training/passes/training_pass.h"
+#include "protocols/force_training/recall.h"
+#include "protocols/force_training/training_pass.h"
 #include "protocols/interface/session_task.h"
 
 namespace haptrial::protocols {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/force_training/statistics/study_mixed.h"
+#include "analysis/force_training/study/study_mixed.h"
 #include "analysis/statistics/variance/anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "core/base/random.h"

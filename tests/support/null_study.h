@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/validity/validity_table.h"
-#include "core/base/files/file_text.h"
+#include "analysis/bone_drilling/report/validity_table.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "experiments/studies/drilling/simulated_rater.h"
 #include "experiments/study/study_run.h"

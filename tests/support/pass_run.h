@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/device/virtual_device.h"
-#include "protocols/force_training/passes/trajectory_pass.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "protocols/interface/session_task.h"
 #include "tests/support/hand_on_handle.h"
 

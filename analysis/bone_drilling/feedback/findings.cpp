@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "analysis/bone_drilling/procedure/in_order.h"
+#include "analysis/bone_drilling/metrics/in_order.h"
 #include "core/bone/model/nearest_structure.h"
 
 namespace haptrial::analysis::drilling {

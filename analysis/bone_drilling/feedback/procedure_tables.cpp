@@ -9,7 +9,7 @@
 #include "analysis/bone_drilling/feedback/page_frame.h"
 #include "analysis/bone_drilling/feedback/range_plot.h"
 #include "analysis/document/html.h"
-#include "core/base/text/counted.h"
+#include "core/base/counted.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/near_structure.h"
-#include "analysis/bone_drilling/procedure/study_bones.h"
+#include "analysis/bone_drilling/metrics/study_bones.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "analysis/bone_drilling/procedure/procedure.h"
-#include "core/bone/sight/burr_on_tick.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
+#include "core/bone/drill/burr_on_tick.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/injuries.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/metrics/usage.h"
 #include "analysis/bone_drilling/metrics/visibility.h"
-#include "analysis/bone_drilling/procedure/procedure.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/bone_drilling/metrics/in_order.h"
+#include "analysis/bone_drilling/metrics/study_bones.h"
 #include "analysis/bone_drilling/metrics/visibility.h"
-#include "analysis/bone_drilling/procedure/in_order.h"
-#include "analysis/bone_drilling/procedure/study_bones.h"
-#include "core/bone/sight/standing_bone.h"
+#include "core/bone/drill/standing_bone.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

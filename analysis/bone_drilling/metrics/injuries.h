@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/burr_on_tick.h"
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/bone/model/distance_field.h"
 
 namespace haptrial::analysis::drilling {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "analysis/bone_drilling/procedure/in_order.h"
+#include "analysis/bone_drilling/metrics/in_order.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

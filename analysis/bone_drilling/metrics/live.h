@@ -8,7 +8,7 @@
 
 #include "analysis/bone_drilling/metrics/drilling_meter.h"
 #include "analysis/bone_drilling/metrics/live_figures.h"
-#include "analysis/bone_drilling/procedure/study_bones.h"
+#include "analysis/bone_drilling/metrics/study_bones.h"
 
 namespace haptrial::analysis::drilling {
 

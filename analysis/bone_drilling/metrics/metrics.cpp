@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/metrics/drilling_meter.h"
-#include "analysis/bone_drilling/procedure/in_order.h"
+#include "analysis/bone_drilling/metrics/in_order.h"
 #include "analysis/files/delimited.h"
 
 namespace haptrial::analysis::drilling {

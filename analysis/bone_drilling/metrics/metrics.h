@@ -10,12 +10,12 @@
 
 #include "analysis/bone_drilling/metrics/injuries.h"
 #include "analysis/bone_drilling/metrics/near_structure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/metrics/region_likelihood.h"
 #include "analysis/bone_drilling/metrics/strokes.h"
+#include "analysis/bone_drilling/metrics/study_bones.h"
 #include "analysis/bone_drilling/metrics/usage.h"
 #include "analysis/bone_drilling/metrics/visibility.h"
-#include "analysis/bone_drilling/procedure/procedure.h"
-#include "analysis/bone_drilling/procedure/study_bones.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/statistics/base/defined.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "core/bone/model/distance_field.h"

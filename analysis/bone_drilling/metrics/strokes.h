@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/bone_drilling/procedure/in_order.h"
+#include "analysis/bone_drilling/metrics/in_order.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

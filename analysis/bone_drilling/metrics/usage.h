@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -1,6 +1,6 @@
 #include "analysis/bone_drilling/metrics/visibility.h"
 
-#include "analysis/bone_drilling/procedure/in_order.h"
+#include "analysis/bone_drilling/metrics/in_order.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "analysis/bone_drilling/metrics/burr_on_tick.h"
-#include "analysis/bone_drilling/procedure/procedure.h"
-#include "core/bone/sight/sight.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
+#include "core/bone/drill/sight.h"
 
 namespace haptrial::analysis::drilling {
 

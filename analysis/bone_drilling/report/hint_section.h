@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/hints/hint_findings.h"
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/report/hint_findings.h"
 #include "analysis/bone_drilling/report/with_without.h"
 #include "analysis/document/document.h"
 

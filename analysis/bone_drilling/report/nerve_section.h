@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/nerves/nerve_findings.h"
+#include "analysis/bone_drilling/report/nerve_findings.h"
 #include "analysis/document/document.h"
 
 namespace haptrial::analysis::drilling {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 
+#include "analysis/bone_drilling/report/ratings.h"
 #include "analysis/bone_drilling/report/validity_words.h"
-#include "analysis/bone_drilling/validity/ratings.h"
 #include "analysis/document/palette.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
+#include "analysis/bone_drilling/report/validity_findings.h"
 #include "analysis/bone_drilling/report/validity_result.h"
-#include "analysis/bone_drilling/validity/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
 

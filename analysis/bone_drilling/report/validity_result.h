@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/hints/hint_findings.h"
 #include "analysis/bone_drilling/metrics/metrics.h"
-#include "analysis/bone_drilling/nerves/nerve_findings.h"
+#include "analysis/bone_drilling/report/hint_findings.h"
 #include "analysis/bone_drilling/report/hint_section.h"
-#include "analysis/bone_drilling/validity/validity_findings.h"
+#include "analysis/bone_drilling/report/nerve_findings.h"
+#include "analysis/bone_drilling/report/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -8,15 +8,15 @@
 #include <utility>
 
 #include "analysis/bone_drilling/report/field_section.h"
+#include "analysis/bone_drilling/report/ratings.h"
+#include "analysis/bone_drilling/report/validity.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_json.h"
 #include "analysis/bone_drilling/report/validity_report.h"
-#include "analysis/bone_drilling/validity/ratings.h"
-#include "analysis/bone_drilling/validity/validity.h"
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/files/staging.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/report/validity_result.h"
 
 namespace haptrial::record {

@@ -5,7 +5,7 @@
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_words.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "analysis/bone_drilling/validity/validity_findings.h"
+#include "analysis/bone_drilling/report/validity_findings.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

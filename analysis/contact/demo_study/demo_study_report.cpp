@@ -10,11 +10,11 @@
 
 #include "analysis/contact/demo_study/demo_study_figures.h"
 #include "analysis/contact/demo_study/source_tables.h"
-#include "analysis/contact/report/evaluation_tables.h"
+#include "analysis/contact/evaluation/evaluation_tables.h"
 #include "analysis/document/document.h"
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/files/new_folder.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::evaluation {
 namespace {

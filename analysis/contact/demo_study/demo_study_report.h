@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/contact/demo_study/demo_study_tables.h"
-#include "analysis/contact/failure/failure_map.h"
+#include "analysis/contact/demo_study/failure_map.h"
 
 namespace haptrial::evaluation {
 

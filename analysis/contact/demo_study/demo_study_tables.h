@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/contact/demo_study/simulated_probe.h"
 #include "analysis/contact/evaluation/evaluate_rendering.h"
-#include "analysis/contact/simulation/simulated_probe.h"
 
 namespace haptrial::evaluation {
 

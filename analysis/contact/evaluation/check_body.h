@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/surface/felt_body.h"
+#include "core/contact/felt_body.h"
 
 namespace haptrial::evaluation {
 

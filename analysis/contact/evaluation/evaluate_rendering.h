@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/contact/evaluation/cross_fit.h"
+#include "analysis/contact/evaluation/identify_contact.h"
 #include "analysis/contact/evaluation/render_contact.h"
-#include "analysis/contact/identification/identify_contact.h"
 
 namespace haptrial::evaluation {
 

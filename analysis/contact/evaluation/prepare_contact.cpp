@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "analysis/contact/evaluation/check_body.h"
+#include "analysis/contact/evaluation/in_trajectory.h"
 #include "analysis/contact/evaluation/surface_lag.h"
-#include "analysis/contact/registration/in_trajectory.h"
 #include "analysis/statistics/base/descriptive.h"
 
 namespace haptrial::evaluation {

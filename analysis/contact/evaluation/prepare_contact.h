@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "analysis/contact/identification/contact_samples.h"
+#include "analysis/contact/evaluation/contact_samples.h"
+#include "analysis/contact/evaluation/registration.h"
 #include "analysis/contact/recording/sensor_load.h"
 #include "analysis/contact/recording/stream_lag.h"
-#include "analysis/contact/registration/registration.h"
-#include "core/contact/surface/felt_body.h"
+#include "core/contact/felt_body.h"
 
 namespace haptrial::evaluation {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/contact/renderer/make_renderer.h"
+#include "core/contact/make_renderer.h"
 
 namespace haptrial::evaluation {
 namespace {

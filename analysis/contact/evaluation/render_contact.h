@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/contact/evaluation/prepare_contact.h"
-#include "analysis/contact/metrics/rendering_error.h"
-#include "core/contact/renderer/renderer.h"
+#include "analysis/contact/evaluation/rendering_error.h"
+#include "core/contact/renderer.h"
 
 namespace haptrial::evaluation {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "analysis/contact/regression/block_regression.h"
+#include "analysis/contact/recording/block_regression.h"
 
 namespace haptrial::evaluation {
 namespace {

@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "analysis/statistics/words/wording.h"
-#include "core/base/text/alike_names.h"
+#include "analysis/statistics/design/wording.h"
+#include "core/base/alike_names.h"
 
 namespace haptrial::exchange {
 namespace {

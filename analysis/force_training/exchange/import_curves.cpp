@@ -5,8 +5,8 @@
 #include "analysis/force_training/exchange/import_checks.h"
 #include "analysis/force_training/exchange/import_trials.h"
 #include "analysis/force_training/score/score.h"
-#include "analysis/force_training/statistics/study_statistics.h"
 #include "analysis/force_training/study/recall_picture.h"
+#include "analysis/force_training/study/study_statistics.h"
 #include "core/base/error.h"
 
 namespace haptrial::exchange {

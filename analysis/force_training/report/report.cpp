@@ -4,7 +4,7 @@
 
 #include "analysis/force_training/report/report_parts.h"
 #include "analysis/force_training/study/study_summary.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/force_training/report/report_parts.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "analysis/force_training/report/report_parts.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 #include "core/record/read/overruns.h"
 
 namespace haptrial::analysis {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "analysis/force_training/report/report_parts.h"
-#include "analysis/force_training/statistics/order_balance.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/force_training/study/order_balance.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
 namespace {

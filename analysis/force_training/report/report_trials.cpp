@@ -2,7 +2,7 @@
 
 #include "analysis/force_training/report/report_parts.h"
 #include "analysis/force_training/study/quality_summary.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "analysis/document/palette.h"
-#include "analysis/force_training/statistics/order_balance.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/force_training/study/order_balance.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
 namespace {

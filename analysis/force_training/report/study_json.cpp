@@ -4,7 +4,7 @@
 
 #include "analysis/force_training/study/identity_json_internal.h"
 #include "analysis/force_training/study/quality_summary.h"
-#include "analysis/statistics/words/result_json_internal.h"
+#include "analysis/statistics/design/result_json_internal.h"
 
 namespace haptrial::analysis {
 namespace {

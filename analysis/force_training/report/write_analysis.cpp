@@ -8,7 +8,7 @@
 #include "analysis/force_training/report/study_figures.h"
 #include "analysis/force_training/report/study_json.h"
 #include "analysis/force_training/score/scores_csv.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "analysis/statistics/base/descriptive.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
 namespace {

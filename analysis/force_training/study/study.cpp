@@ -8,7 +8,7 @@
 
 #include "analysis/force_training/score/path_places.h"
 #include "analysis/force_training/score/score.h"
-#include "analysis/force_training/statistics/path_statistics.h"
+#include "analysis/force_training/study/path_statistics.h"
 #include "analysis/force_training/study/quality_summary.h"
 #include "analysis/force_training/study/recall_picture.h"
 #include "analysis/force_training/study/session_recalls.h"

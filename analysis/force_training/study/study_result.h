@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "analysis/force_training/score/trial_score.h"
-#include "analysis/force_training/statistics/study_statistics.h"
 #include "analysis/force_training/study/recall_picture.h"
 #include "analysis/force_training/study/session_summary.h"
+#include "analysis/force_training/study/study_statistics.h"
 
 namespace haptrial::analysis {
 

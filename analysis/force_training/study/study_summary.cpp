@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "analysis/force_training/study/study_result.h"
-#include "analysis/statistics/words/design_lines.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/design_lines.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
 namespace {

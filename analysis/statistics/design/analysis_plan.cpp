@@ -9,7 +9,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 
 namespace haptrial::analysis {
 namespace {

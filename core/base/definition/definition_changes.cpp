@@ -10,7 +10,7 @@
 #include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/base/text/utf8.h"
+#include "core/base/utf8.h"
 
 namespace haptrial {
 namespace {

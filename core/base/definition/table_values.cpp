@@ -11,7 +11,7 @@
 #include "core/base/definition/table_internal.h"
 #include "core/base/definition/table_words_internal.h"
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 
 namespace haptrial {
 

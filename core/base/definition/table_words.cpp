@@ -7,7 +7,7 @@
 #include "core/base/definition/table_words_internal.h"
 #include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
-#include "core/base/text/utf8.h"
+#include "core/base/utf8.h"
 
 namespace haptrial {
 namespace {

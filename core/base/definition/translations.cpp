@@ -7,8 +7,8 @@
 
 #include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/base/text/nearest.h"
+#include "core/base/file_text.h"
+#include "core/base/nearest.h"
 
 namespace haptrial {
 namespace {

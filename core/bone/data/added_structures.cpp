@@ -9,9 +9,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/parallel.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 #include "core/bone/model/crop.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/volume/voxelize.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/files/whole_file.h"
+#include "core/base/whole_file.h"
 #include "core/bone/data/label_names.h"
 
 namespace haptrial::bone {

@@ -10,7 +10,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 
 namespace haptrial::bone {
 namespace {

@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
-#include "core/bone/anatomy/anatomy.h"
-#include "core/bone/anatomy/ear_side.h"
+#include "core/base/nearest.h"
+#include "core/bone/data/anatomy.h"
+#include "core/bone/data/ear_side.h"
 #include "core/bone/data/grey_bone.h"
 #include "core/bone/data/label_names.h"
 #include "core/bone/data/resample.h"

@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/bone/data/read_volume_internal.h"
 
 namespace haptrial::bone {

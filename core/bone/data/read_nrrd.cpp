@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/bone/data/read_volume_internal.h"
 #include "core/bone/data/segments.h"
 

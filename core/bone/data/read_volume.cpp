@@ -16,9 +16,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
-#include "core/base/files/child_process.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/bone/data/read_volume_internal.h"
 
 namespace haptrial::bone {

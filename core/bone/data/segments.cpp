@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 
 namespace haptrial::bone {
 namespace {

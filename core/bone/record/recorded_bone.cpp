@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/text/utf8.h"
+#include "core/base/utf8.h"
 #include "core/record/table/schema.h"
 
 namespace haptrial::bone {

@@ -6,7 +6,7 @@
 #include "core/base/tool_state.h"
 #include "core/bone/drill/drill.h"
 #include "core/bone/drill/feel.h"
-#include "core/bone/pieces/world.h"
+#include "core/bone/model/world.h"
 
 namespace haptrial::bone {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/bone/simulator/felt_part.h"
-#include "core/bone/tools/simulator_tools.h"
+#include "core/bone/simulator/simulator_tools.h"
 
 namespace haptrial::bone {
 

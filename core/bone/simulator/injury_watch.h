@@ -6,8 +6,8 @@
 #include <span>
 
 #include "core/bone/model/bone_model.h"
-#include "core/bone/pieces/world.h"
-#include "core/bone/tools/soft_tissue.h"
+#include "core/bone/model/world.h"
+#include "core/bone/simulator/soft_tissue.h"
 
 namespace haptrial::bone {
 

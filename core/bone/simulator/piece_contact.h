@@ -4,8 +4,8 @@
 
 #include "core/base/tool_state.h"
 #include "core/bone/drill/drill.h"
-#include "core/bone/pieces/world.h"
-#include "core/bone/tools/soft_tissue.h"
+#include "core/bone/model/world.h"
+#include "core/bone/simulator/soft_tissue.h"
 
 namespace haptrial::bone {
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "core/bone/tools/simulator_tools.h"
+#include "core/bone/simulator/simulator_tools.h"
 
 namespace haptrial::bone {
 namespace {

@@ -7,10 +7,10 @@
 #include "core/base/tool_state.h"
 #include "core/bone/drill/feel.h"
 #include "core/bone/dust/dust_surroundings.h"
-#include "core/bone/pieces/world.h"
+#include "core/bone/model/world.h"
 #include "core/bone/simulator/felt_part.h"
+#include "core/bone/simulator/soft_tissue.h"
 #include "core/bone/simulator/tool_contact.h"
-#include "core/bone/tools/soft_tissue.h"
 
 namespace haptrial::bone {
 

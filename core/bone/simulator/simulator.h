@@ -13,15 +13,15 @@
 #include "core/bone/drill/drill.h"
 #include "core/bone/drill/heat.h"
 #include "core/bone/dust/dust.h"
-#include "core/bone/pieces/world.h"
+#include "core/bone/model/world.h"
 #include "core/bone/simulator/bleeding.h"
+#include "core/bone/simulator/cut_plane.h"
 #include "core/bone/simulator/handpiece.h"
 #include "core/bone/simulator/injury_watch.h"
+#include "core/bone/simulator/microscope.h"
 #include "core/bone/simulator/second_hand.h"
-#include "core/bone/tools/cut_plane.h"
-#include "core/bone/tools/microscope.h"
-#include "core/bone/tools/simulator_tools.h"
-#include "core/bone/tools/soft_tissue.h"
+#include "core/bone/simulator/simulator_tools.h"
+#include "core/bone/simulator/soft_tissue.h"
 
 namespace haptrial::bone {
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/deformable/calibration/annealing.h"
 #include "core/deformable/calibration/calibration_problem.h"
 #include "core/deformable/calibration/spring_parameters.h"
-#include "core/deformable/search/annealing.h"
 
 namespace haptrial::deformable {
 

@@ -7,7 +7,7 @@
 
 #include "core/deformable/body/load_case.h"
 #include "core/deformable/calibration/marker.h"
-#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/deformable/springs/law/spring_grid.h"
+#include "core/deformable/springs/spring_grid.h"
 
 namespace haptrial::deformable {
 

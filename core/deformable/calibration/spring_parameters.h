@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
 

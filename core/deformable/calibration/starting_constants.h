@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "core/deformable/calibration/annealing.h"
 #include "core/deformable/calibration/calibration_problem.h"
 #include "core/deformable/calibration/spring_parameters.h"
-#include "core/deformable/search/annealing.h"
 
 namespace haptrial::deformable {
 

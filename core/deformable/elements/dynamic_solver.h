@@ -2,9 +2,9 @@
 
 #include <memory>
 
+#include "core/deformable/body/linear_system.h"
 #include "core/deformable/body/load_case.h"
 #include "core/deformable/elements/elastic_body.h"
-#include "core/deformable/linear/linear_system.h"
 
 namespace haptrial::deformable {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/deformable/body/block_matrix.h"
 #include "core/deformable/elements/material.h"
 #include "core/deformable/elements/volume_patches.h"
-#include "core/deformable/linear/block_matrix.h"
 #include "core/geometry/volume/tetrahedralize.h"
 
 namespace haptrial::deformable {

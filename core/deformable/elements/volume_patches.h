@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/deformable/linear/block_matrix.h"
+#include "core/deformable/body/block_matrix.h"
 #include "core/geometry/volume/tetrahedralize.h"
 
 namespace haptrial::deformable {

@@ -1,7 +1,7 @@
 #include "core/deformable/springs/compliance.h"
 
-#include "core/deformable/linear/cholesky.h"
-#include "core/deformable/springs/law/spring_hessian.h"
+#include "core/deformable/body/cholesky.h"
+#include "core/deformable/springs/spring_hessian.h"
 #include "core/deformable/springs/spring_tangent.h"
 
 namespace haptrial::deformable {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/deformable/body/load_case.h"
-#include "core/deformable/springs/law/spring_body.h"
 #include "core/deformable/springs/settle.h"
+#include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
 

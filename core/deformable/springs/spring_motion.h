@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/base/instruction_set.h"
-#include "core/deformable/springs/kernel/spring_forces.h"
-#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/springs/spring_body.h"
+#include "core/deformable/springs/spring_forces.h"
 
 namespace haptrial::deformable {
 

@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "core/base/random.h"
-#include "core/deformable/linear/cholesky.h"
-#include "core/deformable/linear/conjugate_gradients.h"
-#include "core/deformable/linear/multigrid.h"
-#include "core/deformable/springs/law/spring_hessian.h"
+#include "core/deformable/body/cholesky.h"
+#include "core/deformable/body/conjugate_gradients.h"
+#include "core/deformable/body/multigrid.h"
+#include "core/deformable/springs/spring_hessian.h"
 
 namespace haptrial::deformable {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
-#include "core/deformable/linear/block_matrix.h"
-#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/body/block_matrix.h"
+#include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
 

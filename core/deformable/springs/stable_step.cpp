@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "core/deformable/linear/fastest_vibration.h"
-#include "core/deformable/springs/law/spring_hessian.h"
+#include "core/deformable/body/fastest_vibration.h"
+#include "core/deformable/springs/spring_hessian.h"
 
 namespace haptrial::deformable {
 

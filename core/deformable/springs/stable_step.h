@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
 

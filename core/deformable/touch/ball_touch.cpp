@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/geometry/triangle/triangle_distance.h"
+#include "core/geometry/mesh/triangle_distance.h"
 
 namespace haptrial::deformable {
 

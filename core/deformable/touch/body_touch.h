@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/contact/proxy/proxy.h"
-#include "core/contact/renderer/renderer.h"
+#include "core/contact/proxy.h"
+#include "core/contact/renderer.h"
 
 namespace haptrial::deformable {
 

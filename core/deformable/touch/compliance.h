@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/big_array.h"
-#include "core/contact/surface/contact_surface.h"
+#include "core/contact/contact_surface.h"
 #include "core/deformable/touch/tissue.h"
 
 namespace haptrial::deformable {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/deformable/linear/block_matrix.h"
+#include "core/deformable/body/block_matrix.h"
 
 namespace haptrial::deformable {
 

@@ -1,8 +1,8 @@
 #include "core/geometry/bvh/bvh.h"
 
 #include "core/base/parallel.h"
-#include "core/geometry/bvh/search/bvh_data.h"
-#include "core/geometry/bvh/search/bvh_kernel.h"
+#include "core/geometry/bvh/bvh_data.h"
+#include "core/geometry/bvh/bvh_kernel.h"
 
 namespace haptrial::geometry {
 

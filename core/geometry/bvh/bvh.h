@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/base/instruction_set.h"
+#include "core/geometry/mesh/closest_point.h"
 #include "core/geometry/mesh/mesh.h"
-#include "core/geometry/triangle/closest_point.h"
-#include "core/geometry/triangle/ray.h"
+#include "core/geometry/mesh/ray.h"
 
 namespace haptrial::geometry {
 

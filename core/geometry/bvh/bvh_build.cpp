@@ -10,9 +10,9 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/geometry/bvh/bvh_kernel.h"
 #include "core/geometry/bvh/bvh_split.h"
-#include "core/geometry/bvh/search/bvh_kernel.h"
-#include "core/geometry/bvh/search/flat_triangle.h"
+#include "core/geometry/bvh/flat_triangle.h"
 #include "core/geometry/bvh/turned_box.h"
 
 namespace haptrial::geometry {

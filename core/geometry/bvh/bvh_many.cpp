@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/geometry/bvh/bvh.h"
-#include "core/geometry/bvh/search/bvh_kernel.h"
+#include "core/geometry/bvh/bvh_kernel.h"
 
 namespace haptrial::geometry {
 namespace {

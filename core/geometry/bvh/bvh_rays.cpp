@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/geometry/bvh/bvh.h"
-#include "core/geometry/bvh/search/bvh_data.h"
-#include "core/geometry/triangle/ray_crossing.h"
+#include "core/geometry/bvh/bvh_data.h"
+#include "core/geometry/mesh/ray_crossing.h"
 
 namespace haptrial::geometry {
 namespace {

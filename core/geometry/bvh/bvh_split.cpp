@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometry/bvh/search/bvh_data.h"
+#include "core/geometry/bvh/bvh_data.h"
 
 namespace haptrial::geometry {
 namespace {

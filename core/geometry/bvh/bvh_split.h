@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "core/geometry/triangle/four.h"
+#include "core/geometry/mesh/four.h"
 
 namespace haptrial::geometry {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/geometry/bvh/bvh.h"
-#include "core/geometry/bvh/search/bvh_data.h"
+#include "core/geometry/bvh/bvh_data.h"
 
 namespace haptrial::geometry {
 namespace {

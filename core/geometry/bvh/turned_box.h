@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/geometry/bvh/search/bvh_data.h"
-#include "core/geometry/triangle/four.h"
+#include "core/geometry/bvh/bvh_data.h"
+#include "core/geometry/mesh/four.h"
 
 namespace haptrial::geometry {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/geometry/triangle/predicates.h"
+#include "core/geometry/mesh/predicates.h"
 
 namespace haptrial::geometry::reading {
 namespace {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <system_error>
 
-#include "core/base/files/whole_file.h"
+#include "core/base/whole_file.h"
 #include "core/geometry/files/mesh_text_internal.h"
 
 namespace haptrial::geometry {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "core/base/parallel.h"
-#include "core/geometry/bvh/search/bvh_kernel.h"
+#include "core/geometry/bvh/bvh_kernel.h"
 
 namespace haptrial::geometry {
 namespace {

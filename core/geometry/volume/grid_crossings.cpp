@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/triangle/predicates.h"
+#include "core/geometry/mesh/predicates.h"
 
 namespace haptrial::geometry {
 namespace {

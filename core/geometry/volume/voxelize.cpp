@@ -11,10 +11,10 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/geometry/mesh/mesh_edges.h"
-#include "core/geometry/repair/mesh_repair.h"
+#include "core/geometry/volume/boundary_cone.h"
 #include "core/geometry/volume/flood_fill.h"
 #include "core/geometry/volume/grid_crossings.h"
-#include "core/geometry/winding/boundary_cone.h"
+#include "core/geometry/volume/mesh_repair.h"
 
 namespace haptrial::geometry {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/base/definition/table.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/function/response_observer.h"
-#include "core/psychometric/prediction/staircase_chain.h"
+#include "core/psychometric/procedure/staircase_chain.h"
 
 namespace haptrial::psychometric {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/psychometric/definition/track.h"
-#include "core/psychometric/quest/quest_plus.h"
+#include "core/psychometric/procedure/quest_plus.h"
 
 namespace haptrial::psychometric {
 namespace {

@@ -14,9 +14,9 @@
 #include "core/psychometric/procedure/adjusting.h"
 #include "core/psychometric/procedure/listed.h"
 #include "core/psychometric/procedure/pest.h"
+#include "core/psychometric/procedure/psi_definition.h"
+#include "core/psychometric/procedure/quest_plus.h"
 #include "core/psychometric/procedure/staircase.h"
-#include "core/psychometric/quest/psi_definition.h"
-#include "core/psychometric/quest/quest_plus.h"
 
 namespace haptrial::psychometric {
 namespace {

@@ -11,14 +11,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/base/definition/expression.h"
+#include "core/base/definition/labels.h"
 #include "core/base/error.h"
-#include "core/base/formula/expression.h"
-#include "core/base/formula/labels.h"
-#include "core/base/text/exception_words.h"
+#include "core/base/exception_words.h"
 #include "core/psychometric/definition/grid.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/function/sigmoid_names.h"
-#include "core/psychometric/quest/psi_definition.h"
+#include "core/psychometric/procedure/psi_definition.h"
 
 namespace haptrial::psychometric {
 namespace {

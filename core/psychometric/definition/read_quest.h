@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/psychometric/quest/quest_plus.h"
+#include "core/psychometric/procedure/quest_plus.h"
 
 namespace haptrial::psychometric {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 
 namespace haptrial::psychometric {
 namespace {

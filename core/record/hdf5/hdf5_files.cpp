@@ -1,7 +1,7 @@
 #include <array>
 #include <fstream>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/hdf5/hdf5_internal.h"
 #include "core/record/hdf5/hdf5_layer.h"

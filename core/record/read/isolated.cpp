@@ -5,7 +5,7 @@
 #include <csignal>
 #include <system_error>
 
-#include "core/base/files/child_process.h"
+#include "core/base/child_process.h"
 
 namespace haptrial::record {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "core/base/error.h"
 #include "core/record/hdf5/file_lock.h"
+#include "core/record/hdf5/session_target.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/recovery/recovered_rows.h"
 #include "core/record/recovery/rewrite.h"
-#include "core/record/write/session_target.h"
-#include "core/record/write/session_writer.h"
 
 namespace haptrial::record {
 namespace {

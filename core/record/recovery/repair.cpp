@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/text/exception_words.h"
+#include "core/base/exception_words.h"
 #include "core/record/hdf5/hdf5_layer.h"
+#include "core/record/hdf5/session_target.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
 #include "core/record/recovery/rewrite.h"
@@ -17,7 +18,6 @@
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
-#include "core/record/write/session_target.h"
 
 namespace haptrial::record {
 namespace {

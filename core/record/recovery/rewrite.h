@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/recovery/recovered_rows.h"
-#include "core/record/write/session_writer.h"
 
 namespace haptrial::record {
 

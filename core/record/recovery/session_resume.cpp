@@ -4,13 +4,13 @@
 #include <iterator>
 
 #include "core/base/error.h"
+#include "core/record/hdf5/session_target.h"
+#include "core/record/hdf5/session_writer_impl.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
 #include "core/record/read/trial_facts_of.h"
 #include "core/record/recovery/repair.h"
 #include "core/record/table/schema.h"
-#include "core/record/write/session_target.h"
-#include "core/record/write/session_writer_impl.h"
 
 namespace haptrial::record {
 namespace {

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/record/link/link_row.h"
-#include "core/record/link/network_row.h"
 #include "core/record/rows/device_row.h"
+#include "core/record/rows/link_row.h"
 #include "core/record/rows/marker_row.h"
+#include "core/record/rows/network_row.h"
 #include "core/record/rows/page_answer.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/session_tables.h"

@@ -14,8 +14,8 @@
 #include "core/render/bone/bone_object.h"
 #include "core/render/bone/bone_palette.h"
 #include "core/render/bone/bone_shaders.h"
+#include "core/render/bone/depth_tiles.h"
 #include "core/render/gl/gl_program.h"
-#include "core/render/shadow/depth_tiles.h"
 
 namespace haptrial::render {
 namespace {

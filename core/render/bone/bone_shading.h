@@ -7,8 +7,8 @@
 #include "core/render/bone/bone_camera.h"
 #include "core/render/bone/bone_layer.h"
 #include "core/render/bone/bone_style.h"
+#include "core/render/bone/tool_shadow.h"
 #include "core/render/gl/gl.h"
-#include "core/render/shadow/tool_shadow.h"
 
 namespace haptrial::render {
 

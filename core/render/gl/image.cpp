@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/base/files/whole_file.h"
+#include "core/base/file_text.h"
+#include "core/base/whole_file.h"
 
 namespace haptrial::render {
 namespace {

@@ -6,19 +6,9 @@
 #include "core/base/definition/schema.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/field.h"
+#include "core/scene/read/field_bounds.h"
 
 namespace haptrial::scene {
-
-// Bounds of quantities that many fields have.
-inline constexpr Bounds kPlaceBounds{-1.0, 1.0};             // [m]
-inline constexpr Bounds kLengthBounds{0.0, 1.0, true};       // [m]
-inline constexpr Bounds kForceBounds{-100.0, 100.0};         // [N]
-inline constexpr Bounds kStrengthBounds{0.0, 100.0};         // [N]
-inline constexpr Bounds kStiffnessBounds{0.0, 1e5};          // [N/m]
-inline constexpr Bounds kDampingBounds{0.0, 1e4};            // [N·s/m]
-inline constexpr Bounds kDurationBounds{0.0, 3600.0, true};  // [s]
-inline constexpr Bounds kFadeBounds{0.0, 60.0};              // [s]
-inline constexpr Bounds kFilterBounds{0.0, 1e5, true};       // [Hz]
 
 /// What the bounds of a field's keys may depend on.
 struct FieldSetting {
@@ -48,7 +38,5 @@ const Schema<control::PdGains>& field_gains_schema();
 const Schema<Field>& field_limit_schema();
 /// fade_in and fade_out
 const Schema<Field>& field_fade_schema();
-inline constexpr const char* kNormal =
-    "Direction across a plane or a texture's waves; of a wall or half space out of it";
 
 }  // namespace haptrial::scene

@@ -11,7 +11,7 @@ class Table;
 
 namespace haptrial::scene {
 
-/// Reads one table [fields.NAME]: `type`, the keys of its kind (field_kinds.cpp; core/scene/field
+/// Reads one table [fields.NAME]: `type`, the keys of its kind (field_kinds.cpp; core/scene
 /// has their laws), and for every kind but reliefs limit, fade_in and fade_out. Problems are noted
 /// in the table; a field comes back all the same.
 /// @param rate  of the servo loop [Hz]: vibrations stay below half of it

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/contact/surface/felt_body.h"
+#include "core/contact/felt_body.h"
 #include "core/scene/field.h"
 
 namespace haptrial {
@@ -11,7 +11,7 @@ class Table;
 
 namespace haptrial::scene {
 
-/// Reads how one table [objects.NAME] is felt, as a field (core/scene/surface/rigid_object.h).
+/// Reads how one table [objects.NAME] is felt, as a field (core/scene/rigid_object.h).
 /// Problems are noted in the table.
 /// @param body  that its shape describes; null: it is not known yet, nothing is felt
 Field read_rigid(Table& table, std::string name, const contact::SharedBody& body);

@@ -1,6 +1,7 @@
 #include "core/scene/read/read_shape.h"
 
-#include "core/scene/read/field_kinds.h"
+#include "core/base/definition/schema.h"
+#include "core/scene/read/field_bounds.h"
 
 namespace haptrial::scene {
 namespace {

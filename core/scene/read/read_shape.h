@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/shape/shape.h"
+#include "core/scene/shape.h"
 
 namespace haptrial {
 class Table;

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "core/bone/model/distance_field.h"
 #include "core/geometry/volume/voxel_grid.h"
 

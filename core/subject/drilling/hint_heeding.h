@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "core/base/random.h"
-#include "core/hint/hint_setup.h"
+#include "core/bone/hint/hint_setup.h"
 
 namespace haptrial::subject {
 

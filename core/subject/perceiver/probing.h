@@ -8,8 +8,8 @@
 #include "core/subject/hand_model.h"
 #include "core/subject/hand_parameters.h"
 #include "core/subject/motor_noise.h"
-#include "core/subject/palpation/palpation.h"
 #include "core/subject/perceiver/contour.h"
+#include "core/subject/perceiver/palpation.h"
 
 namespace haptrial::subject {
 

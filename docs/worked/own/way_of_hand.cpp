@@ -1,5 +1,5 @@
 // haptrial with one score more: how far the hand went in each pass.
-#include "analysis/scores/score.h"
+#include "analysis/exchange/score.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/line/whole_command.h"
 

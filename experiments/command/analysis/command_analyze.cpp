@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "analysis/link/link_report.h"
-#include "analysis/scores/score.h"
+#include "analysis/exchange/score.h"
+#include "analysis/tutoring/link_report.h"
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"

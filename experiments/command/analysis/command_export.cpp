@@ -4,7 +4,7 @@
 
 #include "analysis/exchange/export_bids.h"
 #include "analysis/exchange/export_csv.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/analysis_commands.h"

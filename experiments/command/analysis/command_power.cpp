@@ -9,7 +9,7 @@
 #include "analysis/statistics/tests/power.h"
 #include "analysis/statistics/tests/repeated_power.h"
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "experiments/command/analysis_commands.h"
 
 namespace haptrial::experiments {

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "analysis/statistics/design/analysis_plan.h"
-#include "analysis/statistics/words/design_json.h"
-#include "analysis/statistics/words/design_lines.h"
+#include "analysis/statistics/design/design_json.h"
+#include "analysis/statistics/design/design_lines.h"
+#include "core/base/alike_names.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/base/text/alike_names.h"
+#include "core/base/file_text.h"
 #include "experiments/command/analysis_commands.h"
 #include "experiments/command/arguments.h"
 

@@ -10,7 +10,7 @@
 #include "analysis/force_training/score/curve_csv.h"
 #include "analysis/force_training/score/score.h"
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "experiments/command/analysis_commands.h"
 #include "experiments/command/arguments.h"
 

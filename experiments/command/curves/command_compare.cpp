@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "analysis/force_training/comparison/comparison.h"
+#include "analysis/force_training/report/comparison.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/analysis_commands.h"

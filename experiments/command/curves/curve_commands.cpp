@@ -10,7 +10,7 @@
 #include "analysis/force_training/report/write_analysis.h"
 #include "analysis/force_training/study/study.h"
 #include "analysis/force_training/study/study_summary.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/analysis_commands.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/base/files/whole_file.h"
+#include "core/base/file_text.h"
+#include "core/base/whole_file.h"
 
 namespace haptrial::experiments {
 namespace {

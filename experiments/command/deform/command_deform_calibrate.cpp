@@ -6,8 +6,8 @@
 
 #include "core/base/error.h"
 #include "core/base/fnv.h"
+#include "core/base/nearest.h"
 #include "core/base/parallel.h"
-#include "core/base/text/nearest.h"
 #include "core/deformable/springs/equilibrium.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/calibration_journal.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "core/deformable/linear/fastest_vibration.h"
+#include "core/deformable/body/fastest_vibration.h"
 #include "core/deformable/springs/stable_step.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"

@@ -7,7 +7,7 @@
 #include "analysis/document/document.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "core/deformable/elements/dynamic_solver.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"

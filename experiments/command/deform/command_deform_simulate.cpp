@@ -6,7 +6,7 @@
 
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "core/deformable/body/mesh_parts.h"
 #include "core/deformable/elements/dynamic_solver.h"
 #include "core/deformable/springs/settle.h"

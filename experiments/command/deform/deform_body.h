@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "core/deformable/elements/setup_body.h"
 #include "core/deformable/elements/static_solver.h"
-#include "core/deformable/setup/setup_body.h"
-#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/springs/spring_body.h"
 #include "experiments/command/deform/deform_commands.h"
 #include "experiments/command/mesh_command.h"
 

@@ -8,9 +8,9 @@
 
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/deformable/springs/law/constants_table.h"
-#include "core/geometry/volume_files/tet_files.h"
+#include "core/base/file_text.h"
+#include "core/deformable/springs/constants_table.h"
+#include "core/geometry/files/tet_files.h"
 
 namespace haptrial::experiments {
 namespace {

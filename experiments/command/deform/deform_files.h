@@ -6,7 +6,7 @@
 
 #include "core/deformable/calibration/marker.h"
 #include "core/deformable/elements/elastic_body.h"
-#include "core/deformable/springs/law/spring_body.h"
+#include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::experiments {
 

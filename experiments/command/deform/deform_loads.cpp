@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "experiments/command/deform/session_loads.h"
 
 namespace haptrial::experiments {

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/base/nearest.h"
+#include "core/bone/data/anatomy.h"
 #include "core/bone/data/bone_file.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/surface/surface_mesh.h"

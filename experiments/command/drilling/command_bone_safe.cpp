@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "core/base/files/whole_file.h"
-#include "core/base/text/counted.h"
+#include "core/base/counted.h"
+#include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/drilling/drilling_commands.h"
 #include "experiments/studies/drilling/learn_limits.h"

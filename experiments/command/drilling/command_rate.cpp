@@ -12,13 +12,13 @@
 #include <iterator>
 #include <set>
 
-#include "analysis/bone_drilling/validity/ratings.h"
+#include "analysis/bone_drilling/report/ratings.h"
 #include "analysis/files/staging.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/fnv.h"
 #include "core/base/parallel.h"
-#include "core/base/text/counted.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/drilling/drilling_commands.h"

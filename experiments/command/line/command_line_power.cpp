@@ -1,8 +1,8 @@
 // Power: in closed form and by simulation.
 
+#include "experiments/command/analysis/power_commands.h"
 #include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
-#include "experiments/command/power/power_commands.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -1,6 +1,6 @@
-#include "experiments/command/keys/key_commands.h"
 #include "experiments/command/line/command_lines.h"
 #include "experiments/command/line/subcommand_internal.h"
+#include "experiments/command/start/key_commands.h"
 #include "experiments/command/start/start_commands.h"
 
 namespace haptrial::experiments {

@@ -2,8 +2,8 @@
 
 #include "experiments/studies/drilling/bone_study.h"
 #include "experiments/studies/force/force_study.h"
+#include "experiments/studies/psychophysics/trials_study.h"
 #include "experiments/studies/registry.h"
-#include "experiments/studies/trials/trials_study.h"
 
 namespace haptrial::experiments {
 

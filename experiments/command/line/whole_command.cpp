@@ -10,7 +10,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/text/exception_words.h"
+#include "core/base/exception_words.h"
 #include "experiments/command/libraries.h"
 #include "experiments/command/line/command_line.h"
 #include "experiments/command/line/command_line_check_internal.h"

@@ -10,18 +10,18 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "core/device/coupled_mass.h"
+#include "core/device/force_dimension.h"
 #include "core/device/mouse.h"
+#include "core/device/open_haptics.h"
 #include "core/device/registered_devices.h"
-#include "core/device/vendor/force_dimension.h"
-#include "core/device/vendor/open_haptics.h"
 #include "experiments/command/sessions/device_check.h"
 #include "experiments/command/sessions/device_commands.h"
 #include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
-#include "experiments/devices/devices.h"
+#include "experiments/runner/devices.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 

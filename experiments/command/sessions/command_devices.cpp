@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/device/vendor/catalog.h"
+#include "core/device/catalog.h"
 #include "experiments/command/sessions/device_commands.h"
 
 namespace haptrial::experiments {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/text/counted.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "analysis/quality/timing.h"
-#include "core/base/text/counted.h"
-#include "core/markers/marker_times.h"
+#include "core/base/counted.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/overruns.h"
 #include "core/record/read/readable.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_progress.h"
+#include "core/stream/marker_times.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/lab_file.h"
 

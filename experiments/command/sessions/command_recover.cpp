@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "core/base/text/counted.h"
+#include "core/base/counted.h"
 #include "core/record/recovery/recover.h"
 #include "experiments/command/sessions/session_commands.h"
 #include "experiments/studies/registry.h"

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/files/delimited.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
-#include "core/base/text/counted.h"
+#include "core/base/file_text.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/exclude.h"
 #include "experiments/command/sessions/next_session.h"

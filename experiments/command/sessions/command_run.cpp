@@ -12,8 +12,8 @@
 #include <memory>
 #include <set>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/text/counted.h"
 #include "core/record/read/overruns.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"

@@ -6,7 +6,7 @@
 
 #include "analysis/files/delimited.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::experiments {
 namespace {

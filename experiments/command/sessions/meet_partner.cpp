@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/network/link/link_thread.h"
-#include "core/network/link/meeting.h"
-#include "core/network/link/secret.h"
+#include "core/tutoring/link_thread.h"
+#include "core/tutoring/meeting.h"
+#include "core/tutoring/secret.h"
 #include "experiments/command/arguments.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"

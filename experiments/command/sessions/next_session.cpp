@@ -10,8 +10,8 @@
 #include <iostream>
 #include <string>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/text/counted.h"
 #include "experiments/command/arguments.h"
 #include "experiments/study/session_name.h"
 

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cctype>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/text/counted.h"
 #include "core/record/hdf5/file_lock.h"
+#include "core/record/hdf5/session_target.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/write/session_target.h"
-#include "core/record/write/session_writer.h"
 #include "experiments/command/arguments.h"
-#include "experiments/devices/devices.h"
+#include "experiments/runner/devices.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
 #include "protocols/interface/protocol.h"

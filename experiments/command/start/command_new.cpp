@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/files/whole_file.h"
+#include "core/base/whole_file.h"
 #include "experiments/command/start/examples.h"
 #include "experiments/command/start/start_commands.h"
 #include "experiments/studies/experiment.h"

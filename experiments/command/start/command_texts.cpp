@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/files/whole_file.h"
+#include "core/base/whole_file.h"
 #include "experiments/command/start/start_commands.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/definition/languages.h"

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/files/whole_file.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
+#include "core/base/whole_file.h"
 
 namespace haptrial::experiments {
 namespace {
 
 /// Text after the comment's sign; the line is one of a comment.
-std::string_view words_of(std::string_view line) {
+std::string_view comment_words(std::string_view line) {
   const std::size_t first = line.find_first_not_of("# ");
   return first == std::string_view::npos ? std::string_view() : line.substr(first);
 }
@@ -81,7 +81,7 @@ std::string what_of(const Example& example) {
   std::string_view rest = example.text;
   while (rest.starts_with('#')) {
     const std::size_t end = std::min(rest.find('\n'), rest.size() - 1);
-    comment += (comment.empty() ? "" : " ") + std::string(words_of(rest.substr(0, end)));
+    comment += (comment.empty() ? "" : " ") + std::string(comment_words(rest.substr(0, end)));
     rest.remove_prefix(end + 1);
   }
   return first_sentence(comment);

@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/base/files/whole_file.h"
-#include "core/base/text/exception_words.h"
-#include "core/device/vendor/catalog.h"
+#include "core/base/exception_words.h"
+#include "core/base/whole_file.h"
+#include "core/device/catalog.h"
 #include "core/realtime/servo_loop.h"
 #include "core/render/gl/offscreen.h"
 #include "core/render/gl/window.h"

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
-#include "core/bone/anatomy/anatomy.h"
-#include "core/bone/anatomy/ear_side.h"
+#include "core/base/nearest.h"
+#include "core/bone/data/anatomy.h"
 #include "core/bone/data/bone_file.h"
 #include "core/bone/data/bone_summary.h"
+#include "core/bone/data/ear_side.h"
 #include "experiments/command/tools/bone_carving.h"
 
 namespace haptrial::experiments {

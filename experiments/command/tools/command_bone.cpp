@@ -3,9 +3,9 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
-#include "core/bone/anatomy/mandible.h"
-#include "core/bone/anatomy/temporal_bone.h"
+#include "core/base/nearest.h"
+#include "core/bone/data/mandible.h"
+#include "core/bone/data/temporal_bone.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/tools/bone_carving.h"
 #include "experiments/command/tools/bone_words.h"

@@ -6,9 +6,9 @@
 
 #include "analysis/document/figure_gnuplot.h"
 #include "core/base/error.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
 #include "core/bone/model/crop.h"
-#include "core/bone/pieces/tidy.h"
+#include "core/bone/model/tidy.h"
 #include "experiments/command/tools/bone_carving.h"
 #include "experiments/command/tools/bone_words.h"
 #include "experiments/command/tools/tool_commands.h"

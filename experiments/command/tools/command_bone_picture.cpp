@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/shortest_turn.h"
-#include "core/bone/anatomy/ear_side.h"
+#include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/surface/surface_depths.h"
 #include "core/render/bone/bone_scene.h"

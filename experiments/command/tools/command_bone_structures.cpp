@@ -3,8 +3,8 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/files/whole_file.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/base/whole_file.h"
+#include "core/bone/data/anatomy.h"
 #include "core/bone/data/bone_summary.h"
 #include "experiments/command/tools/bone_words.h"
 #include "experiments/command/tools/tool_commands.h"

@@ -10,8 +10,8 @@
 
 #include "core/base/error.h"
 #include "core/geometry/bvh/bvh.h"
+#include "core/geometry/files/volume_files.h"
 #include "core/geometry/volume/distance_map.h"
-#include "core/geometry/volume_files/volume_files.h"
 #include "core/render/mesh/distance_slice.h"
 #include "experiments/command/mesh_command.h"
 #include "experiments/command/tools/tool_commands.h"

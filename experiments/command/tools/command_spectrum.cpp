@@ -8,8 +8,8 @@
 
 #include "analysis/document/figure_gnuplot.h"
 #include "core/base/error.h"
-#include "core/base/files/whole_file.h"
-#include "core/base/text/nearest.h"
+#include "core/base/nearest.h"
+#include "core/base/whole_file.h"
 #include "core/sound/power_spectrum.h"
 #include "core/sound/wav.h"
 #include "experiments/command/tools/tool_commands.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/text/exception_words.h"
+#include "core/base/exception_words.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/drilling_study.h"

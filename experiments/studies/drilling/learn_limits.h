@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/hint/safe_limits.h"
+#include "core/bone/hint/safe_limits.h"
 
 namespace haptrial::experiments {
 

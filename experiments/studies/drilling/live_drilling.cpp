@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/metrics/live.h"
-#include "core/base/text/exception_words.h"
+#include "core/base/exception_words.h"
 
 namespace haptrial::experiments {
 

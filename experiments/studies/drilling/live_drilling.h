@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/record/rows/session_types.h"
 #include "experiments/studies/drilling/drilled_procedure.h"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/definition/groups.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/validity/ratings.h"
+#include "analysis/bone_drilling/report/ratings.h"
 #include "core/bone/model/bone_model.h"
 #include "core/subject/drilling/drilling_chart.h"
 

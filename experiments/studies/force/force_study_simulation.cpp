@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "analysis/force_training/statistics/study_statistics.h"
 #include "analysis/force_training/study/study.h"
+#include "analysis/force_training/study/study_statistics.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"

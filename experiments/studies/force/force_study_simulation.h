@@ -6,7 +6,7 @@
 #include "analysis/force_training/score/score_parameters.h"
 #include "analysis/statistics/design/analysis_plan.h"
 #include "core/base/definition/table.h"
-#include "experiments/studies/study_simulation/study_simulation.h"
+#include "experiments/studies/study_simulation.h"
 #include "protocols/force_training/force_definition.h"
 
 namespace haptrial::experiments {

@@ -7,10 +7,10 @@
 
 #include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
-#include "core/bone/anatomy/ear_side.h"
-#include "core/bone/anatomy/mandible.h"
-#include "core/bone/anatomy/temporal_bone.h"
+#include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
+#include "core/bone/data/mandible.h"
+#include "core/bone/data/temporal_bone.h"
 #include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/definition/groups.h"
 #include "protocols/definition/lab_file.h"

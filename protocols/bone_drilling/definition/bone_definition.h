@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "core/bone/hint/hint_watch.h"
 #include "core/bone/model/bone_model.h"
+#include "core/bone/nerve/nerve_distances.h"
+#include "core/bone/nerve/nerve_setup.h"
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/simulator.h"
-#include "core/hint/hint_watch.h"
-#include "core/nerve/setup/nerve_distances.h"
-#include "core/nerve/setup/nerve_setup.h"
 #include "core/render/gl/quality_steps.h"
 #include "core/sound/drill_sound.h"
 #include "core/subject/drilling/cavity_chart.h"

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "core/base/counted.h"
 #include "core/base/definition/table.h"
-#include "core/base/text/counted.h"
-#include "core/nerve/record/nerve_rows.h"
+#include "core/bone/nerve/nerve_rows.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/definition/contact_margin.h"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/bone/tools/simulator_tools.h"
+#include "core/bone/simulator/simulator_tools.h"
 #include "core/control/handle_loop.h"
 
 namespace haptrial::protocols {

@@ -4,7 +4,7 @@
 
 #include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
-#include "core/bone/anatomy/ear_side.h"
+#include "core/bone/data/ear_side.h"
 #include "core/subject/drilling/cavity_chart.h"
 
 namespace haptrial::protocols {

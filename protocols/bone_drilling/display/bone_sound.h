@@ -7,8 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/bone/hint/chime.h"
 #include "core/bone/model/thickness.h"
-#include "core/hint/chime.h"
 #include "core/realtime/latest_value.h"
 #include "core/sound/sound_output.h"
 #include "core/stimulus/observer.h"

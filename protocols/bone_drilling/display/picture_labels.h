@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/bone/simulator/drilling_view.h"
-#include "core/bone/tools/simulator_tools.h"
+#include "core/bone/simulator/simulator_tools.h"
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text.h"
 #include "core/render/gl/gl.h"

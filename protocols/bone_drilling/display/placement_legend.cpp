@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/bone/anatomy/ear_side.h"
+#include "core/bone/data/ear_side.h"
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text.h"
 

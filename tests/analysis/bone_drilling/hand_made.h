@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/bone_drilling/procedure/procedure.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/base/random.h"
 
 namespace haptrial::test {

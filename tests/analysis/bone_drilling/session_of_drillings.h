@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/record/write/session_writer.h"
+#include "core/record/hdf5/session_writer.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::test {

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "analysis/contact/evaluation/evaluate_rendering.h"
+#include "analysis/contact/evaluation/in_trajectory.h"
+#include "analysis/contact/evaluation/registration.h"
 #include "analysis/contact/recording/stream_lag.h"
-#include "analysis/contact/registration/in_trajectory.h"
-#include "analysis/contact/registration/registration.h"
 #include "tests/analysis/contact/contour_data.h"
 
 namespace haptrial::evaluation {

@@ -8,7 +8,7 @@
 
 #include "analysis/exchange/bids_label.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "analysis/force_training/score/scores_csv.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 

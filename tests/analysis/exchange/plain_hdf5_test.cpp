@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/record/write/session_writer.h"
+#include "core/record/hdf5/session_writer.h"
 
 namespace haptrial::exchange {
 namespace {

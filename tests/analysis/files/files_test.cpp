@@ -11,7 +11,7 @@
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "tests/support/temporary_folder.h"
 

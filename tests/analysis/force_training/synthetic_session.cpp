@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/rows/trial_facts.h"
-#include "core/record/write/session_writer.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "analysis/reaching/metrics/reach.h"
+#include "analysis/reaching/reach.h"
 
 namespace haptrial::test {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "analysis/statistics/base/descriptive.h"
-#include "analysis/statistics/mixed/mixed_model.h"
 #include "analysis/statistics/relation/correlation.h"
+#include "analysis/statistics/relation/mixed_model.h"
 #include "analysis/statistics/relation/regression.h"
 #include "analysis/statistics/tests/bootstrap.h"
 #include "analysis/statistics/tests/permutation.h"

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/geometry/mesh/closest_point.h"
 #include "core/geometry/mesh/mesh.h"
 #include "core/geometry/mesh/mesh_bounds.h"
-#include "core/geometry/triangle/closest_point.h"
-#include "core/geometry/triangle/predicates.h"
+#include "core/geometry/mesh/predicates.h"
 
 namespace haptrial::contact {
 

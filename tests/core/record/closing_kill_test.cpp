@@ -5,10 +5,10 @@
 
 #include <csignal>
 
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/session_resume.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/disk_tap.h"
 #include "tests/core/record/session_fixture.h"
 

@@ -10,15 +10,15 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/recover.h"
 #include "core/record/recovery/session_resume.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record::drilling_record_test {

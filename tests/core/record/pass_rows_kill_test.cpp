@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/marker_row.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record::pass_rows_kill_test {

@@ -10,14 +10,14 @@
 #include <map>
 
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/recover.h"
 #include "core/record/recovery/session_resume.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/disk_tap.h"
 #include "tests/core/record/session_fixture.h"
 

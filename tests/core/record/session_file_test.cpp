@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "core/base/random.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

@@ -12,10 +12,10 @@
 #include <new>
 
 #include "core/base/random.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/session_resume.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record::session_kill_test {

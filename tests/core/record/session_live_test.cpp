@@ -10,12 +10,12 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/session_resume.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 #include "tests/support/message_of.h"
 #include "tests/support/wait.h"

@@ -5,22 +5,22 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
+#include "core/bone/hint/hint_rows.h"
+#include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
-#include "core/hint/hint_rows.h"
-#include "core/nerve/record/nerve_rows.h"
 #include "core/record/rows/common_tables.h"
+#include "core/record/rows/late_window_row.h"
+#include "core/record/rows/moving_body_row.h"
 #include "core/record/rows/session_tables.h"
+#include "core/record/rows/touched_body_row.h"
+#include "core/record/rows/trial_rows.h"
 #include "core/record/table/table_page.h"
-#include "core/record/trials/late_window_row.h"
-#include "core/record/trials/moving_body_row.h"
-#include "core/record/trials/touched_body_row.h"
-#include "core/record/trials/trial_rows.h"
 
 namespace haptrial::record::session_page_test {
 namespace {

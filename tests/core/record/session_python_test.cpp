@@ -4,16 +4,16 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "core/bone/hint/hint_rows.h"
+#include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
-#include "core/hint/hint_rows.h"
-#include "core/nerve/record/nerve_rows.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/rows/common_tables.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <thread>
 
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record::session_speed_test {

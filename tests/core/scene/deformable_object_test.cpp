@@ -1,4 +1,4 @@
-#include "core/scene/surface/deformable_object.h"
+#include "core/scene/deformable_object.h"
 
 #include <gtest/gtest.h>
 

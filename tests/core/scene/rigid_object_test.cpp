@@ -1,4 +1,4 @@
-#include "core/scene/surface/rigid_object.h"
+#include "core/scene/rigid_object.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "core/scene/scene.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::scene {
+namespace haptrial::scene::rigid_object_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -165,4 +165,4 @@ TEST(RigidObjectTest, ABodyThatIsNotThereIsNotFelt) {
 }
 
 }  // namespace
-}  // namespace haptrial::scene
+}  // namespace haptrial::scene::rigid_object_test

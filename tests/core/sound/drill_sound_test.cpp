@@ -1,5 +1,5 @@
 #include "core/sound/drill_sound.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,14 +6,14 @@
 
 #include <cmath>
 
-#include "analysis/trials/data/read_trials.h"
+#include "analysis/psychophysics/data/read_trials.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "experiments/power/power_run.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/study_run.h"
-#include "protocols/trials/response_session.h"
+#include "protocols/psychophysics/response_session.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::responses_test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "core/base/files/child_process.h"
+#include "core/base/child_process.h"
 #include "experiments/study/launch_rank.h"
 #include "experiments/study/unit_locks.h"
 #include "tests/experiments/command.h"

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "core/base/files/child_process.h"
+#include "core/base/child_process.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/free_port.h"

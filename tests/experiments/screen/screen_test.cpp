@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/render/trial/frames.h"
+#include "core/render/flat/frames.h"
 #include "core/stimulus/stimulus.h"
 #include "protocols/force_training/path_drawing.h"
 #include "tests/core/render/flat/pixels.h"

@@ -11,8 +11,8 @@
 #include <optional>
 #include <thread>
 
-#include "core/network/channel/reliable_stream.h"
-#include "core/network/channel/simulated_channel.h"
+#include "core/tutoring/reliable_stream.h"
+#include "core/tutoring/simulated_channel.h"
 #include "tests/protocols/drilling_fixture.h"
 #include "tests/support/allocation_guard.h"
 

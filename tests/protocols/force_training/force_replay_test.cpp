@@ -10,7 +10,7 @@
 #include <regex>
 
 #include "core/base/error.h"
-#include "core/record/write/session_writer.h"
+#include "core/record/hdf5/session_writer.h"
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/command.h"

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/stimulus/presentation.h"
-#include "protocols/force_training/passes/recall.h"
+#include "protocols/force_training/recall.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/scripted_device.h"
 

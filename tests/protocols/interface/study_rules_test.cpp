@@ -9,7 +9,7 @@
 #include "core/base/definition/table.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
-#include "protocols/trials/trials_protocol.h"
+#include "protocols/psychophysics/trials_protocol.h"
 #include "tests/experiments/shipped.h"
 
 namespace haptrial::protocols {

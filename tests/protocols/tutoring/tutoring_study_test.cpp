@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/force_training/score/scores_csv.h"
-#include "analysis/force_training/statistics/path_statistics.h"
-#include "analysis/force_training/statistics/study_statistics.h"
+#include "analysis/force_training/study/path_statistics.h"
+#include "analysis/force_training/study/study_statistics.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/tutoring_row.h"
 #include "tests/experiments/command.h"

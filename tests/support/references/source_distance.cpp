@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/geometry/triangle/triangle_distance.h"
+#include "core/geometry/mesh/triangle_distance.h"
 
 namespace haptrial::geometry {
 

@@ -6,9 +6,9 @@
 #include "analysis/bone_drilling/metrics/injuries.h"
 #include "analysis/bone_drilling/metrics/live.h"
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/metrics/study_bones.h"
 #include "analysis/bone_drilling/metrics/usage.h"
 #include "analysis/bone_drilling/metrics/visibility.h"
-#include "analysis/bone_drilling/procedure/study_bones.h"
 #include "tests/analysis/bone_drilling/hand_made.h"
 
 namespace haptrial::analysis::drilling {

@@ -6,8 +6,8 @@
 
 #include <numbers>
 
+#include "analysis/bone_drilling/metrics/study_bones.h"
 #include "analysis/bone_drilling/metrics/visibility.h"
-#include "analysis/bone_drilling/procedure/study_bones.h"
 #include "tests/analysis/bone_drilling/hand_made.h"
 
 namespace haptrial::analysis::drilling::injuries_test {

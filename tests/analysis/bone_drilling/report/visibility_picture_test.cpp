@@ -10,7 +10,7 @@
 #include <set>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 #include "core/render/gl/image.h"
 #include "tests/analysis/bone_drilling/hand_made.h"
 

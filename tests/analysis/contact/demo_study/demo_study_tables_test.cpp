@@ -8,9 +8,9 @@
 
 #include "analysis/contact/demo_study/demo_study_figures.h"
 #include "analysis/contact/demo_study/demo_study_report.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/geometry/bvh/bvh.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/mesh_check.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::evaluation {

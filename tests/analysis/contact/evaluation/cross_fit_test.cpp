@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "analysis/contact/simulation/simulated_probe.h"
+#include "analysis/contact/demo_study/simulated_probe.h"
 #include "tests/analysis/contact/contour_data.h"
 
 namespace haptrial::evaluation {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/contact/simulation/simulated_probe.h"
+#include "analysis/contact/demo_study/simulated_probe.h"
 #include "core/base/random.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/support/contact_truth/true_contact.h"

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "analysis/contact/identification/contact_samples.h"
-#include "analysis/contact/simulation/simulated_probe.h"
+#include "analysis/contact/demo_study/simulated_probe.h"
+#include "analysis/contact/evaluation/contact_samples.h"
 
 namespace haptrial::evaluation {
 namespace {

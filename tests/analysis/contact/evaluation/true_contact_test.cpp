@@ -7,7 +7,7 @@
 
 #include "tests/support/contact_truth/truth_cases.h"
 
-namespace haptrial::evaluation {
+namespace haptrial::evaluation::true_contact_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -111,4 +111,4 @@ TEST(TrueContactTest, BadArgumentsAreRefused) {
 }
 
 }  // namespace
-}  // namespace haptrial::evaluation
+}  // namespace haptrial::evaluation::true_contact_test

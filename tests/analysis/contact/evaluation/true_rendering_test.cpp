@@ -7,13 +7,13 @@
 #include <string>
 #include <utility>
 
-#include "core/contact/renderer/make_renderer.h"
+#include "core/contact/make_renderer.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/support/contact_truth/rubbed_profile.h"
 #include "tests/support/contact_truth/true_contact.h"
 #include "tests/support/contact_truth/truth_cases.h"
 
-namespace haptrial::evaluation {
+namespace haptrial::evaluation::true_rendering_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -226,4 +226,4 @@ TEST(TrueRenderingTest, AslantOverAnEdgeASphereIsExactAtAnySpeed) {
 }
 
 }  // namespace
-}  // namespace haptrial::evaluation
+}  // namespace haptrial::evaluation::true_rendering_test

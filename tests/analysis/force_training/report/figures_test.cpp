@@ -12,7 +12,7 @@
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/force_training/report/study_figures.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/force_training/example_study.h"
 
 namespace haptrial::analysis {

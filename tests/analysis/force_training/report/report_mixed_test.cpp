@@ -7,7 +7,7 @@
 #include "tests/analysis/force_training/example_study.h"
 #include "tests/support/condition_null.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::report_mixed_test {
 namespace {
 
 using testing::AllOf;
@@ -68,4 +68,4 @@ TEST(ReportMixed, SaysWhyThereIsNoModel) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::report_mixed_test

@@ -11,7 +11,7 @@
 #include "analysis/force_training/report/study_figures.h"
 #include "analysis/force_training/report/study_json.h"
 #include "analysis/force_training/study/study_summary.h"
-#include "analysis/statistics/words/wording.h"
+#include "analysis/statistics/design/wording.h"
 #include "tests/analysis/force_training/example_study.h"
 
 namespace haptrial::analysis {

@@ -13,7 +13,7 @@
 
 #include "analysis/force_training/score/scores_csv.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/analysis/force_training/example_study.h"
 
 namespace haptrial::analysis {

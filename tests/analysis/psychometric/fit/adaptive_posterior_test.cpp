@@ -11,8 +11,8 @@
 
 #include "analysis/psychometric/fit/track_interval.h"
 #include "core/base/random.h"
-#include "core/psychometric/prediction/staircase_chain.h"
 #include "core/psychometric/procedure/staircase.h"
+#include "core/psychometric/procedure/staircase_chain.h"
 
 namespace haptrial::analysis::adaptive_test {
 namespace {

@@ -6,12 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "analysis/statistics/base/p_adjust.h"
+#include "analysis/statistics/design/design_lines.h"
+#include "analysis/statistics/design/wording.h"
 #include "analysis/statistics/variance/factorial_anova.h"
 #include "analysis/statistics/variance/mixed_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "analysis/statistics/variance/welch_anova.h"
-#include "analysis/statistics/words/design_lines.h"
-#include "analysis/statistics/words/wording.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/message_of.h"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <map>
 
-#include "analysis/statistics/mixed/mixed_model.h"
 #include "analysis/statistics/relation/correlation.h"
+#include "analysis/statistics/relation/mixed_model.h"
 #include "analysis/statistics/relation/regression.h"
 #include "tests/analysis/statistics/reference/reference.h"
 

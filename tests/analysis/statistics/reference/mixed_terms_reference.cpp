@@ -1,8 +1,8 @@
 // Mixed models with several random intercepts, with contrasts and joint tests.
 #include <map>
 
-#include "analysis/statistics/mixed/mixed_contrast.h"
-#include "analysis/statistics/mixed/mixed_model.h"
+#include "analysis/statistics/relation/mixed_contrast.h"
+#include "analysis/statistics/relation/mixed_model.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
 namespace haptrial::analysis::reference::mixed_terms_reference {

@@ -9,7 +9,7 @@
 
 #include "core/base/random.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::regression_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -130,4 +130,4 @@ TEST(Regression, SaysWhyItIsNotDefined) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::regression_test

@@ -8,7 +8,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 
-namespace haptrial {
+namespace haptrial::key_exploration_test {
 namespace {
 
 using testing::ElementsAre;
@@ -111,4 +111,4 @@ TEST(KeyExplorationTest, ADefinitionThatIsReadIsNotExplored) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::key_exploration_test

@@ -10,7 +10,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::toml_text_test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 #include "core/bone/data/load_bone.h"
 #include "tests/core/bone/data/volume_bytes.h"
 #include "tests/support/temporary_folder.h"

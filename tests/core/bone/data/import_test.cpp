@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "core/bone/anatomy/ear_side.h"
 #include "core/bone/data/bone_summary.h"
+#include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
 #include "tests/core/bone/data/volume_bytes.h"
 #include "tests/support/shared_data.h"

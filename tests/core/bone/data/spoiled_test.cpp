@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 #include "core/bone/data/bone_file.h"
 #include "core/bone/data/load_bone.h"
 #include "tests/core/bone/data/volume_bytes.h"

@@ -8,7 +8,7 @@
 #include "core/deformable/calibration/calibrate.h"
 #include "core/deformable/calibration/starting_constants.h"
 #include "core/deformable/springs/equilibrium.h"
-#include "core/deformable/springs/law/spring_grid.h"
+#include "core/deformable/springs/spring_grid.h"
 #include "tests/support/message_of.h"
 #include "tests/support/solid_block.h"
 

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "core/deformable/calibration/calibrate.h"
 #include "core/deformable/elements/static_solver.h"
 #include "tests/support/shared_data.h"

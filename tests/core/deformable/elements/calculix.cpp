@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::deformable::calculix {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
-#include "core/deformable/springs/law/spring_hessian.h"
+#include "core/deformable/springs/spring_hessian.h"
 #include "core/deformable/springs/stable_step.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/message_of.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/geometry/triangle/triangle_distance.h"
+#include "core/geometry/mesh/triangle_distance.h"
 #include "tests/core/geometry/mesh/mesh_cases.h"
 #include "tests/support/allocation_guard.h"
 

@@ -12,7 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/files/mesh_io.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/mesh_check.h"
 
 namespace haptrial::geometry {
 namespace {

@@ -6,8 +6,8 @@
 #include "core/base/error.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
-#include "core/geometry/repair/mesh_check.h"
-#include "core/geometry/repair/mesh_repair.h"
+#include "core/geometry/volume/mesh_check.h"
+#include "core/geometry/volume/mesh_repair.h"
 #include "tests/core/geometry/files/mutations.h"
 
 namespace haptrial::geometry {

@@ -13,7 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/mesh/procedural.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/mesh_check.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/temporary_folder.h"
 

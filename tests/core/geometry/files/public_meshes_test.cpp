@@ -17,7 +17,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/files/mesh_io.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/mesh_check.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::geometry::public_meshes_test {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/geometry/mesh/mesh_volume.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/mesh_check.h"
 
 namespace haptrial::geometry {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/geometry/triangle/triangle_distance.h"
+#include "core/geometry/mesh/triangle_distance.h"
 #include "core/geometry/volume/voxelize.h"
 #include "tests/core/geometry/mesh/mesh_cases.h"
 #include "tests/support/references/pseudonormals.h"

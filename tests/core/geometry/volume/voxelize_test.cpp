@@ -12,9 +12,9 @@
 #include "core/base/random.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
-#include "core/geometry/repair/mesh_check.h"
+#include "core/geometry/volume/boundary_cone.h"
 #include "core/geometry/volume/grid_crossings.h"
-#include "core/geometry/winding/boundary_cone.h"
+#include "core/geometry/volume/mesh_check.h"
 #include "tests/support/shared_data.h"
 
 namespace haptrial::geometry {

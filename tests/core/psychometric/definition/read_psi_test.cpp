@@ -8,7 +8,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/psychometric/definition/read_tracks.h"
-#include "core/psychometric/quest/quest_plus.h"
+#include "core/psychometric/procedure/quest_plus.h"
 
 namespace haptrial::psychometric {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/hdf5/hdf5_layer.h"
-#include "core/record/write/session_writer.h"
+#include "core/record/hdf5/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record::hdf5_files_test {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/record/write/session_writer.h"
+#include "core/record/hdf5/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

@@ -1,5 +1,5 @@
 #include "core/record/read/session_reader.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,9 +12,9 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/record/hdf5/hdf5_layer.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 // HDF5 1.10 forgets a few hundred bytes when it meets a damaged header; ours are still counted.

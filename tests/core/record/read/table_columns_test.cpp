@@ -9,9 +9,9 @@
 
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/session_tables.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record::table_columns_test {

@@ -4,8 +4,8 @@
 
 #include <array>
 
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/trial_facts_of.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

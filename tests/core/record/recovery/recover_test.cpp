@@ -1,5 +1,5 @@
 #include "core/record/recovery/recover.h"
-#include "core/base/files/file_text.h"
+#include "core/base/file_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/table/schema.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

@@ -10,11 +10,11 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/recover.h"
 #include "core/record/recovery/session_resume.h"
 #include "core/record/rows/response.h"
-#include "core/record/write/session_writer.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

@@ -1,5 +1,5 @@
 // Parts that a picture leaves out of a tool's shadow are those that the shadow's law leaves alone.
-#include "core/render/shadow/tool_shadow.h"
+#include "core/render/bone/tool_shadow.h"
 
 #include <gtest/gtest.h>
 

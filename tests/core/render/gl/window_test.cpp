@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/render/flat/frames.h"
 #include "core/render/flat/text_screen.h"
-#include "core/render/trial/frames.h"
-#include "core/render/trial/trial_display.h"
+#include "core/render/flat/trial_display.h"
 #include "tests/core/render/flat/pixels.h"
 #include "tests/support/virtual_display.h"
 #include "tests/support/wait.h"

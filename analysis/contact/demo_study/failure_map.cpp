@@ -1,0 +1,137 @@
+#include "analysis/contact/demo_study/failure_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <numbers>
+
+#include "analysis/document/palette.h"
+#include "core/contact/make_renderer.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+namespace palette = analysis::palette;
+using contact::RendererKind;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kSphere = 5e-4;  // [m]
+constexpr int kVoxels = 128;      // along the plate: cells of 0.9 mm
+constexpr double kDepths[] = {0.00025, 0.0005, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008};
+
+FailureMap map_of(RendererKind kind, double friction, double radius) {
+  FailureMap map{kind, friction, radius, {}};
+  contact::RendererOptions options;
+  options.friction = {friction, friction};
+  options.radius = radius;
+  options.resolution = kVoxels;
+  for (int degrees = 5; degrees <= 85; degrees += 5) {
+    Ridge ridge;
+    ridge.flank = degrees * kDegree;
+    const contact::FeltBody body(ridge_mesh(ridge));
+    const auto renderer = contact::make_renderer(kind, body.mesh, body.surface, options);
+    for (const double depth : kDepths) {
+      const RidgeDrag drag{depth, friction, radius};
+      map.cells.push_back(
+          {ridge.flank, depth, drag_over(ridge, drag, *renderer), ridge_law(ridge, drag)});
+    }
+  }
+  return map;
+}
+
+analysis::Look look_of(RidgeOutcome outcome) {
+  switch (outcome) {
+    case RidgeOutcome::kRight:
+      return {palette::kBlue, palette::kSolid, 7, 1.0, 1.0};
+    case RidgeOutcome::kSticks:
+      return {palette::kOrange, palette::kSolid, 5, 1.0, 1.2};
+    case RidgeOutcome::kPassesUnder:
+      return {palette::kBlack, palette::kSolid, 6, 1.0, 1.2};
+    case RidgeOutcome::kPopsThrough:
+      return {palette::kOrange, palette::kSolid, 2, 1.6, 1.2};
+    case RidgeOutcome::kChatters:
+      return {palette::kBlack, palette::kSolid, 9, 1.0, 1.4};
+  }
+  return {};
+}
+
+}  // namespace
+
+int FailureMap::count(RidgeOutcome outcome) const {
+  return static_cast<int>(std::count_if(cells.begin(), cells.end(), [&](const Cell& cell) {
+    return cell.result.outcome == outcome;
+  }));
+}
+
+std::vector<FailureMap> failure_maps() {
+  return {
+      map_of(RendererKind::kProxy, 0.0, 0.0),       map_of(RendererKind::kProxy, 0.3, 0.0),
+      map_of(RendererKind::kProxy, 0.6, 0.0),       map_of(RendererKind::kProxy, 0.0, kSphere),
+      map_of(RendererKind::kRuspini, 0.0, kSphere), map_of(RendererKind::kPenalty, 0.0, 0.0),
+      map_of(RendererKind::kVoxel, 0.0, 0.0),       map_of(RendererKind::kDistanceField, 0.0, 0.0)};
+}
+
+std::string name_of(const FailureMap& map) {
+  const std::string kind(contact::name_of(map.kind));
+  return map.radius > 0.0                   ? kind + ", sphere"
+         : map.kind == RendererKind::kProxy ? fmt::format("{}, friction {}", kind, map.friction)
+                                            : kind;
+}
+
+analysis::Figure failure_figure(const FailureMap& map) {
+  analysis::Figure figure;
+  std::string name = fmt::format("figure-65-{}", name_of(map));
+  std::erase_if(name, [](char c) { return c == ',' || c == '.'; });
+  std::replace(name.begin(), name.end(), ' ', '-');
+  figure.name = name;
+  figure.title = name_of(map);
+  figure.x_label = "angle of the flanks (degrees)";
+  figure.y_label = "depth of the tool (mm)";
+  for (const RidgeOutcome outcome : kRidgeOutcomes) {
+    analysis::Series series{name_of(outcome), analysis::Mark::kPoints, look_of(outcome)};
+    for (const FailureMap::Cell& cell : map.cells) {
+      if (cell.result.outcome == outcome) {
+        series.x.push_back(cell.flank / kDegree);
+        series.y.push_back(1e3 * cell.depth);
+      }
+    }
+    if (!series.x.empty()) {
+      figure.series.push_back(std::move(series));
+    }
+  }
+  figure.x_range = {{0.0, 90.0}};
+  figure.y_range = {{0.0, 8.5}};
+  figure.height = 0.5;
+  figure.simulated = true;
+  figure.who = "TOOL";
+  figure.caption = fmt::format(
+      "A tool pulled straight over a ridge of 2 mm, under {}. Right: the contact "
+      "climbs the ridge where Coulomb's law says, or stays where friction holds it.",
+      name_of(map));
+  figure.alt =
+      fmt::format("{} of {} cells are right.", map.count(RidgeOutcome::kRight), map.cells.size());
+  return figure;
+}
+
+std::string failure_csv(const std::vector<FailureMap>& maps) {
+  std::string text =
+      "renderer,friction,radius_mm,flank_deg,depth_mm,outcome,"
+      "one_20th_up_mm,one_20th_up_by_law_mm,"
+      "highest_mm\n";
+  const auto number = [](const std::optional<double>& x) {
+    return x ? fmt::format("{:.3f}", 1e3 * *x) : std::string();
+  };
+  for (const FailureMap& map : maps) {
+    for (const FailureMap::Cell& cell : map.cells) {
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.0f},{},{},{},{},{:.3f}\n",
+                     contact::name_of(map.kind), map.friction, 1e3 * map.radius,
+                     cell.flank / kDegree, 1e3 * cell.depth, name_of(cell.result.outcome),
+                     number(cell.result.left_foot), number(cell.law.seen()),
+                     1e3 * cell.result.highest);
+    }
+  }
+  return text;
+}
+
+}  // namespace haptrial::evaluation

@@ -1,0 +1,164 @@
+#include "analysis/psychophysics/fit/reach_trials.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "analysis/reaching/reaching_figures.h"
+#include "analysis/reaching/zero_phase_filter.h"
+#include "core/base/parallel.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+constexpr double kLead = 0.2;         // of the recording before the go signal [s]
+constexpr double kErrorAfter = 0.15;  // after onset [s]
+constexpr double kNoPush = 1e-6;      // share of the field below which it pushes to no side
+
+/// The last pass of the stage: an interval that was repeated has others before it.
+const StageTime* stage_of(const StudyTrial& trial, const std::string& stage) {
+  const auto at = std::find_if(trial.stages.rbegin(), trial.stages.rend(),
+                               [&](const StageTime& each) { return each.stage == stage; });
+  return at == trial.stages.rend() ? nullptr : &*at;
+}
+
+/// The samples of a reach, with those just before it.
+struct ReachSamples {
+  std::vector<double> time;  // from the go signal [s]
+  std::vector<Eigen::Vector3d> position, force;
+  double saturated{0.0};
+};
+
+ReachSamples samples_of(const record::SessionReader& reader, const StudyTrial& trial,
+                        const StageTime& stage) {
+  const double rate = reader.info().rate;
+  const std::uint64_t go = trial.first_sample + stage.first;
+  const std::uint64_t first =
+      go - std::min<std::uint64_t>(static_cast<std::uint64_t>(kLead * rate), stage.first);
+  const std::uint64_t end = std::min<std::uint64_t>(go + stage.ticks, reader.sample_count());
+  ReachSamples samples;
+  if (end <= go) {
+    return samples;
+  }
+  const std::vector<record::Sample> rows = reader.samples(first, end - first);
+  for (const record::Sample& row : rows) {
+    samples.time.push_back((static_cast<double>(row.sequence) - static_cast<double>(go)) / rate);
+    samples.position.push_back(row.position);
+    samples.force.push_back(row.force);
+    samples.saturated += row.saturated && row.sequence >= go ? 1.0 : 0.0;
+  }
+  samples.saturated /= static_cast<double>(end - go);
+  return samples;
+}
+
+void measure(const ReachSamples& samples, double rate, StudyReach& reach) {
+  const auto motion = smooth_motion(samples.position, rate);
+  if (!motion) {
+    return;
+  }
+  const Reach recorded{samples.time,
+                       motion->position,
+                       motion->velocity,
+                       samples.force,
+                       reach.way.start,
+                       reach.way.target,
+                       0.0};
+  MetricOptions options;
+  options.target_radius = reach.way.target_radius;
+  reach.recorded = true;
+  reach.saturated = samples.saturated;
+  reach.metrics = reach_metrics(recorded, options);
+  reach.error_at_150_ms = perpendicular_error_at(recorded, reach.metrics, kErrorAfter);
+  if (!reach.metrics.onset) {
+    reach.compensation = Undefined{"the hand did not move"};
+    return;
+  }
+  const double end = reach.metrics.end.value_or(samples.time.back());
+  const std::array one{TimedReach{recorded, *reach.metrics.onset, end}};
+  reach.path = mean_path(one);
+  if (reach.kind == ReachKind::kClamp) {
+    reach.compensation = force_compensation(recorded, reach.way.field, *reach.metrics.onset, end);
+  }
+}
+
+void measure_session(const std::filesystem::path& file, const TrialsData& data,
+                     const std::string& stage, std::vector<StudyReach*>& reaches) {
+  const record::SessionReader reader(file);
+  for (StudyReach* reach : reaches) {
+    const StudyTrial& trial = data.trials[reach->trial];
+    if (const StageTime* time = stage_of(trial, stage)) {
+      reach->arrived = time->reached;
+      measure(samples_of(reader, trial, *time), reader.info().rate, *reach);
+    }
+  }
+}
+
+/// How much of `field` is `reference`: 1 for the same, -1 for the opposite.
+double share_of(const Eigen::Matrix3d& field, const Eigen::Matrix3d& reference) {
+  const double square = reference.squaredNorm();
+  return square > 0.0 ? field.cwiseProduct(reference).sum() / square : 0.0;
+}
+
+/// The field that a participant learns is the first that acts; if none does, the first stated.
+void turn_to_field(std::vector<StudyReach*>& reaches) {
+  const auto active = std::find_if(reaches.begin(), reaches.end(),
+                                   [](const StudyReach* each) { return each->way.active; });
+  const Eigen::Matrix3d field = (active == reaches.end() ? reaches.front() : *active)->way.field;
+  for (StudyReach* reach : reaches) {
+    const WayFrame frame(reach->way.start, reach->way.target);
+    const double push = frame.lateral(field * frame.along());
+    reach->push = push < -kNoPush * field.norm() ? -1.0 : 1.0;
+    reach->perturbation = reach->way.active ? share_of(reach->way.field, field) : 0.0;
+  }
+}
+
+}  // namespace
+
+std::optional<double> StudyReach::turned(const std::optional<double>& value) const {
+  return value ? std::optional(push * *value) : std::nullopt;
+}
+
+std::vector<StudyReach> study_reaches(const TrialsData& data,
+                                      const std::vector<std::filesystem::path>& files,
+                                      const std::vector<std::optional<ReachRoute>>& routes,
+                                      const std::string& stage, const std::string& clamp,
+                                      int threads) {
+  std::vector<StudyReach> reaches;
+  std::map<std::string, std::size_t> counted;
+  for (std::size_t i = 0; i < data.trials.size(); ++i) {
+    const StudyTrial& trial = data.trials[i];
+    if (!trial.counts() || !routes.at(i)) {
+      continue;
+    }
+    StudyReach reach;
+    reach.trial = i;
+    reach.order = counted[data.session_of(trial).participant]++;
+    reach.way = *routes[i];
+    const bool held = reach.way.clamp || (!trial.probe.empty() && trial.probe == clamp);
+    reach.kind = held                  ? ReachKind::kClamp
+                 : trial.probe.empty() ? ReachKind::kPlain
+                                       : ReachKind::kCatch;
+    reach.block = factor_level(data, trial, "block");
+    reaches.push_back(std::move(reach));
+  }
+  std::vector<std::vector<StudyReach*>> by_session(data.sessions.size());
+  std::map<std::string, std::vector<StudyReach*>> by_participant;
+  for (StudyReach& reach : reaches) {
+    const StudyTrial& trial = data.trials[reach.trial];
+    by_session[trial.session].push_back(&reach);
+    by_participant[data.session_of(trial).participant].push_back(&reach);
+  }
+  for (auto& [participant, own] : by_participant) {
+    turn_to_field(own);
+  }
+  parallel_for(files.size(), threads_or_all(threads), [&](std::size_t session) {
+    if (!by_session.at(session).empty()) {
+      measure_session(files[session], data, stage, by_session[session]);
+    }
+  });
+  return reaches;
+}
+
+}  // namespace haptrial::analysis::trials

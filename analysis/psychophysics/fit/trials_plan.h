@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/psychometric/fit/fitted_function.h"
+#include "analysis/psychometric/fit/likelihood_fit.h"
+#include "analysis/psychophysics/fit/cue_plan.h"
+#include "analysis/psychophysics/fit/reaching_plan.h"
+#include "analysis/statistics/design/analysis_plan.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::analysis::trials {
+
+/// Kind of analysis of the answers.
+enum class AnalysisKind {
+  kNone,            // trials, reaction times and quality alone
+  kPsychometric,    // functions of the level: thresholds, slopes, Weber fractions
+  kDetection,       // signal and noise: d', criterion, ROC of ratings
+  kIdentification,  // one of several: confusions, share of right answers, d' of m alternatives
+  kMagnitude,       // numbers in proportion to what was felt: exponents
+  kAdjustment,      // levels that participants set: means
+  kReaching,        // movements, which have an analysis of their own
+};
+
+/// Levels by the name of their factor, as tables show them.
+using StatedLevels = std::map<std::string, std::vector<std::string>>;
+
+/// Values of the rest of a definition that stand in for keys that [analysis] does not have.
+struct PlanDefaults {
+  AnalysisKind kind{AnalysisKind::kNone};
+  std::vector<std::string> factors;  // that [factors] varies, and "group" of several groups
+  std::string rating;                // question of how sure somebody is; empty: none
+  std::vector<std::string> choices;  // of the first question; none: a number
+  std::vector<std::string> names;    // that `by` may name besides
+  psychometric::Axis axis;           // of the procedure, with its unit
+  std::optional<double> guess;       // 1 / choices where an answer is right; else free
+  std::optional<bool> falls;         // answers 1 of the procedure get rarer as the level rises
+  ReachingNames reaching;            // that the analysis of movements may name
+  CueNames cues;                     // that the comparison of cues may name
+  StatedLevels levels;               // of names of `by`, where the definition states all of them
+};
+
+/// The highest lapse rate, and guess rate without catch trials, unless stated: with lapses up to
+/// 15 % intervals hold the truth (docs/algorithms/procedure-coverage.md).
+inline constexpr double kMostLapses = 0.2;
+
+/// Content of [analysis] in a definition.
+struct TrialsPlan {
+  AnalysisKind kind{AnalysisKind::kNone};
+  std::vector<std::string> by;  // factors whose levels are told apart
+  AnalysisPlan plan;            // tests that were planned
+  std::string question;         // whose answer counts; empty: the first
+  std::string yes;              // the answer that counts 1; empty: what the procedure learnt, else
+                                // the right one
+  std::string level;            // variable for the level; empty: the one that the procedure set
+  std::string rating;           // question with a number: how sure; empty: none
+  std::string stimulus;         // factor that says what was presented, of an identification
+  std::vector<std::string> choices;  // of the question, likewise
+  bool functions{false};             // whether functions are fitted
+  std::string function_name{"norm"};
+  psychometric::PsychometricParameters function{.guess = 0.5};
+  bool guess_free{false};
+  bool guess_is_lapse{false};  // a lapse is as likely to be the one answer as the other
+  RateBounds lapse{.high = kMostLapses};
+  double threshold_at{0.75};        // share of answers 1 at the threshold, lapses aside
+  std::optional<double> reference;  // standard stimulus, for Weber fractions [unit of the level]
+  bool bayesian{true};
+  bool population{true};        // the mixed model of all participants
+  bool track_intervals{true};   // of the procedures' own estimates
+  bool serial{true};            // drift and repetition
+  std::size_t resamples{1999};  // of each function
+  std::size_t permutations{9999};
+  std::uint64_t seed{1};
+  std::optional<CuePlan> cues;  // two cues whose combination is compared with the best
+  ReachingPlan reaching;        // where `kind` is kReaching
+
+  Task task() const {
+    return guess_is_lapse ? Task::kEqualAsymptote : guess_free ? Task::kYesNo : Task::kForcedChoice;
+  }
+};
+
+/// Reads the table [analysis], all of whose keys may be left out. Problems are noted.
+///
+///     kind          "psychometric", "detection", "identification", "magnitude", "adjustment",
+///                   "reaching" or "none"
+///     by            factors: each combination has a function, d' or exponent of its own; left out:
+///                   all of them; of detection and identification none, as they may say where the
+///                   signal is, and of reaching none, as they make cycles
+///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors, or of
+///                   combinations joined by ", "; a level that is not stated is a problem
+///     question, yes, level   as TrialsPlan
+///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis; with
+///                   "neg_" before it, it falls. It must fall if the procedure's answers 1 do, and
+///                   does so if left out
+///     guess         0 to 0.9; "free" for "yes" or "no", at most 0.2, or 0.5 with catch trials;
+///                   "lapse", which is as large as the lapse rate, for "larger" or "smaller"
+///     lapse         { free = true, at_most = 0.2 }, or a number; at most 0.06 if guess is "lapse"
+///     scale, origin   of the axis: "linear", "log10", "ln" or "decibel"
+///     threshold_at  between guess and 1: 0.75 of two intervals, 0.5 if the guess rate is free
+///     reference     standard stimulus
+///     bayesian      whether the Bayesian fit is added
+///     resamples     of the bootstrap, 0 to 100,000
+///     cue_combination   as read_cue_plan()
+///     rating        question of how sure the participant was
+///     stimulus      of "identification": the factor that says what was presented; the first one if
+///                   left out
+///
+/// Keys from function to cue_combination are those of functions; detection fits them if it states
+/// one. Those of "reaching" are its own (read_reaching_plan).
+TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults);
+
+/// A test as tables name its sides: "0.30" is the level 0.3.
+PlannedTest with_short_numbers(PlannedTest test);
+
+/// The words of `kind`.
+const char* name_of(AnalysisKind kind);
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <numbers>
+
+#include "analysis/psychophysics/report/trials_report.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/statistics/design/wording.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t kMostPaths = 24;
+
+std::string interval_word(const Defined<MeanInterval>& mean, double scale) {
+  return mean ? estimate_word({scale * mean->mean, scale * mean->low, scale * mean->high}) : "–";
+}
+
+void add_block_means(Document& document, const ReachingResult& reaching) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  constexpr double kSquareCentimetres = 1e4;
+  Rows rows;
+  for (std::size_t b = 0; b < reaching.blocks.size(); ++b) {
+    const BlockMeans& m = reaching.means[b];
+    rows.push_back({reaching.blocks[b].name, std::to_string(reaching.blocks[b].trials),
+                    interval_word(m.movement_time, 1.0), interval_word(m.peak_speed, 1.0),
+                    interval_word(m.error, kMillimetres),
+                    interval_word(m.error_at_150_ms, kMillimetres),
+                    interval_word(m.direction, kDegrees), interval_word(m.area, kSquareCentimetres),
+                    interval_word(m.compensation, 1.0)});
+  }
+  document.table({"block", "trials", "movement time (s)", "peak speed (m/s)",
+                  "largest perpendicular error (mm)", "error at 150 ms (mm)",
+                  "direction error at 150 ms (°)", "signed area (cm²)", "force compensation"},
+                 rows);
+  document.paragraph(
+      "Means over participants [95 %] of the reaches without a probe; force compensation is that "
+      "of reaches in a channel. Signs are turned so that the participant's field pushes to +.");
+}
+
+std::string scaled_difference(const ReachContrast& each) {
+  const TTest& test = each.contrast->test;
+  const double scale = each.unit.empty() ? 1.0 : kMillimetres;
+  return estimate_word({scale * test.difference, scale * test.low, scale * test.high}) +
+         (each.unit.empty() ? "" : " mm");
+}
+
+void add_contrasts(Document& document, const ReachingResult& reaching) {
+  Rows rows;
+  for (const ReachContrast& each : reaching.contrasts) {
+    if (!each.contrast) {
+      rows.push_back({each.name, "–", "–", "not defined, because " + each.contrast.because(), "–"});
+      continue;
+    }
+    rows.push_back({each.name, std::to_string(each.contrast->participants), scaled_difference(each),
+                    t_result(each.contrast->test), p_result(each.holm)});
+  }
+  document.subheading("Adaptation and aftereffect");
+  document.table({"comparison", "participants", "difference [95 %]", "paired t-test, not adjusted",
+                  "p after Holm"},
+                 rows);
+}
+
+/// Estimates of a table with their intervals over resampled participants, and what the sentences
+/// below it say of the intervals that are missing or left draws out.
+class Resampled {
+ public:
+  explicit Resampled(std::size_t draws) : draws_(draws) {}
+
+  /// @param name  of the estimate, such as "amplitude of adaptation"
+  std::string word(const std::string& name, double value,
+                   const Defined<BootstrapInterval>& interval, double scale) {
+    if (!interval) {
+      notes_.push_back(fmt::format("{}: no interval, because {}", name, interval.because()));
+      return number(scale * value);
+    }
+    if (interval->resamples < draws_) {
+      notes_.push_back(
+          fmt::format("{}: {} of {} resamples are left out, for which it does not exist", name,
+                      draws_ - interval->resamples, draws_));
+    }
+    return estimate_word({scale * value, scale * interval->low, scale * interval->high});
+  }
+  void add_notes(Document& document) const {
+    if (!notes_.empty()) {
+      document.points(notes_);
+    }
+  }
+
+ private:
+  std::size_t draws_;
+  std::vector<std::string> notes_;
+};
+
+void add_exponentials(Document& document, const ReachingResult& reaching) {
+  Rows rows;
+  Resampled resampled(reaching.plan.resamples);
+  for (const ReachBlock& block : reaching.blocks) {
+    if (!block.learns) {
+      continue;
+    }
+    if (!block.fit) {
+      rows.push_back(
+          {block.name, "not defined, because " + block.fit.because(), "–", "–", "–", "–"});
+      continue;
+    }
+    const LearningFit& f = *block.fit;
+    const auto word = [&](const char* what, double value, const auto& interval, double scale) {
+      return resampled.word(fmt::format("{} of {}", what, block.name), value, interval, scale);
+    };
+    rows.push_back({block.name, word("amplitude", f.fit.amplitude, f.amplitude, kMillimetres),
+                    word("asymptote", f.fit.asymptote, f.asymptote, kMillimetres),
+                    word("time constant", f.fit.time_constant, f.time_constant, 1.0),
+                    number(f.fit.rate()), fmt::format("{:.3f}", f.fit.r_squared)});
+  }
+  if (rows.empty()) {
+    document.paragraph("No block has another field than the block before, so no curve is fitted.");
+    return;
+  }
+  document.table({"block", "amplitude (mm)", "asymptote (mm)", "time constant (cycles)",
+                  "rate (per cycle)", "R² of the means"},
+                 rows);
+  document.paragraph(
+      fmt::format("Error = asymptote + amplitude exp(-n / time constant), n = 0 in the first "
+                  "cycle; a cycle has "
+                  "{}. Intervals [95 %] resample participants.",
+                  counted(reaching.plan.cycle, "trial")));
+  resampled.add_notes(document);
+}
+
+void add_two_rate(Document& document, const ReachingResult& reaching) {
+  document.subheading("Two rates");
+  if (!reaching.two_rate) {
+    document.paragraph("The two-rate model is not defined, because " + reaching.two_rate.because() +
+                       ".");
+    return;
+  }
+  const TwoRateLearning& t = *reaching.two_rate;
+  const TwoRateModel& m = t.fit.model;
+  Resampled resampled(reaching.plan.resamples);
+  document.table(
+      {"process", "retention [95 %]", "learning [95 %]"},
+      {{"fast", resampled.word("fast retention", m.fast.retention, t.fast_retention, 1.0),
+        resampled.word("fast learning", m.fast.learning, t.fast_learning, 1.0)},
+       {"slow", resampled.word("slow retention", m.slow.retention, t.slow_retention, 1.0),
+        resampled.word("slow learning", m.slow.learning, t.slow_learning, 1.0)}});
+  resampled.add_notes(document);
+  document.paragraph(fmt::format(
+      "One model for all trials of all participants, {} measured values. Without adaptation the "
+      "field makes an error of {} mm at 150 ms. Errors at 150 ms, before feedback has acted much, "
+      "are taken as proportional to what is not compensated; breaks are not modelled.",
+      t.fit.count, number(kMillimetres * m.error_scale * reaching.two_rate_unit)));
+}
+
+}  // namespace
+
+void add_reaching(Document& document, const TrialsResult& result,
+                  const std::vector<Drawing>& drawings) {
+  const ReachingResult& reaching = *result.reaching;
+  add_section(document, result, "Reaches");
+  add_pictures(document, drawings, "learning-curve", 1);
+  add_block_means(document, reaching);
+  add_contrasts(document, reaching);
+  document.subheading("Learning curves");
+  add_exponentials(document, reaching);
+  add_pictures(document, drawings, "force-compensation", 1);
+  add_two_rate(document, reaching);
+  document.subheading("Paths");
+  add_pictures(document, drawings, "trajectories-", kMostPaths);
+}
+
+void add_reach_quality(Document& document, const TrialsResult& result) {
+  if (!result.reaching) {
+    return;
+  }
+  Rows rows;
+  for (const ReachQuality& q : result.reaching->quality) {
+    rows.push_back({q.participant, std::to_string(q.reaches), std::to_string(q.not_recorded),
+                    std::to_string(q.no_onset), std::to_string(q.anticipated),
+                    std::to_string(q.never_slowed), std::to_string(q.not_arrived),
+                    std::to_string(q.missed_target), std::to_string(q.saturated)});
+  }
+  document.table({"participant", "reaches", "not recorded", "no onset, or moving at the start",
+                  "before the go signal", "never slowed", "not arrived in time", "ended off target",
+                  "at the force limit"},
+                 rows);
+  document.paragraph(
+      "Reaches without an onset have no metrics and take part in nothing; all others take part.");
+}
+
+void add_reaching_methods(Document& document, const ReachingPlan& plan) {
+  document.paragraph(fmt::format(
+      "A reach lasts from the first to the last tick of the stage {}, on the way from {} to {}. "
+      "Positions pass a low-pass of fourth order at 20 Hz without delay. Onset: the last rise "
+      "above "
+      "0.03 m/s before a tenth of the peak speed; end: the first fall below 0.05 m/s for 0.1 s. "
+      "Learning is about {}. Force compensation is the slope of the channel's lateral force over "
+      "that of the field{} at the same velocity.",
+      plan.stage, plan.start, plan.target,
+      plan.at_150_ms ? "the perpendicular error 150 ms after onset"
+                     : "the largest perpendicular error",
+      plan.field.empty() ? "" : " " + plan.field));
+  document.paragraph(
+      "Participants are compared with themselves by paired t-tests, two-sided, of the means of "
+      "cycles; p values of all comparisons are adjusted together by Holm's method.");
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,354 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "analysis/psychophysics/report/report_surfaces.h"
+#include "analysis/psychophysics/report/trials_report.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/statistics/base/p_adjust.h"
+#include "analysis/statistics/design/wording.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t kMostPictures = 4;
+
+std::string with_unit(const char* name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} ({})", name, unit);
+}
+
+void add_means(Document& document, const TrialsResult& result) {
+  Rows rows;
+  for (const Quantity& q : result.quantities) {
+    for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
+      rows.push_back({q.title, result.plan.by.empty() ? "all" : q.table.names[cell],
+                      std::to_string(q.table.participants(cell)),
+                      mean_word(result, q, cell) + unit_word(result, q)});
+    }
+  }
+  if (!rows.empty()) {
+    document.table({"quantity", "condition", "participants", "mean over participants"}, rows);
+  }
+}
+
+std::vector<std::string> row_of(const FunctionFit& fit, const char* how,
+                                const Defined<FunctionReadings>& readings, bool weber, bool guess) {
+  std::vector<std::string> row{series_name(fit.participant, fit.condition), how,
+                               std::to_string(fit.trials)};
+  if (!readings) {
+    row.push_back("not defined, because " + readings.because());
+    row.resize(7U + weber + guess, "–");
+    return row;
+  }
+  row.push_back(estimate_word(readings->threshold));
+  row.push_back(estimate_word(readings->width));
+  if (weber) {
+    row.push_back(estimate_word(readings->weber));
+  }
+  const bool bayesian = how[0] == 'B';
+  row.push_back(bayesian || fit.lapse_told ? estimate_word(readings->lapse)
+                                           : "not told by the answers");
+  if (guess) {
+    row.push_back(estimate_word(readings->guess));
+  }
+  row.push_back(bayesian ? fmt::format("η {:.2f}", fit.overdispersion)
+                : fit.deviance_p == fit.deviance_p
+                    ? fmt::format("{:.1f}, {}", fit.deviance, p_value(fit.deviance_p))
+                    : fmt::format("{:.1f}", fit.deviance));
+  return row;
+}
+
+/// Says whose answers scatter, which of the rows to report, and what a deviance cannot show.
+void add_fit_words(Document& document, const TrialsResult& result) {
+  if (result.plan.bayesian) {
+    document.paragraph(
+        "Report the first row of each; means and tests are of it. The Bayesian fit is for "
+        "comparison: it allows for answers that scatter, and its prior of the lapse rate, which "
+        "has a mean of 0.09, moves threshold and width where the answers do not tell that rate.");
+  }
+  std::vector<double> p;
+  std::size_t few = 0;
+  for (const FunctionFit& fit : result.fits) {
+    if (std::isfinite(fit.deviance_p)) {
+      p.push_back(fit.deviance_p);
+      few += 5 * fit.blocks.size() > fit.trials ? 1U : 0U;
+    }
+  }
+  if (p.empty()) {
+    return;
+  }
+  constexpr double kLevel = 0.05;
+  const auto below = [](const std::vector<double>& values) {
+    return std::ranges::count_if(values, [](double each) { return each < kLevel; });
+  };
+  document.paragraph(fmt::format(
+      "Answers scatter more about the function than chance explains in {} of {} at the level 0.05; "
+      "{:.2g} are expected by chance. After Holm's adjustment {} remain.{}",
+      below(p), counted(p.size(), "function"), kLevel * static_cast<double>(p.size()),
+      below(holm_adjusted(p)),
+      few > 0 ? fmt::format(" {} fewer than five answers at a level on average, which hardly show "
+                            "such scatter.",
+                            counted(few, "function") + (few == 1 ? " has" : " have"))
+              : ""));
+}
+
+void add_fit_table(Document& document, const TrialsResult& result) {
+  const psychometric::Axis& axis = result.plan.function.axis;
+  const bool weber = result.plan.reference.has_value(), guess = result.plan.guess_free;
+  std::vector<std::string> heading{"participant", "fit", "trials",
+                                   with_unit("threshold [95 %]", axis.unit),
+                                   with_unit("width [95 %]", axis.x_unit())};
+  if (weber) {
+    heading.emplace_back("Weber fraction [95 %]");
+  }
+  heading.emplace_back("lapse rate");
+  if (guess) {
+    heading.emplace_back("guess rate");
+  }
+  heading.emplace_back("deviance, or overdispersion");
+  Rows rows;
+  for (const FunctionFit& fit : result.fits) {
+    rows.push_back(row_of(fit, method_of(fit), fit.stated, weber, guess));
+    if (result.plan.bayesian) {
+      rows.push_back(row_of(fit, "Bayesian", fit.bayesian, weber, guess));
+    }
+  }
+  document.table(heading, rows, "Every participant's function");
+  add_fit_words(document, result);
+  std::vector<std::string> warnings;
+  for (const FunctionFit& fit : result.fits) {
+    for (const std::string& warning : fit.warnings) {
+      warnings.push_back(series_name(fit.participant, fit.condition) + ": " + warning + ".");
+    }
+  }
+  if (!warnings.empty()) {
+    document.subheading("What to be careful about");
+    for (const std::string& warning : warnings) {
+      document.paragraph(warning);
+    }
+  }
+}
+
+void add_population(Document& document, const TrialsResult& result) {
+  const auto& population = result.population;
+  document.subheading("Mixed model over participants");
+  if (!population) {
+    document.paragraph("A probit mixed model is not defined, because " + population.because() +
+                       ".");
+    return;
+  }
+  const BinomialMixedModel& model = population->model;
+  Rows rows;
+  for (std::size_t i = 0; i < population->names.size(); ++i) {
+    const BinomialCoefficient& c = model.fixed.coefficients[i];
+    rows.push_back({population->names[i], number(c.estimate), number(c.error),
+                    fmt::format("{} to {}", number(c.low), number(c.high))});
+  }
+  document.table({"coefficient (probit)", "estimate", "standard error", "95 %"}, rows);
+  Rows points;
+  for (const PopulationPoint& p : population->points) {
+    const psychometric::Axis& axis = result.plan.function.axis;
+    points.push_back({p.condition.empty() ? "all" : p.condition,
+                      p.point ? fmt::format("{} [{}, {}]", number(axis.level(p.point->point)),
+                                            number(axis.level(p.point->point_low)),
+                                            number(axis.level(p.point->point_high)))
+                              : "not defined, because " + p.point.because(),
+                      p.point ? fmt::format("{} [{}, {}]", number(p.point->jnd),
+                                            number(p.point->jnd_low), number(p.point->jnd_high))
+                              : "–"});
+  }
+  document.table({"condition", with_unit("level of 50 %", result.plan.function.axis.unit),
+                  with_unit("from 50 % to 75 %", result.plan.function.axis.x_unit())},
+                 points);
+  document.paragraph(fmt::format(
+      "Answers of all participants in one model, by maximum likelihood in Laplace's approximation. "
+      "Intercept, slope and, with two conditions, their difference vary between participants, with "
+      "all covariances. The level is standardised: (x - {}) / {}.{}{}",
+      number(population->centre), number(population->scale),
+      model.at_boundary ? " Some variance between participants is estimated as 0." : "",
+      population->condition_p
+          ? fmt::format(" Whether the conditions differ: t({}) = {}, {}.", population->condition_df,
+                        number(population->condition_t), p_value(*population->condition_p))
+          : ""));
+}
+
+void add_functions(Document& document, const TrialsResult& result,
+                   const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Psychometric functions");
+  if (result.plan.kind == AnalysisKind::kPsychometric) {  // else they stand with the detection
+    add_means(document, result);
+    add_pictures(document, drawings, "by-condition-", kMostPictures);
+  }
+  add_pictures(document, drawings, "functions", 1);
+  add_pictures(document, drawings, "function-", kMostPictures);
+  add_fit_table(document, result);
+  add_population(document, result);
+}
+
+void add_detections(Document& document, const TrialsResult& result,
+                    const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Detection");
+  add_means(document, result);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  add_pictures(document, drawings, "roc", 1);
+  Rows rows;
+  for (const DetectedCondition& one : result.detected) {
+    const auto& d = one.detection;
+    rows.push_back(
+        {series_name(one.participant, one.condition),
+         fmt::format("{:g} of {:g}", one.counts.hits, one.counts.hits + one.counts.misses),
+         fmt::format("{:g} of {:g}", one.counts.false_alarms,
+                     one.counts.false_alarms + one.counts.correct_rejections),
+         d ? estimate_word({d->d_prime, d->low, d->high}) : "not defined, because " + d.because(),
+         d ? number(d->criterion) : "–", one.roc ? fmt::format("{:.3f}", one.roc->area) : "–",
+         one.binormal ? fmt::format("{:.3f}", one.binormal->area) : "–"});
+  }
+  document.table({"participant", "hits", "false alarms", "d' [95 %]", "criterion c",
+                  "ROC area, trapezoids", "ROC area, binormal"},
+                 rows, "Every participant's detection");
+}
+
+/// The share of each answer to each stimulus, over all participants.
+void add_confusions(Document& document, const TrialsResult& result) {
+  for (const auto& [condition, confusions] : pooled_confusions(result.identified)) {
+    std::vector<std::string> heading{"presented", "trials"};
+    for (const std::string& choice : result.plan.choices) {
+      heading.push_back("“" + choice + "”");
+    }
+    Rows rows;
+    for (std::size_t i = 0; i < confusions.stimuli.size(); ++i) {
+      const std::vector<int>& answers = confusions.answers[i];
+      const int trials = std::accumulate(answers.begin(), answers.end(), 0);
+      auto& row = rows.emplace_back();
+      row = {confusions.stimuli[i], std::to_string(trials)};
+      for (const int count : answers) {
+        row.push_back(fmt::format("{:.2f}", static_cast<double>(count) / std::max(trials, 1)));
+      }
+    }
+    document.table(heading, rows,
+                   "Shares of the answers to each stimulus, all participants" +
+                       (condition.empty() ? "" : ": " + condition));
+  }
+}
+
+void add_identification(Document& document, const TrialsResult& result,
+                        const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Identification");
+  add_means(document, result);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  add_confusions(document, result);
+  const auto mean = [](const Defined<double>& x) {
+    return x ? fmt::format("{:.2f}", *x) : std::string("–");
+  };
+  Rows rows;
+  for (const IdentifiedCondition& one : result.identified) {
+    rows.push_back({series_name(one.participant, one.condition),
+                    fmt::format("{} of {}", one.right, one.trials),
+                    estimate_word({one.share, one.low, one.high}),
+                    one.d_prime ? estimate_word({*one.d_prime, one.d_low, one.d_high})
+                                : "not defined, because " + one.d_prime.because(),
+                    mean(one.sure_right), mean(one.sure_wrong),
+                    one.sureness ? fmt::format("{:.3f}", one.sureness->area) : "–"});
+  }
+  document.table({"participant", "right", "share [95 %]", "d' [95 %]", "rating where right",
+                  "rating where wrong", "ROC area of ratings"},
+                 rows, "Every participant's identification");
+  document.paragraph(
+      fmt::format("d' is that of an observer without bias to whom {} alternatives are equally "
+                  "alike; the shares above show where this does not hold. Chance is {:.3f}.",
+                  result.plan.choices.size(),
+                  1.0 / static_cast<double>(std::max<std::size_t>(result.plan.choices.size(), 1))));
+}
+
+void add_laws(Document& document, const TrialsResult& result,
+              const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Magnitudes");
+  add_means(document, result);
+  add_pictures(document, drawings, "magnitudes", 1);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  Rows rows, people;
+  for (const MagnitudeCondition& one : result.magnitudes) {
+    const std::string condition = one.condition.empty() ? "all" : one.condition;
+    if (!one.law) {
+      rows.push_back({condition, "not defined, because " + one.law.because(), "–", "–"});
+      continue;
+    }
+    const PowerLaw& law = *one.law;
+    rows.push_back({condition,
+                    estimate_word({law.exponent, law.low ? *law.low : kNotKnown,
+                                   law.high ? *law.high : kNotKnown}),
+                    number(law.constant), fmt::format("{:.3f}", law.r_squared)});
+    for (std::size_t i = 0; i < law.participants.size(); ++i) {
+      people.push_back({series_name(one.participants[law.participants[i]], one.condition),
+                        estimate_word({law.exponents[i], law.lines[i].low, law.lines[i].high}),
+                        number(law.moduli[i]), fmt::format("{:.3f}", law.lines[i].r_squared),
+                        number(law.lines[i].deviation)});
+    }
+    if (one.not_positive > 0) {
+      document.paragraph(fmt::format("{}: {} of 0 or below left out.", condition,
+                                     counted(one.not_positive, "answer")));
+    }
+  }
+  document.table({"condition", "exponent [95 %]", "constant", "R² of the levels' means"}, rows);
+  document.table({"participant", "exponent [95 %]", "modulus", "R²", "SD of the residuals (ln)"},
+                 people, "Every participant's exponent");
+}
+
+void add_settings(Document& document, const TrialsResult& result,
+                  const std::vector<Drawing>& drawings) {
+  add_section(document, result, "Settings");
+  add_means(document, result);
+  add_pictures(document, drawings, "by-condition-", kMostPictures);
+  Rows rows;
+  for (const TrackEstimate& track : result.tracks) {
+    const bool known = !track.estimates.empty();
+    rows.push_back({series_name(track.participant, track.track), std::to_string(track.steps.size()),
+                    known ? track.estimates.front().name : "not defined, because " + track.because,
+                    known ? estimate_word(estimated(track.estimates.front())) : "–"});
+  }
+  document.table({"participant", "presentations", "estimate",
+                  with_unit("level [95 %]", result.plan.function.axis.unit)},
+                 rows, "Every participant's settings");
+}
+
+}  // namespace
+
+void add_results(Document& document, const TrialsResult& result,
+                 const std::vector<Drawing>& drawings) {
+  if (result.plan.kind == AnalysisKind::kDetection) {
+    add_detections(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kIdentification) {
+    add_identification(document, result, drawings);
+  }
+  if (result.cues) {
+    add_cues(document, result, drawings);
+  }
+  if (!result.surfaces.empty()) {
+    add_section(document, result, "Functions of several variables");
+    add_surfaces(document, result, drawings);
+  }
+  if (result.plan.functions && (result.surfaces.empty() || !result.series.empty())) {
+    add_functions(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kMagnitude) {
+    add_laws(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kAdjustment) {
+    add_settings(document, result, drawings);
+  }
+  if (result.reaching) {
+    add_reaching(document, result, drawings);
+    if (!result.quantities.empty()) {
+      add_section(document, result, "Reaches by condition");
+      add_means(document, result);
+      add_pictures(document, drawings, "by-condition-", kMostPictures);
+    }
+  }
+}
+
+}  // namespace haptrial::analysis::trials

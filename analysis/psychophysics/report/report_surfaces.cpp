@@ -1,0 +1,110 @@
+#include "analysis/psychophysics/report/report_surfaces.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "analysis/statistics/design/wording.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t kMostShown = 4;  // pictures; the others lie beside the report
+
+std::string condition_name(const SurfaceCondition& one) {
+  return one.condition.empty()
+             ? fmt::format("{}, {}", one.participant, one.track)
+             : fmt::format("{}, {}, {}", one.participant, one.track, one.condition);
+}
+
+void add_parameters(Document& document, const std::vector<SurfaceCondition>& surfaces) {
+  Rows rows;
+  for (const SurfaceCondition& one : surfaces) {
+    if (!one.fit) {
+      rows.push_back({condition_name(one), std::to_string(one.trials.size()),
+                      "not defined, because " + one.fit.because(), "–", "–", "–"});
+      continue;
+    }
+    for (const SurfaceParameter& p : one.fit->parameters) {
+      rows.push_back({condition_name(one), std::to_string(one.fit->trials), p.name, number(p.mean),
+                      fmt::format("{} to {}", number(p.low), number(p.high)),
+                      p.at_edge ? "cut off by its range" : ""});
+    }
+  }
+  document.table({"participant", "trials", "parameter", "posterior mean", "95 %", ""}, rows,
+                 "Every participant's parameters");
+}
+
+std::string second_of(const ContourPoint& point) {
+  if (point.second.empty()) {
+    return "none in the range";
+  }
+  std::vector<std::string> values;
+  for (const double each : point.second) {
+    values.push_back(number(each));
+  }
+  if (values.size() > 1) {
+    return fmt::format("{}", fmt::join(values, " and "));
+  }
+  const auto end = [](double value) { return value == value ? number(value) : "open"; };
+  return fmt::format("{} [{}, {}]", values.front(), end(point.low), end(point.high));
+}
+
+/// @param unit  of both variables; empty if the definition states none
+void add_points(Document& document, const std::vector<SurfaceCondition>& surfaces,
+                const std::string& unit) {
+  const std::string in_unit = unit.empty() ? "" : kNoBreak + unit;
+  for (const SurfaceCondition& one : surfaces) {
+    if (one.fit && !one.no_contour.empty()) {
+      document.paragraph(fmt::format("{}: there is no threshold contour, because {}.",
+                                     condition_name(one), one.no_contour));
+    }
+  }
+  Rows rows;
+  std::vector<std::string> heading;
+  for (const SurfaceCondition& one : surfaces) {
+    if (!one.fit || !one.no_contour.empty()) {
+      continue;
+    }
+    for (const ContourPoint& point : one.points) {
+      rows.push_back({condition_name(one),
+                      fmt::format("{} = {:.4g}{}", one.variables[0], point.first, in_unit),
+                      one.variables[1], second_of(point)});
+    }
+  }
+  if (!rows.empty()) {
+    document.table({"participant", "at", "threshold of",
+                    unit.empty() ? "level [95 %]" : fmt::format("level [95 %] ({})", unit)},
+                   rows, "The threshold over both variables");
+  }
+}
+
+}  // namespace
+
+void add_surfaces(Document& document, const TrialsResult& result,
+                  const std::vector<Drawing>& drawings) {
+  std::size_t shown = 0, others = 0;
+  for (const Drawing& drawing : drawings) {
+    if (drawing.figure.name.starts_with("surface-")) {
+      shown < kMostShown ? document.picture(drawing) : static_cast<void>(++others);
+      shown += shown < kMostShown ? 1 : 0;
+    }
+  }
+  if (others > 0) {
+    document.paragraph(fmt::format("{} of other functions beside this report (surface-*.svg).",
+                                   counted(others, "picture")));
+  }
+  add_parameters(document, result.surfaces);
+  add_points(document, result.surfaces, result.plan.function.axis.unit);
+  document.paragraph(fmt::format(
+      "The definition's own formula is fitted over all its variables: the posterior of its "
+      "parameters from every answer, with the definition's priors, between the lowest and the "
+      "highest value that it lists. Intervals are the central 95 % of the posterior. The threshold "
+      "is where the probability of the answer 1 is {:g} %; its interval is that of the second "
+      "variable at one value of the first. \"Open\" is an end beyond the range of the second "
+      "variable. Conditions are not tested against each other here.",
+      100.0 * (result.surfaces.empty() ? 0.5 : result.surfaces.front().share)));
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,212 @@
+#include "analysis/psychophysics/report/trials_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "analysis/psychophysics/report/trials_figures.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/statistics/design/wording.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+void add_design(Document& document, const TrialsResult& result) {
+  add_section(document, result, "Participants and trials");
+  Rows rows;
+  std::vector<std::string> heading{
+      "participant",     "group",    "sessions",       "trials",
+      "planned at most", "practice", "aborted passes", "median reaction time"};
+  for (const ParticipantTrials& p : result.participants) {
+    rows.push_back({p.participant, p.group.empty() ? "–" : p.group, std::to_string(p.sessions),
+                    std::to_string(p.counted), p.planned > 0 ? std::to_string(p.planned) : "–",
+                    std::to_string(p.practice), std::to_string(p.aborted),
+                    quantity(p.reaction_time, 1.0, "s")});
+  }
+  if (result.reaching) {  // nothing is asked there
+    heading.pop_back();
+    for (auto& row : rows) {
+      row.pop_back();
+    }
+  }
+  document.table(heading, rows);
+  if (!result.plan.by.empty()) {
+    document.paragraph(
+        fmt::format("Conditions are the levels of {}.", fmt::join(result.plan.by, ", ")));
+  }
+  document.paragraph(
+      "Practice and aborted passes are in trials.csv (column counted: 0) and in nothing else.");
+  if (result.participants.size() > kMostDrawn) {
+    document.paragraph(fmt::format(
+        "Pictures of single participants are drawn of the first {}; estimates.csv and trials.csv "
+        "have all.",
+        kMostDrawn));
+  }
+  for (const std::string& remark : result.remarks) {
+    document.paragraph(remark);
+  }
+}
+
+/// Scores of questionnaires over participants.
+void add_pages(Document& document, const TrialsResult& result) {
+  if (result.page_scores.empty()) {
+    return;
+  }
+  add_section(document, result, "Questionnaires");
+  Rows rows;
+  for (const PageSummary& s : summaries_of(result.page_scores)) {
+    rows.push_back({s.page, s.when, s.score, s.group.empty() ? "–" : s.group,
+                    std::to_string(s.count), fmt::format("{:.4g}", s.mean),
+                    s.count > 1 ? fmt::format("{:.3g}", s.deviation) : "–"});
+  }
+  document.table({"page", "when", "score", "group", "participants", "mean", "standard deviation"},
+                 rows);
+  document.paragraph(
+      "Scores of the NASA-TLX are from 0 to 100: raw is the mean of the six ratings, weighted "
+      "weighs them by the 15 pairs. The laterality quotient of the Edinburgh inventory is from "
+      "-100 (left) to 100 (right).");
+}
+
+std::string function_words(const TrialsPlan& plan) {
+  return fmt::format(
+      "The function is {}, over {}{}; guess rate {}; lapse rate {}. The threshold is the level at "
+      "which, lapses aside, the share of answers 1 is {}.",
+      plan.function_name,
+      plan.function.axis.x_unit().empty() ? "the level" : plan.function.axis.x_unit(),
+      plan.function.axis.origin != 0.0
+          ? fmt::format(" of the level less {}", plan.function.axis.origin)
+          : "",
+      plan.guess_free       ? "free"
+      : plan.guess_is_lapse ? "as the lapse rate"
+                            : fmt::format("{:g}", plan.function.guess),
+      plan.lapse.low == plan.lapse.high ? fmt::format("{:g}", plan.lapse.low)
+                                        : fmt::format("free up to {:g}", plan.lapse.high),
+      percent(plan.threshold_at));
+}
+
+/// Origin of the intervals of functions.
+std::string interval_words(const TrialsResult& result) {
+  const auto adaptive = [](const FunctionFit& fit) { return fit.adaptive; };
+  std::string words;
+  if (std::any_of(result.fits.begin(), result.fits.end(), adaptive)) {
+    words +=
+        "Estimates of functions of adaptive trials are medians of the posterior of threshold, "
+        "width and lapse rate, their intervals its central 95 %: it does not depend on how levels "
+        "were chosen. The prior is flat in the threshold from s / 2 below to s / 2 above the range "
+        "s of what could be presented and in the guess rate, Beta(1, 10) in the lapse rate, and "
+        "1 / (w + s / 10) in the width w. A side of an interval is open if the prior ends it.";
+  }
+  if (!std::all_of(result.fits.begin(), result.fits.end(), adaptive)) {
+    words += fmt::format(
+        "{}Functions of listed levels are fitted by maximum likelihood. Intervals of threshold, "
+        "width and Weber fraction at listed levels are those of the "
+        "profile likelihood (Venzon and Moolgavkar 1988), those of slope, lapse rate and band "
+        "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
+        "2001). If answers scatter more than chance explains (p below 0.05), the intervals are as "
+        "much longer as a quasi-likelihood makes them.",
+        words.empty() ? "" : " ", result.plan.resamples);
+  }
+  return words;
+}
+
+void add_methods(Document& document, const TrialsResult& result) {
+  document.heading("Methods");
+  const TrialsPlan& plan = result.plan;
+  if (plan.functions && (result.surfaces.empty() || !result.series.empty())) {
+    document.paragraph(function_words(plan));
+    document.paragraph(interval_words(result));
+    document.paragraph(
+        "The Bayesian fit is beta-binomial on a grid (Schütt et al. 2016), so that its intervals "
+        "are wider where answers scatter more than chance; its estimates are posterior means.");
+  }
+  if (plan.kind == AnalysisKind::kDetection) {
+    document.paragraph(
+        "d' and criterion are those of equal variances, from counts to which 1/2 was added "
+        "(log-linear correction, Hautus 1995). Signal is in the trials in which \"yes\" is right; "
+        "if "
+        "the definition does not say what is right, in those with a level above 0 and no probe.");
+  } else if (plan.kind == AnalysisKind::kMagnitude) {
+    document.paragraph(
+        "A participant's repeated estimates at a level are put together by their geometric mean; "
+        "the exponent is the least-squares slope of log estimate over log level. Moduli are "
+        "equalised before participants are averaged (Lane, Catania and Stevens 1961).");
+  }
+  if (plan.kind == AnalysisKind::kAdjustment) {
+    document.paragraph(
+        "A setting is the level at which an adjustment was left; those of a track are averaged, "
+        "and the tracks of a participant under a condition again. Settings from starts above and "
+        "below count alike, and the difference of the two sides is no part of the interval.");
+  }
+  if (plan.kind == AnalysisKind::kReaching) {
+    add_reaching_methods(document, plan.reaching);
+    if (!result.quantities.empty()) {
+      document.paragraph(fmt::format(
+          "Conditions are compared in one value of each participant under each condition, the mean "
+          "over its reaches without a probe in {} of each block; force compensation is that of "
+          "reaches in a channel. p values of a family are adjusted together by Holm's method.",
+          plan.reaching.cycles == ReachCycles::kAll     ? "all cycles"
+          : plan.reaching.cycles == ReachCycles::kFirst ? "the first cycle"
+                                                        : "the last cycle"));
+    }
+    document.heading("Definition");
+    document.source(result.definition_name, result.definition);
+    return;
+  }
+  document.paragraph(
+      "Tests between conditions take one value of each participant for each condition; trials are "
+      "never counted as independent over participants. p values of a family are adjusted together "
+      "by Holm's method.");
+  document.heading("Definition");
+  document.source(result.definition_name, result.definition);
+}
+
+}  // namespace
+
+void add_section(Document& document, const TrialsResult& result, const char* text) {
+  document.heading(result.simulated() ? std::string(text) + " (simulated)" : text);
+}
+
+void add_pictures(Document& document, const std::vector<Drawing>& drawings, const char* begin,
+                  std::size_t most) {
+  std::size_t shown = 0, others = 0;
+  for (const Drawing& drawing : drawings) {
+    if (!drawing.figure.name.starts_with(begin)) {
+      continue;
+    }
+    if (shown < most) {
+      document.picture(drawing);
+      ++shown;
+    } else {
+      ++others;
+    }
+  }
+  if (others > 0) {
+    document.paragraph(fmt::format("{} of the other participants {} beside this report ({}*.svg).",
+                                   counted(others, "picture"), others == 1 ? "lies" : "lie",
+                                   begin));
+  }
+}
+
+Document trials_report(const TrialsResult& result, const std::vector<Drawing>& drawings) {
+  Document document;
+  document.title = result.title;
+  document.simulated = result.simulated();
+  document.subtitle = fmt::format("{} in {}.", counted(result.participants.size(), "participant"),
+                                  counted(result.data.sessions.size(), "session"));
+  if (result.simulated()) {
+    document.alarm(kSimulatedTrials);
+  }
+  document.points(summary_lines(result));
+  add_design(document, result);
+  add_pages(document, result);
+  add_results(document, result, drawings);
+  add_comparisons(document, result);
+  add_trial_quality(document, result, drawings);
+  add_methods(document, result);
+  return document;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "analysis/psychophysics/study/trials_result.h"
+
+namespace haptrial::analysis::trials {
+
+/// report.html, report.md, results.json, trials.csv, estimates.csv, reaches.csv of a study of
+/// reaches and figures (SVG and PNG) into a folder, all or none. @throws InputError, RunError as
+/// Staging and draw_figures() do.
+void write_trials(const TrialsResult& result, const std::filesystem::path& folder, int paper = 0);
+
+}  // namespace haptrial::analysis::trials

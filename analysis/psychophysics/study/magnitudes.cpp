@@ -1,0 +1,59 @@
+#include "analysis/psychophysics/study/magnitudes.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/psychophysics/fit/series.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+/// The number that was given; NaN: none.
+double given(const StudyTrial& trial, const TrialsPlan& plan) {
+  const GivenAnswer* answer = answer_to(trial, plan.question);
+  return answer == nullptr ? kNotKnown : answer->value;
+}
+
+std::size_t number_of(std::vector<std::string>& names, const std::string& name) {
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at != names.end()) {
+    return static_cast<std::size_t>(at - names.begin());
+  }
+  names.push_back(name);
+  return names.size() - 1;
+}
+
+}  // namespace
+
+std::vector<MagnitudeCondition> magnitudes(const TrialsData& data, const TrialsPlan& plan) {
+  std::map<std::vector<std::string>, MagnitudeCondition> all;
+  for (const StudyTrial& trial : data.trials) {
+    const double level = level_of(trial, plan);
+    const double value = given(trial, plan);
+    if (!trial.counts() || !trial.probe.empty() || !std::isfinite(level) || !std::isfinite(value)) {
+      continue;
+    }
+    MagnitudeCondition& own = all[factors_of(data, trial, plan)];
+    if (level > 0.0 && value > 0.0) {
+      own.trials.push_back(
+          {number_of(own.participants, data.session_of(trial).participant), level, value});
+    } else {
+      ++own.not_positive;
+    }
+  }
+  std::vector<MagnitudeCondition> result;
+  for (auto& [levels, own] : all) {
+    own.levels = levels;
+    own.condition = fmt::format("{}", fmt::join(levels, ", "));
+    own.law = own.trials.empty() ? Defined<PowerLaw>(Undefined{"no answer is above 0"})
+                                 : power_law(own.trials);
+    result.push_back(std::move(own));
+  }
+  return result;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,158 @@
+#include "analysis/psychophysics/study/population.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "analysis/statistics/base/distributions.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+constexpr std::size_t kFewest = 5;  // participants
+
+/// Answers at one level of one participant under one condition.
+struct Row {
+  double x{0.0};
+  int yes{0}, trials{0};
+  std::size_t participant{0};
+  double side{0.0};  // -1/2, +1/2: condition
+};
+
+std::vector<std::string> conditions_of(const std::vector<AnsweredSeries>& series) {
+  std::set<std::string> names;
+  for (const AnsweredSeries& each : series) {
+    names.insert(each.condition());
+  }
+  return {names.begin(), names.end()};
+}
+
+std::vector<Row> rows_of(const std::vector<AnsweredSeries>& series,
+                         const std::vector<std::string>& conditions,
+                         const psychometric::Axis& axis) {
+  std::vector<Row> rows;
+  std::vector<std::string> people;
+  for (const AnsweredSeries& each : series) {
+    if (people.empty() || people.back() != each.participant) {
+      people.push_back(each.participant);
+    }
+    const double side = conditions.size() < 2               ? 0.0
+                        : each.condition() == conditions[0] ? -0.5
+                                                            : 0.5;
+    for (const TrialBlock& block : blocks_of(each)) {
+      const double x = axis.at(block.level);
+      if (std::isfinite(x)) {
+        rows.push_back({x, block.correct, block.total, people.size() - 1, side});
+      }
+    }
+  }
+  return rows;
+}
+
+void standardise(std::vector<Row>& rows, PopulationModel& made) {
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (const Row& row : rows) {
+    sum += row.trials * row.x;
+    count += row.trials;
+  }
+  made.centre = sum / count;
+  for (const Row& row : rows) {
+    squares += row.trials * (row.x - made.centre) * (row.x - made.centre);
+  }
+  made.scale = std::sqrt(squares / count);
+  for (Row& row : rows) {
+    row.x = (row.x - made.centre) / made.scale;
+  }
+}
+
+BinomialData data_of(const std::vector<Row>& rows, bool two) {
+  BinomialData data;
+  data.predictors.resize(static_cast<Eigen::Index>(rows.size()), two ? 3 : 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    data.yes.push_back(rows[i].yes);
+    data.trials.push_back(rows[i].trials);
+    data.predictors(at, 0) = rows[i].x;
+    if (two) {
+      data.predictors(at, 1) = rows[i].side;
+      data.predictors(at, 2) = rows[i].side * rows[i].x;
+    }
+  }
+  return data;
+}
+
+/// Crossing of a condition, brought back to the axis.
+Defined<EqualityPoint> crossing(const PopulationModel& made, double side) {
+  const auto n = static_cast<Eigen::Index>(made.model.fixed.coefficients.size());
+  Eigen::VectorXd intercept = Eigen::VectorXd::Zero(n), slope = Eigen::VectorXd::Zero(n);
+  intercept[0] = slope[1] = 1.0;
+  if (n > 2) {
+    intercept[2] = slope[3] = side;
+  }
+  const auto z = equality_point(made.model.fixed, BinomialLink::kProbit, intercept, slope);
+  if (!z) {
+    return z;
+  }
+  EqualityPoint x = *z;
+  for (double* place : {&x.point, &x.point_low, &x.point_high}) {
+    *place = made.centre + made.scale * *place;
+  }
+  for (double* length : {&x.point_error, &x.jnd, &x.jnd_error, &x.jnd_low, &x.jnd_high}) {
+    *length *= made.scale;
+  }
+  return x;
+}
+
+}  // namespace
+
+Defined<PopulationModel> population_model(const std::vector<AnsweredSeries>& series,
+                                          const TrialsPlan& plan) {
+  if (!plan.guess_free && plan.function.guess > 0.0) {
+    return Undefined{
+        "answers of a forced choice begin at the guess rate, which a probit line does "
+        "not"};
+  }
+  const std::vector<std::string> conditions = conditions_of(series);
+  if (conditions.empty() || conditions.size() > 2) {
+    return Undefined{"it is for one condition or two"};
+  }
+  std::vector<Row> rows = rows_of(series, conditions, plan.function.axis);
+  const std::size_t people = rows.empty() ? 0 : rows.back().participant + 1;
+  if (people < kFewest) {
+    return Undefined{"there are fewer than five participants"};
+  }
+  PopulationModel made;
+  standardise(rows, made);
+  if (!(made.scale > 0.0)) {
+    return Undefined{"there is one level"};
+  }
+  const bool two = conditions.size() == 2;
+  std::vector<std::size_t> participants, random{0, 1};
+  for (const Row& row : rows) {
+    participants.push_back(row.participant);
+  }
+  if (two) {
+    random.push_back(2);
+  }
+  const auto fit =
+      binomial_mixed_model(data_of(rows, two), BinomialLink::kProbit, participants, random);
+  if (!fit) {
+    return Undefined{fit.because()};
+  }
+  made.model = *fit;
+  made.names = {"intercept", "level"};
+  if (two) {
+    made.names.insert(made.names.end(),
+                      {conditions[1] + " less " + conditions[0], "level by condition"});
+    const BinomialCoefficient& c = made.model.fixed.coefficients[2];
+    made.condition_t = c.z;
+    made.condition_df = static_cast<int>(people) - 1;
+    made.condition_p = 2.0 * t_upper_tail(std::abs(c.z), made.condition_df);
+  }
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    made.points.push_back({conditions[i], crossing(made, i == 0 ? -0.5 : 0.5)});
+  }
+  return made;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/psychometric/models/binomial_mixed.h"
+#include "analysis/psychophysics/fit/series.h"
+
+namespace haptrial::analysis::trials {
+
+/// Point at which the population's function crosses 1/2 under a condition.
+struct PopulationPoint {
+  std::string condition;
+  Defined<EqualityPoint> point{Undefined{"nothing was fitted"}};  // on the axis
+};
+
+/// Probit mixed model over participants: P(answer 1) = Phi(a + b z + conditions + z conditions), z
+/// the standardised axis; intercept, slope and condition vary between participants, with all
+/// covariances.
+struct PopulationModel {
+  std::vector<std::string> names;  // of the coefficients
+  BinomialMixedModel model;
+  double centre{0.0}, scale{1.0};       // z = (x - centre) / scale
+  std::vector<PopulationPoint> points;  // a condition each
+  /// Whether the second condition differs from the first: Wald's test of its coefficient against
+  /// Student's t with participants - 1 degrees of freedom, as participants are what varies.
+  /// Undefined unless there are two conditions.
+  Defined<double> condition_p{Undefined{"there is one condition"}};
+  double condition_t{0.0};
+  int condition_df{0};
+};
+
+/// Undefined with a guess rate above 0, which a probit line cannot have, with more than two
+/// conditions, with fewer than five participants, and as binomial_mixed_model().
+Defined<PopulationModel> population_model(const std::vector<AnsweredSeries>& series,
+                                          const TrialsPlan& plan);
+
+}  // namespace haptrial::analysis::trials

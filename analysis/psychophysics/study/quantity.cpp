@@ -1,0 +1,91 @@
+#include "analysis/psychophysics/study/quantity.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace haptrial::analysis::trials {
+
+MeanInterval within_range(MeanInterval mean, ValueRange range) {
+  const double half = mean.high - mean.mean;
+  if (range == ValueRange::kPositive && mean.mean > 0.0) {
+    const double factor = std::exp(half / mean.mean);
+    mean.low = mean.mean / factor;
+    mean.high = mean.mean * factor;
+  }
+  if (range == ValueRange::kShare && mean.mean > 0.0 && mean.mean < 1.0) {
+    const double odds = mean.mean / (1.0 - mean.mean);
+    const double factor = std::exp(half / (mean.mean * (1.0 - mean.mean)));
+    mean.low = odds / (odds + factor);
+    mean.high = odds / (odds + 1.0 / factor);
+  }
+  return mean;
+}
+
+namespace {
+
+Undefined left_out(const std::vector<std::string>& open, std::size_t others) {
+  return {fmt::format("{} of {} values lie beyond what was presented ({})", open.size(),
+                      open.size() + others, fmt::join(open, ", "))};
+}
+
+}  // namespace
+
+Quantity quantity(std::string name, std::string title, std::string unit,
+                  const std::vector<QuantityValue>& values, const TrialsPlan& plan,
+                  ValueRange range) {
+  Quantity result;
+  result.name = std::move(name);
+  result.title = std::move(title);
+  result.unit = std::move(unit);
+  const bool one = plan.by.empty();
+  std::vector<Observation> observations;
+  std::map<std::string, std::vector<std::string>> open;  // participants by condition
+  for (const QuantityValue& each : values) {
+    if (each.open) {
+      open[one ? "all" : fmt::format("{}", fmt::join(each.levels, ", "))].push_back(
+          each.participant);
+      if (std::ranges::find(result.open, each.participant) == result.open.end()) {
+        result.open.push_back(each.participant);
+      }
+    } else if (std::isfinite(each.value)) {
+      observations.push_back(
+          {each.participant, one ? std::vector<std::string>{"all"} : each.levels, each.value});
+    }
+  }
+  if (observations.empty()) {
+    return result;
+  }
+  result.table = design_table(observations, one ? std::vector<std::string>{"condition"} : plan.by);
+  for (std::size_t cell = 0; cell < result.table.cells.size(); ++cell) {
+    std::vector<double> means;
+    for (const auto& row : result.table.means) {
+      if (row[cell]) {
+        means.push_back(*row[cell]);
+      }
+    }
+    const auto beyond = open.find(result.table.names[cell]);
+    Defined<MeanInterval> mean = mean_interval(means);
+    if (beyond != open.end()) {
+      mean = left_out(beyond->second, means.size());
+    } else if (mean) {
+      mean = within_range(*mean, range);
+    }
+    result.means.push_back(std::move(mean));
+  }
+  result.compared = result.table.cells.size() > 1;
+  if (result.compared) {
+    Resampling resampling;
+    resampling.seed = plan.seed;
+    resampling.stream = "trials " + result.name;
+    resampling.count = plan.permutations;
+    result.tests = design_tests(result.table, plan.plan, resampling);
+  }
+  return result;
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/psychophysics/fit/trials_plan.h"
+#include "analysis/statistics/base/descriptive.h"
+#include "analysis/statistics/design/design_tests.h"
+
+namespace haptrial::analysis::trials {
+
+/// One number of a participant under a condition.
+struct QuantityValue {
+  std::string participant;
+  std::vector<std::string> levels;  // of TrialsPlan::by
+  double value{0.0};                // finite
+  bool open{false};  // the answers do not tell how far it lies beyond what was presented
+};
+
+/// A quantity over participants: means of the conditions, and tests between them. A participant is
+/// one value under a condition, however many trials it comes from.
+struct Quantity {
+  std::string name;   // as in results.json: "threshold"
+  std::string title;  // "threshold"
+  std::string unit;   // of the values; empty: a pure number
+  DesignTable table;
+  std::vector<Defined<MeanInterval>> means;  // (cells) over participants; none if a value is open
+  std::vector<std::string> open;             // participants with open values, who are left out
+  DesignTests tests;
+  bool compared{false};  // there are at least two conditions
+  bool headline{true};   // it stands on top of a report
+};
+
+/// The range that holds every value of a quantity.
+enum class ValueRange { kAny, kPositive, kShare };
+
+/// A mean whose interval stays where values can lie: the delta method on logarithms of positive
+/// values, on log odds of shares. A mean that is not inside its range stays as it is.
+MeanInterval within_range(MeanInterval mean, ValueRange range);
+
+/// Open values take no part, and their condition has no mean: that of the others is too near to
+/// what was presented.
+/// @param plan  its tests are of the conditions; those of names without values are not defined
+/// @throws InputError for a planned test that compares trials with themselves, or a name that
+/// stands for several conditions.
+Quantity quantity(std::string name, std::string title, std::string unit,
+                  const std::vector<QuantityValue>& values, const TrialsPlan& plan,
+                  ValueRange range = ValueRange::kAny);
+
+}  // namespace haptrial::analysis::trials

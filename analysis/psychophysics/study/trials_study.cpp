@@ -1,0 +1,326 @@
+#include "analysis/psychophysics/study/trials_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+std::vector<ParticipantTrials> participants_of(const TrialsData& data, const TrialsPlan& plan) {
+  std::map<std::string, ParticipantTrials> people;
+  std::map<std::string, std::vector<double>> times;
+  for (const StudySession& session : data.sessions) {
+    ParticipantTrials& own = people[session.participant];
+    own.participant = session.participant;
+    own.group = session.group;
+    ++own.sessions;
+    own.planned += session.planned;
+  }
+  for (const StudyTrial& trial : data.trials) {
+    ParticipantTrials& own = people[data.session_of(trial).participant];
+    if (!trial.completed || trial.again) {
+      ++own.aborted;
+    } else if (trial.practice) {
+      ++own.practice;
+    } else {
+      ++own.counted;
+      std::set<std::string> limited;
+      for (const StageTime& stage : trial.stages) {
+        if (stage.at_limit) {
+          limited.insert(stage.stage);
+        }
+      }
+      for (const std::string& stage : limited) {
+        own.at_limit[stage] += 1.0;
+      }
+      const GivenAnswer* answer = answer_to(trial, plan.question);
+      if (answer != nullptr && answer->reaction_time == answer->reaction_time) {
+        times[own.participant].push_back(answer->reaction_time);
+      }
+    }
+  }
+  std::vector<ParticipantTrials> all;
+  for (auto& [name, own] : people) {
+    for (auto& [stage, trials] : own.at_limit) {
+      trials /= static_cast<double>(own.counted);
+    }
+    if (!times[name].empty()) {
+      own.reaction_time = quantile(times[name], 0.5);
+    }
+    all.push_back(std::move(own));
+  }
+  return all;
+}
+
+template <class Value>
+std::vector<QuantityValue> values_of(const std::vector<FunctionFit>& fits, Value&& value) {
+  std::vector<QuantityValue> values;
+  for (const FunctionFit& fit : fits) {
+    if (fit.stated) {
+      values.push_back({fit.participant, fit.levels, value(*fit.stated), fit.stated->open()});
+    }
+  }
+  return values;
+}
+
+/// A track's range is that of the series if it set the level that counts.
+void widen(AnsweredSeries& series, const TrackEstimate& track, const TrialsPlan& plan) {
+  if (!track.range || (!plan.level.empty() && plan.level != track.variable)) {
+    return;
+  }
+  if (!series.range) {
+    series.range = track.range;
+  }
+  series.range->low = std::min(series.range->low, track.range->low);
+  series.range->high = std::max(series.range->high, track.range->high);
+}
+
+/// Series with a track whose procedure chose levels by the answers.
+void mark_adaptive(TrialsResult& result) {
+  std::map<std::pair<std::string, std::string>, const TrackEstimate*> adaptive;
+  for (const TrackEstimate& track : result.tracks) {
+    if (track.adaptive) {
+      adaptive[{track.participant, track.track}] = &track;
+    }
+  }
+  for (AnsweredSeries& series : result.series) {
+    for (const LevelTrial& trial : series.trials) {
+      if (const auto at = adaptive.find({series.participant, trial.track}); at != adaptive.end()) {
+        series.adaptive = true;
+        widen(series, *at->second, result.plan);
+      }
+    }
+  }
+}
+
+void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int threads) {
+  const TrialsPlan& plan = result.plan;
+  result.series = series_of(result.data, plan);
+  mark_adaptive(result);
+  if (result.series.empty() && !result.surfaces.empty()) {
+    return;
+  }
+  result.fits.resize(result.series.size());
+  in_groups(result.series.size(), 1, threads, [&] {
+    return
+        [&](std::size_t i, std::size_t) { result.fits[i] = fit_series(result.series[i], plan, 1); };
+  });
+  const std::string unit = plan.function.axis.x_unit();
+  result.quantities.push_back(
+      quantity("threshold", "threshold", unit,
+               values_of(result.fits, [](const FunctionReadings& r) { return r.x.value; }), plan));
+  result.quantities.push_back(quantity(
+      "log_width", "logarithm of the width", "",
+      values_of(result.fits, [](const FunctionReadings& r) { return std::log(r.width.value); }),
+      plan));
+  if (plan.reference) {
+    result.quantities.push_back(
+        quantity("weber_fraction", "Weber fraction", "",
+                 values_of(result.fits, [](const FunctionReadings& r) { return r.weber.value; }),
+                 plan, ValueRange::kPositive));
+    result.quantities.back().compared = false;  // it says again what the threshold says
+  }
+  if (plan.serial) {
+    result.serial = serial_effects(result.data, result.series, result.fits, result.tracks, plan,
+                                   procedure_of, threads);
+    result.drift = against_zero(drifts(result.serial));
+    result.repetition = against_zero(repetitions(result.serial));
+  }
+  if (plan.population) {
+    result.population = population_model(result.series, plan);
+  }
+  if (plan.cues) {
+    result.cues = cue_study(result.data, result.series, result.fits, plan);
+  }
+}
+
+void add_detection(TrialsResult& result) {
+  result.detected = detected(result.data, result.plan);
+  std::vector<QuantityValue> d_prime, criterion, area;
+  for (const DetectedCondition& one : result.detected) {
+    if (one.detection) {
+      d_prime.push_back({one.participant, one.levels, one.detection->d_prime});
+      criterion.push_back({one.participant, one.levels, one.detection->criterion});
+    }
+    if (one.roc) {
+      area.push_back({one.participant, one.levels, one.roc->area});
+    }
+  }
+  const std::size_t first = result.quantities.size();
+  const bool chosen = std::ranges::any_of(result.tracks, &TrackEstimate::adaptive);
+  const std::string at = chosen ? " at the levels that the procedure chose" : "";
+  const auto add = [&](const char* name, const std::string& title, const auto& values,
+                       ValueRange range = ValueRange::kAny) {
+    result.quantities.push_back(quantity(name, title + at, "", values, result.plan, range));
+  };
+  add("d_prime", "sensitivity d'", d_prime);
+  add("criterion", "criterion c", criterion);
+  if (!area.empty()) {
+    add("roc_area", "area under the ROC curve of ratings", area, ValueRange::kShare);
+  }
+  for (std::size_t i = first; i < result.quantities.size(); ++i) {
+    result.quantities[i].headline = !chosen;  // another grid of levels would change them
+  }
+}
+
+void add_identification(TrialsResult& result) {
+  result.identified = identified(result.data, result.plan);
+  std::vector<QuantityValue> share, d_prime, area;
+  for (const IdentifiedCondition& one : result.identified) {
+    share.push_back({one.participant, one.levels, one.share});
+    if (one.d_prime) {
+      d_prime.push_back({one.participant, one.levels, *one.d_prime});
+    }
+    if (one.sureness) {
+      area.push_back({one.participant, one.levels, one.sureness->area});
+    }
+  }
+  result.quantities.push_back(quantity("share_right", "share of right answers", "", share,
+                                       result.plan, ValueRange::kShare));
+  result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
+  if (!area.empty()) {
+    result.quantities.push_back(quantity("rating_area",
+                                         "area under the ROC curve of ratings, right against wrong",
+                                         "", area, result.plan, ValueRange::kShare));
+  }
+}
+
+void add_magnitudes(TrialsResult& result) {
+  result.magnitudes = magnitudes(result.data, result.plan);
+  std::vector<QuantityValue> exponents;
+  for (const MagnitudeCondition& one : result.magnitudes) {
+    for (std::size_t i = 0; one.law && i < one.law->participants.size(); ++i) {
+      exponents.push_back(
+          {one.participants[one.law->participants[i]], one.levels, one.law->exponents[i]});
+    }
+  }
+  result.quantities.push_back(quantity("exponent", "exponent", "", exponents, result.plan));
+}
+
+/// A participant's setting under a condition: the mean of their tracks' own estimates.
+void add_settings(TrialsResult& result) {
+  std::map<std::pair<std::string, std::vector<std::string>>, std::vector<double>> settings;
+  for (const TrackEstimate& track : result.tracks) {
+    if (!track.estimates.empty() && !track.steps.empty()) {
+      const StudyTrial& first = result.data.trials[track.steps.front().trial];
+      settings[{track.participant, factors_of(result.data, first, result.plan)}].push_back(
+          track.estimates.front().value);
+    }
+  }
+  std::vector<QuantityValue> values;
+  for (const auto& [of, each] : settings) {
+    values.push_back(
+        {of.first, of.second,
+         std::accumulate(each.begin(), each.end(), 0.0) / static_cast<double>(each.size())});
+  }
+  result.quantities.push_back(
+      quantity("setting", "setting", result.plan.function.axis.unit, values, result.plan));
+}
+
+void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {
+  for (const auto& effect : q.tests.effects) {
+    if (effect) {
+      tests.push_back({q.title + ": " + effect->factor, effect->p});
+    }
+  }
+  if (q.tests.ranks) {
+    tests.push_back({q.title + ": on ranks", q.tests.ranks->p});
+  }
+  const auto add_family = [&](const TestFamily& family) {
+    const auto named = named_tests(family, fmt::format("{}: {} ", q.title, family.name));
+    tests.insert(tests.end(), named.begin(), named.end());
+  };
+  add_family(q.tests.planned);
+  for (const TestFamily& family : q.tests.families) {
+    add_family(family);
+  }
+}
+
+void add_tests(const CueStudy& cues, std::vector<NamedTest>& tests) {
+  for (const CueLevel& level : cues.levels) {
+    const std::string at = level.level.empty() ? std::string() : " at " + level.level;
+    for (const auto& [name, of] : {std::pair("weight, observed and predicted", &level.weight),
+                                   {"standard deviation, observed and predicted", &level.log_sd},
+                                   {"both cues and the better one", &level.beats_best}}) {
+      if (of->test) {
+        tests.push_back({fmt::format("cues{}: {}", at, name), of->test->p});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf& procedure_of,
+                     int threads) {
+  TrialsResult result;
+  result.plan = plan;
+  result.data = std::move(data);
+  if (std::none_of(result.data.trials.begin(), result.data.trials.end(),
+                   [](const StudyTrial& trial) { return trial.counts(); })) {
+    throw InputError("no session holds a completed trial of the study, so nothing can be analysed");
+  }
+  result.participants = participants_of(result.data, plan);
+  result.tracks = track_estimates(result.data, procedure_of);
+  if (plan.track_intervals) {
+    add_track_intervals(result.tracks, plan, procedure_of, threads);
+  }
+  if (plan.kind == AnalysisKind::kDetection) {
+    add_detection(result);
+  }
+  if (plan.kind == AnalysisKind::kIdentification) {
+    add_identification(result);
+  }
+  if (plan.level.empty() && (plan.functions || plan.kind == AnalysisKind::kDetection)) {
+    result.surfaces = surface_conditions(result.data, plan.by, plan.threshold_at, procedure_of);
+  }
+  if (plan.functions) {
+    add_functions(result, procedure_of, threads);
+  }
+  if (plan.kind == AnalysisKind::kMagnitude) {
+    add_magnitudes(result);
+  }
+  if (plan.kind == AnalysisKind::kAdjustment) {
+    add_settings(result);
+  }
+  return result;
+}
+
+std::vector<NamedTest> tests_of(const TrialsResult& result) {
+  std::vector<NamedTest> tests;
+  for (const Quantity& q : result.quantities) {
+    if (q.compared) {
+      add_tests(q, tests);
+    }
+  }
+  if (result.cues) {
+    add_tests(*result.cues, tests);
+  }
+  if (result.reaching) {
+    for (const ReachContrast& each : result.reaching->contrasts) {
+      if (each.contrast) {
+        tests.push_back({each.name, each.contrast->test.p});
+      }
+    }
+  }
+  if (result.drift) {
+    tests.push_back({"drift over the trials", result.drift->p});
+  }
+  if (result.repetition) {
+    tests.push_back({"repetition of the answer before", result.repetition->p});
+  }
+  if (result.population && result.population->condition_p) {
+    tests.push_back({"probit mixed model: conditions", *result.population->condition_p});
+  }
+  return tests;
+}
+
+}  // namespace haptrial::analysis::trials

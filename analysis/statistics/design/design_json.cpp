@@ -1,0 +1,94 @@
+#include "analysis/statistics/design/design_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/statistics/design/result_json_internal.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(double value) { return value; }
+
+Json to_json(const RankAnova& r) {
+  return {{"chi_squared", r.chi_squared}, {"df", r.df}, {"p", r.p}, {"exact", r.exact}};
+}
+
+Json to_json(const RankTest& r) {
+  return {{"statistic", r.statistic}, {"p", r.p}, {"exact", r.exact}};
+}
+
+Json to_json(const PermutationTest& t) {
+  return {{"difference", t.difference},
+          {"p", t.p},
+          {"arrangements", t.arrangements},
+          {"exact", t.exact}};
+}
+
+Json to_json(const BootstrapInterval& i) {
+  return {{"estimate", i.estimate}, {"low", i.low}, {"high", i.high}, {"resamples", i.resamples}};
+}
+
+Json to_json(const EffectTest& e);
+
+template <class T>
+Json defined(const Defined<T>& value) {
+  return value ? to_json(*value) : Json{{"not_defined", value.because()}};
+}
+
+Json to_json(const EffectTest& e) {
+  Json json{{"factor", e.factor},       {"test", e.test},         {"f", e.f},
+            {"df_effect", e.df_effect}, {"df_error", e.df_error}, {"p", e.p}};
+  if (e.epsilon) {
+    json["greenhouse_geisser_epsilon"] = *e.epsilon;
+  }
+  json["partial_eta_squared"] = defined(e.size);
+  return json;
+}
+
+Json to_json(const SideTest& t) {
+  return {{"test", text_of(t.sides)},
+          {"tail", t.sides.tail == Tail::kTwoSided ? "two" : "one"},
+          {"participants", {t.count_a, t.count_b}},
+          {"t_test", t.paired ? "paired" : "Welch"},
+          {"t", defined(t.t)},
+          {"p_holm", defined(t.holm)},
+          {t.paired ? "d_z" : "cohens_d", defined(t.size)},
+          {t.paired ? "wilcoxon_signed_rank" : "mann_whitney", defined(t.ranks)},
+          {"ranks_p_holm", defined(t.ranks_holm)},
+          {"permutation", defined(t.permutation)},
+          {"permutation_p_holm", defined(t.permutation_holm)},
+          {"bootstrap_of_difference_95", defined(t.bootstrap)}};
+}
+
+Json to_json(const TestFamily& family) {
+  Json tests = Json::array();
+  for (const SideTest& test : family.tests) {
+    tests.push_back(to_json(test));
+  }
+  return {{"family", family.name}, {"tests", tests}};
+}
+
+}  // namespace
+
+Json to_json(const DesignTests& tests) {
+  Json effects = Json::array();
+  for (const auto& effect : tests.effects) {
+    effects.push_back(defined(effect));
+  }
+  Json families = Json::array();
+  for (const TestFamily& family : tests.families) {
+    families.push_back(to_json(family));
+  }
+  return {{"varied", tests.design},
+          {"effects", effects},
+          {"on_ranks", defined(tests.ranks)},
+          {"planned", to_json(tests.planned).at("tests")},
+          {"families", families},
+          {"left_out", tests.incomplete}};
+}
+
+std::string design_json(const DesignTests& tests) { return to_json(tests).dump(2); }
+
+}  // namespace haptrial::analysis

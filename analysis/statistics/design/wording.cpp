@@ -1,0 +1,175 @@
+#include "analysis/statistics/design/wording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptrial::analysis {
+namespace {
+
+constexpr const char* kApproximate = " (approximate)";
+
+std::string not_defined(const std::string& because) { return "not defined, because " + because; }
+
+// Degrees of freedom are whole but for Welch's test.
+std::string degrees(double df) {
+  return df == std::floor(df) ? fmt::format("{:.0f}", df) : fmt::format("{:.1f}", df);
+}
+
+}  // namespace
+
+std::string number(double value) {
+  const double size = std::abs(value);
+  return size >= 1e3 && size < 1e7 ? fmt::format("{:.0f}", value) : fmt::format("{:#.4g}", value);
+}
+
+std::string number_within(double value, double low, double high) {
+  constexpr double kRounding = 1e-12;
+  const double extent = std::abs(high - low);
+  const bool rounding = std::isfinite(extent) && std::abs(value) < kRounding * extent;
+  return rounding ? "0" : number(value);
+}
+
+std::string p_value(double p) {
+  if (p < 0.001) {
+    return "p < 0.001";
+  }
+  return p < 0.1 ? fmt::format("p = {:#.2g}", p) : fmt::format("p = {:.2f}", p);
+}
+
+std::string mean_with_interval(const Defined<MeanInterval>& interval) {
+  if (!interval) {
+    return not_defined(interval.because());
+  }
+  return fmt::format("{}, 95 % CI {} to {}",
+                     number_within(interval->mean, interval->low, interval->high),
+                     number(interval->low), number(interval->high));
+}
+
+std::string anova_result(const Defined<Anova>& anova) {
+  if (!anova) {
+    return not_defined(anova.because());
+  }
+  return fmt::format("F({}, {}) = {}, {}, η² = {:#.2g}", degrees(anova->df_between),
+                     degrees(anova->df_within), number(anova->f), p_value(anova->p),
+                     anova->eta_squared);
+}
+
+std::string anova_result(const Defined<RepeatedAnova>& anova) {
+  if (!anova) {
+    return not_defined(anova.because());
+  }
+  return fmt::format("F({}, {}) = {}, {}; Greenhouse–Geisser ε = {:.2f}, {}; partial η² = {:#.2g}",
+                     degrees(anova->df_condition), degrees(anova->df_error), number(anova->f),
+                     p_value(anova->p), anova->epsilon, p_value(anova->p_corrected),
+                     anova->partial_eta_squared);
+}
+
+std::string t_result(const Defined<TTest>& test) {
+  if (!test) {
+    return not_defined(test.because());
+  }
+  return fmt::format("t({}) = {:.2f}, {}", degrees(test->df), test->t, p_value(test->p));
+}
+
+std::string rank_result(const Defined<RankAnova>& test) {
+  if (!test) {
+    return not_defined(test.because());
+  }
+  return fmt::format("χ²({}) = {}, {}{}", degrees(test->df), number(test->chi_squared),
+                     p_value(test->p), test->exact ? "" : kApproximate);
+}
+
+std::string ranks_p(const SideTest& test) {
+  return p_result(test.ranks_holm) + (test.ranks && !test.ranks->exact ? kApproximate : "");
+}
+
+std::string effect_result(const EffectTest& effect) {
+  return fmt::format(
+      "F({}, {}) = {}, {} ({}{}){}", degrees(effect.df_effect), degrees(effect.df_error),
+      number(effect.f), p_value(effect.p), effect.test,
+      effect.epsilon ? fmt::format(", Greenhouse–Geisser ε = {:.2f}", *effect.epsilon) : "",
+      effect.size ? fmt::format(", partial η² = {:#.2g}", effect.size->value) : "");
+}
+
+std::string side_result(const SideTest& test) {
+  if (!test.t) {
+    return not_defined(test.t.because());
+  }
+  return fmt::format(
+      "difference {}, 95 % CI {} to {} (two-sided, not adjusted), {}({}) = {:.2f}, {} after Holm's "
+      "adjustment, {}",
+      number(test.t->difference), number(test.t->low), number(test.t->high), name_of_test(test),
+      degrees(test.t->df), test.t->t, p_result(test.holm),
+      test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed");
+}
+
+std::string bootstrap_result(const SideTest& test) {
+  if (!test.bootstrap) {
+    return not_defined(test.bootstrap.because());
+  }
+  if (std::min(test.count_a, test.count_b) < kFewestForBootstrap) {
+    return fmt::format("not given for fewer than {} participants", kFewestForBootstrap);
+  }
+  return fmt::format("{} to {}", number(test.bootstrap->low), number(test.bootstrap->high));
+}
+
+std::string p_result(const Defined<double>& p) {
+  return p ? p_value(*p) : not_defined(p.because());
+}
+
+std::string effect(const Defined<EffectSize>& size) {
+  if (!size) {
+    return not_defined(size.because());
+  }
+  return fmt::format("{:.2f}, {:.0f} % CI {:.2f} to {:.2f}", size->value, 100.0 * size->level,
+                     size->low, size->high);
+}
+
+std::string levene_result(const Defined<Anova>& test) {
+  if (!test) {
+    return not_defined(test.because());
+  }
+  return fmt::format("F({}, {}) = {}, {}", degrees(test->df_between), degrees(test->df_within),
+                     number(test->f), p_value(test->p));
+}
+
+std::string normality_result(const Defined<ShapiroWilk>& test) {
+  return test ? fmt::format("W = {:.3f}, {}", test->w, p_value(test->p))
+              : not_defined(test.because());
+}
+
+std::string sphericity_result(const Defined<RepeatedAnova>& anova) {
+  if (!anova) {
+    return "Mauchly's test of sphericity is " + not_defined(anova.because()) + ".";
+  }
+  const auto& mauchly = anova->sphericity.mauchly;
+  const std::string test = mauchly ? fmt::format("W = {:.3f}, {}", mauchly->w, p_value(mauchly->p))
+                                   : not_defined(mauchly.because());
+  const std::string huynh = anova->p_huynh_feldt ? p_value(*anova->p_huynh_feldt)
+                                                 : not_defined(anova->p_huynh_feldt.because());
+  return fmt::format("Sphericity, Mauchly's test: {}; corrected after Huynh and Feldt: {}.", test,
+                     huynh);
+}
+
+std::string quantity(const Defined<double>& value, double factor, const std::string& unit) {
+  if (!value) {
+    return not_defined(value.because());
+  }
+  return number(*value * factor) + (unit.empty() ? "" : kNoBreak + unit);
+}
+
+std::string capitalized(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') {
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  }
+  return text;
+}
+
+std::string counted(std::size_t count, const std::string& noun) {
+  const char* plural = noun.ends_with("s") ? "es" : "s";
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : plural);
+}
+
+}  // namespace haptrial::analysis

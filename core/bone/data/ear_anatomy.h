@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/bone/data/anatomy.h"
+#include "core/bone/data/shapes.h"
+
+namespace haptrial::bone {
+
+/// Differences from one temporal bone to the next; lengths in millimetres.
+struct EarVariation {
+  double scale{1.0};        // of everything
+  double cells{15.0};       // how far they reach from the antrum
+  double cell_fill{0.85};   // 0 to 1
+  double sinus{0.0};        // forward, towards the ear canal
+  double tegmen{0.0};       // up
+  double nerve{0.0};        // the second genu of the facial nerve, to the back
+  double mastoid_tip{0.0};  // down
+  double canal{4.1};        // radius of the ear canal
+  double bulb{0.0};         // the jugular bulb, up
+  std::uint64_t noise{1};   // seed of cells and unevenness
+};
+EarVariation ear_variation(std::uint64_t seed);
+
+/// A right temporal bone as shapes; millimetres, LPS, in a box from 0 to 49. The course of the
+/// nerves and the sizes are from the texts in docs/algorithms/procedural-bones.md.
+class EarAnatomy {
+ public:
+  static constexpr double kBox = 49.0;
+
+  /// @param least  radius that no nerve or vessel falls below, so that it stays in one piece
+  EarAnatomy(const EarVariation& variation, double least);
+
+  struct Material {
+    Anatomy label{Anatomy::kNothing};
+    double density{0.0};  // 0 to 1
+  };
+  Material at(const Point& p) const;
+
+  const Tube& facial_nerve() const { return facial_; }
+
+ private:
+  struct Part {
+    Anatomy label;
+    Tube worm;
+    double wall;  // bone around it that cells leave alone
+  };
+  void add_nerves(double least);
+  void add_labyrinth(double least);
+  void add_ossicles(double least);
+  void add_vessels(double least);
+
+  double outer_side(const Point& p) const;   // of the skull; below 0 inwards
+  double wall(const Point& p) const;         // its thickness
+  double tegmen(const Point& p) const;       // z of the floor of the middle fossa
+  double behind(const Point& p) const;       // the back of the petrous bone; below 0 behind it
+  double fossa_floor(const Point& p) const;  // z of the floor of the posterior fossa
+  double hull(const Point& p) const;         // the bone without anything cut out
+  double cranium(const Point& p) const;      // the space inside the skull
+  double sinus(const Point& p) const;
+  double ear_canal(const Point& p) const;
+  double middle_ear(const Point& p) const;
+  bool air_cell(const Point& p, double depth, double middle) const;
+  Material jaw(const Point& p) const;
+
+  EarVariation v_;
+  std::vector<Part> parts_;  // the first that holds a place has it
+  Tube facial_;
+  Tube sinus_;
+  Tube tube_;  // of Eustachius
+  Tube internal_canal_;
+  Cells cells_;
+};
+
+}  // namespace haptrial::bone

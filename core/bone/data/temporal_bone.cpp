@@ -1,0 +1,31 @@
+#include "core/bone/data/temporal_bone.h"
+
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/bone/data/ear_anatomy.h"
+#include "core/bone/data/procedural_bone.h"
+
+namespace haptrial::bone {
+
+BoneModel make_temporal_bone(const TemporalBoneOptions& options,
+                             const geometry::WorkReport& report) {
+  if (!(options.spacing >= 0.1e-3 && options.spacing <= 2e-3)) {
+    throw InputError(
+        fmt::format("the spacing is {:.4g} mm; allowed: 0.1 to 2 mm", 1e3 * options.spacing));
+  }
+  const EarVariation variation = ear_variation(options.seed);
+  // A tube whose radius is more than half a voxel's diagonal has no gaps.
+  const double least = 0.9 * 1e3 * options.spacing / variation.scale;
+  const EarAnatomy anatomy(variation, least);
+  const MadeGrid made{Point::Zero(),   Point::Constant(EarAnatomy::kBox),
+                      variation.scale, options.spacing,
+                      options.threads, "temporal bone"};
+  BoneModel model = fill(
+      made, [&](const Point& p) { return anatomy.at(p); }, report);
+  model.source = fmt::format("made by haptrial: right temporal bone, seed {}, {:.4g} mm",
+                             options.seed, 1e3 * options.spacing);
+  return model;
+}
+
+}  // namespace haptrial::bone

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/bone/drill/burr.h"
+#include "core/bone/drill/feel.h"
+#include "core/bone/simulator/cut_plane.h"
+#include "core/bone/simulator/plate.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::bone {
+
+/// The part of a tool behind its burr or its opening, as far as bone feels it and is not cut.
+struct ShaftParameters {
+  double radius{1e-3};    // > 0 [m]
+  double length{0.02};    // from the burr's or the opening's end on > 0 [m]
+  FeelParameters feel{};  // default_feel() of the ball of its volume
+
+  BurrDimensions dimensions() const noexcept { return {BurrForm::kRod, 2.0 * radius, length, 0.0}; }
+};
+/// A shaft with the default feel. @throws std::invalid_argument where a number is not above 0.
+ShaftParameters default_shaft(double radius, double length);
+
+struct BurrTool {
+  BurrParameters burr{};
+  FeelParameters feel{};
+  std::optional<ShaftParameters> shaft{};                         // none: it is not felt
+  double radius() const noexcept { return 0.5 * burr.diameter; }  // [m]
+};
+struct SuctionTool {
+  double radius{1e-3};  // of the tube's opening > 0 [m]
+};
+/// Stimulates nerves (core/bone/nerve) while it has power; bone does not feel it.
+struct ProbeTool {
+  double radius{2.5e-4};  // of its tip > 0 [m]
+};
+struct PlateTool {
+  std::string shape{"straight"};  // or "l", "distractor"
+  int holes{4};                   // of a straight plate
+  PlateParameters contact{};
+};
+/// Takes hold of a piece.
+struct GripTool {
+  double reach{1.5e-3};  // to the bone > 0 [m]
+};
+
+/// One of the tools that a participant can take in hand.
+struct ToolSpec {
+  std::string name;
+  double handle_radius{2.5e-3};  // > 0 [m]
+  double handle_length{0.1};     // > 0 [m]
+  // A cut plane lies in the hand.
+  std::variant<BurrTool, SuctionTool, CutPlane, PlateTool, GripTool, ProbeTool> kind{};
+
+  /// The tool as one kind; null if it is another.
+  template <class Kind>
+  const Kind* as() const noexcept {
+    return std::get_if<Kind>(&kind);
+  }
+};
+
+/// Reads a [tools] table: `in_hand`, the names in their order, and a table for each of them, which
+/// has a `type` ("burr", "suction", "cut_plane", "plate", "grip", "probe") and the keys of its
+/// kind.
+std::vector<ToolSpec> read_tools(Table& table);
+
+/// @throws std::invalid_argument for an unknown shape.
+PlateModel make_plate_model(const std::string& name, const PlateTool& tool);
+
+}  // namespace haptrial::bone

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/normal_spring.h"
+#include "core/contact/renderer.h"
+#include "core/contact/signed_distance.h"
+
+namespace haptrial::contact {
+
+/// A spring from the tool to the nearest point of a closed mesh, when the tool is inside. No
+/// memory: where two sides are equally near, the force jumps, and a thin plate lets the tool
+/// through.
+class PenaltyRenderer final : public Renderer {
+ public:
+  PenaltyRenderer(const geometry::Mesh& mesh, const ContactSurface& surface,
+                  const RendererOptions& options);
+  void start(const Eigen::Vector3d& tool) noexcept override;
+  const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  const Operations& operations() const noexcept override { return operations_; }
+
+ private:
+  SignedDistance distance_;
+  NormalSpring spring_;
+  std::int32_t hint_{-1};
+  Contact contact_;
+  Operations operations_;
+};
+
+/// The cells of a cubic grid around a mesh.
+struct CellGrid {
+  Eigen::Vector3d origin;  // of cell 0, its corner [m]
+  double side;             // of a cell [m]
+  Eigen::Array3i count;
+
+  /// Two cells wider than the mesh's box. @param resolution  cells along the longest side
+  CellGrid(const geometry::Mesh& mesh, int resolution);
+  std::size_t size() const { return static_cast<std::size_t>(count[0]) * count[1] * count[2]; }
+};
+
+/// A grid of voxels, each of which has stored the triangle nearest to its centre; the tool is
+/// pushed along that triangle's normal by its depth below that triangle's plane. Source: Morris
+/// 2006, §7.4.1; McNeely et al. 1999.
+class VoxelRenderer final : public Renderer {
+ public:
+  VoxelRenderer(const geometry::Mesh& mesh, const ContactSurface& surface,
+                const RendererOptions& options);
+  void start(const Eigen::Vector3d& tool) noexcept override;
+  const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  const Operations& operations() const noexcept override { return operations_; }
+
+ private:
+  SignedDistance distance_;
+  CellGrid grid_;
+  std::vector<std::int32_t> nearest_;  // by cell, x fastest
+  NormalSpring spring_;
+  Contact contact_;
+  Operations operations_;
+};
+
+/// Signed distances on a grid, interpolated trilinearly. The force is minus the gradient of
+///
+///     E(x) = k/2 min(d(x), 0)²
+///
+/// and so takes back on a closed path what it gave: E is continuous.
+class DistanceFieldRenderer final : public Renderer {
+ public:
+  DistanceFieldRenderer(const geometry::Mesh& mesh, const ContactSurface& surface,
+                        const RendererOptions& options);
+  void start(const Eigen::Vector3d& tool) noexcept override;
+  const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  const Operations& operations() const noexcept override { return operations_; }
+
+ private:
+  CellGrid grid_;
+  std::vector<double> distance_;  // by corner of cells, x fastest [m]
+  NormalSpring spring_;
+  Contact contact_;
+  Operations operations_;
+};
+
+}  // namespace haptrial::contact

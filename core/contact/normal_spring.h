@@ -1,0 +1,48 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/contact/renderer.h"
+
+namespace haptrial::contact {
+
+/// The share of a surface's damper that acts at a depth [m]: all of it from 1 mm on, so that it
+/// does not strike the hand where the contact begins. Any thread.
+/// Source: Hunt and Crossley 1975, Journal of Applied Mechanics 42, 440.
+inline double damper_share(double depth) noexcept {
+  constexpr double kWhole = 1e-3;  // [m]
+  return std::clamp(depth / kWhole, 0.0, 1.0);
+}
+
+/// Spring and damper along a surface's normal:
+///
+///     f = max(0, k depth + b c(depth) u) n,  c = damper_share,  u = d depth / dt
+///
+/// It pushes and never pulls. u follows the readings with a time constant of 2 ms: the last step of
+/// an encoder over a tick is mostly noise.
+class NormalSpring {
+ public:
+  explicit NormalSpring(const RendererOptions& options)
+      : stiffness_(options.stiffness), damping_(options.damping), unit_(options.unit) {}
+
+  void start() noexcept { before_ = rate_ = 0.0; }
+  /// @param depth  0 when there is no contact [m]  @returns the size of the force [N]
+  double force(double depth, double period) noexcept {
+    if (period > 0.0) {
+      constexpr double kFilter = 2e-3;  // [s]
+      rate_ += period / (kFilter + period) * ((depth - before_) / period - rate_);
+    }
+    before_ = depth;
+    return depth > 0.0
+               ? std::max(0.0, stiffness_ * depth + damping_ * damper_share(unit_ * depth) * rate_)
+               : 0.0;
+  }
+  double stiffness() const noexcept { return stiffness_; }
+
+ private:
+  double stiffness_, damping_, unit_;
+  double before_{0.0};
+  double rate_{0.0};  // u [m/s]
+};
+
+}  // namespace haptrial::contact

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+
+#include "core/deformable/elements/deform_setup.h"
+
+namespace haptrial::deformable {
+
+/// Called before memory is taken: what for, and how much [bytes]; throws if that is too much.
+using MemoryCheck = std::function<void(const std::string& what, double bytes)>;
+
+/// The tetrahedra that a setup states: a surface filled with voxels, a file, or a block. Vertices
+/// that no tetrahedron has are left out.
+/// @throws InputError as the readers of files, voxelize() and `check`
+geometry::TetMesh body_of(const DeformSetup& setup, const MemoryCheck& check = {});
+
+/// TetGen's NAME.node and NAME.ele: numbers from 0 or 1, tetrahedra of four corners, turned where
+/// they are inverted as files of other programs number them. @param scale  metres to the unit
+/// @throws InputError naming file, line and what was found.
+geometry::TetMesh read_tetgen(const std::filesystem::path& node_file, double scale);
+
+/// A block of cubes, five tetrahedra each, its lowest corner at the origin.
+/// @param resolution  cubes along the longest side; the others are rounded to whole ones
+geometry::TetMesh block_body(const Eigen::Vector3d& size, int resolution);
+
+}  // namespace haptrial::deformable

@@ -1,0 +1,63 @@
+#include "core/deformable/touch/moving_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/error.h"
+#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/touch/prepared_bodies.h"
+
+namespace haptrial::deformable {
+namespace {
+
+std::shared_ptr<const MovingBody> made(const SharedHapticMesh& mesh, const SpringTissue& tissue) {
+  auto body = std::make_shared<MovingBody>();
+  body->mesh = mesh;
+  body->springs = spring_body(mesh->tets, tissue.density, tissue.constants, mesh->name);
+  if (tissue.calibrated) {
+    check_constants(body->springs, *tissue.calibrated);
+    body->springs.constants = *tissue.calibrated;
+  }
+  for (std::size_t v = 0; v < mesh->held.size(); ++v) {
+    if (mesh->held[v] != 0) {
+      body->held.push_back(static_cast<std::int32_t>(v));
+    }
+  }
+  body->held.insert(body->held.end(), mesh->grasped.begin(), mesh->grasped.end());
+  const std::vector<double>& masses = body->springs.masses;
+  const double mass = std::accumulate(masses.begin(), masses.end(), 0.0);
+  body->drag = 2.0 * tissue.decay * mass / static_cast<double>(masses.size());
+  body->stable_step = stable_step(body->springs, body->held);
+  return body;
+}
+
+}  // namespace
+
+SharedMovingBody prepared(const SharedHapticMesh& mesh, const SpringTissue& tissue) {
+  static PreparedBodies<SpringTissue, MovingBody> bodies;
+  return bodies.get(mesh, tissue, [&] { return made(mesh, tissue); });
+}
+
+int steps_on_a_tick(const MovingBody& body, double period) {
+  const double steps = std::ceil(period / (kStableShare * body.stable_step));
+  if (!(steps <= kMostSteps)) {
+    throw InputError(fmt::format(
+        "{}: the longest stable step of its springs is {:.3g} s, so that a tick of {:g} s needs {} "
+        "steps; at most {} are allowed: smaller constants, more density or fewer cells",
+        body.mesh->name, body.stable_step, period, steps, kMostSteps));
+  }
+  return std::max(1, static_cast<int>(steps));
+}
+
+SpringMotion motion_of(const MovingBody& body, double period) {
+  MotionSettings settings;
+  settings.step = period / steps_on_a_tick(body, period);
+  settings.damping = body.drag;
+  settings.beyond_stability = true;  // within it, as steps_on_a_tick() sees to
+  return SpringMotion(body.springs, settings, body.held);
+}
+
+}  // namespace haptrial::deformable

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/deformable/touch/ball_contact.h"
+#include "core/deformable/touch/body_touch.h"
+#include "core/deformable/touch/energy_account.h"
+#include "core/deformable/touch/moving_body.h"
+#include "core/deformable/touch/moving_shape.h"
+
+namespace haptrial::deformable {
+
+/// A body of springs that moves, with inertia, waves and large strains, and is pressed by a ball,
+/// or held by the hand at its grasped vertices, which go with the hand from start() on.
+///
+/// On each tick the body makes several explicit steps, while the hand goes on to the tool; what is
+/// felt is the mean force of these steps. An energy account (energy_account.h) keeps it passive. A
+/// tick is a function of the tool's places alone, to the bit on every instruction set.
+///
+/// A point, and any ball below smallest_ball(), is felt as a ball of that radius. A ball that
+/// begins in the surface grows there from what has room; one whose centre is inside touches nothing
+/// until it has left. Source: Morris 2006, §5.4.1; docs/algorithms/deformable-moving.md.
+class MovingTouch final : public BodyTouch {
+ public:
+  /// @param period  of a tick [s]  @param shape  null: no pictures
+  /// @throws std::invalid_argument naming the option that breaks its bound; InputError as
+  /// steps_on_a_tick().
+  MovingTouch(SharedMovingBody body, const TouchOptions& options, double period,
+              std::shared_ptr<MovingShape> shape = nullptr);
+
+  void start(const Eigen::Vector3d& tool) noexcept override;
+  /// Goes on from `before`, if it is of the same body; else starts, as start() does.
+  void adopt(const BodyTouch& before, const Eigen::Vector3d& tool) noexcept override;
+  /// @param period  is that of the constructor
+  const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  std::span<const VertexForce> forces() const noexcept override {
+    return std::span(forces_).first(force_count_);
+  }
+  const TouchCounts& counts() const noexcept override { return counts_; }
+
+  const SpringMotion& motion() const noexcept { return motion_; }
+  const BallContact& ball() const noexcept { return ball_; }
+  int steps() const noexcept { return steps_; }  // on a tick
+  /// The last force without a tetrahedron inside out [N].
+  double upright_force() const noexcept { return upright_; }
+  /// Energy that the hand gave in this contact and did not get back [J].
+  double balance() const noexcept { return account_.balance(); }
+
+ private:
+  void put_to_rest() noexcept;
+  void advance(const Eigen::Vector3d& tool) noexcept;
+  void pull(const Eigen::Vector3d& hand) noexcept;
+  bool grasps() const noexcept { return !grip_.empty(); }
+  void keep_forces() noexcept;
+  void note_grip(const Eigen::Vector3d& tool) noexcept;
+  void note(const Eigen::Vector3d& tool) noexcept;
+  void limit() noexcept;
+  void scale(double share) noexcept;
+  bool together() const noexcept;
+
+  SharedMovingBody body_;
+  TouchOptions options_;
+  double period_;
+  int steps_;
+  SpringMotion motion_;
+  BallContact ball_;
+  EnergyAccount account_;
+  std::shared_ptr<MovingShape> shape_;
+  std::vector<VertexForce> forces_;
+  std::size_t force_count_{0};
+  Eigen::Vector3d tool_{Eigen::Vector3d::Zero()};     // a tick ago [m]
+  Eigen::Vector3d grip_at_{Eigen::Vector3d::Zero()};  // where the hand took hold [m]
+  std::vector<Eigen::Vector3d> grip_;  // on each grasped vertex, mean over the steps [N]
+  Eigen::Vector3d felt_{Eigen::Vector3d::Zero()};  // on the body, mean over the steps [N]
+  std::uint64_t inverted_steps_{0};                // before this tick
+  double upright_{0.0};                            // the last force without one inside out [N]
+  std::uint64_t ticks_{0};
+  contact::Contact contact_;
+  TouchCounts counts_;
+};
+
+}  // namespace haptrial::deformable

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "core/deformable/touch/local_surface.h"
+#include "core/deformable/touch/moving_touch.h"
+#include "core/deformable/touch/window_compliance.h"
+#include "core/realtime/hand_over.h"
+#include "core/realtime/latest_value.h"
+
+namespace haptrial::deformable {
+
+inline constexpr int kMostWindow = 50;  // [ticks]
+
+/// Tool's path over the ticks of a window.
+struct BodyPath {
+  std::uint64_t generation{0};
+  bool starts{false};                             // the body is put to rest first, the tool to from
+  Eigen::Vector3d from{Eigen::Vector3d::Zero()};  // [m]
+  int count{0};
+  std::array<Eigen::Vector3d, kMostWindow> tools;
+};
+
+/// A moving body that is advanced a window of ticks at once: on a thread of its own, or at once on
+/// the thread that asks, with the same bytes. It says how its surface is when the window ends.
+class SlowBody {
+ public:
+  /// @param compliance  of `body`  @param period  of a tick [s]
+  /// @throws as MovingTouch
+  SlowBody(const SharedMovingBody& body, SharedWindowCompliance compliance,
+           const TouchOptions& options, double period, bool threaded,
+           std::shared_ptr<MovingShape> shape);
+  ~SlowBody();
+  SlowBody(const SlowBody&) = delete;
+  SlowBody& operator=(const SlowBody&) = delete;
+
+  // Servo thread: no allocation, lock, wait or throw.
+
+  /// Advances the body along a path; only after the last one was taken.
+  void give(const BodyPath& path) noexcept;
+  /// The surface at the end of the last path, valid until the next one is taken; null: not yet.
+  const LocalSurface* take() noexcept;
+
+ private:
+  /// A vertex on which the ball presses.
+  struct Load {
+    std::int32_t vertex;
+    Eigen::Vector3f force;  // along the normal, mean of the last tick [N]
+  };
+
+  void run();
+  void advance(const BodyPath& path) noexcept;
+  void describe(const BodyPath& path, LocalSurface& to) noexcept;
+  void find_near(const Eigen::Vector3d& centre, double reach) noexcept;
+  void find_loads() noexcept;
+  void describe_place(std::int32_t sample, double window, LocalSurface::Place& to) noexcept;
+  void find_compliance(LocalSurface& to) const noexcept;
+
+  SharedMovingBody body_;
+  SharedWindowCompliance compliance_;
+  double period_;
+  MovingTouch touch_;
+  std::uint64_t window_{0};  // number of the last one
+
+  struct Near {
+    double distance;
+    std::int32_t sample;
+    auto operator<=>(const Near&) const = default;
+  };
+  std::vector<Near> near_;  // (samples)
+  std::size_t near_count_{0};
+  std::vector<std::uint8_t> pressed_;     // by sample, on the last tick
+  std::vector<Eigen::Vector3d> free_;     // by sample, when it was described last [m]
+  std::vector<std::uint64_t> described_;  // by sample: in which window
+  std::vector<Load> loads_;
+  std::size_t load_count_{0};
+  std::uint64_t inverted_{0}, flown_apart_{0};
+
+  std::array<LocalSurface, realtime::HandOver::kSlots> slots_;
+  realtime::HandOver turn_;
+  realtime::LatestValue<BodyPath> paths_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace haptrial::deformable

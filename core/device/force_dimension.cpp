@@ -1,0 +1,403 @@
+#include "core/device/force_dimension.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/definition/schema.h"
+#include "core/base/error.h"
+#include "core/device/dynamic_library.h"
+
+namespace haptrial::device {
+namespace {
+
+constexpr double kWatchdogStep = 125e-6;  // [s]
+constexpr double kLongestWatchdog = 255 * kWatchdogStep;
+constexpr unsigned char kOn = 1;
+constexpr unsigned char kOff = 0;
+constexpr int kVelocityWindowMode = 0;
+constexpr int kMotorSaturated = 2;
+constexpr int kStatusConnected = 1;  // places in the status words
+constexpr int kStatusForce = 5;
+constexpr int kStatusForceOffCause = 14;
+constexpr int kStatusWords = 32;  // 17 today; room for a later library
+
+constexpr const char* kForceDimensionFrom =
+    "the Force Dimension SDK, from https://www.forcedimension.com/software/sdk";
+
+constexpr std::array<const char*, 7> kForceOffCauses{
+    "the device switched its motors off and gives no cause",
+    "the device's force button switched the motors off",
+    "the device switched its motors off because the handle was too fast",
+    "the device's watchdog switched the motors off because no force came in time",
+    "the device's library switched the motors off",
+    "the motors went off because the USB connection was lost",
+    "the device switched its motors off because nobody held the handle"};
+
+constexpr std::array<const char*, 23> kErrors{
+    "the device failed and gives no cause",
+    "the device failed",
+    "the communication with the device failed; check cable and power",
+    "the device's controller is busy",
+    "the device's driver is missing",
+    "no device was found; check cable and power",
+    "the device is not available; another program may hold it",
+    "the device did not answer in time",
+    "the device cannot compute its position here",
+    "the device refused a setting that only its expert mode allows",
+    "the device does not know this function",
+    "the device's library ran out of memory",
+    "the device is not ready",
+    "the device's library misses a file",
+    "the device's configuration is not valid",
+    "there is no device with this index",
+    "the device's library no longer has this function",
+    "the device's library was given no place for its result",
+    "the device's redundant encoders disagree",
+    "the device's forces are not enabled",
+    "the device is in use by another program",
+    "the device refused a value",
+    "the device's automatic control is not running"};
+
+/// Greatest force of a device according to its maker, by the number of its system type [N].
+struct Model {
+  int type;
+  const char* name;
+  double max_force;
+};
+constexpr std::array<Model, 6> kModels{{{33, "omega.3", 12.0},
+                                        {60, "Falcon", 8.0},
+                                        {63, "delta.3", 20.0},
+                                        {104, "sigma.7", 20.0},
+                                        {105, "sigma.7", 20.0},
+                                        {206, "sigma.3", 20.0}}};
+constexpr Model kOther{-1, "device of a type that is not known here", 12.0};
+
+Model model_of(int type) noexcept {
+  const auto* const found = std::find_if(kModels.begin(), kModels.end(),
+                                         [type](const Model& model) { return model.type == type; });
+  return found != kModels.end() ? *found : kOther;
+}
+
+template <std::size_t n>
+const char* sentence(const std::array<const char*, n>& sentences, int number) noexcept {
+  const bool known = number >= 0 && number < static_cast<int>(n);
+  return sentences[known ? static_cast<std::size_t>(number) : 0];
+}
+
+DynamicLibrary open_library(const std::string& library) {
+  if (!library.empty()) {
+    return {library, kForceDimensionFrom};
+  }
+  // libdrd brings the DHD functions with it. Two libraries side by side might not share their
+  // devices, so that all functions come from one.
+  try {
+    return {"libdrd.so.3", kForceDimensionFrom};
+  } catch (const InputError&) {
+    return {"libdhd.so.3", kForceDimensionFrom};
+  }
+}
+
+void check(const ForceDimensionParameters& p, double rate) {
+  const bool good = p.index >= 0 && p.index <= 3 && p.max_force > 0.0 && p.workspace_radius > 0.0 &&
+                    p.effector_mass >= 0.0 && p.velocity_window >= 0.001 && p.watchdog > 0.0 &&
+                    p.watchdog <= kLongestWatchdog + 1e-9 && p.velocity_threshold >= -1 &&
+                    p.time_guard >= 0.0 && rate > 0.0;
+  if (!good) {
+    throw std::invalid_argument("ForceDimensionDevice: a parameter is out of its bounds");
+  }
+}
+
+}  // namespace
+
+/// The functions of the vendor's library that are used here.
+struct ForceDimensionDevice::Api {
+  explicit Api(const std::string& path);
+
+  DynamicLibrary library;
+  int (*count)();
+  int (*open)(char);
+  int (*close)(char);
+  const char* (*system_name)(char);
+  int (*system_type)(char);  // null in old libraries
+  int (*enable_force)(unsigned char, char);
+  int (*stop)(char);
+  int (*set_effector_mass)(double, char);
+  int (*set_gravity_compensation)(int, char);
+  int (*get_position)(double*, double*, double*, char);
+  int (*config_linear_velocity)(int, int, char);
+  int (*get_linear_velocity)(double*, double*, double*, char);
+  int (*set_force)(double, double, double, char);
+  unsigned (*get_button_mask)(char);
+  bool (*has_wrist)(char);  // null in libraries before 3
+  int (*get_orientation)(double (*)[3], char);
+  int (*get_status)(int*, char);
+  int (*set_max_force)(double, char);
+  int (*enable_expert_mode)();
+  int (*disable_expert_mode)();
+  int (*set_time_guard)(int, char);
+  int (*set_watchdog)(unsigned char, char);
+  int (*set_velocity_threshold)(unsigned, char);
+  int (*last_error)();
+  // Null where DRD is not installed.
+  int (*drd_open)(char);
+  int (*drd_close)(char);
+  bool (*drd_is_supported)(char);
+  bool (*drd_is_initialized)(char);
+  int (*drd_auto_init)(char);
+  int (*drd_stop)(bool, char);
+
+  bool has_drd() const noexcept {
+    return drd_open && drd_close && drd_is_supported && drd_is_initialized && drd_auto_init &&
+           drd_stop;
+  }
+};
+
+ForceDimensionDevice::Api::Api(const std::string& path) : library(open_library(path)) {
+  library.get(count, "dhdGetDeviceCount");
+  library.get(open, "dhdOpenID");
+  library.get(close, "dhdClose");
+  library.get(system_name, "dhdGetSystemName");
+  library.get(enable_force, "dhdEnableForce");
+  library.get(stop, "dhdStop");
+  library.get(set_effector_mass, "dhdSetEffectorMass");
+  library.get(set_gravity_compensation, "dhdSetGravityCompensation");
+  library.get(get_position, "dhdGetPosition");
+  library.get(config_linear_velocity, "dhdConfigLinearVelocity");
+  library.get(get_linear_velocity, "dhdGetLinearVelocity");
+  library.get(set_force, "dhdSetForce");
+  library.get(get_button_mask, "dhdGetButtonMask");
+  library.get(get_status, "dhdGetStatus");
+  library.get(set_max_force, "dhdSetMaxForce");
+  library.get(enable_expert_mode, "dhdEnableExpertMode");
+  library.get(disable_expert_mode, "dhdDisableExpertMode");
+  library.get(set_time_guard, "dhdSetTimeGuard");
+  library.get(set_watchdog, "dhdSetWatchdog");
+  library.get(set_velocity_threshold, "dhdSetVelocityThreshold");
+  library.get(last_error, "dhdErrorGetLast");
+  library.find(system_type, "dhdGetSystemType");
+  library.find(has_wrist, "dhdHasWrist");
+  library.find(get_orientation, "dhdGetOrientationFrame");
+  library.find(drd_open, "drdOpenID");
+  library.find(drd_close, "drdClose");
+  library.find(drd_is_supported, "drdIsSupported");
+  library.find(drd_is_initialized, "drdIsInitialized");
+  library.find(drd_auto_init, "drdAutoInit");
+  library.find(drd_stop, "drdStop");
+}
+
+const Schema<ForceDimensionParameters>& force_dimension_schema() {
+  using P = ForceDimensionParameters;
+  static const auto schema =
+      Schema<P>()
+          .integer("index", &P::index, 0, 3, "Number of the device if several are connected")
+          .required()
+          .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
+                  "Force at which the driver saturates; at most what the model gives is used")
+          .required()
+          .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
+                  "Radius of the device's workspace")
+          .required()
+          .number("effector_mass", &P::effector_mass, {0.0, 2.0}, "kg",
+                  "Mass mounted on the handle, which gravity compensation carries, too")
+          .required()
+          .flag("gravity_compensation", &P::gravity_compensation,
+                "Whether the device carries its own weight")
+          .required()
+          .number("velocity_window", &P::velocity_window, {0.001, 0.1}, "s",
+                  "Time over which velocity is estimated")
+          .required()
+          .number("watchdog", &P::watchdog, {0.001, kLongestWatchdog}, "s",
+                  "Time without a command after which the motors are switched off")
+          .required()
+          .integer("velocity_threshold", &P::velocity_threshold, 0, 1'000'000,
+                   "Velocity at which the device brakes, in its own units")
+          .otherwise("the device's own")
+          .number("time_guard", &P::time_guard, {0.0, 0.01}, "s",
+                  "Shortest time between two readings; a faster one gives the last position; 0: "
+                  "off")
+          .required()
+          .integer("stop_button", &P::stop_button, -1, 31,
+                   "Button of the handle for emergency stops; -1: none")
+          .required();
+  return schema;
+}
+
+ForceDimensionDevice::ForceDimensionDevice(const ForceDimensionParameters& parameters, double rate,
+                                           const std::string& library)
+    : parameters_((check(parameters, rate), parameters)),
+      api_(std::make_unique<const Api>(library)),
+      info_{"", parameters.max_force, parameters.workspace_radius, false},
+      timer_(1.0 / rate) {
+  open();
+  try {
+    configure();
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+ForceDimensionDevice::~ForceDimensionDevice() { close(); }
+
+void ForceDimensionDevice::require(int result, const char* what) const {
+  if (result < 0) {
+    throw RunError(fmt::format("the Force Dimension device could not {}: {}", what,
+                               sentence(kErrors, api_->last_error())));
+  }
+}
+
+void ForceDimensionDevice::open() {
+  const int present = api_->count();
+  if (present <= parameters_.index) {
+    throw RunError(
+        fmt::format("Force Dimension device {} was not found ({} connected); check cable and power",
+                    parameters_.index, present < 0 ? 0 : present));
+  }
+  const char index = static_cast<char>(parameters_.index);
+  int id = api_->has_drd() ? api_->drd_open(index) : -1;
+  opened_by_drd_ = id >= 0;
+  if (id < 0) {
+    id = api_->open(index);
+  }
+  require(id, "be opened");
+  id_ = static_cast<char>(id);
+}
+
+/// No definition may claim more force than the device gives.
+void ForceDimensionDevice::check_force() const {
+  const Model model = model_of(api_->system_type != nullptr ? api_->system_type(id_) : -1);
+  if (parameters_.max_force > model.max_force) {
+    throw InputError(
+        fmt::format("force_dimension.max_force is {} N; allowed: at most {} N, which "
+                    "is what the {} gives",
+                    parameters_.max_force, model.max_force, model.name));
+  }
+}
+
+void ForceDimensionDevice::configure() {
+  check_force();
+  const Api& api = *api_;
+  const ForceDimensionParameters& p = parameters_;
+  if (opened_by_drd_ && api.drd_is_supported(id_)) {
+    if (!api.drd_is_initialized(id_)) {
+      require(api.drd_auto_init(id_), "calibrate itself");
+    }
+    require(api.drd_stop(true, id_), "leave its automatic control");
+  }
+  require(api.set_effector_mass(p.effector_mass, id_), "take the effector mass");
+  require(api.set_gravity_compensation(p.gravity_compensation ? 1 : 0, id_),
+          "set its gravity compensation");
+  const auto window_ms = static_cast<int>(std::lround(1e3 * p.velocity_window));
+  require(api.config_linear_velocity(window_ms, kVelocityWindowMode, id_),
+          "set its velocity window");
+  require(api.set_max_force(p.max_force, id_), "set its force limit");
+  // Set again at every start: a program before this one may have switched them off.
+  require(api.enable_expert_mode(), "enter its expert mode");
+  const auto watchdog = static_cast<unsigned char>(std::lround(p.watchdog / kWatchdogStep));
+  require(api.set_watchdog(watchdog, id_), "set its watchdog");
+  if (p.velocity_threshold >= 0) {
+    require(api.set_velocity_threshold(static_cast<unsigned>(p.velocity_threshold), id_),
+            "set its velocity threshold");
+  }
+  require(api.set_time_guard(static_cast<int>(std::lround(1e6 * p.time_guard)), id_),
+          "set its time guard");
+  require(api.disable_expert_mode(), "leave its expert mode");
+  require(api.set_force(0.0, 0.0, 0.0, id_), "take a force of zero");
+  require(api.enable_force(kOn, id_), "switch its forces on");
+  const char* const name = api.system_name(id_);
+  info_.name = fmt::format("Force Dimension {}", name != nullptr ? name : "device");
+  info_.senses_orientation =
+      api.has_wrist != nullptr && api.get_orientation != nullptr && api.has_wrist(id_);
+}
+
+void ForceDimensionDevice::close() noexcept {
+  if (id_ < 0) {
+    return;
+  }
+  api_->set_force(0.0, 0.0, 0.0, id_);
+  api_->enable_force(kOff, id_);
+  api_->stop(id_);
+  opened_by_drd_ ? api_->drd_close(id_) : api_->close(id_);
+  id_ = -1;
+}
+
+bool ForceDimensionDevice::fail() noexcept {
+  trouble_ = sentence(kErrors, api_->last_error());
+  return false;
+}
+
+bool ForceDimensionDevice::read(DeviceReading& reading) noexcept {
+  const CallTimer::Scope timed(timer_);
+  double px = 0.0;
+  double py = 0.0;
+  double pz = 0.0;
+  double vx = 0.0;
+  double vy = 0.0;
+  double vz = 0.0;
+  // Above zero is not an error: 1 says that the time guard gave the last values again.
+  if (api_->get_position(&px, &py, &pz, id_) < 0 ||
+      api_->get_linear_velocity(&vx, &vy, &vz, id_) < 0) {
+    return fail();
+  }
+  DeviceReading fresh;
+  fresh.tool.position = {py, pz, px};
+  fresh.tool.velocity = {vy, vz, vx};
+  if (info_.senses_orientation && !read_orientation(fresh.orientation)) {
+    return fail();
+  }
+  fresh.buttons = api_->get_button_mask(id_);
+  fresh.stop_pressed = is_pressed(fresh.buttons, parameters_.stop_button);
+  trouble_ = "";
+  judge_status(fresh);
+  reading = fresh;
+  return true;
+}
+
+bool ForceDimensionDevice::read_orientation(Eigen::Quaterniond& orientation) noexcept {
+  double rows[3][3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+  if (api_->get_orientation(rows, id_) < 0) {
+    return false;
+  }
+  constexpr int kTheirs[3] = {1, 2, 0};  // the vendor's axis that is our x, y, z
+  Eigen::Matrix3d turn;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      turn(i, j) = rows[kTheirs[i]][kTheirs[j]];
+    }
+  }
+  orientation = Eigen::Quaterniond(turn).normalized();
+  return true;
+}
+
+void ForceDimensionDevice::judge_status(DeviceReading& reading) noexcept {
+  std::array<int, kStatusWords> status{};
+  if (api_->get_status(status.data(), id_) < 0) {
+    fail();
+    reading.forces_on = false;
+  } else if (status[kStatusConnected] == 0 || status[kStatusForce] == 0) {
+    trouble_ = sentence(kForceOffCauses, status[kStatusForceOffCause]);
+    reading.forces_on = false;
+  }
+}
+
+bool ForceDimensionDevice::write(const Eigen::Vector3d& force) noexcept {
+  const CallTimer::Scope timed(timer_);
+  const int result = api_->set_force(force.z(), force.x(), force.y(), id_);
+  if (result == kMotorSaturated) {
+    saturated_.fetch_add(1, std::memory_order_relaxed);
+  }
+  return result >= 0 || fail();
+}
+
+int count_force_dimension_devices(const std::string& library) {
+  const DynamicLibrary loaded = open_library(library);
+  int (*count)() = nullptr;
+  loaded.get(count, "dhdGetDeviceCount");
+  return count();
+}
+
+}  // namespace haptrial::device

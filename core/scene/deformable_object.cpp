@@ -1,0 +1,65 @@
+#include "core/scene/deformable_object.h"
+
+namespace haptrial::scene {
+
+using Eigen::Vector3d;
+
+DeformableObject::DeformableObject(const DeformableObjectParameters& parameters,
+                                   const Setting& setting)
+    : parameters_(parameters), period_(1.0 / setting.rate) {
+  if (parameters.moving && parameters.gives) {
+    touch_ = std::make_unique<deformable::TwoRateTouch>(parameters.moving, parameters.gives,
+                                                        parameters.tool, period_, parameters.rates,
+                                                        parameters.shape);
+  } else if (parameters.moving) {
+    touch_ = std::make_unique<deformable::MovingTouch>(parameters.moving, parameters.tool, period_,
+                                                       parameters.shape);
+  } else if (parameters.body) {
+    touch_ = std::make_unique<deformable::BallTouch>(parameters.body, parameters.tool);
+  } else {
+    deformable::check(parameters.tool);
+  }
+}
+
+Vector3d DeformableObject::to_body(const Vector3d& p) const noexcept {
+  return parameters_.pose.orientation.conjugate() * (p - parameters_.pose.position);
+}
+
+void DeformableObject::start(const PointState& hand) noexcept {
+  hand_ = hand.position;
+  if (touch_) {
+    touch_->start(to_body(hand.position));
+  }
+}
+
+/// A body that moves goes on moving; any other begins at rest under the hand: only what friction
+/// held is forgotten.
+void DeformableObject::adopt(const DeformableObject& before) noexcept {
+  hand_ = before.hand_;
+  if (touch_ && before.touch_) {
+    touch_->adopt(*before.touch_, to_body(hand_));
+  } else if (touch_) {
+    touch_->start(to_body(hand_));
+  }
+}
+
+Vector3d DeformableObject::force(const Felt& felt, FieldState& state) noexcept {
+  hand_ = felt.hand.position;
+  state.sliding = false;
+  state.depth = 0.0;
+  if (!touch_) {
+    return Vector3d::Zero();
+  }
+  const contact::Contact& contact = touch_->tick(to_body(hand_), period_);
+  const auto& q = parameters_.pose.orientation;
+  state.proxy = q * contact.proxy + parameters_.pose.position;
+  if (contact.state == contact::ContactState::kFree) {
+    return Vector3d::Zero();
+  }
+  state.depth = contact.depth;
+  state.sliding = contact.state == contact::ContactState::kSlip;
+  state.normal = q * contact.normal;
+  return felt.shares.stiffness * (q * contact.force);
+}
+
+}  // namespace haptrial::scene

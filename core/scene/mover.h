@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/control/minimum_jerk.h"
+#include "core/control/pd_controller.h"
+#include "core/scene/field_state.h"
+
+namespace haptrial::scene {
+
+struct MoverParameters {
+  Eigen::Vector3d to{Eigen::Vector3d::Zero()};  // [m]
+  double duration{0.8};                         // of the move > 0 [s]
+  control::PdGains gains{300.0, 20.0};          // k >= 0 [N/m], b >= 0 [N·s/m]
+};
+
+/// Leads the hand from where it is when the field is switched on: a spring and damper to a point
+/// that makes a minimum-jerk move (Flash and Hogan 1985) and then stays. Active.
+class Mover {
+ public:
+  Mover(const MoverParameters& parameters, const Setting& setting);
+  void start(const PointState& hand) noexcept;
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+  void adopt(const Mover& before) noexcept;
+
+ private:
+  Eigen::Vector3d to_;
+  double duration_;
+  control::PdController controller_;
+  Eigen::Vector3d from_{Eigen::Vector3d::Zero()};
+  control::MinimumJerkMove move_;
+};
+
+}  // namespace haptrial::scene

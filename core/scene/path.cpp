@@ -1,0 +1,39 @@
+#include "core/scene/path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene/require.h"
+
+namespace haptrial::scene {
+namespace {
+
+constexpr double kSpeedBlend = 0.08;  // [s]
+
+stimulus::SpatialTrajectory travelled(const PathParameters& p) {
+  require(std::isfinite(p.duration) && p.duration > 0.0,
+          "PathGuide: duration must be finite and above 0");
+  double length = 0.0;
+  for (std::size_t i = 1; i < p.points.size(); ++i) {
+    length += (p.points[i] - p.points[i - 1]).norm();
+  }
+  require(std::isfinite(length) && length > 0.0,
+          "PathGuide: points must be finite and not all the same");
+  return stimulus::SpatialTrajectory(p.points, length / p.duration);
+}
+
+}  // namespace
+
+PathGuide::PathGuide(const PathParameters& p, const Setting&)
+    : path_(travelled(p)), controller_(p.gains) {}
+
+Eigen::Vector3d PathGuide::force(const Felt& felt, FieldState& state) noexcept {
+  PointState target = path_.at(felt.time);
+  const double left = path_.duration() - felt.time;
+  target.velocity *= std::clamp(std::min(felt.time, left) / kSpeedBlend, 0.0, 1.0);
+  state.depth = (target.position - felt.hand.position).norm();
+  state.done = left <= 0.0;
+  return controller_.force(target, felt.hand, felt.shares);
+}
+
+}  // namespace haptrial::scene

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/control/pd_controller.h"
+#include "core/scene/field_state.h"
+#include "core/stimulus/spatial_trajectory.h"
+
+namespace haptrial::scene {
+
+struct PathParameters {
+  std::vector<Eigen::Vector3d> points{Eigen::Vector3d::Zero(),
+                                      Eigen::Vector3d::UnitX()};  // (N x 3), N >= 2 [m]
+  double duration{5.0};                                           // from end to end > 0 [s]
+  control::PdGains gains{900.0, 100.0};                           // k >= 0 [N/m], b >= 0 [N·s/m]
+};
+
+/// Guides the hand along a path: a spring and damper to a point that travels the lines between
+/// `points` at constant speed, then rests at the last one. The damper takes the point's speed on
+/// and off over 80 ms at the ends. Active. Source: Morris 2006, §4.2.4.
+class PathGuide {
+ public:
+  /// @throws std::invalid_argument naming the parameter that breaks its bound
+  PathGuide(const PathParameters& parameters, const Setting& setting);
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+
+ private:
+  stimulus::SpatialTrajectory path_;
+  control::PdController controller_;
+};
+
+}  // namespace haptrial::scene

@@ -1,0 +1,56 @@
+#include "core/scene/push.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/control/pd_controller.h"
+#include "core/scene/require.h"
+
+namespace haptrial::scene {
+
+using Eigen::Vector3d;
+
+Constant::Constant(const ConstantParameters& parameters, const Setting& setting)
+    : force_(control::saturate(parameters.force, setting.limit)) {
+  require(parameters.force.allFinite(), "Constant: force must be finite");
+}
+
+Ramp::Ramp(const RampParameters& parameters, const Setting&) : parameters_(parameters) {
+  require(parameters.from.allFinite(), "Ramp: from must be finite");
+  require(parameters.to.allFinite(), "Ramp: to must be finite");
+  require(std::isfinite(parameters.rise) && parameters.rise > 0.0,
+          "Ramp: rise must be finite and above 0");
+}
+
+Vector3d Ramp::force(const Felt& felt, FieldState& state) noexcept {
+  const double u = std::min(felt.time / parameters_.rise, 1.0);
+  state.done = u >= 1.0;
+  return parameters_.from + u * (parameters_.to - parameters_.from);
+}
+
+Pulse::Pulse(const PulseParameters& parameters, const Setting&) : parameters_(parameters) {
+  require(parameters.force.allFinite(), "Pulse: force must be finite");
+  require(std::isfinite(parameters.delay) && parameters.delay >= 0.0,
+          "Pulse: delay must be finite and at least 0");
+  require(std::isfinite(parameters.duration) && parameters.duration > 0.0,
+          "Pulse: duration must be finite and above 0");
+  require(parameters.rise >= 0.0 && parameters.rise <= 0.5 * parameters.duration,
+          "Pulse: rise must be from 0 to half the duration");
+}
+
+Vector3d Pulse::force(const Felt& felt, FieldState& state) noexcept {
+  const double t = felt.time - parameters_.delay;
+  state.done = t >= parameters_.duration;
+  if (t < 0.0 || state.done) {
+    return Vector3d::Zero();
+  }
+  const double edge = std::min(t, parameters_.duration - t);
+  if (edge >= parameters_.rise) {
+    return state.stimulus = parameters_.force;
+  }
+  const double risen = 0.5 * (1.0 - std::cos(std::numbers::pi * edge / parameters_.rise));
+  return state.stimulus = risen * parameters_.force;
+}
+
+}  // namespace haptrial::scene

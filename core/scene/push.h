@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/scene/field_state.h"
+
+namespace haptrial::scene {
+
+struct ConstantParameters {
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // f_W [N]
+};
+
+/// f(t) = f. Conservative: its energy is -f · p.
+class Constant {
+ public:
+  /// @throws std::invalid_argument naming the parameter that breaks its bound; so do all fields.
+  Constant(const ConstantParameters& parameters, const Setting& setting);
+  // Servo thread, these functions of all fields: no allocation, lock, I/O or throw.
+  Eigen::Vector3d force(const Felt&, FieldState&) noexcept { return force_; }
+  double energy(const Eigen::Vector3d& p) const noexcept { return -force_.dot(p); }  // [J]
+
+ private:
+  Eigen::Vector3d force_;  // limited, so that it is minus the gradient
+};
+
+struct RampParameters {
+  Eigen::Vector3d from{Eigen::Vector3d::Zero()};  // f_0 [N]
+  Eigen::Vector3d to{Eigen::Vector3d::Zero()};    // f_1 [N]
+  double rise{1.0};                               // R > 0 [s]
+};
+
+/// f(t) = f_0 + (f_1 - f_0) min(t / R, 1), with t from the moment it is switched on. Active.
+class Ramp {
+ public:
+  Ramp(const RampParameters& parameters, const Setting& setting);
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+
+ private:
+  RampParameters parameters_;
+};
+
+struct PulseParameters {
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // f [N]
+  double delay{0.0};                               // from switching on to the first force >= 0 [s]
+  double duration{0.1};                            // D from first to last force > 0 [s]
+  double rise{0.0};                                // of each edge R, 0 to D / 2 [s]
+};
+
+/// f(t) = f g(t - delay), where g rises as (1 - cos(pi t / R)) / 2, stays at 1 and falls in the
+/// same way, so that it is back at 0 after D. Active.
+class Pulse {
+ public:
+  Pulse(const PulseParameters& parameters, const Setting& setting);
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+
+ private:
+  PulseParameters parameters_;
+};
+
+}  // namespace haptrial::scene

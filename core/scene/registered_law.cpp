@@ -1,0 +1,26 @@
+#include "core/scene/registered_law.h"
+
+#include "core/scene/require.h"
+
+namespace haptrial::scene {
+
+RegisteredField::RegisteredField(const RegisteredParameters& parameters, const Setting& setting)
+    : type_(parameters.type) {
+  require(parameters.numbers != nullptr, "has no numbers");
+  law_ = parameters.numbers->law(setting);
+  require(law_ != nullptr, "has no law");
+}
+
+Eigen::Vector3d RegisteredField::force(const Felt& felt, FieldState& state) noexcept {
+  const Eigen::Vector3d force = law_->force(felt, state);
+  return force.allFinite() ? Eigen::Vector3d(felt.shares.stiffness * force)
+                           : Eigen::Vector3d::Zero();
+}
+
+void RegisteredField::adopt(const RegisteredField& before) noexcept {
+  if (type_ == before.type_) {
+    law_->adopt(*before.law_);
+  }
+}
+
+}  // namespace haptrial::scene

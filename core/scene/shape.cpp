@@ -1,0 +1,129 @@
+#include "core/scene/shape.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/scene/require.h"
+
+namespace haptrial::scene {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Some unit vector across `axis`, for points that lie on it.
+Vector3d across(const Vector3d& axis) noexcept {
+  return axis.cross(std::abs(axis.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY()).normalized();
+}
+
+SurfaceDistance of_sphere(const Vector3d& from_centre, double radius) noexcept {
+  const double r = from_centre.norm();
+  return {r - radius, r > 0.0 ? Vector3d(from_centre / r) : Vector3d::UnitY()};
+}
+
+/// @param p  from the centre, along the box's own axes
+SurfaceDistance of_box(const Vector3d& p, const Vector3d& half) noexcept {
+  const Vector3d sign = p.unaryExpr([](double x) { return x < 0.0 ? -1.0 : 1.0; });
+  const Vector3d beyond = p.cwiseAbs() - half;
+  const Vector3d out = beyond.cwiseMax(0.0);
+  const double square = out.squaredNorm();
+  if (square > 0.0) {
+    const double distance = std::sqrt(square);
+    return {distance, out.cwiseProduct(sign) / distance};
+  }
+  Eigen::Index face = 0;
+  const double distance = beyond.maxCoeff(&face);
+  return {distance, sign[face] * Vector3d::Unit(face)};
+}
+
+SurfaceDistance of_cylinder(const Vector3d& p, const Vector3d& axis, double radius,
+                            double half_length) noexcept {
+  const double along = axis.dot(p);
+  const Vector3d aside = p - along * axis;
+  const double r = aside.norm();
+  const Vector3d outward = r > 0.0 ? Vector3d(aside / r) : across(axis);
+  const Vector3d endward = along < 0.0 ? Vector3d(-axis) : axis;
+  const double round = r - radius;
+  const double flat = std::abs(along) - half_length;
+  if (round > 0.0 && flat > 0.0) {
+    const double distance = std::hypot(round, flat);
+    return {distance, (round * outward + flat * endward) / distance};
+  }
+  return round > flat ? SurfaceDistance{round, outward} : SurfaceDistance{flat, endward};
+}
+
+}  // namespace
+
+PlacedShape::PlacedShape(const Shape& shape) {
+  if (const auto* wall = std::get_if<HalfSpace>(&shape)) {
+    kind_ = Kind::kHalfSpace;
+    origin_ = wall->point;
+    require(wall->normal.allFinite() && wall->normal.norm() > 0.0,
+            "HalfSpace: normal must be finite and not zero");
+    axis_ = wall->normal.normalized();
+  } else if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    kind_ = Kind::kSphere;
+    origin_ = sphere->centre;
+    radius_ = sphere->radius;
+    require(is_positive(radius_) && std::isfinite(radius_),
+            "Sphere: radius must be finite and above 0");
+  } else if (const auto* box = std::get_if<Box>(&shape)) {
+    kind_ = Kind::kBox;
+    origin_ = box->centre;
+    half_ = 0.5 * box->size;
+    require(box->size.allFinite() && box->size.minCoeff() > 0.0,
+            "Box: size must be finite and above 0");
+    require(box->turn.allFinite(), "Box: turn must be finite");
+    const double angle = box->turn.norm();
+    if (angle > 0.0) {
+      rotation_ = Eigen::AngleAxisd(angle, box->turn / angle).toRotationMatrix();
+    }
+  } else if (const auto* bar = std::get_if<Cylinder>(&shape)) {
+    kind_ = Kind::kCylinder;
+    origin_ = bar->centre;
+    radius_ = bar->radius;
+    half_length_ = 0.5 * bar->length;
+    require(is_positive(radius_) && std::isfinite(radius_),
+            "Cylinder: radius must be finite and above 0");
+    require(is_positive(half_length_), "Cylinder: length must be above 0");
+    require(bar->axis.allFinite() && bar->axis.norm() > 0.0,
+            "Cylinder: axis must be finite and not zero");
+    axis_ = bar->axis.normalized();
+  }
+  require(origin_.allFinite(), "Shape: point or centre must be finite");
+}
+
+SurfaceDistance PlacedShape::distance(const Vector3d& p) const noexcept {
+  const Vector3d from = p - origin_;
+  switch (kind_) {
+    case Kind::kHalfSpace:
+      return {axis_.dot(from), axis_};
+    case Kind::kSphere:
+      return of_sphere(from, radius_);
+    case Kind::kBox: {
+      SurfaceDistance found = of_box(rotation_.transpose() * from, half_);
+      found.normal = rotation_ * found.normal;
+      return found;
+    }
+    case Kind::kCylinder:
+      return of_cylinder(from, axis_, radius_, half_length_);
+  }
+  return {};
+}
+
+double PlacedShape::deepest() const noexcept {
+  switch (kind_) {
+    case Kind::kHalfSpace:
+      break;
+    case Kind::kSphere:
+      return radius_;
+    case Kind::kBox:
+      return half_.minCoeff();
+    case Kind::kCylinder:
+      return std::min(radius_, half_length_);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace haptrial::scene

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/sound/cue.h"
+
+namespace haptrial::sound {
+
+/// A sound whose first samples the card has taken.
+struct StartedCue {
+  std::uint64_t ticket{0};    // that it was started with
+  std::int64_t handed_ns{0};  // when, on the clock that the player was given
+};
+
+/// Plays the sounds of a session on the sound card. Any thread but the servo thread may call; what
+/// is started begins with the next 5 ms that the card is given.
+class CuePlayer {
+ public:
+  /// @param seed  of the session  @param now  a clock [ns], asked on the player's thread
+  /// @throws RunError in a sentence if there is no such card; InputError as rendered() does
+  CuePlayer(const CueSet& set, std::uint64_t seed, std::function<std::int64_t()> now);
+  ~CuePlayer();
+  CuePlayer(const CuePlayer&) = delete;
+  CuePlayer& operator=(const CuePlayer&) = delete;
+
+  void start(std::size_t cue, std::uint64_t ticket);
+  void mask(bool on);
+  std::vector<StartedCue> take_started();
+
+  /// Whether the limiter acted, the card ran out of samples or was lost, in a sentence; else empty.
+  std::string trouble() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace haptrial::sound

@@ -1,0 +1,69 @@
+#include "core/sound/mixer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptrial::sound {
+
+Limiter::Limiter(double rate) : back_(1.0 / (0.05 * rate)) {}
+
+float Limiter::limited(double sample) noexcept {
+  if (!std::isfinite(sample)) {
+    return 0.0F;
+  }
+  gain_ = std::min(1.0, gain_ + back_);
+  const double size = std::abs(sample);
+  if (size * gain_ > 1.0) {
+    gain_ = 1.0 / size;
+  }
+  return static_cast<float>(std::clamp(gain_ * sample, -1.0, 1.0));
+}
+
+Mixer::Mixer(std::vector<std::vector<float>> clips, std::vector<float> masking, double fade,
+             double rate)
+    : clips_(std::move(clips)),
+      masking_(std::move(masking)),
+      step_(fade * rate > 1.0 ? 1.0 / (fade * rate) : 1.0),
+      limiter_(rate) {}
+
+void Mixer::start(std::size_t clip) noexcept {
+  if (clip >= clips_.size()) {
+    return;
+  }
+  auto voice = std::ranges::find(voices_, nullptr, &Voice::clip);
+  if (voice == voices_.end()) {
+    voice = voices_.begin() + static_cast<std::ptrdiff_t>(oldest_);
+    oldest_ = (oldest_ + 1) % kMostVoices;
+  }
+  *voice = {&clips_[clip], 0};
+}
+
+double Mixer::next() noexcept {
+  double sum = 0.0;
+  for (Voice& voice : voices_) {
+    if (voice.clip != nullptr) {
+      sum += (*voice.clip)[voice.at++];
+      if (voice.at >= voice.clip->size()) {
+        voice.clip = nullptr;
+      }
+    }
+  }
+  gain_ = masked_ ? std::min(1.0, gain_ + step_) : std::max(0.0, gain_ - step_);
+  if (gain_ > 0.0 && !masking_.empty()) {
+    sum += gain_ * masking_[place_];
+    place_ = (place_ + 1) % masking_.size();
+  }
+  return sum;
+}
+
+void Mixer::fill(std::span<float> samples) noexcept {
+  std::uint64_t held = 0;
+  for (float& sample : samples) {
+    sample = limiter_.limited(next());
+    held += limiter_.acts() ? 1 : 0;
+  }
+  limited_.fetch_add(held, std::memory_order_relaxed);
+}
+
+}  // namespace haptrial::sound

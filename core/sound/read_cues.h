@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/sound/cue.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::sound {
+
+/// Reads a [sounds] table. Problems are noted in the table; keys in brackets are optional.
+///
+///     [device]        ALSA's name of the sound card ("default")
+///     [sounds.NAME]   type = "tone": frequency [Hz], duration [s], level [dB], [rise] (0.005 s)
+///                     type = "noise": duration, level, [rise], [colour], [low], [high]
+///                     type = "click": level, [duration] (0.001 s)
+///                     type = "file": file (48,000 samples a second), [level] (0)
+///     [sounds.masking]  level, [colour] ("pink"), [low], [high], [fade] (0.5 s), [stages]
+///
+/// colour is "white", "pink" (both from 20 to 20,000 Hz) or "band" (needs low and high).
+CueSet read_cues(Table& table);
+
+/// The names of the sounds in the order of CueSet::cues, without reading them.
+std::vector<std::string> cue_names(const Table& table);
+
+}  // namespace haptrial::sound

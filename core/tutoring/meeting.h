@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "core/tutoring/handshake.h"
+#include "core/tutoring/sockets.h"
+
+namespace haptrial::network {
+
+/// A link that may begin: everything that LinkThread needs.
+struct Met {
+  Socket datagrams;
+  Address other;  // where its datagrams go
+  LinkKeys keys;
+  bool follows{false};  // the host: a guest behind a router is where its datagrams come from
+};
+
+struct MeetingRequest {
+  std::string guest_of;      // "name:port" of the host; empty: this side is the host
+  std::uint16_t port{7400};  // at which the host listens; its datagrams use the same number
+  std::array<unsigned char, 32> study{};  // checksum of what both must have alike
+  std::chrono::seconds patience{120};
+  std::function<void()> pulse;                     // asked ten times a second; may throw
+  std::function<void(const std::string&)> notice;  // of guests that were turned away
+};
+
+/// Waits for the other side, or goes to it. A host speaks with several guests at once
+/// (waiting_guests.h): one without the secret is turned away, one that says nothing is left.
+/// @throws InputError where the other side has another study, or is told so; RunError where nobody
+///         came in time, nobody listens, the host is busy with others, or it does not know the
+///         secret
+Met meet(const Secret& secret, const MeetingRequest& request);
+
+}  // namespace haptrial::network

@@ -1,0 +1,323 @@
+#include "experiments/command/start/key_list.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "experiments/command/start/key_words_internal.h"
+#include "experiments/studies/power_plan.h"
+#include "experiments/studies/registry.h"
+
+namespace haptrial::experiments {
+namespace {
+
+/// Tables that take the keys of another one.
+const std::map<std::string, std::string>& shared_tables() {
+  static const std::map<std::string, std::string> tables{
+      {"procedures[]", "procedure"},
+      {"procedure.tracks[]", "procedure"},
+      {"procedures[].tracks[]", "procedure"},
+      {"responses[]", "response"},
+      {"design.session.1", "design.session.NAME"}};
+  return tables;
+}
+
+std::string shared(const std::string& table) {
+  std::string found = table;
+  std::size_t longest = 0;
+  for (const auto& [other, own] : shared_tables()) {
+    const bool within = table == other || table.starts_with(other + ".");
+    if (within && other.size() > longest) {
+      found = own + table.substr(other.size());
+      longest = other.size();
+    }
+  }
+  return found;
+}
+
+/// Beginnings that no reading with one change after another comes to: a question that has one way
+/// of being answered alone, a channel without a second place. Choices beyond the last are the last.
+std::vector<KeyExploration::Plan> beginnings() {
+  constexpr std::size_t kMostChoices = 40;
+  constexpr std::size_t kNotThere = 1;
+  const auto there = [](const std::string& key) { return key + " is there"; };
+  const std::vector<std::string> questions{"response.", "pages.NAME.items[]."};
+  const std::vector<std::string> ways{"choices", "scale", "number"};
+  std::vector<KeyExploration::Plan> plans{{}};
+  for (const std::string& question : questions) {
+    for (const std::string& way : ways) {
+      KeyExploration::Plan plan{{"pages.NAME.kind", kMostChoices},  // questions
+                                {there(question + "words"), kNotThere}};
+      for (const std::string& other : ways) {
+        if (other != way) {
+          plan[there(question + other)] = kNotThere;
+        }
+      }
+      plans.push_back(std::move(plan));
+    }
+  }
+  for (std::size_t type = 0; type < kMostChoices; ++type) {
+    plans.push_back({{"fields.NAME.type", type},
+                     {there("fields.NAME.from"), kNotThere},
+                     {there("fields.NAME.to"), kNotThere}});
+  }
+  return plans;
+}
+
+/// The facts of a key, to compare those of two protocols.
+bool same(const KnownKey& a, const KnownKey& b) {
+  return a.path() == b.path() && a.type == b.type && a.allowed == b.allowed && a.unit == b.unit &&
+         a.otherwise == b.otherwise && a.optional == b.optional && a.when == b.when;
+}
+
+void add(std::vector<KnownKey>& keys, KnownKey key) {
+  key.table = shared(key.table);
+  if (key.path() == "experiment.protocol") {
+    key.otherwise.clear();  // stated for the reader here; a definition may leave it out
+  } else if (key.path() == "virtual_surgeons.skill.participants") {
+    key.key = "NAME";  // of a group; this is the one of definitions without groups
+  }
+  const auto at = std::find_if(keys.begin(), keys.end(),
+                               [&](const KnownKey& each) { return each.path() == key.path(); });
+  if (at == keys.end()) {
+    keys.push_back(std::move(key));
+    return;
+  }
+  at->optional = at->optional || key.optional;
+  at->otherwise = at->otherwise.empty() ? key.otherwise : at->otherwise;
+}
+
+/// A number that varies over people has a table of its own: one key says both.
+std::vector<KnownKey> without_spreads(const std::vector<KnownKey>& keys) {
+  std::map<std::string, std::set<std::string>> within;
+  std::set<std::string> paths;
+  for (const KnownKey& key : keys) {
+    within[key.table].insert(key.key);
+    paths.insert(key.path());
+  }
+  const auto varies = [&](const std::string& table) {
+    const auto at = within.find(table);
+    return at != within.end() && at->second == std::set<std::string>{"median", "spread"};
+  };
+  std::vector<KnownKey> rest;
+  for (KnownKey key : keys) {
+    if (varies(key.path())) {
+      key.type = "number or { median, spread }";
+    } else if (varies(key.table)) {
+      if (key.key == "spread" || paths.contains(key.table)) {
+        continue;
+      }
+      const std::size_t dot = key.table.rfind('.');
+      key.key = key.table.substr(dot + 1);
+      key.table = key.table.substr(0, dot);
+      key.type = "{ median, spread }";
+    }
+    rest.push_back(std::move(key));
+  }
+  return rest;
+}
+
+/// Tables whose keys are listed are no keys themselves; others are left to other readers, so that
+/// this one does not need them.
+std::vector<KnownKey> without_tables(const std::vector<KnownKey>& keys) {
+  std::vector<KnownKey> rest;
+  std::copy_if(keys.begin(), keys.end(), std::back_inserter(rest), [&](const KnownKey& key) {
+    return key.type != "table" || std::none_of(keys.begin(), keys.end(), [&](const KnownKey& each) {
+             return each.table == key.path() || each.table.starts_with(key.path() + ".");
+           });
+  });
+  for (KnownKey& key : rest) {
+    key.optional = key.optional || key.type == "table";
+  }
+  return rest;
+}
+
+struct Words {
+  std::string otherwise;
+  std::string meaning;
+  bool used{false};
+};
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string_view::npos
+             ? ""
+             : std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
+}
+
+/// A key that has words already gets these behind them.
+void add_words(std::map<std::string, Words>& all, std::string_view rest) {
+  while (!rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+    const std::size_t first = line.find('|');
+    const std::size_t second = line.find('|', first + 1);
+    if (second == std::string_view::npos) {
+      continue;
+    }
+    Words& words = all[trimmed(line.substr(0, first))];
+    const std::string otherwise = trimmed(line.substr(first + 1, second - first - 1));
+    words.otherwise = otherwise.empty() ? words.otherwise : otherwise;
+    words.meaning += (words.meaning.empty() ? "" : "; ") + trimmed(line.substr(second + 1));
+  }
+}
+
+std::map<std::string, Words> read_words() {
+  std::map<std::string, Words> all;
+  add_words(all, key_words());
+  return all;
+}
+
+/// The words of a protocol's key; null: none.
+Words* words_of(std::map<std::string, Words>& all, const std::string& protocol,
+                const std::string& path) {
+  const auto own = all.find(protocol + ":" + path);
+  const auto any = own != all.end() ? own : all.find(path);
+  return any != all.end() ? &any->second : nullptr;
+}
+
+std::vector<std::string> protocol_names() {
+  std::vector<std::string> names;
+  for (const Study* study : studies()) {
+    names.emplace_back(study->protocol().name());
+  }
+  return names;
+}
+
+/// The keys of each protocol, and first those that all of them have alike.
+std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
+  std::vector<KeySection> sections(1);
+  std::vector<std::vector<KnownKey>> keys;
+  for (const Study* study : studies()) {
+    keys.push_back(keys_of(*study));
+  }
+  const auto listed = [&](const std::string& protocol, const KnownKey& key) {
+    Words* own = words_of(words, protocol, key.path());
+    if (own != nullptr) {
+      own->used = true;
+    }
+    if (!key.words.empty()) {
+      return ListedKey{key, key.words, key.otherwise};
+    }
+    return ListedKey{key, own != nullptr ? own->meaning : "",
+                     !key.otherwise.empty() || own == nullptr ? key.otherwise : own->otherwise};
+  };
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    sections.push_back({protocol_names()[i], {}});
+    for (const KnownKey& key : keys[i]) {
+      const bool common = std::all_of(keys.begin(), keys.end(), [&](const auto& others) {
+        return std::any_of(others.begin(), others.end(),
+                           [&](const KnownKey& other) { return same(key, other); });
+      });
+      if (!common) {
+        sections.back().keys.push_back(listed(protocol_names()[i], key));
+      } else if (i == 0) {
+        sections.front().keys.push_back(listed("", key));
+      }
+    }
+  }
+  return sections;
+}
+
+}  // namespace
+
+std::vector<KnownKey> keys_of(const Study& study) {
+  const std::string text =
+      fmt::format("[experiment]\nprotocol = \"{}\"\n", study.protocol().name());
+  const auto read = [&](Table& root) {
+    std::unique_ptr<protocols::Definition> definition;
+    try {
+      definition = study.protocol().read(root, "definition", nullptr);
+    } catch (const std::exception&) {
+      // What the analysis asks for is asked for all the same.
+    }
+    study.read_analysis(root, true);
+    if (root.has("power")) {
+      read_power_plan(root);
+    }
+  };
+  const auto found = known_keys(text, read, beginnings());
+  std::vector<KnownKey> keys;
+  for (const KnownKey& key : found) {
+    add(keys, key);
+  }
+  return without_tables(without_spreads(keys));
+}
+
+std::vector<KeySection> key_sections(const std::string& protocol) {
+  std::map<std::string, Words> words = read_words();
+  std::vector<KeySection> sections = sections_of_all(words);
+  std::erase_if(sections, [&](const KeySection& section) {
+    return !protocol.empty() && !section.protocol.empty() && section.protocol != protocol;
+  });
+  return sections;
+}
+
+bool is_protocol(const std::string& word) {
+  const std::vector<std::string> names = protocol_names();
+  return std::find(names.begin(), names.end(), word) != names.end();
+}
+
+static std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::vector<KeySection> sections_with(const std::string& word) {
+  const std::string wanted = lower_case(word);
+  std::vector<KeySection> sections = key_sections("");
+  for (KeySection& section : sections) {
+    std::erase_if(section.keys, [&](const ListedKey& listed) {
+      const std::string all = listed.key.path() + " " + listed.words;
+      return lower_case(all).find(wanted) == std::string::npos;
+    });
+  }
+  std::erase_if(sections, [](const KeySection& section) { return section.keys.empty(); });
+  if (sections.empty()) {
+    throw InputError(
+        fmt::format("no key has '{}' in its name or its words; haptrial keys lists all keys, and "
+                    "haptrial keys PROTOCOL those of {}",
+                    word, fmt::join(protocol_names(), ", ")));
+  }
+  return sections;
+}
+
+std::vector<std::string> mistakes_of_key_words() {
+  std::map<std::string, Words> words = read_words();
+  std::vector<std::string> mistakes;
+  for (const KeySection& section : sections_of_all(words)) {
+    for (const ListedKey& listed : section.keys) {
+      const Words* own = words_of(words, section.protocol, listed.key.path());
+      if (own == nullptr && listed.words.empty()) {
+        mistakes.push_back(fmt::format("{}:{} has no words", section.protocol, listed.key.path()));
+      } else if (own != nullptr && !listed.key.words.empty()) {
+        mistakes.push_back(fmt::format("{} has words in a schema already", listed.key.path()));
+      } else if (own != nullptr && !own->otherwise.empty() && !listed.key.otherwise.empty()) {
+        mistakes.push_back(
+            fmt::format("{} states a default, and so does the program", listed.key.path()));
+      } else if (listed.key.optional && listed.otherwise.empty()) {
+        mistakes.push_back(
+            fmt::format("{} may be left out, and nothing says what then", listed.key.path()));
+      } else if (own != nullptr && !listed.key.optional && !own->otherwise.empty()) {
+        mistakes.push_back(fmt::format("{} states a default, and is needed", listed.key.path()));
+      }
+    }
+  }
+  for (const auto& [path, own] : words) {
+    if (!own.used) {
+      mistakes.push_back(fmt::format("{} is no key", path));
+    }
+  }
+  return mistakes;
+}
+
+}  // namespace haptrial::experiments

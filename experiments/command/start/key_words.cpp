@@ -1,0 +1,732 @@
+#include "experiments/command/start/key_words_internal.h"
+
+namespace haptrial::experiments {
+
+std::string_view key_words() {
+  return R"(
+experiment.name | | of the study, for reports and new folders
+experiment.protocol | force_training | what kind of experiment it is
+experiment.rate | | ticks of the servo loop per second
+lab.use | | file with tables of devices and screen, relative to the definition; without [lab] the definition has them
+hand.integrator | | exact solution of the virtual hand, or CVODE's
+display.width | | of pictures and of a window
+display.height | | of pictures and of a window
+display.margin | | between the picture's edge and what is drawn
+display.trajectory_width | | of the line of the trajectory
+display.marker_radius | | of the marker of the hand
+display.full_scale | | force of a full bar
+display.bar_width | | of the bars of force
+display.bar_height | | of a full bar
+display.bar_gap | | between the bars, and between marker and bars
+display.saturation_size | | side of the square that shows that the force limit is reached
+display.background | | colour behind everything
+display.trajectory_colour | | of the line
+display.marker_colour | | of the marker
+display.target_colour | | of the bar of the target force
+display.applied_colour | | of the bar of the applied force
+display.saturation_colour | | of the square of the force limit
+display.seen_from | | above: x to the right, z down the screen; front: x to the right, y up
+display.extent | | part of the world that fills the screen's width
+display.hand_radius | | of the dot of the hand
+display.feedback_right | | what is shown after a right answer
+display.feedback_wrong | | what is shown after a wrong one
+display.feedback_time | | for which it is shown
+display.quality | auto | of the drilling's picture: plain light, with shadows, or full with smoothed edges; auto: what the machine draws 27 times a second
+display.stereo | false | pictures for the left and the right eye side by side
+trials:display.eye_distance | 0.063 | between the eyes
+display.eye_distance | | between the eyes, in the scene
+display.viewing_distance | 0.5 | from the eyes to the screen
+display.sound_right | none | sound after a right answer, where feedback is given
+display.sound_wrong | none | sound after a wrong one
+devices.NAME.start | | where the hand of a virtual participant begins
+sounds.NAME.type | | what the sound is
+sounds.NAME.level | 0 of a file, else needed | root mean square below full scale; of a file, its gain
+sounds.NAME.duration | 0.001 of a click, else needed | of the sound
+sounds.NAME.rise | 0.005 | time of the ramps at both ends
+sounds.NAME.frequency | | of the tone
+sounds.NAME.colour | white | spectrum of the noise
+sounds.NAME.low | 20, of a band needed | lowest frequency of the noise
+sounds.NAME.high | 20000, of a band needed | highest frequency of the noise
+sounds.NAME.file | | recording at 48,000 samples a second, relative to the definition
+sounds.masking.colour | pink | spectrum of the masking noise
+sounds.masking.low | 20, of a band needed | its lowest frequency
+sounds.masking.high | 20000, of a band needed | its highest frequency
+sounds.masking.level | | its root mean square below full scale
+sounds.masking.fade | 0.5 | time over which it comes and goes
+sounds.masking.stages | the whole session | stages in which it sounds
+feedback.page | | whether a page about the session is written beside its file at its end
+feedback.study | none | folder of a study relative to the definition; the page compares with its experts
+display.stills | 0 | stills of the bone's stages that can be shown
+texts.too_fast | Too fast | after an answer below `too_fast` of its response
+texts.too_slow | Too slow | after an answer above `too_slow`
+pages.before | none | names of pages before the first trial, in this order
+pages.after | none | names of pages after the last trial
+pages.after_block.NAME | | names of pages after the last trial of the block of this name
+pages.NAME.kind | text | what the page is
+pages.NAME.title | none | heading of the page
+pages.NAME.text | | what is read
+pages.NAME.accept | I agree to take part | choice of those who take part
+pages.NAME.decline | I do not agree | choice that ends the session
+pages.NAME.weighted | false | whether the 15 pairs of NASA-TLX are asked, too
+pages.NAME.items[].name | | of the question, in files
+pages.NAME.items[].question | | what is read
+pages.NAME.items[].words | false | whether words are typed; one of choices, scale, number and words is needed
+pages.NAME.items[].choices[].value | | of the choice, as files have it
+pages.NAME.items[].choices[].label | the value | what is shown
+pages.NAME.items[].choices[].number | none | value of the choice as a number
+pages.NAME.items[].scale | choices, a number or words | lowest and highest value of a scale
+pages.NAME.items[].step | 1 | between neighbouring values of the scale
+pages.NAME.items[].ends.low | | words at the scale's lowest value
+pages.NAME.items[].ends.high | | words at its highest value
+pages.NAME.items[].number | choices, a scale or words | lowest and highest number that may be typed
+design.participants | | of the study
+design.sessions | 1 | of each participant, on days of their own
+design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
+trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
+design.break_until | time | what ends a break: its duration, or after that the participant or the experimenter
+bone_drilling:design.break_after | 0 | procedures after which a break comes; 0: no breaks
+design.break_after | | trials after which a break comes; 0: no breaks
+trials:design.break_duration | 60 | of a break
+bone_drilling:design.break_duration | | of a break
+design.break_duration | | of a break
+design.blocks | fixed | order of the blocks over participants
+design.most_in_a_row | no limit | trials of one combination of factors
+design.trials | | of each participant
+design.repetitions | | trials of a block: same stimulus, same condition
+design.practice | 0 | practice trials of each condition; not scored
+design.conditions | needed | of training
+design.procedures | | trials of each participant, each with a new bone
+groups | one group of everybody | participants of each group, in the order of their numbers: NAME = 8
+groups.NAME | | participants of the group, in the order of their numbers
+factors.NAME | | levels of a factor: two or more numbers, words or formulas
+variables.NAME | | a number, formula or quoted word
+variables.NAME.from | | name whose word chooses among the other keys
+variables.NAME.NAME | | what the name is worth with this word
+places.NAME | | x, y, z: three numbers or formulas
+practice.trials | | of practice
+practice.right_in_a_row | all trials | practice ends with so many right answers in a row
+practice.NAME | | what a name is worth during practice
+practice.duration | | of practice before the first procedure
+blocks[].name | | of the block
+blocks[].trials | until its procedures are finished | of the block; needed without a procedure
+blocks[].practice | false | whether it is practice, which is not scored
+blocks[].right_in_a_row | all trials | practice ends with so many right answers in a row
+blocks[].NAME | | what a name is worth in the block
+blocks[].probe.name | probe | what the trials are called
+blocks[].probe.share | | of the block's trials
+blocks[].probe.NAME | | what a name is worth in these trials
+intervals.order | as stated | whether they are shuffled in every trial
+intervals.NAME.NAME | | what a name is worth in the interval
+stages[].name | | unlike every other stage's
+stages[].fields | none | fields that act; "$name" is the field that the name stands for
+stages[].show | nothing | hand, interval_number, regions, looks, objects and places
+stages[].until.time | no such condition | the stage ends after this time
+stages[].until.inside | no such condition | the hand is in this region
+stages[].until.contact | no such condition | the hand touches this field
+stages[].until.speed_below | no such condition | the hand is slower
+stages[].until.speed_above | no such condition | the hand is faster
+stages[].until.buttons | no such condition | one of these buttons is pressed
+stages[].until.keys | no such condition | one of these keys is pressed
+stages[].until.for | 0 | how long all of it must hold; [shortest, longest] is drawn in every trial
+stages[].timeout.after | | longest duration of the stage
+stages[].timeout.then | | whether the trial comes again, the interval does, or the trial goes on
+stages[].require.max_of | | what must have been enough; without [require] nothing must
+stages[].require.field | | in which depth or force counts
+stages[].require.at_least | | of the largest value in the stage
+stages[].require.else | | what happens if it was not enough
+stages[].onset.speed_above | | speed at which a movement begins; without [onset] none is looked for
+stages[].sound | none | sound that begins with the stage
+stages[].marker | counted on from markers.stage | code of the stage's marker
+response.name | answer | in formulas and files
+response.question | | what is read
+response.choices[].value | | of the choice, as files and formulas have it
+response.choices[].label | the value | what is shown
+response.choices[].keys | the digit of its place | of the window, that choose it
+response.choices[].buttons | the button of its place | of the device, that choose it
+response.choices[].touch | none | region into which the tip of the tool is moved for it
+response.choices[].pedal | none | depth of an analog pedal from which on it chooses it
+response.scale | choices or a number | lowest and highest digit
+response.number | choices or a scale | lowest and highest number that may be typed
+response.correct | no answer is right | formula of the right choice: its number, or its value as a word
+response.feedback | never | when right or wrong is shown
+response.timeout | none | then the trial is aborted and comes again
+response.reaction_time_from | the question | stage from which the reaction is counted
+response.touch_for | 0.2 | how long the tip stays in a region that is touched
+response.too_fast | no limit | reaction time below which an answer is told to be too fast
+response.too_slow | no limit | reaction time above which an answer is told to be too slow
+response.out_of_time | go on | what follows from such an answer: it counts, or the trial comes again at the end of its block
+procedure.kind | needed; a track takes its procedure's | how levels follow from outcomes
+procedure.variable | needed; a track takes its procedure's | name that it sets
+procedure.name | track 1, track 2, ... | of the track
+procedure.unit | none | of the variable
+procedure.by | none | factors each of whose levels has a track of its own
+procedure.counts | whether the first answer was right | formula of the outcome
+procedure.resolution | not rounded | to which levels are rounded
+procedure.range | needed; a track takes its procedure's | lowest and highest level
+procedure.scale | linear | of the difference to origin, on which steps and functions are
+procedure.origin | | of the scale
+procedure.start | needed; a track takes its procedure's | first level
+procedure.steps | needed; a track takes its procedure's | sizes of steps, the next after each reversal; or pairs [down, up]
+procedure.down | | right answers in a row for a step down
+procedure.up | | wrong answers in a row for a step up
+procedure.first_down | | the same until the first reversal; 0: as down
+procedure.first_up | | likewise; 0: as up
+procedure.schedule | reversals | what takes the next size of steps
+procedure.at_bound | hold | what a step beyond the range does: stays, stays without a reversal, ends the track
+procedure.right_raises | | whether right answers raise the level; they get rarer as it rises, and the function of [analysis] falls (neg_norm)
+procedure.stop.reversals | no such end | after which the track ends
+procedure.stop.trials | needed | after which the track ends
+procedure.stop.entropy | no such end | of the posterior, below which the track ends
+procedure.estimate.of | | what the threshold is the mean of
+procedure.estimate.skip | 0 | first reversals, or levels, that are left out
+procedure.estimate.last | all | last ones alone that count
+procedure.target | | share of right answers that is sought
+procedure.deviation | | of the count of right answers that is tolerated
+procedure.first_step | needed; a track takes its procedure's | on the scale
+procedure.smallest_step | needed; a track takes its procedure's | on the scale; a step as small ends the track
+procedure.largest_step | needed; a track takes its procedure's | on the scale
+procedure.levels | needed; a track takes its procedure's | levels that may be presented: a list, or { from, to, count, spacing }
+procedure.levels.from | | first level
+procedure.levels.to | | last level
+procedure.levels.count | | of levels
+procedure.levels.spacing | linear | of levels
+procedure.stimulus.NAME | | variable that it sets, with its levels: a list, { from, to, count, spacing } or { values }
+procedure.stimulus.NAME.values | from, to and count | levels
+procedure.stimulus.NAME.from | | first level
+procedure.stimulus.NAME.to | | last level
+procedure.stimulus.NAME.count | | of levels
+procedure.stimulus.NAME.spacing | linear | of levels
+procedure.stimulus.NAME.resolution | | to which the variable is rounded; 0: not rounded
+procedure.parameters.NAME | | parameter of the formula, with the values that are considered, likewise
+procedure.parameters.NAME.values | from, to and count | values
+procedure.parameters.NAME.from | | first one
+procedure.parameters.NAME.to | | last one
+procedure.parameters.NAME.count | | how many
+procedure.parameters.NAME.spacing | linear | of them
+procedure.parameters.NAME.prior | all equal | weights of the values, or { mean, sd } of a normal distribution
+procedure.parameters.NAME.prior.mean | | of that
+procedure.parameters.NAME.prior.sd | | of that
+procedure.parameters.NAME.nuisance | false | whether trials are not spent on knowing it
+procedure.probability | needed; or a function | formula of the answer 1, or a list, of the answers 1, 2, and so on
+procedure.function | logistic, or of quest_plus a probability | sigmoid of the function
+procedure.guess | | answers 1 far below the threshold
+procedure.threshold | the levels, and half as far beyond them | thresholds that are considered: a list, or { from, to, count, spacing }
+procedure.threshold.from | | first one
+procedure.threshold.to | | last one
+procedure.threshold.count | | how many
+procedure.threshold.spacing | linear | of them
+procedure.width | an eighth, a quarter, half and all of the range | widths that are considered, likewise
+procedure.width.from | | first one
+procedure.width.to | | last one
+procedure.width.count | | how many
+procedure.width.spacing | linear | of them
+procedure.lapse | 0, 0.02, 0.05 | lapse rates that are considered, likewise
+procedure.lapse.from | | first one
+procedure.lapse.to | | last one
+procedure.lapse.count | | how many
+procedure.lapse.spacing | linear | of them
+procedure.marginal | | whether only the threshold is to become sure
+procedure.repetitions | | of each level
+procedure.in_rounds | | whether each level comes once before any comes again
+procedure.modulus | none is stated | number that the first level is called
+procedure.starts | needed; a track takes its procedure's | levels at which adjustments begin: a list, or { from, to, count, spacing }
+procedure.starts.from | | first one
+procedure.starts.to | | last one
+procedure.starts.count | | how many
+procedure.starts.spacing | linear | of them
+procedure.most_presentations | | of one adjustment; then it ends without a setting
+procedure.expect.threshold | | what you count on, for validate
+procedure.expect.width | | likewise
+procedure.expect.function | logistic | likewise
+procedure.expect.guess | 0.5 | likewise
+procedure.expect.lapse | 0 | likewise
+procedure.expect.share | 0.5 | of answers 1, guesses and lapses aside, at the threshold
+fields.NAME.type | | law of the field
+fields.NAME.device | all devices | device that feels the field
+fields.NAME.limit | | of the field's own force
+fields.NAME.fade_in | | time over which it grows
+fields.NAME.fade_out | | time over which it goes
+fields.NAME.force | | in the world frame
+fields.NAME.to | needed, but for a channel with axes | force at the end, or place that is pulled to
+fields.NAME.from | no force of a ramp, axes of a channel | force at the beginning, or end of the channel
+fields.NAME.rise | | time over which the force grows
+fields.NAME.duration | | of the pulse or movement
+fields.NAME.points | needed; or a curve | places that the path goes through
+fields.NAME.curve.length_x | | of a random path, from left to right
+fields.NAME.curve.range_z | | of its z
+fields.NAME.curve.sinusoids | | that are summed
+fields.NAME.curve.max_spatial_frequency | | of each
+fields.NAME.curve.seed | | of the path
+fields.NAME.delay | | before the pulse
+fields.NAME.stiffness | | of the spring that holds, or of the bristles of friction
+fields.NAME.damping | | against the motion; that of a surface begins over the first 1 mm
+fields.NAME.point | | of the wall
+fields.NAME.normal | | direction out of the surface
+fields.NAME.centre | | of the solid
+fields.NAME.radius | | of the solid
+fields.NAME.size | | edges of the box
+fields.NAME.turn | not turned | rotation vector of the box
+fields.NAME.axis | | direction of the cylinder
+fields.NAME.length | | of the cylinder
+fields.NAME.felt_from | outside | side from which the surface is felt
+fields.NAME.axes | | free axes of the channel: x, y, z
+fields.NAME.through | | point of the channel or plane
+fields.NAME.velocity_filter | | cut-off of the filter of velocity
+fields.NAME.mass | | mass that is felt
+fields.NAME.acceleration_filter | | cut-off of the filter of acceleration
+fields.NAME.on | everywhere | field of a surface that this one belongs to
+fields.NAME.static | | friction before it slips: a force, or on a surface a coefficient
+fields.NAME.dynamic | | friction while it slips, likewise
+fields.NAME.model | bristle | of friction
+fields.NAME.direction | | in which the field acts or is laid out
+fields.NAME.amplitude | | of the relief, or of the vibration
+fields.NAME.period | | of the grating
+fields.NAME.phase | | of the grating, or of the vibration
+fields.NAME.profile | sine | of the grating
+fields.NAME.roughness | | root mean square of the relief
+fields.NAME.lowest | | frequency of the noise
+fields.NAME.highest | | frequency of the noise
+fields.NAME.seed | | of the noise
+fields.NAME.rms | a sine with amplitude | root mean square of a vibration that is noise
+fields.NAME.frequency | | of the vibration
+fields.NAME.decay | | time constant of the tap
+fields.NAME.at | | place of the first detent, or of the click
+fields.NAME.spacing | | of detents
+fields.NAME.peak | | greatest force, at most the field's limit
+fields.NAME.count | no end | of detents
+fields.NAME.travel | | of the click up to its peak
+fields.NAME.drop | | of force after the peak
+fields.NAME.drop_travel | | over which it drops
+regions.NAME.type | | shape of the region
+regions.NAME.device | the first device | device whose tool must be in the region
+regions.NAME.point | | of the half space
+regions.NAME.normal | | direction out of the region
+regions.NAME.centre | | of the region
+regions.NAME.radius | | of the region
+regions.NAME.size | | edges of the box
+regions.NAME.turn | not turned | rotation vector of the box
+regions.NAME.axis | | direction of the cylinder
+regions.NAME.length | | of the cylinder
+objects.NAME.kind | rigid | whether it gives way to the hand
+objects.NAME.cells | | of a body that gives way: along its longest side
+objects.NAME.fixed | bottom | its sides that do not move
+objects.NAME.felt | all that are not fixed | its sides that can be touched
+objects.NAME.seen | yielding | whether it is seen as the hand presses it, or at rest
+objects.NAME.model | elements | what it is made of: elements that rest on every tick, or springs that move
+objects.NAME.constants | | of springs without `calibrated`: of every edge, face and tetrahedron
+objects.NAME.grasped | none | of springs: sides that the hand holds, and moves, instead of pressing the body
+objects.NAME.calibrated | needed, or constants | of springs: file of constants that haptrial deform calibrate made, beside the definition
+objects.NAME.density | | of springs
+objects.NAME.rate | the loop's | of springs: how often they move a second, if less often than they are felt
+objects.NAME.decay | | of springs: a free motion dies down with exp(-decay t)
+objects.NAME.spring | | between the hand and the ball that presses
+objects.NAME.inclusions.NAME.centre | | of a ball of another stiffness, from the body's origin
+objects.NAME.inclusions.NAME.radius | | of the ball; 0: it is not there
+objects.NAME.record | false | whether every tick of contact is a row of /contacts
+objects.NAME.device | every device | whose tool feels it
+objects.NAME.limit | | its force is scaled to at most this
+objects.NAME.fade_in | | after it is switched on
+objects.NAME.fade_out | | after it is switched off
+objects.NAME.centre | 0, 0, 0 | of the body's origin
+objects.NAME.turn | not turned | of its axes: axis times angle
+objects.NAME.scale | | of its size
+objects.NAME.stiffness | | of its surface
+objects.NAME.damping | | of its surface
+objects.NAME.tool_radius | | of the ball that stands for the hand; 0: a point
+objects.NAME.shading | none | edges less sharp than this angle feel round
+objects.NAME.renderer | proxy | how contact is rendered
+objects.NAME.resolution | | of voxel and distance field: cells along the longest side
+objects.NAME.shape | needed, or mesh | of the body
+objects.NAME.radius | | of the body, of a torus that of the circle in its middle
+objects.NAME.mesh | needed, or shape | file beside the definition: .obj, .ply or .stl
+objects.NAME.size | | along x, y and z
+objects.NAME.length | | along z
+objects.NAME.tube | | radius of a torus's tube
+objects.NAME.friction.static | | coefficient of what holds the tool where it rests
+objects.NAME.friction.dynamic | | coefficient of what resists the tool that slides
+level_script.deadline | | for its answer; where nobody waits it has a minute
+looks.NAME.type | | what can be seen: a bar of random dots
+looks.NAME.width | | of the bar
+looks.NAME.height | | of the bar
+looks.NAME.step | 0.03 | depth of the bar before its background
+looks.NAME.noise | 0 | spread of a dot's depth, as a share of the step
+looks.NAME.dot | 0.0012 | diameter of a dot
+looks.NAME.centre | 0, 0, 0 | of the bar
+looks.NAME.dots | 2500 | number of dots on the screen
+observer.senses | force | what the virtual participant feels
+observer.in_stage | throughout the interval | stage in which it is felt
+observer.decides | largest | how what is felt becomes an answer
+observer.prototypes | | a percept for each choice, of which the nearest is answered
+observer.yes | the first choice | value of the choice that means yes
+observer.raise | the first choice | value of the choice that raises an adjusted level
+observer.lower | the second choice | value of the choice that lowers it
+observer.done | the third choice | value of the choice that ends the adjustment
+observer.wanted | 1 | percept that is adjusted to where the trial shows none before
+observer.reaction | 0.6 | median time from question to answer
+observer.actions.NAME.do | needed, or a table for each device | what the hand does in the stage NAME
+observer.actions.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
+observer.actions.NAME.at | | places at which presses begin, one after the other
+observer.actions.NAME.move | | how long the way to each place takes
+observer.actions.NAME.press | | how long each press takes
+observer.actions.NAME.rise | 0.5 | time over which it grows
+observer.actions.NAME.travel | 0.05 | after which it presses no further
+observer.actions.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
+observer.actions.NAME.half_length | | of a stroke
+observer.actions.NAME.frequency | | of strokes
+observer.actions.NAME.normal | down | direction in which a stroke presses
+observer.actions.NAME.duration | | of the reach
+observer.actions.NAME.towards | down | to the object that is followed
+observer.actions.NAME.around | 0, 0, 1 | axis of the first loop
+observer.actions.NAME.then_around | 1, 0, 0 | axis of the second loop
+observer.actions.NAME.turn_after | | when the second loop begins
+observer.actions.NAME.speed | | along the surface
+observer.actions.NAME.NAME.do | | what the hand at the device of the second name does
+observer.actions.NAME.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
+observer.actions.NAME.NAME.at | | places at which presses begin, one after the other
+observer.actions.NAME.NAME.move | | how long the way to each place takes
+observer.actions.NAME.NAME.press | | how long each press takes
+observer.actions.NAME.NAME.rise | 0.5 | time over which it grows
+observer.actions.NAME.NAME.travel | 0.05 | after which it presses no further
+observer.actions.NAME.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
+observer.actions.NAME.NAME.half_length | | of a stroke
+observer.actions.NAME.NAME.frequency | | of strokes
+observer.actions.NAME.NAME.normal | down | direction in which a stroke presses
+observer.actions.NAME.NAME.duration | | of the reach
+observer.actions.NAME.NAME.towards | down | to the object that is followed
+observer.actions.NAME.NAME.around | 0, 0, 1 | axis of the first loop
+observer.actions.NAME.NAME.then_around | 1, 0, 0 | axis of the second loop
+observer.actions.NAME.NAME.turn_after | | when the second loop begins
+observer.actions.NAME.NAME.speed | | along the surface
+observer.script.deadline | | for an answer
+observer.adaptation.stage | | of the reach that is learnt from
+observer.adaptation.fast.retention | | of the fast process from trial to trial; without the table 0.59
+observer.adaptation.fast.learning | | of the fast process from an error; without the table 0.21
+observer.adaptation.slow.retention | | of the slow process from trial to trial; without the table 0.992
+observer.adaptation.slow.learning | | of the slow process from an error; without the table 0.02
+observer.sight.noise | | noises of the picture, rising
+observer.sight.sd | | spread of a seen size at each of these noises
+observer.sight.spread | 0 | spread of it between people, as a logarithm
+observer.force_weber | | spread of a felt force, as a share of it
+observer.force_floor | | spread of a felt force of zero
+observer.displacement_bias | | share of a displacement that is not felt
+observer.displacement_weber | | spread of a felt displacement, as a share of it
+observer.speed_weber | | spread of a felt speed, as a share of it
+observer.extent_weber | | spread of a felt extent, as a share of it
+observer.usual_deflection | | of a surface that is pressed
+observer.contact_force | | above which something is felt to be touched
+observer.moving_speed | | above which the hand is felt to move
+observer.decision_noise | | spread of the evidence, beside that of the sense
+observer.bias_first | | added to the evidence of the first interval
+observer.repetition | | added to the evidence of the answer before
+observer.criterion | | above which the answer is yes
+observer.drift | | of the criterion a trial
+observer.lapse | | probability of an answer at random
+observer.exponent | | of magnitudes
+observer.modulus | | magnitude of a percept of 1
+observer.magnitude_noise | | spread of the logarithm of a magnitude
+observer.tolerance | | of an adjustment
+trials:analysis.kind | as the procedure is | what is computed
+trials:analysis.by | all factors; of detection, identification and reaching none | factors whose levels are told apart
+trials:analysis.tests | none | planned: "a < b", "a > b" or "a != b" of levels
+trials:analysis.question | the first | whose answer counts
+trials:analysis.yes | what the procedure learnt, else the right one | the answer that counts 1
+trials:analysis.level | the one that the procedure set | variable for the level
+trials:analysis.rating | the second question | question of how sure the participant was
+trials:analysis.stimulus | the first factor | factor that says what was presented, of an identification
+trials:analysis.function | norm; neg_norm with right_raises | sigmoid that is fitted; with neg_ before its name it falls
+trials:analysis.scale | of the procedure | of the axis
+trials:analysis.origin | of the procedure | of the axis
+trials:analysis.guess | 1 / choices, else free | guess rate, "free" (at most 0.2; with catch trials 0.5), or "lapse" for the lapse rate
+trials:analysis.lapse | { free = true, at_most = 0.2 } | lapse rate, or how it is fitted
+trials:analysis.lapse.free | true | whether it is fitted
+trials:analysis.lapse.at_most | 0.2; 0.06 if guess is "lapse" | its upper bound
+trials:analysis.threshold_at | halfway from the guess rate to 1; 0.5 if that is free | share of answers 1 at the threshold, lapses aside
+trials:analysis.reference | no Weber fractions | standard stimulus
+trials:analysis.bayesian | true | whether the Bayesian fit is added
+trials:analysis.resamples | 1999 | of the bootstrap
+trials:analysis.cue_combination.first.NAME | | level of a factor in conditions with the first cue alone
+trials:analysis.cue_combination.second.NAME | | level of a factor in conditions with the second cue alone
+trials:analysis.cue_combination.both.NAME | | level of a factor in conditions with both cues
+trials:analysis.cue_combination.at | none | factor that changes how reliable the first cue is
+trials:analysis.cue_combination.conflict | | factor by which the cues of the standard disagree
+trials:analysis.cue_combination.standard | | interval whose cues disagree
+trials:analysis.cue_combination.first_shows | | variable of that interval that the first cue shows
+trials:analysis.cue_combination.second_shows | | variable of that interval that the second cue shows
+trials:analysis.stage | reach | of the reach
+trials:analysis.start | start | place where reaches begin
+trials:analysis.target | target | place where they end
+trials:analysis.field | the first of type matrix_viscous | field that is learnt
+trials:analysis.clamp | clamp | probe whose reaches a channel holds
+trials:analysis.cycle | combinations of the factors | trials of a cycle
+trials:analysis.error | maximum | error of a reach that is learnt from
+trials:analysis.quantities | ["error"] | of reaches, compared between the conditions of `by`: error, movement_time, peak_speed, direction, area, force_compensation
+trials:analysis.cycles | all | cycles of each block that such a comparison takes
+analysis.planned | none | planned tests: "a < b", "a > b" or "a != b" of conditions
+analysis.reference | the first | condition that the others are compared with
+power.definition | this file | definition that a file with [power] alone asks about
+power.watch | | name of the test of the report whose power is asked for
+power.alpha | | below which p counts
+power.target | | power for which participants are counted
+power.replications | | studies of each cell
+power.null_replications | | studies of each cell without an effect
+power.block | | studies of a part
+power.seed | | of every random number
+power.depth | responses | whether answers alone or full sessions are simulated
+power.check.cells | | cells that are also simulated in full
+power.check.replications | | studies of each of them
+power.responses | nothing is known | what responses need to know (docs/guide-power.md)
+power.vary[].key | | key that is varied, with its tables: observer.lapse.median
+power.vary[].values | | its values
+power.vary[].none | it makes no effect | its value without an effect
+guidance.kind | trajectory | whether a point is followed in time, or a curve at the participant's own pace
+guidance.force_limit | | of the commanded force
+guidance.approach_speed | | peak speed on the way to the start
+guidance.settle_distance | | the hand has arrived when it is this near the start
+guidance.wait | | time that the hand must stay there
+guidance.wait_timeout | | the pass is aborted after this time
+guidance.recovery | | time without force after an aborted pass
+guidance.recall | guided | whether the hand is led in the test, or finds path and force itself
+guidance.pause_beyond | | a playback waits for a hand that is farther from the expert's
+guidance.run_timeout | | longest duration of a run at one's own pace
+recording.stimulus_rate | | samples of the stored target curves
+path_memory.visual_noise | needed | of a place that was seen
+path_memory.haptic_noise | needed | of a place to which the hand was led
+path_memory.forgetting | needed | drift between passes
+path_memory.correlation | needed | time over which errors are alike
+pace.pace | needed | along a path of the reference curvature
+pace.variability | needed | spread of the intended speed within a pass
+pace.correlation | needed | time over which it is alike
+subject.visual_weber | needed | spread of a seen bar height, as a share of it
+subject.haptic_weber | needed | spread of a felt force, as a share of it
+subject.visual_memory_noise | needed | of a height kept in memory, as a force
+subject.haptic_memory_noise | needed | of a force kept in memory
+subject.haptic_bias | needed | spread of the felt scale from pass to pass
+subject.bar_misjudgement | needed | spread of newtons per bar height before calibration
+subject.calibration_loss | needed | share of a calibration that is gone after a block
+subject.forgetting | needed | drift of the memory between passes
+subject.memory_correlation | needed | time over which memory errors are alike
+subject.production_bias | needed | spread of the produced scale from recall to recall
+subject.timing_error | needed | spread of the time at which a remembered force comes
+subject.timing_correlation | needed | time over which timing errors are alike
+subject.visual_delay | needed | reaction to what is seen
+subject.haptic_delay | needed | reaction to what is felt
+subject.force_noise | needed | spread of a held force, as a share of it
+subject.force_noise_time | needed | its correlation time
+subject.tremor | needed | root mean square of the tremor
+subject.tremor_frequency | needed | of the tremor
+force_training:analysis.samples | | of the common time base
+force_training:analysis.filter_width | | of the box filter on the applied force
+force_training:analysis.power | | exponent of the differences
+force_training:analysis.force_weight | | weight of the difference of forces
+force_training:analysis.slope_weight | | weight of the difference of slopes
+force_training:analysis.penalty | | cost of a step that stretches or compresses time
+force_training:analysis.cost_share | needed | weight of the alignment's cost in the score
+force_training:analysis.force_share | needed | weight of the difference of forces in the score
+force_training:analysis.slope_share | needed | weight of the difference of slopes in the score
+force_training:analysis.step_pattern | published | steps that the alignment may take
+force_training:analysis.window | no window | greatest difference in time
+force_training:analysis.open_begin | false | whether the applied curve may begin late
+force_training:analysis.open_end | false | whether it may end early
+bone.bones | | procedural temporal, procedural mandible, or files; procedures use them in turn
+bone.seed | 1 | of procedural bones
+bone.spacing | of the bone | of voxels
+bone.centre | | of the volume in the world
+bone.place | x_to and y_to say | how an ear lies, instead of x_to and y_to: its side up, the back of the head to the participant
+bone.mirror | false | whether left and right of the bones are exchanged
+bone.x_to | place says | direction of the bone's x axis in the world
+bone.y_to | place says | direction of its y axis
+tools.in_hand | | names of tools, in the order in which a button selects them
+tools.NAME.type | | what the tool is
+tools.NAME.handle_radius | | of the tool's handle
+tools.NAME.handle_length | | of the tool's handle
+tools.NAME.kind | | of the burr
+tools.NAME.diameter | | of the burr, the greatest
+tools.NAME.length | | of a burr that is no ball, along its axis
+tools.NAME.narrow_diameter | half of the diameter | of the tip of a cone or the neck of a pear
+tools.NAME.sample_spacing | | edge of a cell of the burr with one sample
+tools.NAME.removal_rate | | share of the immersed volume that is removed
+tools.NAME.falloff | | of that rate with latitude
+tools.NAME.tangential_gain | | of the force along the surface
+tools.NAME.rotation | clockwise | how the burr turns, seen from the handle
+tools.NAME.wear_volume | never | volume of bone after which the burr removes half as much
+tools.NAME.shaft_radius | not felt | of the shaft behind the burr, which bone is felt by
+tools.NAME.shaft_length | not felt | of that shaft
+tools.NAME.feel.first_gain | | force for an immersed volume just after contact
+tools.NAME.feel.second_gain | | the same deeper
+tools.NAME.feel.threshold | | immersed volume at which the gain changes
+tools.NAME.feel.force_limit | | of the contact
+tools.NAME.feel.least_agreement | | of the pushes of samples, below which the force fades
+tools.NAME.radius | | of the opening of a suction tube, or of the tip of a probe
+tools.NAME.width | | of the plane of a cut
+tools.NAME.height | | of the plane of a cut
+tools.NAME.depth | | of a cut
+tools.NAME.shape | a burr is a ball | of the burr, or of the plate
+tools.NAME.holes | 4 | of a straight plate
+tools.NAME.contact.samples | | of the plate that touch
+tools.NAME.contact.extrusion | | by which they stand out
+tools.NAME.contact.reach | | within which bone is felt
+tools.NAME.contact.stiffness | | of the contact
+tools.NAME.reach | | within which a grip takes a piece
+drilling.force_limit | | of the commanded force
+drilling.time_limit | | longest duration of a procedure
+drilling.handle | | direction from the tip along the handle
+drilling.scale | | size of the device's workspace over that of the scene
+drilling.recovery | | time without force after an aborted pass
+buttons.analog_pedal | false | whether the pedal sets the speed of the burr
+keys.analog_pedal | false | the same as in [buttons]; the value in [keys] counts if both are there
+soft_tissue.NAME.structure | | of the bone, by any of its names, that is soft
+soft_tissue.NAME.stiffness | | of its surface under a burr or a tube
+soft_tissue.NAME.tears_at | | force at which it tears
+soft_tissue.NAME.suction | | pull at which it comes off a tube that sucks
+second_hand.radius | | of the opening of a tube at a second device, which sucks and rinses
+second_hand.handle_length | | of the tube
+second_hand.rinse_reach | | of its water
+second_hand.shaft_length | | of the tube behind its end that is felt, too
+second_hand.tool_stiffness | | of the tube at the tool in the first hand; 0: they pass through each other
+second_hand.tool_damping | | by which the speed of their approach makes that contact stiffer
+second_hand.feel.first_gain | | force for an immersed volume of the tube's end just after contact
+second_hand.feel.second_gain | | the same deeper
+second_hand.feel.threshold | | immersed volume at which the gain changes
+second_hand.feel.force_limit | | of the contact
+second_hand.feel.least_agreement | | of the pushes of samples, below which the force fades
+second_hand.handle | | direction from the tip along the handle of the second device
+second_hand.force_limit | | of the force that its device is given
+second_hand.suck | [0] | buttons of the second device that make it suck
+second_hand.rinse | [1] | buttons of the second device that let water run
+second_hand.beside | [0.003, 0.003, 0.0] | the burr's tip, where a virtual participant holds the tube
+heat.turns | | of the burr at full power; without [heat] nothing warms up
+heat.share | | of the work of its teeth that stays as heat
+heat.capacity | | of what is warmed
+heat.loss | | to what lies around
+heat.rinsed_loss | | likewise, under water
+heat.body | | temperature of what lies around
+heat.harmful | | temperature above which time is counted
+bleeding.structures | | of the bone, by any of their names, that bleed where they are opened
+bleeding.rate | | of each opening
+pieces.capacity | | greatest number of pieces
+pieces.smallest_piece | | in voxels; smaller parts turn to dust
+pieces.moves_per_tick | | voxels that are moved to a new piece per tick, at most
+pieces.split_initial | | whether parts that are separate at the start become pieces
+camera.eye | | of the microscope
+camera.target | | point that the microscope looks at
+camera.up | | upward in the picture
+camera.field_of_view | | at the start
+camera.move_gain | | distance of the view for a distance of the hand
+camera.turn_gain | | angle of the view for a distance of the hand
+camera.zoom_rate | | of a held button
+camera.narrowest | | field of view
+camera.widest | | field of view
+dust.cell | | edge of a cell
+dust.bulking | | volume of loose dust over that of solid bone
+dust.fall_speed | | of dust
+dust.slope | | steepest slope of a pile at rest
+dust.suction_rate | | volume of dust that suction takes
+dust.suction_reach | | distance from the mouth of the tube
+sound.card | false | whether sound is played live
+sound.vibration_gain | | strength of the burr's vibration in the handle
+sound.thin_threshold | | thinner bone sounds higher
+sound.thin_rise | | rise of the pitch, as a share, where no bone is left
+sound.spectra | built in | file with spectra of the sound
+sound.vibration | built in | file with spectra of the vibration
+drilling_hand.start | | of the hand, above the region's centre
+drilling_hand.inward | | direction into the bone
+drilling_hand.along | | direction of strokes
+drilling_hand.width | | of the region along strokes
+drilling_hand.height | | of the region across strokes
+drilling_hand.depth | | below the place where bone was first touched
+drilling_hand.line | | distance between neighbouring strokes
+drilling_hand.press | | pressing force
+drilling_hand.speed | | along a stroke
+drilling_hand.hover | | height above the bone between strokes
+drilling_hand.force_noise | | as a share of the press
+drilling_hand.force_noise_time | | its correlation time
+drilling_hand.tremor | | root mean square of the tremor
+drilling_hand.tremor_frequency | | of the tremor
+drilling_hand.suction_time | | duration of a suction
+drilling_hand.power_button | | of the device: the burr turns
+drilling_hand.next_button | | takes the next tool; -1: no suction
+drilling_hand.previous_button | | takes the tool before
+drilling_hand.look_button | | turns the camera while held; -1: it is never used
+drilling_hand.suction_tool | | place of the suction among the tools
+drilling_hand.strokes_to_suction | | suction follows after this many strokes
+cavity.inward | towards the structure that it ends at | direction into the bone
+cavity.beside | the facial nerve | structure beside which the cavity ends
+cavity.offset | none | of its end from that structure
+cavity.radius | | at its end
+cavity.slope | | radius by height
+cavity.margin | | to any structure
+cavity.structures | none | structures that have margins of their own
+cavity.margins | none | theirs
+nerve_monitor.threshold | | of an event
+nerve_monitor.highest_threshold | | to which it rises by itself while tones go on
+nerve_monitor.rises_after | | time with a tone after which it rises
+nerve_monitor.returns_after | | quiet after which it is as it was
+nerve_monitor.artefact_filter | true | whether what crosses in every channel at once is left out
+nerve_monitor.muted | false | whether all channels are silent at the beginning
+nerve_monitor.heard_in | all | procedures in which the participant hears the monitor; every other: the first participant from the first on, the second from the second on
+nerve_monitor.stimulus | | current of the probe
+nerve_monitor.stimuli | | pulses of the probe in a second
+nerve_monitor.bursts | | bursts in a second right beside a nerve, without force or speed
+nerve_monitor.reach | | distance over which they fall to 1/e
+nerve_monitor.heat | | power that a newton under a turning burr turns into heat
+nerve_monitor.nerves[].structure | | of the bone, that is watched
+nerve_monitor.nerves[].channels | | muscles, a channel each, eight in all at most; without, one named like the nerve
+nerve_monitor.curves[].name | | of a nerve that is drawn as a curve
+nerve_monitor.curves[].points_mm | | its points in the bone's frame
+nerve_monitor.curves[].radius_mm | | of the nerve
+nerve_monitor.curves[].channels | | muscles, a channel each; without, one named like the nerve
+hints.file | none | with safe values, as haptrial bone safe writes it; relative to the definition
+hints.kinds | | what hints are about: too much force, too much speed, bone that other bone hides
+hints.shown_in | all | procedures in which the participant sees hints; every other: the first participant from the first on, the second from the second on
+hints.reach | | distance from a structure up to which forces and speeds are judged
+hints.fewest | | faulty removals that begin a hint
+hints.within | | time in which they come
+hints.holds | | time for which a hint stays after the last one
+hints.sound | false | whether a chime is heard when a hint begins
+hints.force_text | | what a participant reads who presses too hard; {structure} is the nearest one's name
+hints.speed_text | | likewise of a tip that is too fast
+hints.hidden_text | | likewise of bone that cannot be seen
+virtual_surgeons.reaction | | time from a tone of the nerve monitor, or a hint, until it acts
+virtual_surgeons.heeds_hints | | share of hints that a virtual surgeon heeds
+virtual_surgeons.rough | | burr for most of the bone
+virtual_surgeons.fine | | burr near structures
+virtual_surgeons.between | | spread of skill between surgeons
+virtual_surgeons.within | | spread from procedure to procedure
+virtual_surgeons.learning | | share of the lack of skill that a procedure takes
+virtual_surgeons.power_button | | of the device: the burr turns
+virtual_surgeons.next_button | | takes the next tool
+virtual_surgeons.previous_button | | takes the tool before
+virtual_surgeons.look_button | | turns the camera while held; -1: none
+virtual_surgeons.finish_button | | ends the procedure; -1: none
+virtual_surgeons.skill | | from 0 to 1
+virtual_surgeons.skill.NAME | | skill of the group, from 0 to 1
+buttons.power | none | numbers of the device: the burr turns
+buttons.next_tool | none | numbers of the device: takes the next tool
+buttons.previous_tool | none | numbers of the device: takes the tool before
+buttons.camera_move | none | numbers of the device: while held, the hand moves the camera
+buttons.camera_turn | none | numbers of the device: while held, the hand turns the camera
+buttons.zoom_in | none | numbers of the device: makes the picture larger
+buttons.zoom_out | none | numbers of the device: makes it smaller
+buttons.carry | none | numbers of the device: while held, the touched piece of bone goes with the hand
+buttons.apply | none | numbers of the device: fixes the plate or cuts the plane
+buttons.detach | none | numbers of the device: the plate that was fixed last comes off
+buttons.finish | none | numbers of the device: ends the procedure
+buttons.still | none | numbers of the device: shows the next still
+buttons.reverse | none | numbers of the device: burrs turn the other way
+keys.power | none | keys of the window: the burr turns
+keys.next_tool | none | keys of the window: takes the next tool
+keys.previous_tool | none | keys of the window: takes the tool before
+keys.camera_move | none | keys of the window: while held, the hand moves the camera
+keys.camera_turn | none | keys of the window: while held, the hand turns the camera
+keys.zoom_in | none | keys of the window: makes the picture larger
+keys.zoom_out | none | keys of the window: makes it smaller
+keys.carry | none | keys of the window: while held, the touched piece of bone goes with the hand
+keys.apply | none | keys of the window: fixes the plate or cuts the plane
+keys.detach | none | keys of the window: the plate that was fixed last comes off
+keys.finish | none | keys of the window: ends the procedure
+keys.still | none | keys of the window: shows the next still
+keys.reverse | none | keys of the window: burrs turn the other way
+)";
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,213 @@
+#include "experiments/runner/devices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/base/nearest.h"
+#include "core/device/force_dimension.h"
+#include "core/device/gamepad.h"
+#include "core/device/mouse.h"
+#include "core/device/open_haptics.h"
+#include "core/device/registered_devices.h"
+#include "core/device/replay.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::experiments {
+namespace {
+
+constexpr std::string_view kReplay = "replay:";
+constexpr const char* kGamepad = "gamepad";
+
+/// A device with a person at it, or with a recording in a person's place.
+class DeviceRig final : public protocols::Rig {
+ public:
+  explicit DeviceRig(std::unique_ptr<device::Device> device) : device_(std::move(device)) {}
+  device::Device& device() override { return *device_; }
+
+ private:
+  std::unique_ptr<device::Device> device_;
+};
+
+class MouseRig final : public protocols::Rig {
+ public:
+  explicit MouseRig(const protocols::Definition& d) : device_(d.mouse, d.rate) {}
+  device::Device& device() override { return device_; }
+  device::MouseDevice* mouse() override { return &device_; }
+
+ private:
+  device::MouseDevice device_;
+};
+
+/// A mouse whose pointer a game controller moves.
+class GamepadRig final : public protocols::Rig {
+ public:
+  explicit GamepadRig(const protocols::Definition& d)
+      : gamepad_(d.gamepad), device_(mouse_of(d), d.rate, kGamepad) {}
+  device::Device& device() override { return device_; }
+  device::MouseDevice* mouse() override { return &device_; }
+  device::Gamepad* gamepad() override { return &gamepad_; }
+
+ private:
+  static device::MouseParameters mouse_of(const protocols::Definition& d) {
+    device::MouseParameters mouse = d.mouse;
+    mouse.stop_button = d.gamepad.stop_button;
+    return mouse;
+  }
+  device::Gamepad gamepad_;
+  device::MouseDevice device_;
+};
+
+/// Devices that people hold, each with the definition's envelope.
+class SeveralDevices final : public protocols::Rig {
+ public:
+  SeveralDevices(std::unique_ptr<protocols::Rig> first, const device::EnvelopeLimits& envelope)
+      : first_(std::move(first)), envelope_(envelope) {}
+  void add(std::unique_ptr<protocols::Rig> rig) { others_.push_back(std::move(rig)); }
+  device::Device& device() override { return first_->device(); }
+  device::MouseDevice* mouse() override { return first_->mouse(); }
+  device::Gamepad* gamepad() override { return first_->gamepad(); }
+  std::vector<protocols::DeviceSet::Arm> others() override {
+    std::vector<protocols::DeviceSet::Arm> arms;
+    for (const auto& rig : others_) {
+      arms.push_back({&rig->device(), envelope_});
+    }
+    return arms;
+  }
+
+ private:
+  std::unique_ptr<protocols::Rig> first_;
+  device::EnvelopeLimits envelope_;
+  std::vector<std::unique_ptr<protocols::Rig>> others_;
+};
+
+std::unique_ptr<device::Device> replayed(const std::string& file, double rate) {
+  const record::SessionReader reader(file);
+  if (reader.info().rate != rate) {
+    throw InputError(fmt::format("{}: was recorded at {} Hz; allowed: the definition's rate, {} Hz",
+                                 file, reader.info().rate, rate));
+  }
+  std::vector<PointState> hand;
+  std::uint64_t first = 0;
+  for (const record::Sample& sample : reader.samples(0, reader.sample_count())) {
+    first = hand.empty() ? sample.sequence : first;
+    hand.push_back({sample.position, sample.velocity});
+  }
+  std::vector<std::size_t> starts;
+  for (const record::PassRow& pass : reader.passes()) {
+    if (pass.status == record::PassStatus::kCompleted) {
+      starts.push_back(static_cast<std::size_t>(pass.first_sample - first));
+    }
+  }
+  device::DeviceInfo info;
+  info.name = "replay";
+  info.max_force = reader.info().device_max_force;
+  info.workspace_radius = reader.info().device_workspace_radius;
+  info.simulated = reader.info().simulated;
+  return std::make_unique<device::ReplayDevice>(std::move(hand), rate, info, std::move(starts));
+}
+
+std::unique_ptr<protocols::Rig> open_rig(
+    const DeviceChoice& choice, const protocols::Definition& d,
+    const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig) {
+  const auto with = [](auto device) { return std::make_unique<DeviceRig>(std::move(device)); };
+  if (choice.name == "mouse") {
+    return std::make_unique<MouseRig>(d);
+  }
+  if (choice.name == kGamepad) {
+    if (d.gamepad.input.empty()) {
+      throw InputError(fmt::format(
+          "{}: --device gamepad needs a table [gamepad] whose input says which input device that "
+          "is; /dev/input/by-id names what is connected",
+          d.file_name));
+    }
+    return std::make_unique<GamepadRig>(d);
+  }
+  if (choice.name == "force-dimension") {
+    device::ForceDimensionParameters parameters = d.force_dimension;
+    parameters.index += choice.number;
+    return with(std::make_unique<device::ForceDimensionDevice>(parameters, d.rate, choice.library));
+  }
+  if (choice.name == "open-haptics") {
+    return with(
+        std::make_unique<device::OpenHapticsDevice>(d.open_haptics, d.rate, choice.library));
+  }
+  if (const auto file = replayed_file(choice.name)) {
+    return with(replayed(*file, d.rate));
+  }
+  if (const device::RegisteredDevice* own = device::registered_device(choice.name)) {
+    return with(own->open(device::setting_of(choice.name), choice.number, d.rate));
+  }
+  check_device_name(choice.name);
+  return virtual_rig();
+}
+
+/// A weaker device would saturate unseen, a smaller one would stop at its walls.
+void check_reach(const device::DeviceInfo& info, const protocols::Definition& d) {
+  const auto check = [&](const char* key, double wanted, double most, const char* unit) {
+    if (wanted > most) {
+      throw InputError(
+          fmt::format("{}: envelope.{} is {} {}; allowed: at most {}, which is what "
+                      "the {} gives",
+                      d.file_name, key, wanted, unit, most, info.name));
+    }
+  };
+  check("max_force", d.envelope.max_force, info.max_force, "N");
+  check("workspace_radius", d.envelope.workspace_radius, info.workspace_radius, "m");
+}
+
+}  // namespace
+
+void check_device_name(const std::string& name) {
+  if (name == kReplay) {
+    throw InputError("--device replay: names no file; write replay:FILE");
+  }
+  std::vector<std::string> known = device::device_names();
+  if (!name.starts_with(kReplay) && device::registered_device(name) == nullptr &&
+      std::find(known.begin(), known.end(), name) == known.end()) {
+    known.emplace_back("replay:FILE");
+    throw InputError(not_allowed("--device", fmt::format("'{}'", name), known) +
+                     " (haptrial devices lists which are present)");
+  }
+}
+
+bool takes_library(const std::string& device) {
+  return device == "force-dimension" || device == "open-haptics";
+}
+
+void check_library(const std::string& device, const std::string& library) {
+  if (!library.empty() && !takes_library(device)) {
+    throw InputError(
+        fmt::format("--library is given with device {}, which uses no vendor's library; leave it "
+                    "out, or choose force-dimension or open-haptics",
+                    device));
+  }
+}
+
+std::optional<std::string> replayed_file(const std::string& device) {
+  return device.starts_with(kReplay) ? std::optional(device.substr(kReplay.size())) : std::nullopt;
+}
+
+std::unique_ptr<protocols::Rig> make_rig(
+    const std::vector<DeviceChoice>& choices, const protocols::Definition& d,
+    const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig) {
+  std::unique_ptr<protocols::Rig> rig = open_rig(choices.front(), d, virtual_rig);
+  const auto wanted = static_cast<std::size_t>(d.devices());
+  if (1 + rig->others().size() < wanted) {  // a virtual rig has all of them
+    auto together = std::make_unique<SeveralDevices>(std::move(rig), d.envelope);
+    for (std::size_t i = 1; i < wanted; ++i) {
+      DeviceChoice choice = choices[std::min(i, choices.size() - 1)];
+      choice.number += i < choices.size() ? 0 : static_cast<int>(i - choices.size() + 1);
+      together->add(open_rig(choice, d, virtual_rig));
+    }
+    rig = std::move(together);
+  }
+  check_reach(rig->device().info(), d);
+  for (const protocols::DeviceSet::Arm& arm : rig->others()) {
+    check_reach(arm.device->info(), d);
+  }
+  return rig;
+}
+
+}  // namespace haptrial::experiments

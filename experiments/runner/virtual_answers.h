@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/pages/page.h"
+#include "experiments/runner/page_input.h"
+
+namespace haptrial::experiments {
+
+/// Answer of a virtual participant, so that a dry run goes through every page: it consents, chooses
+/// at random, and is mostly right-handed. A random stream of the item's own decides, so that the
+/// answer does not depend on other items.
+/// @param session_seed  of the participant
+/// @param occasion      "before", "after block 2", …
+PageAnswer virtual_answer(const pages::Page& page, const pages::Item& item,
+                          std::uint64_t session_seed, const std::string& occasion);
+
+}  // namespace haptrial::experiments

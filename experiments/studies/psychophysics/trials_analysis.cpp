@@ -1,0 +1,193 @@
+#include "experiments/studies/psychophysics/trials_analysis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+#include <map>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "experiments/studies/psychophysics/reach_routes.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
+#include "protocols/psychophysics/trials_protocol.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using analysis::trials::AnalysisKind;
+using analysis::trials::PlanDefaults;
+
+/// 1 / choices where a procedure learns whether the first answer was right; nothing where an answer
+/// "yes", or a formula of it, is what counts.
+std::optional<double> guess_of(const protocols::TrialsDefinition& d) {
+  const bool formula = std::any_of(d.tracks.begin(), d.tracks.end(),
+                                   [](const auto& track) { return !track.counts.empty(); });
+  if (formula || d.questions.empty() || d.questions.front().correct.empty() ||
+      d.questions.front().choices.size() < 2) {
+    return std::nullopt;
+  }
+  return 1.0 / static_cast<double>(d.questions.front().choices.size());
+}
+
+void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
+  for (const protocols::Factor& factor : d.order.factors) {
+    defaults.factors.push_back(factor.name);
+  }
+  if (d.groups.size() > 1) {
+    defaults.factors.emplace_back("group");
+  }
+  defaults.names = {"condition", "block", "track", "probe", "group"};
+  for (const protocols::Block& block : d.order.blocks) {
+    for (const protocols::GivenValue& value : block.values) {
+      defaults.names.push_back(value.name);
+    }
+  }
+  Table root = Table::parse(d.text, d.file_name);
+  if (root.has("variables")) {
+    std::ranges::copy(root.table("variables").keys_as_written(),
+                      std::back_inserter(defaults.names));
+  }
+}
+
+/// A level as a table of trials shows it; empty: it depends on others.
+std::string level_of_formula(const std::string& formula) {
+  constexpr char kQuote = '\'';
+  if (formula.size() > 1 && formula.front() == kQuote && formula.back() == kQuote) {
+    const std::string word = formula.substr(1, formula.size() - 2);
+    return word.find(kQuote) == std::string::npos ? word : std::string();
+  }
+  char* end = nullptr;
+  const double number = std::strtod(formula.c_str(), &end);
+  return end != formula.c_str() && *end == '\0' ? fmt::format("{}", number) : std::string();
+}
+
+/// Levels of factors and of what blocks give, and what [variables] says elsewhere. Factors with a
+/// level that depends on others are left out.
+std::map<std::string, std::vector<std::string>> stated_levels(const protocols::TrialsDefinition& d,
+                                                              Table& root) {
+  std::map<std::string, std::vector<std::string>> formulas;
+  for (const protocols::Factor& factor : d.order.factors) {
+    formulas[factor.name] = factor.levels;
+  }
+  for (const protocols::Block& block : d.order.blocks) {
+    for (const protocols::GivenValue& value : block.values) {
+      formulas[value.name].push_back(value.formula);
+    }
+  }
+  std::map<std::string, std::vector<std::string>> stated;
+  for (auto& [name, all] : formulas) {
+    if (root.has("variables") && root.table("variables").has(name)) {
+      Table variables = root.table("variables");
+      all.push_back(variables.is_table(name)   ? "$" + name
+                    : variables.has_text(name) ? variables.text(name)
+                                               : fmt::format("{}", variables.number(name, {}, "")));
+    }
+    std::vector<std::string> levels;
+    for (const std::string& formula : all) {
+      const std::string level = level_of_formula(formula);
+      if (std::find(levels.begin(), levels.end(), level) == levels.end()) {
+        levels.push_back(level);
+      }
+    }
+    if (std::find(levels.begin(), levels.end(), "") == levels.end()) {
+      stated[name] = levels;
+    }
+  }
+  return stated;
+}
+
+/// Names that the comparison of cues may use.
+analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
+  Table root = Table::parse(d.text, d.file_name);
+  analysis::trials::CueNames names;
+  names.levels = stated_levels(d, root);
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.variables.begin(), names.variables.end(), name) == names.variables.end()) {
+      names.variables.push_back(name);
+    }
+  };
+  for (const protocols::Interval& interval : d.intervals) {
+    names.intervals.push_back(interval.name);
+    for (const protocols::GivenValue& value : interval.values) {
+      add(value.name);
+    }
+  }
+  if (root.has("variables")) {
+    for (const std::string& name : root.table("variables").keys_as_written()) {
+      add(name);
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
+  PlanDefaults defaults;
+  add_names(d, defaults);
+  defaults.reaching = reaching_names(d);
+  defaults.cues = cue_names(d);
+  defaults.levels = defaults.cues.levels;
+  for (const auto& group : d.groups) {
+    defaults.levels["group"].push_back(group.name);
+  }
+  for (const protocols::Block& block : d.order.blocks) {
+    if (!block.practice) {
+      defaults.levels["block"].push_back(block.name);
+    }
+  }
+  if (!d.questions.empty() && !d.questions.front().types()) {
+    defaults.choices = d.questions.front().answers();
+  }
+  for (std::size_t i = 1; i < d.questions.size() && defaults.rating.empty(); ++i) {
+    defaults.rating = d.questions[i].correct.empty() ? d.questions[i].name : std::string();
+  }
+  if (d.tracks.empty()) {
+    return defaults;
+  }
+  const protocols::Track& track = d.tracks.front();
+  defaults.kind = track.kind == "magnitude"    ? AnalysisKind::kMagnitude
+                  : track.kind == "adjustment" ? AnalysisKind::kAdjustment
+                                               : AnalysisKind::kPsychometric;
+  defaults.guess = guess_of(d);
+  defaults.axis = track.axis;
+  if (std::ranges::all_of(d.tracks, [&](const auto& each) { return each.falls == track.falls; })) {
+    defaults.falls = track.falls;
+  }
+  defaults.axis.unit = track.unit;
+  return defaults;
+}
+
+analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
+  PlanDefaults defaults;
+  bool scripted = false;
+  try {
+    // A document of its own: what is wrong with it was noted by who read the definition.
+    Table copy = Table::parse(root.source(), "");
+    const auto definition = protocols::trials_protocol().read(copy, "", nullptr);
+    scripted = dynamic_cast<const protocols::TrialsDefinition&>(*definition).script.has_value();
+    defaults = plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition));
+  } catch (const InputError&) {
+    defaults = {};
+  }
+  analysis::trials::TrialsPlan plan = analysis::trials::read_trials_plan(root, defaults);
+  // Levels that follow from answers pull both tests from 0; a script cannot be asked again.
+  plan.serial = plan.serial && !scripted;
+  return plan;
+}
+
+analysis::trials::ProcedureOf procedures_of(const protocols::TrialsDefinition& definition) {
+  return [&definition](const std::string& name) -> std::unique_ptr<psychometric::Procedure> {
+    for (const protocols::Track& track : definition.tracks) {
+      const bool own = name == track.name || name.starts_with(track.name + ", ");
+      if (own && !track.listed && track.begin && !definition.script) {
+        return track.begin(1, name);
+      }
+    }
+    return nullptr;
+  };
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "analysis/psychophysics/fit/track_estimate.h"
+#include "analysis/psychophysics/fit/trials_plan.h"
+
+namespace haptrial::protocols {
+struct TrialsDefinition;
+}
+
+namespace haptrial::experiments {
+
+/// Values of a definition of trials that stand in for keys that [analysis] does not have: the axis
+/// and unit of its procedure, the guess rate of its first question, its factors.
+analysis::trials::PlanDefaults plan_defaults(const protocols::TrialsDefinition& definition);
+
+/// The table [analysis] of a definition. Problems are noted.
+analysis::trials::TrialsPlan read_trials_analysis(Table& root);
+
+/// Begins the procedures of a definition anew, by the names that /levels has.
+/// @param definition  outlives it
+analysis::trials::ProcedureOf procedures_of(const protocols::TrialsDefinition& definition);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,203 @@
+#include "experiments/studies/psychophysics/trials_study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "analysis/psychophysics/data/felt_meshes.h"
+#include "analysis/psychophysics/data/read_trials.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/psychophysics/report/write_trials.h"
+#include "analysis/psychophysics/study/reach_quantities.h"
+#include "analysis/psychophysics/study/trials_study.h"
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "experiments/studies/psychophysics/reach_routes.h"
+#include "experiments/studies/psychophysics/trials_analysis.h"
+#include "experiments/studies/psychophysics/trials_study_simulation.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
+#include "protocols/psychophysics/trials_protocol.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+namespace trials = analysis::trials;
+using protocols::TrialsDefinition;
+
+const TrialsDefinition& trials_of(const protocols::Definition& definition) {
+  return dynamic_cast<const TrialsDefinition&>(definition);
+}
+
+/// Definition that a session was recorded with.
+std::unique_ptr<protocols::Definition> definition_of(const record::SessionInfo& info) {
+  Table root = Table::parse(info.definition, info.definition_name);
+  auto definition = protocols::trials_protocol().read(root, info.definition_name, nullptr);
+  root.check();
+  return definition;
+}
+
+trials::TrialsPlan plan_of_text(const std::string& text, const std::string& file_name) {
+  Table root = Table::parse(text, file_name);
+  trials::TrialsPlan plan = read_trials_analysis(root);
+  root.check();
+  return plan;
+}
+
+/// Tests that were given to analyze stand in place of the definition's.
+void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
+                  std::vector<std::string>& remarks) {
+  if (!request.reference.empty()) {
+    throw InputError(
+        "--reference names a condition of force curves; trials compare every two conditions, so "
+        "leave it out");
+  }
+  if (!request.planned.empty()) {
+    plan.plan = analysis::parse_analysis_plan(request.planned, "", "--planned");
+    std::ranges::transform(plan.plan.tests, plan.plan.tests.begin(), trials::with_short_numbers);
+    remarks.emplace_back("The planned tests were given to analyze, not stated in the definition.");
+  }
+}
+
+/// Names in planned tests are of the quantity with most conditions: force compensation has none
+/// where no channel came.
+void check_planned(const trials::TrialsResult& result) {
+  const auto most = std::max_element(result.quantities.begin(), result.quantities.end(),
+                                     [](const trials::Quantity& a, const trials::Quantity& b) {
+                                       return a.table.cells.size() < b.table.cells.size();
+                                     });
+  if (most != result.quantities.end() && most->compared) {
+    analysis::check_plan(most->table, result.plan.plan);
+  }
+}
+
+/// The sessions that a participant should have had and has not, and those that there are twice.
+void add_sessions_of(const std::string& participant, const std::multiset<int>& there, int sessions,
+                     std::vector<std::string>& remarks) {
+  std::vector<int> missing, twice;
+  for (int session = 1; session <= sessions; ++session) {
+    const std::size_t files = there.count(session);
+    if (files == 0) {
+      missing.push_back(session);
+    } else if (files > 1) {
+      twice.push_back(session);
+    }
+  }
+  if (!missing.empty()) {
+    remarks.push_back(fmt::format("{} has no {} {}.", participant,
+                                  missing.size() > 1 ? "sessions" : "session",
+                                  fmt::join(missing, ", ")));
+  }
+  if (!twice.empty()) {
+    remarks.push_back(fmt::format("{} has several files of {} {}; all of them are analysed.",
+                                  participant, twice.size() > 1 ? "sessions" : "session",
+                                  fmt::join(twice, ", ")));
+  }
+}
+
+/// Sentences about sessions that the study planned and the folder lacks.
+void add_missing(const AnalysisRequest& request, const TrialsDefinition& definition,
+                 const trials::TrialsData& data, std::vector<std::string>& remarks) {
+  std::map<std::string, std::multiset<int>> sessions;
+  for (const trials::StudySession& session : data.sessions) {
+    sessions[session.participant].insert(session.session);
+  }
+  const auto planned = static_cast<std::size_t>(definition.design.participants);
+  if (request.pilots == Pilots::kLeftOut && sessions.size() < planned) {
+    remarks.push_back(fmt::format("{} of {} planned participants {} a session in this folder.",
+                                  sessions.size(), planned, sessions.size() == 1 ? "has" : "have"));
+  }
+  for (const auto& [participant, there] : sessions) {
+    if (definition.sessions() > 1) {
+      add_sessions_of(participant, there, definition.sessions(), remarks);
+    }
+  }
+  if (const auto unfinished = unfinished_sessions(request.folder); !unfinished.empty()) {
+    remarks.push_back(fmt::format("Not analysed, because the session is unfinished: {}.",
+                                  fmt::join(unfinished, ", ")));
+  }
+}
+
+class TrialsStudy final : public Study {
+ public:
+  const protocols::Protocol& protocol() const override { return protocols::trials_protocol(); }
+  void read_analysis(Table& root, bool) const override { read_trials_analysis(root); }
+  std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override;
+  std::vector<std::string> analyze(const AnalysisRequest& request) const override;
+  std::unique_ptr<StudySimulation> study_simulation(const std::vector<NamedText>& definition,
+                                                    const std::string& watched) const override {
+    const std::string& file_name = definition.front().file_name;
+    Table root = Table::parse(definition);
+    auto read = protocols::trials_protocol().read(root, file_name, nullptr);
+    root.check();
+    auto* studied = dynamic_cast<protocols::StudiedDefinition*>(read.release());
+    return trials_study_simulation(std::unique_ptr<const protocols::StudiedDefinition>(studied),
+                                   plan_of_text(root.source(), file_name), definition, watched);
+  }
+};
+
+std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {
+  const trials::TrialsPlan plan = plan_of_text(d.text, d.file_name);
+  std::vector<std::string> warnings;
+  for (const protocols::Track& track : trials_of(d).tracks) {
+    const bool outside = plan.function.axis.scale != psychometric::Scale::kLinear &&
+                         track.low <= plan.function.axis.origin;
+    if (plan.functions && outside) {
+      warnings.push_back(
+          fmt::format("levels of {} begin at {:g}, but the axis of analysis.function begins above "
+                      "{:g}; levels up to there are left out of the function",
+                      track.name, track.low, plan.function.axis.origin));
+    }
+  }
+  return warnings;
+}
+
+std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) const {
+  const record::SessionInfo& first = request.files.first;
+  const auto owned = definition_of(first);
+  const TrialsDefinition& definition = trials_of(*owned);
+  trials::TrialsPlan plan = plan_of_text(first.definition, first.definition_name);
+  std::vector<std::string> remarks = request.files.remarks;
+  take_planned(request, plan, remarks);
+  const auto group_of = [&](const std::string& subject) {
+    return definition.groups.size() > 1 ? protocols::group_of(definition.groups, subject)
+                                        : std::string();
+  };
+  trials::TrialsData data = trials::read_trials(request.files.files, group_of, request.threads);
+  add_missing(request, definition, data, remarks);
+  std::ranges::move(trials::unlike_meshes(data.sessions), std::back_inserter(remarks));
+  trials::TrialsResult result =
+      trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
+  if (plan.kind == trials::AnalysisKind::kReaching) {
+    const auto routes = reach_routes(definition, result.data, plan.reaching);
+    result.reaching = trials::reaching_study(
+        result.data,
+        trials::study_reaches(result.data, request.files.files, routes, plan.reaching.stage,
+                              plan.reaching.clamp, request.threads),
+        plan.reaching, request.threads);
+    result.quantities = trials::reach_quantities(result.data, *result.reaching, plan);
+  }
+  check_planned(result);
+  result.page_scores = trials::page_scores(request.files.files, definition.pages, group_of);
+  result.title = definition.name;
+  result.remarks = std::move(remarks);
+  result.definition = first.definition;
+  result.definition_name = first.definition_name;
+  trials::write_trials(result, request.out, request.paper);
+  std::vector<std::string> lines = trials::summary_lines(result);
+  lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
+  return lines;
+}
+
+}  // namespace
+
+const Study& trials_study() {
+  static const TrialsStudy study;
+  return study;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,218 @@
+#include "protocols/psychophysics/definition/block.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "core/base/definition/table.h"
+#include "protocols/definition/schedule.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr long kMostInBlock = 100000;
+
+std::string as_formula(const std::optional<double>& number, const std::string& text) {
+  if (number) {
+    return fmt::format("{}", *number);
+  }
+  return text.find('$') != std::string::npos ? text : fmt::format("'{}'", text);
+}
+
+/// Every key but those that mean something else.
+std::vector<GivenValue> read_values(Table& table, const std::vector<std::string>& others) {
+  std::vector<GivenValue> values;
+  for (const std::string& key : table.keys()) {
+    if (std::find(others.begin(), others.end(), key) == others.end()) {
+      values.push_back({key, formula_of_value(table, key)});
+    }
+  }
+  return values;
+}
+
+Probe read_probe(Table& table) {
+  Probe probe;
+  probe.name = table.has("name") ? table.text("name") : "probe";
+  probe.share = table.number("share", {0.0, 0.5, true}, "1");
+  probe.values = read_values(table, {"name", "share"});
+  if (probe.values.empty()) {
+    table.reject("share", "stands alone; say what a probe gives: field = \"null\"");
+  }
+  return probe;
+}
+
+const std::vector<std::string>& block_keys() {
+  static const std::vector<std::string> keys{"name", "trials", "practice", "right_in_a_row",
+                                             "probe"};
+  return keys;
+}
+
+Block read_block(Table& table, bool procedures) {
+  Block block;
+  block.name = table.text("name");
+  block.practice = table.has("practice") && table.boolean("practice");
+  block.values = read_values(table, block_keys());
+  if (table.has("right_in_a_row")) {
+    block.right_in_a_row = static_cast<int>(table.integer("right_in_a_row", 1, 1000));
+  }
+  if (table.has("trials") || block.practice || !procedures) {
+    block.trials = static_cast<int>(table.integer("trials", 1, kMostInBlock));
+  }
+  if (table.has("probe")) {
+    Table probe = table.table("probe");
+    block.probe = read_probe(probe);
+  }
+  return block;
+}
+
+std::vector<Factor> read_factors(Table& root) {
+  std::vector<Factor> factors;
+  if (!root.has("factors")) {
+    return factors;
+  }
+  Table table = root.table("factors");
+  for (const std::string& name : table.keys()) {
+    const auto rows = table.rows(name, "two or more levels: [\"left\", \"right\"]");
+    if (rows.size() != 1 || rows[0].size() < 2) {
+      table.reject(name, "another list", "two or more levels: [\"left\", \"right\"]");
+      continue;
+    }
+    factors.push_back({name, {}});
+    for (const NumberOrText& level : rows[0]) {
+      factors.back().levels.push_back(as_formula(level.number, level.text));
+    }
+  }
+  return factors;
+}
+
+void read_order(Table& design, TrialDesign& d) {
+  if (design.has("blocks")) {
+    d.order =
+        balance_named(design.choice("blocks", {"fixed", "latin", "williams", "full", "random"}));
+  }
+  if (design.has("most_in_a_row")) {
+    d.most_in_a_row = static_cast<int>(design.integer("most_in_a_row", 1, 1000));
+  }
+}
+
+/// The places of the blocks that a session names.
+std::vector<std::size_t> read_session(Table& session, const std::vector<Block>& blocks) {
+  std::vector<std::string> names;
+  for (const Block& block : blocks) {
+    names.push_back(block.name);
+  }
+  std::vector<std::size_t> places;
+  for (const std::string& name : session.texts("blocks")) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) {
+      session.reject("blocks", fmt::format("an array with \"{}\"", name),
+                     fmt::format("blocks of the definition: {}", fmt::join(names, ", ")));
+    } else {
+      places.push_back(static_cast<std::size_t>(at - names.begin()));
+    }
+  }
+  return places;
+}
+
+/// A name that two blocks have says nothing, and a block of no session would never come.
+void check_sessions(Table& design, const TrialDesign& d) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < d.blocks.size(); ++i) {
+    const std::string& name = d.blocks[i].name;
+    if (!names.insert(name).second) {
+      design.reject("session", fmt::format("names blocks, and two are called \"{}\"; give each a "
+                                           "name of its own",
+                                           name));
+    }
+    const bool presented = std::any_of(d.by_session.begin(), d.by_session.end(), [i](auto& each) {
+      return std::find(each.begin(), each.end(), i) != each.end();
+    });
+    if (!presented) {
+      design.reject("session", fmt::format("leaves out the block \"{}\"; add it to the blocks of "
+                                           "a session, or delete it",
+                                           name));
+    }
+  }
+}
+
+void read_sessions(Table& design, TrialDesign& d) {
+  constexpr long kMostSessions = 100;
+  if (design.has("sessions")) {
+    d.sessions = static_cast<int>(design.integer("sessions", 1, kMostSessions));
+  }
+  if (!design.has("session")) {
+    return;
+  }
+  Table table = design.table("session");
+  for (int session = 1; session <= d.sessions; ++session) {
+    const std::string number = std::to_string(session);
+    if (table.has(number)) {
+      Table one = table.table(number);
+      d.by_session.push_back(read_session(one, d.blocks));
+    } else {
+      design.reject("session", fmt::format("says nothing of session {0}; add [design.session.{0}] "
+                                           "with its blocks",
+                                           number));
+      d.by_session.emplace_back();
+    }
+  }
+  check_sessions(design, d);
+}
+
+}  // namespace
+
+std::vector<std::size_t> TrialDesign::blocks_of(int session) const {
+  const auto at = static_cast<std::size_t>(std::max(1, session) - 1);
+  if (at < by_session.size()) {
+    return by_session[at];
+  }
+  std::vector<std::size_t> all(blocks.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+std::string formula_of_value(Table& table, const std::string& key) {
+  if (const auto text = table.whole_text(key)) {
+    return as_formula(std::nullopt, *text);
+  }
+  return as_formula(table.number(key, {}, ""), "");
+}
+
+TrialDesign read_trial_design(Table& root, bool procedures) {
+  TrialDesign d;
+  Table design = root.table("design");
+  d.participants = static_cast<int>(design.integer("participants", 1, 100000));
+  if (design.has("break_after")) {
+    d.break_after = static_cast<int>(design.integer("break_after", 0, kMostInBlock));
+  }
+  if (design.has("break_duration")) {
+    d.break_duration = design.number("break_duration", {0.0, 36000.0}, "s");
+  }
+  d.break_until_ready = read_break_until_ready(design, d.break_after);
+  read_order(design, d);
+  d.factors = read_factors(root);
+  if (root.has("practice")) {
+    Table table = root.table("practice");
+    d.blocks.push_back({"practice", static_cast<int>(table.integer("trials", 1, kMostInBlock)),
+                        true, 0, read_values(table, {"trials", "right_in_a_row"}), std::nullopt});
+    if (table.has("right_in_a_row")) {
+      d.blocks.back().right_in_a_row = static_cast<int>(table.integer("right_in_a_row", 1, 1000));
+    }
+  }
+  if (root.has("blocks")) {
+    for (Table& table : root.tables("blocks")) {
+      d.blocks.push_back(read_block(table, procedures));
+    }
+  } else if (procedures) {
+    d.blocks.push_back({"main", 0, false, 0, {}, std::nullopt});
+  } else {
+    root.reject("design", "has nothing to present; add a [procedure] or [[blocks]]");
+  }
+  read_sessions(design, d);
+  return d;
+}
+
+}  // namespace haptrial::protocols

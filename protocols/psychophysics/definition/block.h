@@ -1,0 +1,77 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocols/psychophysics/definition/counterbalance.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// Value of a name during a block, a trial or an interval.
+struct GivenValue {
+  std::string name;
+  std::string formula;  // 0.5, 'curl', $level + 1
+};
+
+/// Something that is varied within a block.
+struct Factor {
+  std::string name;
+  std::vector<std::string> levels;  // formulas, at least two
+};
+
+/// Trials in which something else is given, unannounced: catch trials, error clamps.
+struct Probe {
+  std::string name;
+  double share{0.0};  // of the block's trials, above 0 and at most 1/2
+  std::vector<GivenValue> values;
+};
+
+/// Trials that belong together.
+struct Block {
+  std::string name;
+  int trials{0};          // 0: until its procedures are finished
+  bool practice{false};   // not scored
+  int right_in_a_row{0};  // practice ends with so many right answers in a row; 0: not before
+  std::vector<GivenValue> values;
+  std::optional<Probe> probe;
+};
+
+/// Trials of a study, and their order.
+struct TrialDesign {
+  int participants{1};
+  int sessions{1};                                   // of each participant
+  int break_after{0};                                // trials; 0: no breaks
+  double break_duration{60.0};                       // [s]
+  bool break_until_ready{false};                     // and then until somebody goes on
+  Counterbalancing order{Counterbalancing::kFixed};  // of the blocks that are not practice
+  int most_in_a_row{0};  // trials of one combination of factors; 0: no matter
+  std::vector<Factor> factors;
+  std::vector<Block> blocks;                         // at least one; practice first
+  std::vector<std::vector<std::size_t>> by_session;  // blocks of each; empty: all in each
+
+  /// The blocks of a session as the definition lists them. @param session  from 1
+  std::vector<std::size_t> blocks_of(int session) const;
+};
+
+/// Reads [design], [factors], [practice] and [[blocks]]; only [design] must be there. Keys in
+/// brackets are optional.
+///
+///     [design]    participants, [break_after], [break_duration], [break_until], [blocks],
+///                 [most_in_a_row], [sessions]
+///     [design.session.N]  blocks = ["practice", …]: those of session N; of all sessions or of none
+///     [factors]   name = [level, level, …]: numbers, words, or formulas with $
+///     [practice]  trials, [right_in_a_row], and values as of a block
+///     [[blocks]]  name, [trials], [practice], [right_in_a_row], [probe] = { name, share, … };
+///                 every other key gives the name its value in this block
+/// @param procedures  whether there are any: without them a block needs its number of trials
+TrialDesign read_trial_design(Table& root, bool procedures);
+
+/// The formula of a value: of a number itself, of a text that contains $ itself, else the word.
+std::string formula_of_value(Table& table, const std::string& key);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,214 @@
+#include "protocols/psychophysics/definition/check_definition.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "core/base/definition/table.h"
+
+namespace haptrial::protocols {
+namespace {
+
+const char* table_of_tracks(const Table& root) {
+  return root.has("procedure") ? "procedure" : "procedures";
+}
+
+std::set<std::string> factor_names(const TrialsDefinition& d) {
+  std::set<std::string> names;
+  for (const Factor& factor : d.order.factors) {
+    names.insert(factor.name);
+  }
+  return names;
+}
+
+void check_track_factors(Table& root, const Track& track, const std::set<std::string>& factors) {
+  for (const std::string& factor : track.by) {
+    if (!factors.contains(factor)) {
+      root.reject(table_of_tracks(root),
+                  fmt::format("names the factor \"{}\" in `by`; allowed: {}", factor,
+                              factors.empty() ? "none, the definition has no [factors]"
+                                              : fmt::format("{}", fmt::join(factors, ", "))));
+    }
+  }
+}
+
+/// A track may not set what a factor or an interval gives.
+void check_track_variable(Table& root, const TrialsDefinition& d, const std::string& variable,
+                          const std::set<std::string>& factors) {
+  if (factors.contains(variable)) {
+    root.reject(table_of_tracks(root),
+                fmt::format("sets \"{}\", which is a factor; let one of the two have another name",
+                            variable));
+  }
+  for (const Interval& interval : d.intervals) {
+    if (std::ranges::find(interval.values, variable, &GivenValue::name) != interval.values.end()) {
+      root.reject(table_of_tracks(root),
+                  fmt::format("sets \"{}\", which the interval {} gives a value as well; "
+                              "keep one of the two",
+                              variable, interval.name));
+    }
+  }
+}
+
+void check_tracks(Table& root, const TrialsDefinition& d) {
+  const std::set<std::string> factors = factor_names(d);
+  std::set<std::string> names;
+  for (const Track& track : d.tracks) {
+    if (!names.insert(track.name).second) {
+      root.reject(table_of_tracks(root),
+                  fmt::format("has two tracks \"{}\"; give each a name of its own", track.name));
+    }
+    check_track_factors(root, track, factors);
+    for (const std::string& variable : track.variables()) {
+      check_track_variable(root, d, variable, factors);
+    }
+  }
+}
+
+/// A staircase that rests where guessing leads would go nowhere.
+void check_balance(Table& root, const Track& track, const Question& question) {
+  if (!track.staircase || track.staircase->up != 1) {
+    return;
+  }
+  const double balance =
+      psychometric::balance_of(track.staircase->down, track.staircase->steps.back());
+  const double guess = 1.0 / static_cast<double>(question.choices.size());
+  if (balance <= guess) {
+    root.reject(table_of_tracks(root),
+                fmt::format("is in balance at {:.3g} % right answers (\"{}\"), which guessing "
+                            "gives; let more right answers make a step down, or steps up be "
+                            "larger",
+                            100.0 * balance, track.name));
+  }
+}
+
+/// Checks the answers that a track learns from, and the best that it could learn.
+void check_learning(Table& root, const TrialsDefinition& d, const Track& track) {
+  if (!track.counts.empty()) {
+    return;
+  }
+  if (track.kind == "adjustment") {
+    root.reject(table_of_tracks(root),
+                fmt::format("does not say which answer raises the level (\"{}\"); add "
+                            "`counts`, a formula that is 1, -1 or 0: \"$answer == 1 ? 1 "
+                            ": $answer == 2 ? -1 : 0\"",
+                            track.name));
+  } else if (d.questions.empty() || d.questions.front().correct.empty()) {
+    root.reject(table_of_tracks(root),
+                fmt::format("learns from right answers (\"{}\"), and no response says which "
+                            "is right; add `correct` to [response] or `counts` to the "
+                            "procedure",
+                            track.name));
+  } else {
+    check_balance(root, track, d.questions.front());
+  }
+}
+
+/// Each [[procedures]] sets variables of its own.
+std::set<std::string> variables_of_procedures(Table& root) {
+  std::set<std::string> variables;
+  for (Table& table : root.tables("procedures")) {
+    const bool several = table.has("stimulus");  // of quest_plus
+    const char* key = several ? "stimulus" : "variable";
+    for (const std::string& variable :
+         several ? table.table(key).keys_as_written() : std::vector{table.text(key)}) {
+      if (!variables.insert(variable).second) {
+        table.reject(key, fmt::format("\"{}\"", variable),
+                     "a variable that no other procedure sets; tracks of one procedure are its "
+                     "[[procedures.tracks]]");
+      }
+    }
+  }
+  return variables;
+}
+
+/// In the trials of one procedure the variables of the others have what [variables] says.
+void check_variables(Table& root) {
+  if (!root.has("procedures")) {
+    return;
+  }
+  const std::set<std::string> variables = variables_of_procedures(root);
+  Table stated = root.has("variables") ? root.table("variables") : root;
+  for (const std::string& variable : variables) {
+    if (variables.size() > 1 && (!root.has("variables") || !stated.has(variable))) {
+      root.reject("procedures",
+                  fmt::format("set {} in some trials only; add its value in the others to "
+                              "[variables]",
+                              variable));
+    }
+  }
+}
+
+void check_seen_objects(Table& root, const TrialsDefinition& d,
+                        const std::vector<NamedStage>& stages) {
+  for (const NamedStage& stage : stages) {
+    const auto seen = std::ranges::count_if(stage.show, [&](const std::string& name) {
+      return std::ranges::find(d.objects, name, &TrialObject::name) != d.objects.end();
+    });
+    if (seen > static_cast<std::ptrdiff_t>(kMostSeenObjects)) {
+      root.reject("stages", fmt::format("show {} objects in the stage \"{}\"; show at most {}",
+                                        seen, stage.name, kMostSeenObjects));
+    }
+  }
+}
+
+void check_questions(Table& root, const TrialsDefinition& d,
+                     const std::vector<NamedStage>& stages) {
+  for (const Question& question : d.questions) {
+    const auto named = [&](const NamedStage& stage) { return stage.name == question.onset; };
+    if (!question.onset.empty() && std::none_of(stages.begin(), stages.end(), named)) {
+      root.reject(root.has("response") ? "response" : "responses",
+                  fmt::format("counts the reaction from the stage \"{}\", which is not there",
+                              question.onset));
+    }
+  }
+}
+
+/// Masking noise in stages that are not there would never be heard.
+void check_masking(Table& root, const TrialsDefinition& d) {
+  if (!d.cues.masking) {
+    return;
+  }
+  for (const std::string& stage : d.cues.masking->stages) {
+    if (std::ranges::find(d.stages, stage) == d.stages.end()) {
+      root.reject("sounds", fmt::format("masking names the stage \"{}\"; allowed: {}", stage,
+                                        fmt::join(d.stages, ", ")));
+    }
+  }
+}
+
+}  // namespace
+
+void check_procedures(Table& root, const TrialsDefinition& d) {
+  check_tracks(root, d);
+  for (const Track& track : d.tracks) {
+    check_learning(root, d, track);
+  }
+  check_variables(root);
+}
+
+void check_stages(Table& root, const TrialsDefinition& d, const std::vector<NamedStage>& stages) {
+  check_seen_objects(root, d, stages);
+  check_questions(root, d, stages);
+  check_masking(root, d);
+}
+
+void check_object_names(Table& root) {
+  Table objects = root.table("objects");
+  for (const char* other : {"fields", "regions", "looks"}) {
+    const std::vector<std::string> taken =
+        root.has(other) ? root.table(other).keys() : std::vector<std::string>{};
+    for (const std::string& name : objects.keys_as_written()) {
+      if (std::ranges::find(taken, name) != taken.end()) {
+        objects.reject(name, fmt::format("is the name of a table of [{}] as well; give one of the "
+                                         "two another name",
+                                         other));
+      }
+    }
+  }
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,235 @@
+#include "protocols/psychophysics/definition/every_value.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/base/exception_words.h"
+#include "core/scene/scene.h"
+#include "protocols/psychophysics/definition/defaults.h"
+#include "protocols/psychophysics/definition/lead_words.h"
+#include "protocols/psychophysics/definition/picture_words.h"
+#include "protocols/psychophysics/definition/presented.h"
+#include "protocols/psychophysics/definition/read_definition.h"
+#include "protocols/psychophysics/definition/trial_values.h"
+#include "protocols/psychophysics/objects/deformable_bodies.h"
+#include "protocols/psychophysics/objects/rigid_objects.h"
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr std::size_t kMostCombinations = 256;
+constexpr double kLeastObject = 0.0005, kLargestObject = 2.0;  // the diagonal of its box [m]
+
+std::string words_of(const TrialsDefinition& d, const TrialValues& values) {
+  std::string words = fmt::format("block {}", d.order.blocks[values.block].name);
+  for (const auto& [name, level] : values.levels) {
+    words += fmt::format(", {} = {:g}", name, level);
+  }
+  for (const GivenValue& value : values.values) {
+    words += fmt::format(", {} = {}", value.name, value.formula);
+  }
+  return words;
+}
+
+/// The force that a field asks for, whatever the hand does [N].
+double asked_force(const scene::FieldKind& kind) {
+  if (const auto* constant = std::get_if<scene::ConstantParameters>(&kind)) {
+    return constant->force.norm();
+  }
+  if (const auto* ramp = std::get_if<scene::RampParameters>(&kind)) {
+    return std::max(ramp->from.norm(), ramp->to.norm());
+  }
+  const auto* pulse = std::get_if<scene::PulseParameters>(&kind);
+  return pulse != nullptr ? pulse->force.norm() : 0.0;
+}
+
+/// A force that is cut off is not the level that is recorded.
+void check_forces(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
+  for (const scene::Field& field : fields) {
+    const double force = asked_force(field.kind);
+    const double most = std::min(field.limit, d.envelope.max_force);
+    if (force > most) {
+      throw InputError(fmt::format(
+          "{}: fields.{} asks for {:g} N; allowed: at most {:g} [N], {}", d.file_name, field.name,
+          force, most, field.limit < d.envelope.max_force ? "its limit" : "envelope.max_force"));
+    }
+  }
+}
+
+/// A stage that waits in a region out of reach is aborted for ever.
+void check_reach(const TrialsDefinition& d, const Presented& presented) {
+  for (const NamedStage& stage : presented.stages) {
+    for (std::size_t i = 0; i < presented.regions.size(); ++i) {
+      const scene::Region& region = presented.regions[i];
+      const bool waits = (stage.stage.until.inside >> i & 1U) != 0;
+      const double away =
+          scene::PlacedShape(region.shape).distance(Eigen::Vector3d::Zero()).distance;
+      if (waits && away > d.envelope.workspace_radius) {
+        throw InputError(fmt::format(
+            "{}: stage {} waits until the tool is inside regions.{}, which is {:.3g} m from the "
+            "origin; allowed: at most envelope.workspace_radius, {:g} [m]",
+            d.file_name, stage.name, region.name, away, d.envelope.workspace_radius));
+      }
+    }
+  }
+}
+
+/// A mesh in millimetres that is taken for one in metres is as large as a house.
+void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
+  for (const scene::Field& field : fields) {
+    const auto* solid = std::get_if<scene::RigidObjectParameters>(&field.kind);
+    const double size = solid != nullptr && solid->body ? solid->scale * solid->body->size : 0.0;
+    if (size > 0.0 && !(size >= kLeastObject && size <= kLargestObject)) {
+      throw InputError(fmt::format(
+          "{}: objects.{} is {:.3g} m large; allowed: {:g} to {:g} [m]; scale = 0.001 takes a mesh "
+          "in millimetres",
+          d.file_name, field.name, size, kLeastObject, kLargestObject));
+    }
+  }
+}
+
+/// The numbers that formulas may take an answer for: each choice, or the ends of a typed one.
+std::vector<double> values_of(const Question& question) {
+  if (question.types()) {
+    return {question.low, question.high};
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < question.choices.size(); ++i) {
+    values.push_back(question.first + static_cast<double>(i));
+  }
+  return values;
+}
+
+/// @throws InputError for an answer from which the procedure of a track cannot learn
+void check_lesson(const TrialsDefinition& d, const Track& track, double outcome,
+                  const std::string& answers) {
+  if (std::isfinite(outcome) && !track.learns(outcome)) {
+    throw InputError(
+        fmt::format("{}: {} learns {:g} from the answer {}; allowed: {}; say what it "
+                    "learns with `counts`",
+                    d.file_name, track.name, outcome, answers, track.lesson()));
+  }
+}
+
+/// Every answer must be one from which the procedures can learn, or a session ends at the first
+/// other one. @param names  with the values of a trial
+void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& names) {
+  if (values.levels.empty()) {
+    return;  // the block asks no procedure
+  }
+  std::size_t combinations = 1;
+  for (const Question& question : d.questions) {
+    combinations = std::min(kMostCombinations, combinations * values_of(question).size());
+  }
+  for (std::size_t c = 0; c < combinations; ++c) {
+    std::string answers;
+    std::size_t rest = c;
+    for (const Question& question : d.questions) {
+      const std::vector<double> all = values_of(question);
+      const double value = all[rest % all.size()];
+      rest /= all.size();
+      names.set(question.name, value);
+      answers += fmt::format("{}{} = {:g}", answers.empty() ? "" : ", ", question.name, value);
+    }
+    for (const Track& track : d.tracks) {
+      if (!track.counts.empty()) {
+        check_lesson(d, track, names.value(track.counts), answers);
+      } else if (c == 0 && !d.questions.empty() && !d.questions.front().correct.empty()) {
+        check_lesson(d, track, 0.0, "that is wrong");
+      }
+    }
+  }
+}
+
+/// @returns what is said of bodies that give way, if asked for
+std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValues& values,
+                                      bool with_bodies, HandleReport& handle,
+                                      PictureReport& picture, LeadReport& lead) {
+  std::vector<std::string> bodies;
+  Table root = Table::parse(d.text, d.file_name);
+  root.fill_in(trials_defaults());
+  const std::unique_ptr<Names> names = read_names(root, d);
+  try {
+    for (std::size_t place = 0; place < d.intervals.size(); ++place) {
+      give(*names, d, values);
+      give_interval(*names, d.intervals[values.intervals[place]], place);
+      Presented presented = read_presented(root, *names, d, nullptr);
+      root.check();
+      scene::Scene(presented.fields, d.rate);
+      check_forces(d, presented.fields);
+      check_objects(d, presented.fields);
+      check_reach(d, presented);
+      handle.add(presented);
+      picture.add(presented);
+      lead.add(presented);
+      prepare_moving_bodies(presented.fields, d.rate);
+      if (with_bodies && place == 0) {
+        prepare_bodies(presented.fields, d.rate);
+        bodies = words_of_rigid_objects(presented.fields, d.rate, d.hand.damping);
+        const auto yielding = words_of_bodies(presented.fields, d.rate, d.hand.damping);
+        bodies.insert(bodies.end(), yielding.begin(), yielding.end());
+      }
+    }
+    give(*names, d, values);
+    for (const Question& question : d.questions) {
+      if (!question.correct.empty()) {
+        right_choice(*names, question);
+      }
+    }
+    check_answers(d, values, *names);
+  } catch (const std::exception& error) {
+    const std::string said = sentence_of(error);
+    throw InputError(fmt::format("{}{}\n(with {})",
+                                 said.starts_with(d.file_name) ? "" : d.file_name + ": ", said,
+                                 words_of(d, values)));
+  }
+  return bodies;
+}
+
+}  // namespace
+
+HandleText check_every_value(const TrialsDefinition& d) {
+  std::vector<std::string> bodies;
+  HandleReport handle(d);
+  PictureReport picture(d);
+  LeadReport lead;
+  for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
+    const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
+    std::size_t combinations = 1;
+    for (const Factor* factor : varied) {
+      combinations = std::min(kMostCombinations, combinations * factor->levels.size());
+    }
+    for (std::size_t c = 0; c < combinations; ++c) {
+      for (const bool high : {false, true}) {
+        TrialValues values;
+        values.block = block;
+        values.group = d.groups.empty() ? "" : d.groups.front().name;
+        for (std::size_t i = 0; i < d.intervals.size(); ++i) {
+          values.intervals.push_back(i);
+        }
+        give_corners(d, high, values);
+        std::size_t rest = c;
+        for (const Factor* factor : varied) {
+          values.values.push_back({factor->name, factor->levels[rest % factor->levels.size()]});
+          rest /= factor->levels.size();
+        }
+        const Block& given = d.order.blocks[block];
+        values.values.insert(values.values.end(), given.values.begin(), given.values.end());
+        const bool first = block == 0 && c == 0 && !high;
+        const std::vector<std::string> said = present_once(d, values, first, handle, picture, lead);
+        bodies.insert(bodies.end(), said.begin(), said.end());
+      }
+    }
+  }
+  HandleText words = handle.words();
+  for (const auto& said : {picture.warnings(), lead.warnings()}) {
+    words.warnings.insert(words.warnings.end(), said.begin(), said.end());
+  }
+  words.lines.insert(words.lines.begin(), bodies.begin(), bodies.end());
+  return words;
+}
+
+}  // namespace haptrial::protocols

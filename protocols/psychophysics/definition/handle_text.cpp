@@ -1,0 +1,254 @@
+#include "protocols/psychophysics/definition/handle_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/control/loop_margin.h"
+#include "core/scene/needed_damping.h"
+#include "core/scene/scene.h"
+#include "protocols/definition/handle_loop.h"
+#include "protocols/psychophysics/definition/presented.h"
+
+namespace haptrial::protocols {
+namespace {
+
+using Eigen::Vector3d;
+
+bool acts(std::uint64_t mask, std::size_t field) { return (mask >> field & 1U) != 0; }
+
+/// Reliefs are left out: a hand that rests on one place does not feel how steep they are.
+std::vector<scene::Field> without_reliefs(const std::vector<scene::Field>& fields) {
+  std::vector<scene::Field> rest;
+  std::copy_if(fields.begin(), fields.end(), std::back_inserter(rest),
+               [](const scene::Field& field) { return !scene::is_relief(field); });
+  return rest;
+}
+
+/// Friction of less than this swings by less than what counts as an oscillation [N].
+constexpr double kWeakFriction = 1.0;
+
+bool is_weak_friction(const scene::Field& field) {
+  const auto* friction = std::get_if<scene::FrictionParameters>(&field.kind);
+  return friction != nullptr && friction->static_level < kWeakFriction;
+}
+
+/// How hard a field may push a hand that is at p when it begins [N].
+double push_at(const scene::Field& field, const Vector3d& p) {
+  const auto spring = [&](const control::PdGains& gains, double stretch) {
+    return std::min(field.limit, gains.stiffness * stretch);
+  };
+  if (const auto* surface = std::get_if<scene::SurfaceParameters>(&field.kind)) {
+    const double outside = scene::PlacedShape(surface->shape).distance(p).distance;
+    const double depth = surface->felt_from_inside ? outside : -outside;
+    return spring(surface->gains, std::max(0.0, depth));
+  }
+  if (const auto* to = std::get_if<scene::SpringParameters>(&field.kind)) {
+    return spring(to->gains, (p - to->to).norm());
+  }
+  if (const auto* plane = std::get_if<scene::PlaneParameters>(&field.kind)) {
+    return spring(plane->gains, std::abs(plane->normal.normalized().dot(p - plane->through)));
+  }
+  return 0.0;
+}
+
+/// Places of a hand when a stage begins: in the regions that the stage before waits for, or
+/// anywhere in the workspace.
+std::vector<Vector3d> places_before(const Presented& presented, std::size_t stage, double reach) {
+  constexpr int kSteps = 20;  // to each side
+  std::vector<scene::PlacedShape> regions;
+  if (stage > 0) {
+    const std::uint64_t inside = presented.stages[stage - 1].stage.until.inside;
+    for (std::size_t i = 0; i < presented.regions.size(); ++i) {
+      if (acts(inside, i)) {
+        regions.emplace_back(presented.regions[i].shape);
+      }
+    }
+  }
+  std::vector<Vector3d> places;
+  for (int x = -kSteps; x <= kSteps; ++x) {
+    for (int y = -kSteps; y <= kSteps; ++y) {
+      for (int z = -kSteps; z <= kSteps; ++z) {
+        const Vector3d p = reach / kSteps * Vector3d(x, y, z);
+        const bool in = std::all_of(regions.begin(), regions.end(),
+                                    [&](const auto& region) { return region.contains(p); });
+        if (in && p.norm() <= reach) {
+          places.push_back(p);
+        }
+      }
+    }
+  }
+  return places;
+}
+
+/// A sentence for each field that may begin where the hand is.
+std::vector<std::string> words_of_beginnings(const Presented& presented, double reach) {
+  constexpr double kHardly = 1.0;  // [N]
+  std::vector<std::string> words;
+  std::uint64_t before = 0;
+  for (std::size_t stage = 0; stage < presented.stages.size(); ++stage) {
+    const std::uint64_t mask = presented.stages[stage].stage.fields;
+    std::optional<std::vector<Vector3d>> places;
+    for (std::size_t i = 0; i < presented.fields.size(); ++i) {
+      const scene::Field& field = presented.fields[i];
+      const bool begins = acts(mask, i) && !acts(before, i);
+      if (!begins) {
+        continue;
+      }
+      if (!places) {
+        places = places_before(presented, stage, reach);
+      }
+      double push = 0.0;
+      for (const Vector3d& p : *places) {
+        push = std::max(push, push_at(field, p));
+      }
+      if (push > kHardly) {
+        words.push_back(fmt::format(
+            "stage {}: {}.{} may begin where the hand is, and then pushes it with up to {:.1f} N, "
+            "which come within {:g} s",
+            presented.stages[stage].name, scene::is_object(field) ? "objects" : "fields",
+            field.name, push, std::max(field.fade_in, 0.05)));
+      }
+    }
+    before = mask;
+  }
+  return words;
+}
+
+}  // namespace
+
+HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t stage) const {
+  const NamedStage& named = presented.stages[stage];
+  const std::vector<scene::Field> fields = without_reliefs(presented.fields);
+  Load load;
+  load.stage = named.name;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < presented.fields.size(); ++i) {
+    if (scene::is_relief(presented.fields[i])) {
+      continue;
+    }
+    const scene::Field& field = fields[at];
+    if (acts(named.stage.fields, i) && !is_weak_friction(field)) {
+      const scene::StiffnessBound bound = scene::stiffness_bound(fields, at);
+      load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
+      load.damping += bound.damping;
+      if (const auto* inertia = std::get_if<scene::InertiaParameters>(&field.kind)) {
+        load.mass += inertia->mass;
+        load.cutoff = std::max(load.cutoff, inertia->acceleration_filter);
+      }
+    }
+    ++at;
+  }
+  return load;
+}
+
+/// @throws InputError if no hand carries it
+void HandleReport::judge(Load& load) const {
+  const control::HandleLoop loop = handle_loop(d_);
+  const control::PdGains gains{load.stiffness, load.damping};
+  const auto mass_carried_by = [&](double hand) {
+    return load.mass == 0.0 ||
+           load.mass <
+               scene::largest_stable_mass(load.cutoff, {loop.handle_mass + hand, loop.rate,
+                                                        loop.velocity_window, loop.force_delay});
+  };
+  load.lightest = control::lightest_calm_hand(gains, loop);
+  if (load.lightest > control::kHeaviestHand || !mass_carried_by(control::kHeaviestHand)) {
+    throw InputError(fmt::format(
+        "stage {}: its fields add up to {}; no hand of up to {:g} kg carries that at {:g} Hz, with "
+        "forces that come {} late; allowed: less of it, or a faster loop",
+        load.stage, amount_of(load), control::kHeaviestHand, d_.rate,
+        control::ticks_in_words(loop.force_delay)));
+  }
+  constexpr double kStep = 0.01;  // [kg]
+  while (!mass_carried_by(load.lightest)) {
+    load.lightest += kStep;
+  }
+  const control::HeldBy own{d_.hand.hand_mass, d_.hand.damping, d_.hand.stiffness};
+  load.own_hand = control::is_calm(gains, loop, own) && mass_carried_by(d_.hand.hand_mass);
+}
+
+std::string HandleReport::amount_of(const Load& load) const {
+  std::vector<std::string> parts;
+  const auto add = [&](double amount, const char* unit) {
+    if (amount > 0.0) {
+      parts.push_back(fmt::format("{} {}", std::round(10.0 * amount) / 10.0, unit));
+    }
+  };
+  add(load.stiffness, "N/m");
+  add(load.damping, "N·s/m");
+  add(load.mass, "kg of virtual mass");
+  return fmt::format("{}", fmt::join(parts, " and "));
+}
+
+void HandleReport::keep(const Load& load) {
+  const auto said = std::find_if(worst_.begin(), worst_.end(),
+                                 [&](const Load& other) { return other.stage == load.stage; });
+  if (said == worst_.end()) {
+    worst_.push_back(load);
+  } else if (load.lightest > said->lightest) {
+    *said = load;
+  }
+}
+
+void HandleReport::add(const Presented& presented) {
+  for (std::size_t stage = 0; stage < presented.stages.size(); ++stage) {
+    Load load = load_of(presented, stage);
+    if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
+      continue;
+    }
+    const auto same = std::find_if(judged_.begin(), judged_.end(), [&](const Load& other) {
+      return other.stiffness == load.stiffness && other.damping == load.damping &&
+             other.mass == load.mass && other.cutoff == load.cutoff;
+    });
+    if (same == judged_.end()) {
+      judge(load);
+      judged_.push_back(load);
+    } else {
+      load.lightest = same->lightest;
+      load.own_hand = same->own_hand;
+    }
+    if (load.lightest > 0.0 || !load.own_hand) {
+      keep(load);
+    }
+  }
+  if (!std::exchange(looked_, true)) {
+    begin_ = words_of_beginnings(presented, d_.envelope.workspace_radius);
+  }
+}
+
+HandleText HandleReport::words() const {
+  HandleText words;
+  words.lines = begin_;
+  const control::HandleLoop loop = handle_loop(d_);
+  for (const Load& load : worst_) {
+    const control::BareHandle bare = control::bare_handle({load.stiffness, load.damping}, loop);
+    std::string less = load.damping > bare.damping
+                           ? fmt::format(" of the damping {:.1f} N·s/m", bare.damping)
+                           : "";
+    if (load.stiffness > bare.stiffness) {
+      less +=
+          fmt::format("{} of the stiffness {:.0f} N/m", less.empty() ? "" : ",", bare.stiffness);
+    }
+    if (load.mass > 0.0) {
+      less += fmt::format("{} of the virtual mass what it carries", less.empty() ? "" : ",");
+    }
+    words.lines.push_back(
+        fmt::format("stage {}: its fields add up to {}, which hands of {:.2f} kg or more carry; "
+                    "for lighter ones haptrial reduces them, for a handle that nobody holds to:{}",
+                    load.stage, amount_of(load), load.lightest, less));
+    if (!load.own_hand) {
+      words.warnings.push_back(fmt::format(
+          "stage {}: its fields add up to {}, which only hands of {:.2f} kg or more carry at {:g} "
+          "Hz; the hand of [hand] has {:g} kg, so that they are reduced in most trials",
+          load.stage, amount_of(load), load.lightest, d_.rate, d_.hand.hand_mass));
+    }
+  }
+  return words;
+}
+
+}  // namespace haptrial::protocols

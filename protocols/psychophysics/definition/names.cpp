@@ -1,0 +1,168 @@
+#include "protocols/psychophysics/definition/names.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+
+namespace haptrial::protocols {
+namespace {
+
+/// A text that names a variable and nothing else: "$name".
+bool is_name(std::string_view text) {
+  return text.size() > 1 && text.front() == '$' &&
+         std::all_of(text.begin() + 1, text.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.'; });
+}
+
+std::string quoted_word(const std::string& word) { return "'" + word + "'"; }
+
+/// A number or a text as a formula.
+std::string formula_of(Table& table, const std::string& key) {
+  if (const auto text = table.whole_text(key)) {
+    return *text;
+  }
+  return fmt::format("{}", table.number(key, {}, ""));
+}
+
+}  // namespace
+
+void Names::read(Table& root) {
+  if (root.has("variables")) {
+    Table table = root.table("variables");
+    for (const std::string& name : table.keys()) {
+      read_variable(table, name);
+    }
+  }
+  if (root.has("places")) {
+    Table table = root.table("places");
+    for (const std::string& name : table.keys()) {
+      read_place(table, name);
+    }
+  }
+}
+
+void Names::read_variable(Table& table, const std::string& name) {
+  std::string formula;
+  if (table.is_table(name)) {  // by the word of another
+    Table choice = table.table(name);
+    const std::string from = choice.text("from");
+    std::string tail = fmt::format("${}", from);  // a word without an entry: stays a word
+    for (const std::string& word : choice.keys()) {
+      if (word != "from") {
+        tail = fmt::format("(${} == {}) ? ({}) : ({})", from, quoted_word(word),
+                           formula_of(choice, word), tail);
+      }
+    }
+    formula = tail;
+  } else {
+    formula = formula_of(table, name);
+  }
+  try {
+    variables_.define(name, Expression(formula, labels_));
+    stated_.push_back(name);
+  } catch (const InputError& error) {
+    table.reject(name, fmt::format("is \"{}\": {}", formula, error.what()));
+  }
+}
+
+void Names::read_place(Table& table, const std::string& name) {
+  const auto rows = table.rows(name, "three numbers or formulas, x, y and z [m]");
+  std::vector<Expression> place;
+  if (rows.size() != 1 || rows[0].size() != 3) {
+    table.reject(name, "an array of another size", "three numbers or formulas, x, y and z [m]");
+    return;
+  }
+  for (const NumberOrText& entry : rows[0]) {
+    try {
+      place.push_back(entry.number ? Expression(*entry.number) : Expression(entry.text, labels_));
+    } catch (const InputError& error) {
+      table.reject(name, fmt::format("has \"{}\": {}", entry.text, error.what()));
+      return;
+    }
+  }
+  places_.emplace(name, std::move(place));
+}
+
+const Expression& Names::formula(const std::string& text) const {
+  const auto found = formulas_.find(text);
+  return found != formulas_.end()
+             ? found->second
+             : formulas_.emplace(text, Expression(text, labels_)).first->second;
+}
+
+double Names::value(const std::string& text) const { return variables_.value(formula(text)); }
+
+std::string Names::word(const std::string& text) const {
+  if (!is_name(text)) {
+    return text;
+  }
+  const double value = variables_.value(text.substr(1));
+  const auto word = labels_.word_of(value);
+  return word ? *word : fmt::format("{:g}", value);
+}
+
+std::vector<std::string> Names::places() const {
+  std::vector<std::string> names;
+  for (const auto& [name, coordinates] : places_) {
+    names.push_back(name);
+  }
+  return names;
+}
+
+Eigen::Vector3d Names::place(const std::string& name) const {
+  const auto found = places_.find(name);
+  if (found == places_.end()) {
+    std::vector<std::string> known;
+    for (const auto& [each, place] : places_) {
+      known.push_back(each);
+    }
+    throw InputError(fmt::format("there is no place {}; {}", name,
+                                 known.empty()
+                                     ? "the definition has no [places]"
+                                     : fmt::format("allowed: {}", fmt::join(known, ", "))));
+  }
+  Eigen::Vector3d place;
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = variables_.value(found->second[static_cast<std::size_t>(axis)]);
+  }
+  return place;
+}
+
+std::optional<double> Names::value_of(std::string_view text) const {
+  const double value = this->value(std::string(text));
+  if (const auto word = labels_.word_of(value)) {
+    throw InputError(fmt::format("it is the word '{}', not a number", *word));
+  }
+  return value;
+}
+
+std::optional<Eigen::Vector3d> Names::vector_of(std::string_view text) const {
+  const bool named = !text.empty() && text.front() == '$';
+  return place(std::string(named ? text.substr(1) : text));
+}
+
+void Names::check(Table& root) const {
+  const auto each = [&](const char* table_name, const std::string& name,
+                        const Expression& formula) {
+    try {
+      variables_.check(formula);
+    } catch (const InputError& error) {
+      root.table(table_name)
+          .reject(name, fmt::format("is \"{}\": {}", formula.text(), error.what()));
+    }
+  };
+  for (const std::string& name : stated_) {
+    each("variables", name, formula("$" + name));
+  }
+  for (const auto& [name, place] : places_) {
+    for (const Expression& part : place) {
+      each("places", name, part);
+    }
+  }
+}
+
+}  // namespace haptrial::protocols

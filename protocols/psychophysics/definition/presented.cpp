@@ -1,0 +1,115 @@
+#include "protocols/psychophysics/definition/presented.h"
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+#include "core/base/definition/table.h"
+#include "core/scene/read/read_deformable.h"
+#include "core/scene/read/read_field.h"
+#include "core/scene/read/read_rigid.h"
+#include "core/sound/read_cues.h"
+#include "protocols/definition/window_keys.h"
+#include "protocols/psychophysics/definition/trial_devices.h"
+
+namespace haptrial::protocols {
+namespace {
+
+std::vector<scene::Field> read_felt_objects(Table& table, const TrialsDefinition& d) {
+  std::vector<scene::Field> objects;
+  for (const std::string& name : table.keys()) {
+    const auto object = std::ranges::find(d.objects, name, &TrialObject::name);
+    Table own = table.table(name);
+    const bool known = object != d.objects.end();
+    if (known && object->moves && d.devices() > 1 && !own.has("device")) {
+      own.reject("device", "is missing; name the device whose tool feels the body of springs");
+    }
+    objects.push_back(known && object->yields
+                          ? scene::read_deformable(own, name, object->felt, object->constants)
+                          : scene::read_rigid(own, name, known ? object->body : nullptr));
+  }
+  return objects;
+}
+
+/// Fields, and behind them the objects, which are felt as fields.
+void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presented) {
+  DeviceOf devices;
+  std::vector<scene::Field> objects;
+  if (root.has("objects")) {
+    Table table = root.table("objects");
+    devices = devices_of(table, d.hands);
+    objects = read_felt_objects(table, d);
+  }
+  if (root.has("fields")) {
+    Table table = root.table("fields");
+    devices.merge(devices_of(table, d.hands));
+    presented.fields = scene::read_fields(table, d.rate, objects);
+  }
+  presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
+  presented.felt = felt_by(presented.fields, devices, d.hands);
+  presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
+}
+
+void read_all_regions(Table& root, const TrialsDefinition& d, Presented& presented) {
+  if (!root.has("regions")) {
+    return;
+  }
+  Table table = root.table("regions");
+  const DeviceOf devices = devices_of(table, d.hands);
+  presented.regions = scene::read_regions(table);
+  for (const scene::Region& region : presented.regions) {
+    const auto own = devices.find(region.name);
+    presented.region_devices.push_back(own == devices.end() ? 0 : own->second);
+  }
+}
+
+template <class Named>
+void add_names(const std::vector<Named>& named, std::vector<std::string>& to) {
+  for (const Named& one : named) {
+    to.push_back(one.name);
+  }
+}
+
+/// Names of contents that a stage may show.
+std::vector<std::string> sights_of(const Presented& presented, const Names& names,
+                                   const TrialsDefinition& d) {
+  std::vector<std::string> sights{"hand", "interval_number"};
+  add_names(presented.regions, sights);
+  add_names(presented.looks, sights);
+  add_names(d.objects, sights);
+  const std::vector<std::string> places = names.places();
+  sights.insert(sights.end(), places.begin(), places.end());
+  return sights;
+}
+
+}  // namespace
+
+Presented read_presented(Table& document, const Names& names, const TrialsDefinition& d,
+                         RandomStream* random) {
+  Table root = document.with(names);
+  Presented presented;
+  read_what_is_felt(root, d, presented);
+  read_all_regions(root, d, presented);
+  if (root.has("looks")) {
+    Table table = root.table("looks");
+    presented.looks = read_looks(table);
+  }
+  std::vector<std::string> fields, regions;
+  add_names(presented.fields, fields);
+  add_names(presented.regions, regions);
+  const std::vector<std::string> sights = sights_of(presented, names, d);
+  const StageSource source{
+      fields,
+      regions,
+      [&names](const std::string& text) { return names.word(text); },
+      random,
+      root.has("sounds") ? sound::cue_names(root.table("sounds")) : std::vector<std::string>{},
+      sights,
+      [&d](Table& table, const std::string& key) {
+        return d.keys.bits_of(read_window_keys(table, key));
+      }};
+  presented.stages = read_stages(root, source);
+  return presented;
+}
+
+}  // namespace haptrial::protocols

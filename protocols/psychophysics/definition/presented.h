@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/scene/field.h"
+#include "core/scene/read/read_shape.h"
+#include "protocols/psychophysics/definition/names.h"
+#include "protocols/psychophysics/definition/read_stages.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
+#include "protocols/psychophysics/objects/look.h"
+
+namespace haptrial {
+class RandomStream;
+class Table;
+}  // namespace haptrial
+
+namespace haptrial::protocols {
+
+/// Content of an interval once every name has a value.
+struct Presented {
+  std::vector<scene::Field> fields;
+  std::vector<std::uint64_t> felt;  // (devices) the fields that act on each, a bit each
+  std::vector<scene::Region> regions;
+  std::vector<std::size_t> region_devices;  // (regions) whose tool it is asked of, from 0
+  std::vector<Look> looks;
+  std::vector<NamedStage> stages;
+};
+
+/// Content of an interval with the values that the names have. Problems are noted.
+/// @param random  for durations; null: the shortest
+Presented read_presented(Table& root, const Names& names, const TrialsDefinition& definition,
+                         RandomStream* random);
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <string_view>
+
+#include "protocols/psychophysics/definition/names.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
+
+namespace haptrial {
+class Table;
+}  // namespace haptrial
+
+namespace haptrial::protocols {
+
+/// The document of a definition again, with what it need not state.
+Table parsed_trials(const Definition& definition);
+
+/// The names of a definition, ready to be given values.
+std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& definition);
+
+/// The choice that is right with the values that the names have, from 0.
+/// @throws InputError for a value that is no choice's number or word
+int right_choice(const Names& names, const Question& question);
+
+/// Reads everything but who stands in for people. Problems are noted.
+void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& definition);
+
+}  // namespace haptrial::protocols

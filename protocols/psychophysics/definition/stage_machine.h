@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/device/device.h"
+#include "core/scene/shape.h"
+#include "protocols/psychophysics/definition/stage.h"
+
+namespace haptrial::scene {
+class Scene;
+}
+
+namespace haptrial::protocols {
+
+/// How a stage ended.
+enum class StageEnd : std::uint8_t { kUnderWay, kReached, kLate, kTooLittle };
+
+/// Times of a stage; ticks count from the first of the interval.
+struct StageTimes {
+  std::int64_t begin{-1};  // -1: not begun
+  std::int64_t onset{-1};  // the first tick on which the tool was faster than onset_speed; -1: none
+  std::int64_t end{-1};    // the tick on which its end was seen
+  StageEnd how{StageEnd::kUnderWay};
+  double most{0.0};  // of what is required: the largest value [m, N or m/s]
+};
+
+/// A part of space that stages ask about, and the device whose tool is to be in it, from 0.
+struct StageRegion {
+  scene::PlacedShape shape;
+  std::size_t device{0};
+};
+
+/// Goes through the stages of one interval, a tick of the servo loop at a time. Each device has a
+/// scene of all fields; the machine switches those that it feels at the beginning of each stage.
+/// Who asks the scenes for their forces does so before tick(). A button or key counts when it goes
+/// down during the stage, not when it was held before.
+class StageMachine {
+ public:
+  enum class State : std::uint8_t { kRunning, kDone, kAborted };
+
+  /// @param stages   at least one
+  /// @param regions  that stages name by index
+  /// @throws std::invalid_argument naming the stage and what it names that is not there, or the
+  /// bound that it breaks
+  /// @param felt     (devices) the fields that act on each, a bit each
+  StageMachine(std::vector<Stage> stages, std::vector<StageRegion> regions, std::size_t fields,
+               std::vector<std::uint64_t> felt = {~std::uint64_t{0}});
+
+  // Servo thread, all of the following: no allocation, lock, I/O or throw.
+
+  using Scenes = std::span<scene::Scene>;                   // (devices)
+  using Readings = std::span<const device::DeviceReading>;  // likewise
+
+  /// The interval begins with the next tick. @param most_repeats  of the interval; then it aborts
+  void begin(Scenes scenes, int most_repeats) noexcept;
+  /// @param dt  since the tick before [s]
+  void tick(Readings readings, Scenes scenes, double dt) noexcept;
+  /// Enters a stage, whatever came before: for a replay, which knows when it began.
+  void enter(std::size_t stage, Scenes scenes) noexcept;
+
+  State state() const noexcept { return state_; }
+  /// Number of the stage that goes on; of an interval that is over the last one.
+  std::size_t stage() const noexcept { return stage_; }
+  double time_in_stage() const noexcept { return in_stage_; }  // [s]
+  int repeats() const noexcept { return repeats_; }
+  /// Region in which the tool was missing when the last stage came to its time-out; -1: it was in
+  /// all regions.
+  struct Outside {
+    int region{-1};
+    double distance{0.0};  // of the tool to the region [m]
+  };
+  Outside outside() const noexcept { return outside_; }
+  /// The stage that an interval was aborted in, and why, are the last that ended.
+  std::span<const StageTimes> times() const noexcept { return times_; }
+
+ private:
+  void leave(StageEnd how, Consequence what, Scenes scenes) noexcept;
+  bool holds(const Until& until, Readings readings, Scenes scenes, double speed) const noexcept;
+  Outside first_outside(std::uint64_t regions, Readings readings) const noexcept;
+  bool all_touch(std::uint64_t fields, Scenes scenes) const noexcept;
+  void measure(const Stage& stage, double speed, Scenes scenes) noexcept;
+  void press(Readings readings) noexcept;
+
+  std::vector<Stage> stages_;
+  std::vector<StageRegion> regions_;
+  std::vector<std::uint64_t> felt_;  // (devices)
+  std::vector<StageTimes> times_;    // (stages)
+  State state_{State::kDone};
+  std::size_t stage_{0};
+  std::int64_t tick_{0};
+  double in_stage_{0.0};  // [s]
+  double held_{-1.0};     // for which all held [s]; -1: it does not hold
+  std::uint32_t buttons_before_{0}, keys_before_{0};
+  std::uint32_t buttons_pressed_{0}, keys_pressed_{0};  // in this stage
+  bool hands_known_{false};
+  Outside outside_;
+  int repeats_{0};
+  int most_repeats_{0};
+};
+
+}  // namespace haptrial::protocols

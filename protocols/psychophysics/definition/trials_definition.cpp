@@ -1,0 +1,212 @@
+#include "protocols/psychophysics/definition/trials_definition.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/base/counted.h"
+#include "core/psychometric/definition/expectation.h"
+#include "core/psychometric/definition/procedure_warnings.h"
+#include "protocols/psychophysics/definition/unmatched_literals.h"
+
+namespace haptrial::protocols {
+
+std::vector<const Factor*> TrialsDefinition::varied_in(const Block& block) const {
+  std::vector<const Factor*> varied;
+  for (const Factor& factor : order.factors) {
+    const auto given = [&](const GivenValue& value) { return value.name == factor.name; };
+    if (std::none_of(block.values.begin(), block.values.end(), given)) {
+      varied.push_back(&factor);
+    }
+  }
+  return varied;
+}
+
+bool TrialsDefinition::asks_procedures(const Block& block) const {
+  const auto given = [&](const Track& track) {
+    return std::any_of(block.values.begin(), block.values.end(),
+                       [&](const GivenValue& value) { return track.sets(value.name); });
+  };
+  return !tracks.empty() && std::none_of(tracks.begin(), tracks.end(), given);
+}
+
+int TrialsDefinition::combinations(const Track& track, const Block& block) const {
+  std::size_t count = 1;
+  for (const Factor* factor : varied_in(block)) {
+    if (std::find(track.by.begin(), track.by.end(), factor->name) != track.by.end()) {
+      count *= factor->levels.size();
+    }
+  }
+  return static_cast<int>(count);
+}
+
+namespace {
+
+/// Count for the session that is asked for; the most of all sessions for 0.
+template <class Trials>
+int of_sessions(const TrialDesign& design, int session, Trials&& trials) {
+  int most = 0;
+  for (int each = 1; each <= design.sessions; ++each) {
+    if (session == 0 || session == each) {
+      int sum = 0;
+      for (const std::size_t block : design.blocks_of(each)) {
+        sum += trials(design.blocks[block]);
+      }
+      most = std::max(most, sum);
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+int TrialsDefinition::most_trials(int session) const {
+  return of_sessions(order, session, [&](const Block& block) {
+    int of_tracks = 0;
+    for (const Track& track : tracks) {
+      of_tracks += track.most_trials * combinations(track, block);
+    }
+    return block.practice ? 0 : block.trials > 0 ? block.trials : of_tracks;
+  });
+}
+
+int TrialsDefinition::practice_trials(int session) const {
+  return of_sessions(order, session,
+                     [](const Block& block) { return block.practice ? block.trials : 0; });
+}
+
+namespace {
+
+/// How long each participant's session takes, or each of several sessions.
+void add_sessions(const TrialsDefinition& d, std::vector<std::string>& lines) {
+  if (d.order.sessions == 1) {
+    lines.push_back(fmt::format("about {} per participant, breaks and pages not counted",
+                                planned_minutes(d.longest(d.most_trials()))));
+    return;
+  }
+  for (int session = 1; session <= d.order.sessions; ++session) {
+    std::vector<std::string> names;
+    for (const std::size_t block : d.order.blocks_of(session)) {
+      names.push_back(d.order.blocks[block].name);
+    }
+    lines.push_back(fmt::format("session {}: {}; at most {}, about {}", session,
+                                fmt::join(names, ", "),
+                                counted(d.most_trials(session), "trial", "trials"),
+                                planned_minutes(d.longest(d.most_trials(session)))));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> TrialsDefinition::description() const {
+  std::vector<std::string> lines{fmt::format(
+      "{}: {}{}, at most {}{}, {} Hz", name,
+      counted(design.participants, "participant", "participants"),
+      order.sessions > 1 ? fmt::format(" with {} sessions each", order.sessions) : "",
+      counted(most_trials(), "trial", "trials"),
+      practice_trials() > 0 ? fmt::format(" and {} of practice", practice_trials()) : "", rate)};
+  lines.push_back(fmt::format("each of {}{}",
+                              counted(static_cast<int>(intervals.size()), "interval", "intervals"),
+                              questions.empty() ? "" : ", then asks: " + questions.front().text));
+  for (const Track& track : tracks) {
+    int count = 1;
+    for (const Block& block : order.blocks) {
+      count = std::max(count, combinations(track, block));
+    }
+    lines.push_back(
+        fmt::format("{}: {} of {}{}, at most {}{}", track.name, track.kind,
+                    fmt::join(track.variables(), " and "),
+                    track.unit.empty() ? "" : fmt::format(" [{}]", track.unit),
+                    counted(track.most_trials, "trial", "trials"),
+                    count > 1 ? fmt::format(" in each of {} combinations", count) : ""));
+    if (const auto prediction = predicted(track)) {
+      lines.push_back(*prediction);
+    }
+  }
+  lines.insert(lines.end(), felt.begin(), felt.end());
+  if (markers.used) {
+    lines.push_back("markers: " + markers::words_of(marker_meanings()));
+  }
+  add_sessions(*this, lines);
+  return lines;
+}
+
+std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
+  using record::MarkerOf;
+  std::vector<markers::MarkerMeaning> all{{MarkerOf::kTrial, 0, "trial", markers.trial}};
+  const auto add = [&](MarkerOf what, std::size_t index, const std::string& word, int code) {
+    all.push_back({what, static_cast<std::int16_t>(index), word, code});
+  };
+  for (std::size_t i = 0; intervals.size() > 1 && i < intervals.size(); ++i) {
+    add(MarkerOf::kInterval, i, intervals[i].name, markers.interval + static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    add(MarkerOf::kStage, i, stages[i],
+        stage_markers[i] > 0 ? stage_markers[i] : markers.stage + static_cast<int>(i));
+  }
+  int code = markers.response;
+  for (const Question& question : questions) {
+    const std::string of = questions.size() > 1 ? question.name + " " : "";
+    for (const std::string& answer : question.answers()) {
+      add(MarkerOf::kResponse, static_cast<std::size_t>(code - markers.response), of + answer,
+          code);
+      ++code;
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> TrialsDefinition::warnings() const {
+  std::vector<std::string> all = unmatched_literals(text);
+  all.insert(all.end(), underdamped.begin(), underdamped.end());
+  for (const Track& track : tracks) {
+    std::ranges::move(psychometric::procedure_warnings(track), std::back_inserter(all));
+  }
+  if (script) {
+    all.push_back(fmt::format(
+        "{} chooses the levels (level_script); what is said of the procedures holds for levels of "
+        "their own, which are presented where it gives none",
+        script->file.filename().string()));
+  }
+  for (const Question& question : questions) {
+    const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
+    if (tells && feedback_time == 0.0) {
+      all.push_back(
+          fmt::format("the participant is to be told of answers to \"{}\", but "
+                      "display.feedback_time is 0 s, so "
+                      "that nothing is shown",
+                      question.name));
+    }
+    if (question.again && order.most_in_a_row > 0) {
+      all.push_back(fmt::format(
+          "trials with an answer to \"{}\" that is out of time come again at the end of their "
+          "block, in whatever order they come, so that more than design.most_in_a_row = {} trials "
+          "of one combination of factors may follow each other there",
+          question.name, order.most_in_a_row));
+    }
+  }
+  return all;
+}
+
+PedalUse TrialsDefinition::pedal_use() const {
+  PedalUse use = PedalUse::kNone;
+  for (const Question& question : questions) {
+    for (const Choice& choice : question.choices) {
+      if (choice.pedal > 0.0) {
+        const bool alone = choice.keys == 0 && choice.buttons == 0 && choice.touch.empty();
+        use = std::max(use, alone ? PedalUse::kOnly : PedalUse::kBeside);
+      }
+    }
+  }
+  return use;
+}
+
+double TrialsDefinition::longest(int trials) const {
+  constexpr double kAnswer = 2.0;  // [s]
+  return trials * (stage_time * static_cast<double>(intervals.size()) +
+                   kAnswer * static_cast<double>(questions.size()));
+}
+
+}  // namespace haptrial::protocols

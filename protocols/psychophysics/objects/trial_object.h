@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/contact/felt_body.h"
+#include "core/deformable/springs/spring_body.h"
+#include "core/deformable/touch/haptic_mesh.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// The shape of a table [objects.NAME]: the same in every trial.
+struct TrialObject {
+  std::string name;
+  std::filesystem::path file;  // of a mesh; empty: a shape that the definition describes
+  contact::SharedBody body;    // of a file: null until it is loaded
+  std::uint64_t file_bytes{0}, file_checksum{0};  // likewise; the checksum is FNV-1a
+  bool recorded{false};                           // its contacts, tick by tick, in /contacts
+  bool yields{false};                             // gives way to the hand
+  int cells{16};                                  // then: along its longest side
+  deformable::FeltSides sides{};
+  deformable::SharedHapticMesh felt{};     // of a file: null until it is loaded
+  bool seen_yielding{true};                // else it is seen at its resting shape
+  bool moves{false};                       // it yields and moves: it is made of springs
+  bool own_rate{false};                    // and moves at another rate than the loop's
+  std::filesystem::path constants_file{};  // of springs; empty: none
+  std::shared_ptr<const deformable::SpringConstants> constants{};  // of it; null until loaded
+  std::uint64_t constants_bytes{0}, constants_checksum{0};         // likewise
+};
+
+/// Reads the shapes of [objects], in the order of their names. Problems are noted.
+///
+///     mesh            a file, .obj, .ply or .stl, beside the definition
+///     shape           "sphere"     radius
+///                     "ellipsoid"  size
+///                     "box"        size, [x, y, z]
+///                     "cylinder"   radius, length along z
+///                     "cone"       radius, length along z; it points to +z
+///                     "torus"      radius, tube: around z
+///
+///     [record]        true: every tick of contact is a row of /contacts
+///
+///     [kind]          "deformable": a body that gives way, of a mesh or the shape "box"; then
+///     [cells]         along its longest side, 16 if left out
+///     [fixed]         its sides that do not move, of "left", "right", "bottom", "top", "back",
+///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
+///     [felt]          its sides that can be touched; all that are not fixed if left out
+///     [model]         "elements" or "springs" (core/scene/read/read_deformable.h)
+///     [rate]          of springs: how often they move a second, less often than they are felt
+///     [grasped]       of springs: sides that the hand holds from the first tick on; then it does
+///                     not press the body
+///     [calibrated]    of springs: a file of constants by haptrial deform calibrate, for a body of
+///                     the same cells; beside the definition
+///     [seen]          "yielding", as the hand presses it, if left out; "rest": its resting outline
+///
+/// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
+/// and turn, which read_rigid() or read_deformable() reads with all else.
+std::vector<TrialObject> read_objects(Table& objects);
+
+/// Reads the meshes and constants that are files. @param folder  of the definition
+/// @throws InputError as read_mesh() and FeltBody do, naming the object
+void load_objects(std::vector<TrialObject>& objects, const std::filesystem::path& folder);
+
+inline constexpr std::size_t kMostSeenObjects = 2;  // in a stage
+
+/// An object that a stage shows, where it is. Plain data, for the screen.
+struct SeenObject {
+  std::array<float, 3> centre{};          // in W [m]
+  std::array<float, 4> turn{1, 0, 0, 0};  // w, x, y, z
+  float scale{1.0F};
+  std::int32_t object{-1};  // of the definition's, from 0
+  std::int32_t body{-1};    // number in SeenBodies; -1: it is seen at its resting shape
+
+  bool operator==(const SeenObject&) const = default;
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,93 @@
+#include "protocols/psychophysics/presentation/stage_sight.h"
+
+#include <algorithm>
+#include <variant>
+
+#include "protocols/psychophysics/definition/presented.h"
+
+namespace haptrial::protocols {
+namespace {
+
+Mark mark_at(const Eigen::Vector3d& p, double radius) {
+  const Eigen::Vector3f f = p.cast<float>();
+  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius), 0};
+}
+
+/// Place and size of a region.
+Mark mark_of(const scene::Shape& shape) {
+  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) {
+    return mark_at(sphere->centre, sphere->radius);
+  }
+  if (const auto* box = std::get_if<scene::Box>(&shape)) {
+    return mark_at(box->centre, 0.5 * box->size.maxCoeff());
+  }
+  if (const auto* cylinder = std::get_if<scene::Cylinder>(&shape)) {
+    return mark_at(cylinder->centre, cylinder->radius);
+  }
+  return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
+}
+
+SeenObject seen_object(const contact::ObjectPose& pose, double scale, std::size_t object) {
+  const Eigen::Vector3f p = pose.position.cast<float>();
+  const Eigen::Quaternionf q = pose.orientation.cast<float>();
+  return {{p.x(), p.y(), p.z()},
+          {q.w(), q.x(), q.y(), q.z()},
+          static_cast<float>(scale),
+          static_cast<std::int32_t>(object)};
+}
+
+/// The objects among the fields come last, in the order of the definition's.
+void show_object(const Presented& presented, const std::string& name, StageSight& sight) {
+  std::size_t object = 0;
+  for (const scene::Field& field : presented.fields) {
+    if (const auto* solid = std::get_if<scene::RigidObjectParameters>(&field.kind);
+        solid != nullptr && field.name == name) {
+      sight.objects.push_back(seen_object(solid->pose, solid->scale, object));
+    }
+    if (const auto* body = std::get_if<scene::DeformableObjectParameters>(&field.kind);
+        body != nullptr && field.name == name) {
+      sight.objects.push_back(seen_object(body->pose, 1.0, object));
+    }
+    object += scene::is_object(field) ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+Mark mark_to_touch(const scene::Shape& shape, std::size_t device) {
+  constexpr double kBehind = 0.01;  // a plane [m]
+  Mark mark = mark_of(shape);
+  if (const auto* half = std::get_if<scene::HalfSpace>(&shape)) {
+    mark = mark_at(half->point - kBehind * half->normal.normalized(), 0.0);
+  }
+  mark.device = static_cast<std::uint8_t>(device);
+  return mark;
+}
+
+StageSight sight_of(const NamedStage& stage, const Presented& presented, const Names& names,
+                    std::uint64_t seed) {
+  StageSight sight;
+  sight.sound = stage.sound;
+  for (const std::string& name : stage.show) {
+    const auto region = std::ranges::find(presented.regions, name, &scene::Region::name);
+    const auto look = std::ranges::find(presented.looks, name, &Look::name);
+    if (name == "hand") {
+      sight.hand = true;
+    } else if (name == "interval_number") {
+      sight.interval_number = true;
+    } else if (region != presented.regions.end()) {
+      sight.marks.push_back(mark_of(region->shape));
+      const auto index = static_cast<std::size_t>(region - presented.regions.begin());
+      sight.marks.back().device = static_cast<std::uint8_t>(presented.region_devices[index]);
+    } else if (look != presented.looks.end()) {
+      sight.dots = {look->dots, seed, true};
+    } else if (names.has_place(name)) {
+      sight.marks.push_back(mark_at(names.place(name), 0.0));
+    } else {
+      show_object(presented, name, sight);
+    }
+  }
+  return sight;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,420 @@
+#include "protocols/psychophysics/presentation/trial_pass.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <utility>
+
+namespace haptrial::protocols {
+namespace {
+
+int lowest_bit(std::uint32_t bits) noexcept { return bits == 0 ? -1 : std::countr_zero(bits); }
+
+}  // namespace
+
+TrialPass::TrialPass(Setup setup)
+    : setup_(std::move(setup)),
+      first_ticks_(setup_.intervals.size(), 0),
+      answers_(setup_.questions.size()) {
+  view_.trial = setup_.trial;
+}
+
+void TrialPass::begin(std::uint64_t sequence) noexcept {
+  sequence_ = sequence;
+  begin_interval();
+}
+
+/// Keeps the sensation of the interval before, so that it does not jump.
+void TrialPass::go_on_feeling() noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  for (std::size_t device = 0; interval_ > 0 && device < run.scenes.size(); ++device) {
+    run.scenes[device].start_from(setup_.intervals[interval_ - 1].scenes[device]);
+  }
+}
+
+void TrialPass::begin_interval() noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  go_on_feeling();
+  run.machine.begin(run.scenes, setup_.most_repeats);
+  first_ticks_[interval_] = sequence_;
+  begun_ = interval_ + 1;
+  view_.interval = static_cast<std::uint8_t>(interval_ + 1);
+}
+
+void TrialPass::enter_again(std::size_t interval, std::size_t stage) noexcept {
+  if (interval != std::exchange(interval_, interval)) {
+    go_on_feeling();
+  }
+  IntervalRun& run = setup_.intervals[interval];
+  run.machine.enter(stage, run.scenes);
+}
+
+const SeenForces& TrialPass::feel_again(std::span<const PointState> hands) noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  const std::size_t devices = std::min(hands.size(), run.scenes.size());
+  for (std::size_t device = 0; device < devices; ++device) {
+    run.scenes[device].force(hands[device]);
+  }
+  view_.pressed.counts = {};
+  show_pressed(run, run.sights[run.machine.stage()], devices);
+  return view_.pressed;
+}
+
+PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
+  PassOutput out;
+  tick_time_ = dt;
+  drives_ = {};
+  saturated_ = false;
+  device_count_ = std::min(readings.size(), kMostDevices);
+  look_at_hands(readings);
+  const Part part = part_;  // on this tick, whatever begins with the next
+  if (state_ == PassState::kRunning) {
+    if (part_ == Part::kIntervals) {
+      present(readings, dt, out);
+    } else {
+      listen(readings, dt, out);
+    }
+    ++sequence_;
+  }
+  static_cast<Drive&>(out) = drives_[0];
+  out.saturated = saturated_;
+  out.shown = stimulus::Shown(view_);
+  out.stage = part == Part::kIntervals ? record::Stage::kRun : record::Stage::kWait;
+  return out;
+}
+
+void TrialPass::look_at_hands(const Readings& readings) noexcept {
+  std::uint32_t buttons = 0;
+  for (std::size_t device = 0; device < device_count_; ++device) {
+    buttons |= readings[device].buttons;
+  }
+  const std::uint32_t keys = readings[0].keys;  // of the window: all devices are given the same
+  pressed_buttons_ = hands_known_ ? buttons & ~buttons_ : 0;
+  pressed_keys_ = hands_known_ ? keys & ~keys_ : 0;
+  buttons_ = buttons;
+  keys_ = keys;
+  hands_known_ = true;
+  pedal_ = 0.0;
+  for (std::size_t device = 0; device < device_count_; ++device) {
+    pedal_ = std::max(pedal_, readings[device].pedal);
+  }
+  pedal_up_ = std::min(pedal_up_, pedal_);
+  view_.tool = readings[0].tool.position;
+  view_.other_count = static_cast<std::uint8_t>(device_count_ - 1);
+  for (std::size_t device = 1; device < device_count_; ++device) {
+    const Eigen::Vector3f p = readings[device].tool.position.cast<float>();
+    view_.others[device - 1] = {p.x(), p.y(), p.z()};
+  }
+}
+
+/// The force on one device, scaled to the limit.
+Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
+                       const Eigen::Vector3d& force) noexcept {
+  const scene::Scene& scene = run.scenes[device];
+  Drive drive;
+  drive.force = force;
+  for (std::size_t field = 0; field < scene.size(); ++field) {
+    if ((run.pushing >> field & 1) != 0) {
+      drive.intent.push += scene.state(field).force;
+    }
+    drive.intent.stimulus += scene.state(field).stimulus;
+    drive.intent.stored += scene.state(field).stored;
+    drive.intent.added += scene.state(field).added;
+    saturated_ = saturated_ || scene.state(field).limited;
+  }
+  if (const double size = force.norm(); size > setup_.max_force) {
+    drive.force *= setup_.max_force / size;
+    drive.intent.push *= setup_.max_force / size;
+    drive.intent.stimulus *= setup_.max_force / size;
+    saturated_ = true;
+  }
+  return drive;
+}
+
+void TrialPass::log_contacts(const IntervalRun& run, std::size_t device) noexcept {
+  for (const RecordedObject& each : run.recorded) {
+    const scene::FieldState& state = run.scenes[device].state(each.field);
+    if (state.contact && setup_.contacts != nullptr) {
+      setup_.contacts->push({sequence_, static_cast<std::int32_t>(device), each.object,
+                             state.sliding, state.depth, state.proxy, state.force, state.work});
+    }
+  }
+}
+
+/// Shows the forces on the seen bodies, of all devices together.
+void TrialPass::show_pressed(const IntervalRun& run, const StageSight& sight,
+                             std::size_t devices) noexcept {
+  for (std::size_t i = 0; i < std::min(sight.objects.size(), kMostSeenObjects); ++i) {
+    const SeenObject& seen = sight.objects[i];
+    const std::size_t field = run.first_object + static_cast<std::size_t>(seen.object);
+    for (std::size_t device = 0; seen.body >= 0 && device < devices; ++device) {
+      const scene::Scene& scene = run.scenes[device];
+      const deformable::BodyTouch* touch = scene.touch(field);
+      if (touch != nullptr && scene.state(field).contact) {
+        view_.pressed.add(i, touch->forces());
+      }
+    }
+  }
+}
+
+/// Notes a stage on its first tick, which /stages names, too.
+void TrialPass::note_stage(const IntervalRun& run, PassOutput& out) noexcept {
+  const std::size_t stage = run.machine.stage();
+  const auto begin = static_cast<std::uint64_t>(run.machine.times()[stage].begin);
+  if (first_ticks_[interval_] + begin == stage_begun_) {
+    return;
+  }
+  const bool first = first_ticks_[interval_] == sequence_;
+  const auto place = static_cast<std::int16_t>(interval_ + 1);
+  stage_begun_ = first_ticks_[interval_] + begin;
+  if (first && run.marker >= 0) {
+    out.onsets.add({record::MarkerOf::kInterval, static_cast<std::int16_t>(run.marker), place, -1});
+  }
+  out.onsets.add({record::MarkerOf::kStage, static_cast<std::int16_t>(stage), place,
+                  static_cast<std::int16_t>(run.sights[stage].sound)});
+}
+
+/// The fields of the interval give this; after the last one, those that fade out do.
+void TrialPass::feel(const Readings& readings) noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  const std::size_t devices = std::min(device_count_, run.scenes.size());
+  for (std::size_t device = 0; device < devices; ++device) {
+    if (run.scenes[device].acts()) {
+      const device::DeviceReading& reading = readings[device];
+      drives_[device] = drive(run, device, run.scenes[device].force(reading.tool, reading.shares));
+    }
+  }
+}
+
+void TrialPass::present(const Readings& readings, double dt, PassOutput& out) noexcept {
+  IntervalRun& run = setup_.intervals[interval_];
+  const std::size_t stage = run.machine.stage();
+  note_stage(run, out);
+  const std::size_t devices = std::min(device_count_, run.scenes.size());
+  feel(readings);
+  for (std::size_t device = 0; device < devices; ++device) {
+    log_contacts(run, device);
+  }
+  view_.stage = static_cast<std::uint8_t>(stage);
+  const StageSight& sight = run.sights[stage];
+  view_.show(sight.marks, sight.objects, sight.hand, sight.interval_number, sight.dots);
+  show_pressed(run, sight, devices);
+  run.machine.tick(readings.all().first(devices), run.scenes, dt);
+  if (run.machine.state() == StageMachine::State::kAborted) {
+    const StageEnd how = run.machine.times()[run.machine.stage()].how;
+    abort(how == StageEnd::kLate ? "a stage was not done in time"
+                                 : "what the stage asks for was not done");
+  } else if (run.machine.state() == StageMachine::State::kDone) {
+    end_interval();
+  }
+}
+
+void TrialPass::end_interval() noexcept {
+  if (interval_ + 1 < setup_.intervals.size()) {
+    ++interval_;
+    ++sequence_;  // the next interval begins with the next tick
+    begin_interval();
+    --sequence_;
+    return;
+  }
+  for (scene::Scene& scene : setup_.intervals[interval_].scenes) {
+    scene.switch_to(0);
+  }
+  view_.interval = 0;
+  view_.mark_count = 0;
+  view_.objects = {};
+  view_.pressed.counts = {};
+  view_.hand_shown = view_.number_shown = view_.dots.shown = false;
+  ask();
+}
+
+void TrialPass::ask() noexcept {
+  if (question_ == setup_.questions.size()) {
+    state_ = PassState::kCompleted;
+    return;
+  }
+  part_ = Part::kQuestions;
+  view_.question = static_cast<std::uint8_t>(question_ + 1);
+  view_.verdict = Verdict::kNone;
+  view_.pace = Pace::kInTime;
+  const StageSight& sight = setup_.questions[question_].sight;
+  view_.show(sight.marks, sight.objects, sight.hand, false, {});
+  dwells_ = {};
+  pedal_up_ = pedal_;
+  view_.typed = {};
+  typed_ = 0;
+  time_ = 0.0;
+  asked_at_ = sequence_ + 1;
+  if (setup_.said != nullptr) {
+    *setup_.said = {};
+  }
+}
+
+/// Goes to the next question; a trial that comes again is not asked about any further.
+void TrialPass::go_on() noexcept {
+  const PresentedQuestion& asked = setup_.questions[question_];
+  if (answers_[question_].pace != Pace::kInTime && asked.question->again) {
+    state_ = PassState::kCompleted;
+    return;
+  }
+  ++question_;
+  ask();
+}
+
+void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noexcept {
+  time_ += dt;
+  feel(readings);
+  if (part_ == Part::kFeedback) {
+    if (time_ >= setup_.feedback_time) {
+      go_on();
+    }
+    return;
+  }
+  const Question& question = *setup_.questions[question_].question;
+  Answer answer;
+  if (setup_.said != nullptr && setup_.said->given) {
+    answer.given = true;
+    answer.choice = setup_.said->choice;
+    answer.value = setup_.said->value;
+  } else if (question.types()) {
+    listen_to_number(question, answer);
+  } else {
+    listen_to_choice(question, answer);
+    listen_to_pedal(question, answer);
+    watch_places(readings, answer);
+  }
+  if (answer.given) {
+    take(answer, out);
+  } else if (question.timeout > 0.0 && time_ >= question.timeout) {
+    abort("no answer was given in time");
+  }
+}
+
+void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexcept {
+  for (std::size_t i = 0; i < question.choices.size() && !answer.given; ++i) {
+    const Choice& choice = question.choices[i];
+    const std::uint32_t button = choice.buttons & pressed_buttons_;
+    const std::uint32_t key = choice.keys & pressed_keys_;
+    if (button != 0 || key != 0) {
+      answer.given = true;
+      answer.choice = static_cast<int>(i);
+      answer.source = button != 0 ? record::ResponseSource::kButton : record::ResponseSource::kKey;
+      answer.code = lowest_bit(button != 0 ? button : key);
+    }
+  }
+}
+
+/// Takes the pedal as an answer when it goes down during the question, from half that depth or
+/// less.
+void TrialPass::listen_to_pedal(const Question& question, Answer& answer) noexcept {
+  for (std::size_t i = 0; i < question.choices.size() && !answer.given; ++i) {
+    const double depth = question.choices[i].pedal;
+    if (depth > 0.0 && pedal_ >= depth && pedal_up_ <= 0.5 * depth) {
+      answer.given = true;
+      answer.choice = static_cast<int>(i);
+      answer.source = record::ResponseSource::kPedal;
+    }
+  }
+}
+
+/// The answer is of the tick on which the tip came in; it counts when it has stayed.
+void TrialPass::watch_places(const Readings& readings, Answer& answer) noexcept {
+  constexpr double kRounding = 1e-9;  // [s]
+  const PresentedQuestion& asked = setup_.questions[question_];
+  for (std::size_t i = 0; i < asked.places.size(); ++i) {
+    const TouchedPlace& place = asked.places[i];
+    Dwell& dwell = dwells_[i];
+    if (place.device >= device_count_ ||
+        !place.shape.contains(readings[place.device].tool.position)) {
+      dwell = {true, false, 0};
+      continue;
+    }
+    if (dwell.was_outside && !dwell.inside) {
+      dwell.inside = true;
+      dwell.since = sequence_;
+    }
+    const double stayed = static_cast<double>(sequence_ - dwell.since) * tick_time_;
+    if (dwell.inside && !answer.given && stayed >= asked.question->touch_for - kRounding) {
+      answer.given = true;
+      answer.choice = static_cast<int>(place.choice);
+      answer.source = record::ResponseSource::kPlace;
+      answer.code = place.region;
+      answer.sequence = dwell.since;
+    }
+  }
+}
+
+void TrialPass::listen_to_number(const Question& question, Answer& answer) noexcept {
+  const std::vector<std::uint32_t>& bits = question.typing;
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if ((pressed_keys_ & bits[i]) == 0) {
+      continue;
+    }
+    constexpr std::size_t kPoint = 10, kBack = 11;
+    if (i <= kPoint) {
+      if (typed_ + 1 < view_.typed.size()) {
+        view_.typed[typed_++] = i == kPoint ? '.' : static_cast<char>('0' + i);
+      }
+    } else if (i == kBack) {
+      typed_ -= typed_ > 0 ? 1 : 0;
+      view_.typed[typed_] = '\0';
+    } else if (typed_ > 0) {
+      double value = question.low - 1.0;  // what is no number is out of the range
+      std::from_chars(view_.typed.data(), view_.typed.data() + typed_, value);
+      answer.given = value >= question.low && value <= question.high;
+      answer.value = value;
+      answer.source = record::ResponseSource::kKey;
+      answer.code = lowest_bit(bits[i]);
+      if (!answer.given) {  // out of the range: to be typed again
+        view_.typed = {};
+        typed_ = 0;
+      }
+    }
+  }
+}
+
+/// The participant hears whether the answer was right when this is shown.
+int TrialPass::sound_of(const PresentedQuestion& asked, const Answer& answer) const noexcept {
+  const bool told = asked.feedback && asked.right >= 0 && setup_.feedback_time > 0.0;
+  const bool again = answer.pace != Pace::kInTime && asked.question->again;
+  return !told || again                 ? -1
+         : answer.choice == asked.right ? setup_.sound_right
+                                        : setup_.sound_wrong;
+}
+
+void TrialPass::take(const Answer& given, PassOutput& out) noexcept {
+  const PresentedQuestion& asked = setup_.questions[question_];
+  Answer& answer = answers_[question_] = given;
+  if (answer.source != record::ResponseSource::kPlace) {
+    answer.sequence = sequence_;
+  }
+  std::uint64_t from = asked_at_;
+  if (asked.onset >= 0) {
+    const StageTimes& times =
+        setup_.intervals.back().machine.times()[static_cast<std::size_t>(asked.onset)];
+    from = first_ticks_.back() + static_cast<std::uint64_t>(std::max<std::int64_t>(0, times.begin));
+  }
+  answer.reaction_time = static_cast<double>(answer.sequence - from + 1) * tick_time_;
+  answer.pace = asked.question->pace_of(answer.reaction_time);
+  out.onsets.add({record::MarkerOf::kResponse,
+                  static_cast<std::int16_t>(asked.marker + std::max(0, answer.choice)), 0,
+                  static_cast<std::int16_t>(sound_of(asked, answer))});
+  const bool again = answer.pace != Pace::kInTime && asked.question->again;
+  if (asked.feedback && asked.right >= 0 && !again) {
+    view_.verdict = answer.choice == asked.right ? Verdict::kRight : Verdict::kWrong;
+  }
+  view_.pace = answer.pace;
+  if (view_.told() && setup_.feedback_time > 0.0) {
+    part_ = Part::kFeedback;
+    time_ = 0.0;
+    return;
+  }
+  go_on();
+}
+
+void TrialPass::abort(const char* why) noexcept {
+  state_ = PassState::kAborted;
+  why_ = why;
+}
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/realtime/block_log.h"
+#include "core/record/rows/contact_row.h"
+#include "core/record/rows/response.h"
+#include "core/scene/scene.h"
+#include "core/scene/shape.h"
+#include "protocols/interface/pass.h"
+#include "protocols/psychophysics/definition/question.h"
+#include "protocols/psychophysics/definition/stage_machine.h"
+#include "protocols/psychophysics/presentation/left_decision.h"
+#include "protocols/psychophysics/presentation/trial_view.h"
+
+namespace haptrial::protocols {
+
+/// Log of the servo thread for contacts that are recorded.
+using ContactLog = realtime::BlockLog<record::ContactRow>;
+
+/// A field of a scene that is an object of the definition, both from 0.
+struct RecordedObject {
+  std::size_t field{0};
+  std::int32_t object{0};
+};
+
+/// Content of the screen during a stage.
+struct StageSight {
+  std::vector<Mark> marks;
+  std::vector<SeenObject> objects;
+  DotsShown dots;
+  bool hand{false};
+  bool interval_number{false};
+  int sound{-1};  // that begins with the stage; -1: none
+};
+
+/// One interval, ready to be presented.
+struct IntervalRun {
+  std::vector<scene::Scene> scenes;  // (devices)
+  StageMachine machine;
+  std::vector<StageSight> sights;  // (stages)
+  std::uint64_t pushing{0};        // fields that are to work on the hand, a bit each
+  int marker{-1};                  // index of its onset's marker; -1: it has none
+  std::vector<RecordedObject> recorded{};
+  std::size_t first_object{0};  // the field that is the definition's first object
+};
+
+/// A place that gives a choice when the tip of the tool is moved into it.
+struct TouchedPlace {
+  scene::PlacedShape shape;
+  std::size_t device{0};  // whose tool
+  std::size_t choice{0};  // from 0
+  int region{-1};         // of the definition's [regions], in the order of their names
+};
+
+/// A question after the intervals.
+struct PresentedQuestion {
+  const Question* question{nullptr};  // outlives the pass
+  int right{-1};                      // choice, from 0; -1: none is known to be right
+  bool feedback{false};               // tells whether it was right
+  int onset{-1};  // stage of the last interval from which the reaction counts; -1: the question
+  int marker{0};  // index of the first answer's marker; those of the others follow
+  std::vector<TouchedPlace> places{};  // in the order of the choices that they give
+  StageSight sight{};                  // these places, and the hand
+};
+
+/// An answer.
+struct Answer {
+  bool given{false};
+  int choice{-1};                                          // from 0
+  double value{std::numeric_limits<double>::quiet_NaN()};  // of a typed number
+  record::ResponseSource source{record::ResponseSource::kNone};
+  int code{-1};                                                    // of the button or the key's bit
+  std::uint64_t sequence{0};                                       // of the tick
+  double reaction_time{std::numeric_limits<double>::quiet_NaN()};  // [s]
+  Pace pace{Pace::kInTime};
+};
+
+/// One trial: its intervals one after the other, then its questions. Servo thread, all but the
+/// constructor and what is read after the pass.
+class TrialPass final : public Pass {
+ public:
+  struct Setup {
+    std::int32_t trial{0};
+    std::vector<IntervalRun> intervals;
+    std::vector<PresentedQuestion> questions;
+    double feedback_time{0.0};  // [s]
+    int most_repeats{5};
+    double max_force{8.0};           // the sum of a device's fields is scaled to at most this [N]
+    SimulatedAnswer* said{nullptr};  // null: a person answers
+    const LeftDecision* left{nullptr};     // null: nothing is left to the session's thread
+    ContactLog* contacts{nullptr};         // of recorded objects; null if there are none
+    int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none
+  };
+  explicit TrialPass(Setup setup);
+
+  void begin(std::uint64_t sequence) noexcept override;
+  PassOutput tick(const Readings& readings, double dt) noexcept override;
+  std::span<const Drive> others() const noexcept override {
+    return {drives_.data() + 1, device_count_ - 1};
+  }
+  PassState state() const noexcept override { return state_; }
+  bool names_onsets() const noexcept override { return true; }
+  bool wants_attention() noexcept override {
+    return setup_.left != nullptr && setup_.left->waits();
+  }
+
+  // Enters a stage in a replay, which knows the stages, in place of begin() and tick().
+  void enter_again(std::size_t interval, std::size_t stage) noexcept;
+  /// @param hands  (devices) on a tick of that stage, all of its ticks in order
+  /// @returns what presses the seen bodies
+  const SeenForces& feel_again(std::span<const PointState> hands) noexcept;
+
+  // The following functions are for after the pass.
+  /// Sequence number of the first tick of an interval; 0 for one that did not begin.
+  std::uint64_t first_tick(std::size_t interval) const { return first_ticks_[interval]; }
+  const StageMachine& machine(std::size_t interval) const {
+    return setup_.intervals[interval].machine;
+  }
+  std::size_t intervals_begun() const { return begun_; }
+  /// Scenes of a device in an interval.
+  std::span<const scene::Scene> scenes(std::size_t interval) const {
+    return setup_.intervals[interval].scenes;
+  }
+  const StageSight& sight(std::size_t interval, std::size_t stage) const {
+    return setup_.intervals[interval].sights[stage];
+  }
+  std::int32_t trial() const { return setup_.trial; }  // as the view has it
+  std::uint64_t last_tick() const { return sequence_ - 1; }
+  const std::vector<Answer>& answers() const { return answers_; }
+  /// Content of the screen beside a question's text.
+  const StageSight& question_sight(std::size_t question) const {
+    return setup_.questions[question].sight;
+  }
+  /// Reason in words; empty if the pass was not aborted by itself.
+  const char* why_aborted() const noexcept { return why_; }
+
+ private:
+  enum class Part : std::uint8_t { kIntervals, kQuestions, kFeedback };
+
+  void begin_interval() noexcept;
+  void go_on_feeling() noexcept;
+  void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
+  int sound_of(const PresentedQuestion& asked, const Answer& answer) const noexcept;
+  void feel(const Readings& readings) noexcept;
+  void present(const Readings& readings, double dt, PassOutput& out) noexcept;
+  void show_pressed(const IntervalRun& run, const StageSight& sight, std::size_t devices) noexcept;
+  void log_contacts(const IntervalRun& run, std::size_t device) noexcept;
+  Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
+  void end_interval() noexcept;
+  void ask() noexcept;
+  void listen(const Readings& readings, double dt, PassOutput& out) noexcept;
+  void listen_to_choice(const Question& question, Answer& answer) noexcept;
+  void listen_to_pedal(const Question& question, Answer& answer) noexcept;
+  void watch_places(const Readings& readings, Answer& answer) noexcept;
+  void listen_to_number(const Question& question, Answer& answer) noexcept;
+  void take(const Answer& answer, PassOutput& out) noexcept;
+  void go_on() noexcept;
+  void look_at_hands(const Readings& readings) noexcept;
+  void abort(const char* why) noexcept;
+
+  static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
+  Setup setup_;
+  std::vector<std::uint64_t> first_ticks_;
+  std::vector<Answer> answers_;
+  PassState state_{PassState::kRunning};
+  Part part_{Part::kIntervals};
+  std::size_t interval_{0};
+  std::size_t begun_{0};
+  std::uint64_t stage_begun_{kNever};  // tick at which the stage that was told last began
+  std::size_t question_{0};
+  TrialView view_;
+  std::array<Drive, kMostDevices> drives_{};  // of the last tick
+  std::size_t device_count_{1};
+  bool saturated_{false};
+  std::uint64_t sequence_{0};
+  std::uint64_t asked_at_{0};                           // sequence number
+  double time_{0.0};                                    // in the question or the feedback [s]
+  double tick_time_{0.0};                               // [s]
+  std::uint32_t buttons_{0}, keys_{0};                  // held
+  std::uint32_t pressed_buttons_{0}, pressed_keys_{0};  // went down on this tick
+  double pedal_{0.0};                                   // how far it is down, 0 to 1
+  double pedal_up_{0.0};                                // the least since the question
+  /// The tip in a place that can be touched: it counts when it comes from outside.
+  struct Dwell {
+    bool was_outside{false};
+    bool inside{false};
+    std::uint64_t since{0};  // sequence number
+  };
+  std::array<Dwell, kMostTouched> dwells_{};  // (places of the question)
+  bool hands_known_{false};
+  std::size_t typed_{0};
+  const char* why_{""};
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "protocols/interface/pass.h"
+#include "protocols/psychophysics/definition/question.h"
+#include "protocols/psychophysics/objects/look.h"
+#include "protocols/psychophysics/objects/seen_bodies.h"
+#include "protocols/psychophysics/objects/trial_object.h"
+
+namespace haptrial::protocols {
+
+/// A place that is shown: a circle about it, or a dot.
+struct Mark {
+  std::array<float, 3> place{};  // in W [m]
+  float radius{0.0F};            // 0: a dot [m]
+  std::uint8_t device{0};        // whose tool it is for, from 0
+};
+
+/// A stereogram that is shown.
+struct DotsShown {
+  RandomDots dots;
+  std::uint64_t seed{0};
+  bool shown{false};
+};
+
+enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
+
+/// The participant's view of trials at one instant; the drawing and the virtual participant take it
+/// from here.
+struct TrialView {
+  static constexpr std::size_t kMostMarks = 8;
+  static constexpr std::size_t kTyped = 16;
+  static_assert(kMostTouched <= kMostMarks);
+
+  Eigen::Vector3d tool{Eigen::Vector3d::Zero()};                // of the first device
+  std::array<std::array<float, 3>, kMostDevices - 1> others{};  // tools of the others [m]
+  DotsShown dots;
+  std::array<Mark, kMostMarks> marks{};
+  std::array<SeenObject, kMostSeenObjects> objects{};  // those that are seen come first
+  SeenForces pressed;                                  // on them
+  std::array<char, kTyped> typed{};                    // of a number, ended by 0
+  std::int32_t trial{0};  // of the presentation: changes from trial to trial
+  std::uint8_t other_count{0};
+  std::uint8_t mark_count{0};
+  std::uint8_t interval{0};  // from 1; 0: none
+  std::uint8_t stage{0};     // of the interval, from 0
+  std::uint8_t question{0};  // from 1; 0: nothing is asked
+  Verdict verdict{Verdict::kNone};
+  Pace pace{Pace::kInTime};  // of the answer that is told about
+  bool hand_shown{false};
+  bool number_shown{false};  // of the interval
+
+  bool engaged() const noexcept { return interval > 0 || question > 0; }
+  bool told() const noexcept { return verdict != Verdict::kNone || pace != Pace::kInTime; }
+  /// Sets the content of a stage; at most kMostMarks marks. Servo thread: no allocation or throw.
+  void show(std::span<const Mark> seen, std::span<const SeenObject> bodies, bool hand, bool number,
+            const DotsShown& bar) noexcept {
+    hand_shown = hand;
+    number_shown = number;
+    dots = bar;
+    mark_count = static_cast<std::uint8_t>(std::min(seen.size(), kMostMarks));
+    std::copy_n(seen.begin(), mark_count, marks.begin());
+    objects = {};
+    pressed.counts = {};
+    std::copy_n(bodies.begin(), std::min(bodies.size(), kMostSeenObjects), objects.begin());
+  }
+};
+
+/// An answer that a virtual participant gives; a person uses buttons and keys. Written and read on
+/// the servo thread.
+struct SimulatedAnswer {
+  bool given{false};
+  int choice{-1};     // from 0; of a typed number -1
+  double value{0.0};  // of a typed number
+};
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,456 @@
+#include "protocols/psychophysics/subject/trials_rig.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/base/random.h"
+#include "core/subject/hand.h"
+#include "core/subject/motor_noise.h"
+#include "core/subject/perceiver/grip.h"
+#include "core/subject/perceiver/sense.h"
+#include "core/subject/perceiver/sight.h"
+#include "core/subject/perceiver/trial_stream.h"
+#include "core/subject/subject_parameters.h"
+#include "protocols/psychophysics/definition/question.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
+#include "protocols/psychophysics/subject/answer_by_hand.h"
+#include "protocols/psychophysics/subject/decider.h"
+
+namespace haptrial::protocols {
+namespace {
+
+int index_of(const std::vector<std::string>& names, const std::string& name) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) {
+      return static_cast<int>(i);
+    }
+  }
+  return -1;
+}
+
+}  // namespace
+
+/// Servo thread, but for the constructor, recall() and carried_over().
+class TrialsRig::Participant final : public stimulus::Observer {
+ public:
+  Participant(const Briefing& briefing, const std::vector<std::unique_ptr<Arm>>& arms,
+              LeftDecision* left, std::uint64_t person_seed, std::uint64_t session_seed)
+      : plan_(*briefing.plan),
+        questions_(*briefing.questions),
+        said_(*briefing.said),
+        left_(left),
+        seed_(derived_seed(session_seed, "subject")),
+        hand_parameters_(briefing.definition->hand),
+        step_(1.0 / briefing.definition->rate),
+        senses_(plan_.people->draw_senses(derived_seed(person_seed, "subject"))),
+        sense_(senses_, plan_.senses),
+        grip_(senses_),
+        decider_(plan_, plan_.people->draw_judgement(derived_seed(person_seed, "subject")), seed_),
+        felt_in_(index_of(briefing.stages, plan_.stage)),
+        reaction_(seed_, "reaction") {
+    for (const auto& arm : arms) {
+      const std::size_t device = hands_.size();
+      SimulatedHand& hand = hands_.emplace_back(SimulatedHand{
+          arm->hand.get(), &arm->device, subject::ExplorationController(hand_parameters_), {}});
+      for (const std::string& stage : briefing.stages) {
+        hand.actions.push_back(action_in(stage, device));
+      }
+    }
+    if (plan_.sight) {
+      sight_.emplace(*plan_.sight, derived_seed(person_seed, "subject"));
+    }
+    if (plan_.adaptation) {
+      adaptation_.emplace(plan_.adaptation->rates);
+      error_.emplace(plan_.adaptation->field);
+      learnt_in_ = index_of(briefing.stages, plan_.adaptation->stage);
+    }
+  }
+
+  void recall(const CarriedOver& before) { recalled_ = before; }
+  CarriedOver carried_over() const {
+    return {-1, fast_.load(std::memory_order_relaxed), slow_.load(std::memory_order_relaxed)};
+  }
+
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
+               double dt) noexcept override {
+    const TrialView* view = shown.as<TrialView>();
+    if (view == nullptr) {
+      leave_stage();
+      begun_ = false;
+      end_answer();
+      for (SimulatedHand& hand : hands_) {
+        hand.hand->command({});
+      }
+      return;
+    }
+    for (SimulatedHand& hand : hands_) {
+      hand.state = hand.hand->state();
+    }
+    if (!begun_ || view->trial != trial_) {
+      begin_trial(view->trial);
+    }
+    follow(*view);
+    feel(*view, forces, dt);
+    answer(*view, dt);
+    act(forces, dt);
+    note_learnt();
+  }
+
+ private:
+  /// A hand, what it is about to do, and where it is.
+  struct SimulatedHand {
+    subject::HandModel* hand;
+    device::VirtualDevice* device;
+    subject::ExplorationController prober;
+    std::vector<const StageAction*> actions;  // (stages), null: rests
+    PointState state{};                       // at this tick
+  };
+
+  const StageAction* action_in(const std::string& stage, std::size_t device) const {
+    const StageAction* action = nullptr;
+    for (const StageAction& each : plan_.actions) {
+      action = each.stage == stage && each.device == device ? &each : action;
+    }
+    return action;
+  }
+
+  /// The pass hands over to this thread what the session's thread wrote before it.
+  void take_recalled() noexcept {
+    if (!recalled_) {
+      return;
+    }
+    decider_.set_previous(recalled_->previous);
+    if (adaptation_) {
+      adaptation_->recall(recalled_->fast, recalled_->slow);
+    }
+    recalled_.reset();
+  }
+
+  /// Notes the adaptation if the reach ends with this tick: the pass may end before it is noticed.
+  void note_learnt() noexcept {
+    if (!adaptation_) {
+      return;
+    }
+    subject::TwoRate after = *adaptation_;
+    if (stage_ >= 0 && stage_ == learnt_in_) {
+      after.learn(error_->error());
+    }
+    fast_.store(after.fast(), std::memory_order_relaxed);
+    slow_.store(after.slow(), std::memory_order_relaxed);
+  }
+
+  void begin_trial(int trial) noexcept {
+    constexpr const char* kMotor[kMostDevices] = {"motor", "motor 2", "motor 3", "motor 4"};
+    take_recalled();
+    begun_ = true;
+    trial_ = trial;
+    stage_ = interval_ = -1;
+    question_ = 0;
+    thinks_ = false;
+    if (left_ != nullptr) {
+      left_->forget();
+    }
+    end_answer();
+    intervals_ = 1;
+    percepts_ = {};
+    decider_.begin_trial(trial);
+    // A hand that is quite still would look like a device whose reading is frozen.
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      hands_[i].prober = subject::ExplorationController(
+          hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
+                                                subject::trial_stream(seed_, kMotor[i], trial)));
+    }
+    reaction_ = subject::trial_stream(seed_, "reaction", trial);
+  }
+
+  void follow(const TrialView& view) noexcept {
+    const int stage = view.interval > 0 ? view.stage : -1;
+    const int interval = view.interval - 1;
+    intervals_ = std::max<std::size_t>(intervals_, view.interval);
+    if (stage == stage_ && interval == interval_) {
+      return;
+    }
+    const bool another = interval != interval_;
+    leave_stage();
+    if (another && interval >= 0) {
+      begin_interval(interval);
+    }
+    stage_ = stage;
+    interval_ = interval;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      begin_probe(i, view);
+    }
+    if (error_ && stage == learnt_in_) {
+      error_->begin();
+    }
+  }
+
+  void begin_interval(int interval) noexcept {
+    RandomStream random = sense_stream(seed_, trial_, interval);
+    sense_.begin(random);
+    RandomStream cues =
+        subject::trial_stream(seed_, "cues", trial_ * static_cast<int>(kMostIntervals) + interval);
+    grip_noise_ = subject::draw_noise(cues);
+    sight_noise_ = cues.normal();
+    grip_.begin();
+    seen_ = {};
+  }
+
+  void begin_probe(std::size_t device, const TrialView& view) noexcept {
+    SimulatedHand& hand = hands_[device];
+    const StageAction* action =
+        stage_ >= 0 ? hand.actions[static_cast<std::size_t>(stage_)] : nullptr;
+    subject::Probe probe = action != nullptr ? action->probe : subject::Probe{subject::Rest{}};
+    for (std::size_t i = view.mark_count; action != nullptr && action->to_mark && i-- > 0;) {
+      if (view.marks[i].device == device) {  // the first one is the last to be set
+        const auto& place = view.marks[i].place;
+        std::get<subject::Reach>(probe).to = {place[0], place[1], place[2]};
+      }
+    }
+    hand.prober.begin(probe, hand.state);
+  }
+
+  /// Keeps the sensations of the stage, and learns from a reach.
+  void leave_stage() noexcept {
+    if (interval_ >= 0 && static_cast<std::size_t>(interval_) < kMostIntervals &&
+        (felt_in_ < 0 || stage_ == felt_in_)) {
+      percepts_[static_cast<std::size_t>(interval_)] = percept();
+    }
+    if (adaptation_ && stage_ >= 0 && stage_ == learnt_in_) {
+      adaptation_->learn(error_->error());
+    }
+    stage_ = interval_ = -1;
+  }
+
+  /// Percept of one hand; between two fingertips, or by eye, a size.
+  double percept() const noexcept {
+    const bool both = hands_.size() > 1 && plan_.senses == subject::Quantity::kExtent;
+    if (!both && !sight_) {
+      return sense_.percept();
+    }
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    subject::Cue felt{0.0, kNever};
+    if (both && grip_.held()) {
+      const subject::ContactEpisode met = grip_.met();
+      felt = {subject::felt(senses_, plan_.senses, met, grip_noise_),
+              senses_.extent_weber * met.amount};
+    } else if (!both && sense_.met().force > 0.0) {
+      felt = {sense_.percept(), senses_.extent_weber * sense_.percept()};
+    }
+    const bool sees = sight_ && seen_.shown;
+    const subject::Cue seen = sees ? sight_->see(seen_.dots.height, seen_.dots.noise, sight_noise_)
+                                   : subject::Cue{0.0, kNever};
+    return subject::combine(felt, seen).estimate;
+  }
+
+  void feel(const TrialView& view, const stimulus::Forces& forces, double dt) noexcept {
+    if (view.interval == 0) {
+      return;
+    }
+    const PointState& hand = hands_.front().state;
+    if (felt_in_ < 0 || stage_ == felt_in_) {
+      sense_.feel(forces[0], hand, dt);
+      if (hands_.size() > 1 && forces.size() > 1) {
+        grip_.feel({forces[0], hand}, {forces[1], hands_[1].state}, dt);
+      }
+      seen_ = view.dots.shown ? view.dots : seen_;
+    }
+    if (error_ && stage_ == learnt_in_) {
+      error_->feel(forces[0], compensation(), hands_.front().prober.desired().velocity);
+    }
+  }
+
+  Eigen::Vector3d compensation() const noexcept {
+    return adaptation_ && stage_ >= 0 && stage_ == learnt_in_
+               ? adaptation_->compensation(plan_.adaptation->field,
+                                           hands_.front().prober.desired().velocity)
+               : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
+
+  void act(const stimulus::Forces& forces, double dt) noexcept {
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      const Eigen::Vector3d felt =
+          i < forces.size() ? forces[i] : Eigen::Vector3d(Eigen::Vector3d::Zero());
+      subject::HandCommand command = hands_[i].prober.command(hands_[i].state, dt, felt);
+      if (i == 0) {
+        command.force += compensation();
+      }
+      hands_[i].hand->command(command);
+    }
+  }
+
+  void answer(const TrialView& view, double dt) noexcept {
+    if (view.question == 0) {
+      return;
+    }
+    if (view.question != question_ || view.told()) {
+      end_answer();
+    }
+    if (view.question != question_) {
+      question_ = view.question;
+      constexpr double kSpread = 0.3;  // of the log of reaction times
+      wait_ = plan_.reaction * std::exp(kSpread * reaction_.normal());
+      leave_decision();
+    }
+    wait_ -= dt;
+    take_decision();
+    if (by_hand_.under_way()) {
+      SimulatedHand& hand = hands_[by_hand_.device()];
+      by_hand_.tick(hand.prober, hand.state, dt);
+    }
+    if (wait_ > 0.0 || thinks_ || decided_ || view.told()) {
+      return;
+    }
+    const Decider::Said said = left_ != nullptr ? left_said_ : decide();
+    said_.choice = said.choice;
+    said_.value = said.value;
+    decided_ = true;
+    give(questions_[view.question - 1U], view);
+  }
+
+  Decider::Said decide() noexcept {
+    return decider_.decide(questions_[static_cast<std::size_t>(question_ - 1)], question_ == 1,
+                           std::span(percepts_.data(), intervals_));
+  }
+
+  /// A question has come: the session's thread is asked what to say.
+  void leave_decision() noexcept {
+    if (left_ == nullptr) {
+      return;
+    }
+    left_said_ = decide();
+    left_reaction_ = wait_;
+    left_->ask({static_cast<std::size_t>(question_ - 1),
+                percepts_,
+                std::min(intervals_, kMostIntervals),
+                {left_said_.choice, left_said_.value, left_reaction_}});
+    thinks_ = true;
+  }
+
+  void take_decision() noexcept {
+    const LeftDecision::Answer* answer = thinks_ ? left_->answer() : nullptr;
+    if (answer == nullptr) {
+      return;
+    }
+    left_said_ = {answer->choice, answer->value};
+    wait_ += answer->reaction - left_reaction_;
+    if (question_ == 1) {
+      decider_.set_previous(answer->choice);
+    }
+    thinks_ = false;
+  }
+
+  /// The answer that is decided, in the way in which it is to be given.
+  void give(const Question& question, const TrialView& view) noexcept {
+    const int place = AnswerByHand::place_of(question, said_.choice);
+    if (place >= 0 && place < view.mark_count) {
+      const auto mark = static_cast<std::size_t>(place);
+      SimulatedHand& hand =
+          hands_[std::min<std::size_t>(view.marks[mark].device, hands_.size() - 1)];
+      by_hand_.begin(view, mark, hand.prober, hand.state);
+    } else if (said_.choice >= 0 &&
+               question.choices[static_cast<std::size_t>(said_.choice)].pedal > 0.0) {
+      hold_pedal(1.0);
+    } else {
+      said_.given = true;
+    }
+  }
+
+  void hold_pedal(double depth) noexcept {
+    pedal_ = depth;
+    hands_.front().device->hold(0, depth, Eigen::Quaterniond::Identity());
+  }
+
+  void end_answer() noexcept {
+    decided_ = false;
+    by_hand_.end();
+    if (pedal_ > 0.0) {
+      hold_pedal(0.0);
+    }
+  }
+
+  const ObserverPlan& plan_;
+  const std::vector<Question>& questions_;
+  SimulatedAnswer& said_;
+  LeftDecision* left_;  // null: decides by itself
+  Decider::Said left_said_;
+  double left_reaction_{0.0};  // that was proposed [s]
+  bool thinks_{false};         // until the decision that was left is there
+  std::uint64_t seed_;
+  subject::HandParameters hand_parameters_;
+  double step_;  // [s]
+  subject::SenseParameters senses_;
+  subject::Sense sense_;
+  subject::Grip grip_;
+  subject::FeltNoise grip_noise_;
+  std::optional<subject::Sight> sight_;
+  double sight_noise_{0.0};           // of the interval, standard normal
+  DotsShown seen_;                    // in the interval
+  std::vector<SimulatedHand> hands_;  // (devices)
+  Decider decider_;
+  int felt_in_;  // stage; -1: all
+  RandomStream reaction_;
+  std::optional<subject::TwoRate> adaptation_;
+  std::optional<subject::FieldError> error_;
+  int learnt_in_{-1};
+  std::optional<CarriedOver> recalled_;  // until the first trial
+  std::atomic<double> fast_{0.0}, slow_{0.0};
+  bool begun_{false};
+  int trial_{0};
+  int stage_{-1}, interval_{-1};
+  std::size_t intervals_{1};
+  int question_{0};
+  double wait_{0.0};  // [s]
+  bool decided_{false};
+  AnswerByHand by_hand_;
+  double pedal_{0.0};  // how far it is held down
+  std::array<double, kMostIntervals> percepts_{};
+};
+
+TrialsRig::Arm::Arm(const Definition& d, const Eigen::Vector3d& start)
+    : hand(std::make_unique<subject::Hand>(d.hand, 1.0 / d.rate, start)),
+      device(d.device, *hand, d.rate) {}
+
+TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
+                     std::uint64_t session_seed)
+    : decide_(briefing.decide),
+      left_(decide_ ? std::make_unique<LeftDecision>() : nullptr),
+      envelope_(briefing.definition->envelope) {
+  const Definition& d = *briefing.definition;
+  for (const TrialDevice& each : *briefing.devices) {
+    arms_.push_back(std::make_unique<Arm>(d, each.start));
+  }
+  if (arms_.empty()) {
+    arms_.push_back(std::make_unique<Arm>(d, Eigen::Vector3d::Zero()));
+  }
+  participant_ =
+      std::make_unique<Participant>(briefing, arms_, left_.get(), person_seed, session_seed);
+}
+
+TrialsRig::~TrialsRig() = default;
+
+std::vector<DeviceSet::Arm> TrialsRig::others() {
+  std::vector<DeviceSet::Arm> others;
+  for (std::size_t i = 1; i < arms_.size(); ++i) {
+    others.push_back({&arms_[i]->device, envelope_});
+  }
+  return others;
+}
+
+stimulus::Observer* TrialsRig::subject() { return participant_.get(); }
+
+void TrialsRig::attend() {
+  if (left_ != nullptr && left_->waits()) {
+    left_->answer(decide_(left_->asked()));
+  }
+}
+
+void TrialsRig::recall(const CarriedOver& before) { participant_->recall(before); }
+
+CarriedOver TrialsRig::carried_over() const { return participant_->carried_over(); }
+
+}  // namespace haptrial::protocols

@@ -1,0 +1,99 @@
+#include "analysis/contact/evaluation/evaluation_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "analysis/contact/demo_study/simulated_probe.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using testing::HasSubstr;
+
+const Evaluation& rubbed_duck() {
+  static const Evaluation evaluation = [] {
+    const contact::FeltBody body(radial_mesh(duck_radius, 30));
+    SimulatedProbe probe;
+    probe.seconds = 10.0;
+    probe.force_rate = 500.0;
+    EvaluationOptions options;
+    options.prepare.registered = true;
+    options.prepare.lag = 0.0;
+    options.prepare.load = probe.load;
+    options.renderers = {contact::RendererKind::kProxy, contact::RendererKind::kVoxel};
+    return evaluate_rendering(simulate_probe(duck_radius, probe), body, options);
+  }();
+  return evaluation;
+}
+
+TEST(EvaluationReportTest, SaysThatItIsSimulated) {
+  const EvaluationNames names{"probe", "duck", true};
+  const analysis::Document report = evaluation_report(rubbed_duck(), names, {});
+  EXPECT_TRUE(report.simulated);
+  EXPECT_THAT(analysis::to_html(report), HasSubstr("SIMULATED RECORDING"));
+  for (const analysis::Figure& figure : evaluation_figures(rubbed_duck(), names)) {
+    EXPECT_TRUE(figure.simulated) << figure.name;
+  }
+  EXPECT_THAT(evaluation_json(rubbed_duck(), names), HasSubstr("\"simulated\": true"));
+  EXPECT_THAT(analysis::to_html(evaluation_report(rubbed_duck(), {"probe", "duck", false}, {})),
+              testing::Not(HasSubstr("SIMULATED")));
+}
+
+/// The picture of the residual shows contacts and not the air: all within the noise of the poses.
+TEST(EvaluationReportTest, ResidualsAreThoseOfContacts) {
+  const auto figures = evaluation_figures(rubbed_duck(), {});
+  const auto residual = std::find_if(figures.begin(), figures.end(),
+                                     [](const auto& f) { return f.name == "residual"; });
+  ASSERT_NE(residual, figures.end());
+  const analysis::Series& bars = residual->series.front();
+  EXPECT_GT(bars.x.front(), -1.0) << "[mm]";
+  EXPECT_LT(bars.x.back(), 1.0) << "[mm]";
+  const double shown = std::accumulate(bars.y2.begin(), bars.y2.end(), 0.0);
+  const ContactSamples& s = rubbed_duck().contact.samples;
+  double contacts = 0.0;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    contacts += s.force[i].dot(s.normal[i]) > rubbed_duck().contact.least_force ? 1.0 : 0.0;
+  }
+  EXPECT_GT(shown, 0.98 * contacts);
+  EXPECT_LE(shown, contacts);
+}
+
+TEST(EvaluationReportTest, LinesNameEveryRendering) {
+  const auto lines = evaluation_lines(rubbed_duck());
+  for (const EvaluatedRendering& r : rubbed_duck().renderings) {
+    EXPECT_THAT(lines, testing::Contains(testing::StartsWith(name_of(r) + " ")));
+  }
+  EXPECT_EQ(rubbed_duck().renderings.size(), 3u);
+  EXPECT_THAT(name_of(rubbed_duck().renderings.back()), testing::StartsWith("proxy with friction"));
+}
+
+/// Counts of renderers stand in the lines, the report and the file, by the same names.
+TEST(EvaluationReportTest, OperationsAreToldByTheirNames) {
+  const std::string page = analysis::to_html(evaluation_report(rubbed_duck(), {}, {}));
+  const std::string file = evaluation_json(rubbed_duck(), {});
+  for (const EvaluatedRendering& r : rubbed_duck().renderings) {
+    const contact::Operations& done = r.rendered.operations;
+    EXPECT_EQ(done.ticks, rubbed_duck().contact.in.size());
+    for (const contact::OperationCount& c : contact::kOperationCounts) {
+      EXPECT_LE(done.*c.count, done.ticks * (r.rendered.most.*c.count)) << c.name;
+      if (done.*c.count > 0) {
+        EXPECT_THAT(page, HasSubstr(std::string(c.name)));
+        EXPECT_THAT(evaluation_lines(rubbed_duck()),
+                    testing::Contains(HasSubstr(std::string(c.name))));
+      }
+      EXPECT_THAT(file, HasSubstr("\"" + std::string(c.name) + "\""));
+    }
+    if (r.kind == contact::RendererKind::kVoxel) {
+      EXPECT_EQ(r.rendered.most,
+                (contact::Operations{.ticks = 1, .triangles_tested = 1, .cells = 1}));
+    } else {
+      EXPECT_GT(done.sweeps, done.ticks / 10);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::evaluation

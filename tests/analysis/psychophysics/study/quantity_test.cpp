@@ -1,0 +1,59 @@
+#include "analysis/psychophysics/study/quantity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace haptrial::analysis::trials {
+namespace {
+
+/// The interval of values of participants under one condition.
+MeanInterval interval_of(std::vector<double> each, ValueRange range) {
+  std::vector<QuantityValue> values;
+  for (const double value : each) {
+    values.push_back({"P" + std::to_string(values.size()), {}, value});
+  }
+  return *quantity("q", "quantity", "", values, TrialsPlan{}, range).means.at(0);
+}
+
+/// Areas of three participants near 1: Student's interval of their mean would go beyond it.
+TEST(QuantityTest, IntervalsOfSharesStayBetween0And1) {
+  const MeanInterval plain = interval_of({0.9, 1.0, 0.99}, ValueRange::kAny);
+  EXPECT_GT(plain.high, 1.0);
+  const MeanInterval share = interval_of({0.9, 1.0, 0.99}, ValueRange::kShare);
+  EXPECT_EQ(share.mean, plain.mean);
+  EXPECT_GT(share.low, 0.0);
+  EXPECT_LT(share.high, 1.0);
+  const auto log_odds = [](double p) { return std::log(p / (1.0 - p)); };
+  EXPECT_NEAR(log_odds(share.high) + log_odds(share.low), 2.0 * log_odds(share.mean), 1e-9);
+  const MeanInterval others = interval_of({0.1, 0.0, 0.01}, ValueRange::kShare);
+  EXPECT_NEAR(others.low, 1.0 - share.high, 1e-12);
+  EXPECT_EQ(interval_of({1.0, 1.0}, ValueRange::kShare).high, 1.0);
+}
+
+/// Two Weber fractions: Student's interval of their mean goes far below 0.
+TEST(QuantityTest, IntervalsOfPositiveValuesStayAbove0) {
+  EXPECT_LT(interval_of({0.15, 0.25}, ValueRange::kAny).low, -0.4);
+  const MeanInterval positive = interval_of({0.15, 0.25}, ValueRange::kPositive);
+  EXPECT_GT(positive.low, 0.0);
+  EXPECT_NEAR(positive.low * positive.high, positive.mean * positive.mean, 1e-12);
+  // A small error changes nothing but the third digit.
+  const MeanInterval narrow = interval_of({0.199, 0.2, 0.201}, ValueRange::kPositive);
+  const MeanInterval plain = interval_of({0.199, 0.2, 0.201}, ValueRange::kAny);
+  EXPECT_NEAR(narrow.low, plain.low, 1e-4);
+}
+
+TEST(QuantityTest, AnOpenValueLeavesNoMean) {
+  const std::vector<QuantityValue> values{
+      {"A", {}, 310.0}, {"B", {}, 315.0}, {"C", {}, 326.0, true}, {"D", {}, 312.0}};
+  const Quantity thresholds = quantity("threshold", "threshold", "N/m", values, TrialsPlan{});
+  ASSERT_EQ(thresholds.means.size(), 1u);
+  ASSERT_FALSE(thresholds.means[0]);
+  EXPECT_EQ(thresholds.means[0].because(), "1 of 4 values lie beyond what was presented (C)");
+  EXPECT_EQ(thresholds.open, std::vector<std::string>{"C"});
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials

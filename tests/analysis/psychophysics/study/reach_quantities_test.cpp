@@ -1,0 +1,129 @@
+// Quantities of reaches between conditions: what enters a value, what is found, and that nothing is
+// found where there is nothing. bench_null_trials counts a thousand studies.
+
+#include "analysis/psychophysics/study/reach_quantities.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "tests/analysis/psychophysics/study/simulated_reaches.h"
+#include "tests/support/message_of.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using test::reach_plan;
+using test::simulated_reaches;
+using test::SimulatedReaches;
+
+TEST(ReachQuantitiesTest, AValueIsTheMeanOfTheCyclesThatThePlanTakes) {
+  TrialsPlan plan = reach_plan({"group", "block"});
+  plan.reaching.cycle = 8;
+  for (const ReachCycles cycles : {ReachCycles::kAll, ReachCycles::kFirst, ReachCycles::kLast}) {
+    plan.reaching.cycles = cycles;
+    const auto study = simulated_reaches({}, plan.reaching);
+    const auto quantities = reach_quantities(study.data, study.reaching, plan);
+    ASSERT_EQ(quantities.size(), 6u);
+    EXPECT_EQ(quantities[1].name, "movement_time");
+    EXPECT_EQ(quantities[1].table.cells.size(), 6u) << "two groups, three blocks";
+    // The first participant's block "during", by hand.
+    const std::size_t from = cycles == ReachCycles::kLast ? 24 : 0;
+    const std::size_t to = cycles == ReachCycles::kFirst ? 8 : 32;
+    double time = 0.0, slope = 0.0;
+    std::size_t reaches = 0, clamps = 0;
+    for (std::size_t i = from; i < to; ++i) {
+      const StudyReach& reach = study.reaching.reaches[32 + i];
+      ASSERT_EQ(reach.block, "during");
+      if (reach.kind == ReachKind::kPlain) {
+        time += *reach.metrics.movement_time;
+        ++reaches;
+      } else {
+        slope += reach.compensation->slope;
+        ++clamps;
+      }
+    }
+    const auto value = [&](const Quantity& q) {
+      for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
+        if (q.table.names[cell].find("during") != std::string::npos && q.table.means[0][cell]) {
+          return *q.table.means[0][cell];
+        }
+      }
+      return std::nan("");
+    };
+    EXPECT_NEAR(value(quantities[1]), time / static_cast<double>(reaches), 1e-12);
+    EXPECT_NEAR(value(quantities[5]), slope / static_cast<double>(clamps), 1e-12);
+  }
+}
+
+TEST(ReachQuantitiesTest, WhatDiffersIsFoundByThePlannedTests) {
+  SimulatedReaches study;
+  study.difference_of_groups = 0.015;
+  study.rise_of_blocks = 0.01;
+  const TrialsPlan plan = reach_plan({"group", "block"});
+  const auto made = simulated_reaches(study, plan.reaching);
+  const auto quantities = reach_quantities(made.data, made.reaching, plan);
+  const Quantity& error = quantities.front();
+  ASSERT_EQ(error.tests.planned.tests.size(), 2u);
+  const SideTest& groups = error.tests.planned.tests[0];
+  const SideTest& blocks = error.tests.planned.tests[1];
+  EXPECT_FALSE(groups.paired);
+  EXPECT_TRUE(blocks.paired);
+  ASSERT_TRUE(groups.t && blocks.t);
+  EXPECT_LT(groups.t->p, 1e-4);
+  EXPECT_LT(blocks.t->p, 1e-6);
+  EXPECT_NEAR(std::abs(groups.t->difference), 0.015, 0.006);
+  EXPECT_NEAR(std::abs(blocks.t->difference), 0.02, 0.005);
+}
+
+TEST(ReachQuantitiesTest, WithoutConditionsThereAreNone) {
+  TrialsPlan plan = reach_plan({"group"});
+  plan.by.clear();
+  const auto made = simulated_reaches({}, plan.reaching);
+  EXPECT_TRUE(reach_quantities(made.data, made.reaching, plan).empty());
+}
+
+TEST(ReachQuantitiesTest, EveryTestKeepsItsLevel) {
+  constexpr std::size_t kStudies = 150;
+  const auto band = test::binomial_band(kStudies, 1.0 - 1e-7);
+  for (const std::vector<std::string>& by :
+       {std::vector<std::string>{"group"}, {"block"}, {"group", "block"}}) {
+    const auto levels = test::null_reaches(by, kStudies, 3, 2);
+    EXPECT_GE(levels.size(), 6u * 4u);
+    for (const test::NullLevel& level : levels) {
+      EXPECT_LE(level.found, band.high) << level.test;
+      EXPECT_EQ(level.replications, kStudies) << level.test;
+    }
+  }
+}
+
+TEST(ReachQuantitiesTest, TheDefinitionStatesThem) {
+  const auto read = [](const std::string& keys) {
+    Table root = Table::parse("[analysis]\nkind = \"reaching\"\n" + keys, "study.toml");
+    PlanDefaults defaults;
+    defaults.factors = {"direction"};
+    defaults.names = {"block", "group"};
+    TrialsPlan plan = read_trials_plan(root, defaults);
+    root.finish();
+    return plan;
+  };
+  EXPECT_TRUE(read("").by.empty());
+  const TrialsPlan plan = read(
+      "by = [\"group\", \"block\"]\ntests = [\"gradual < abrupt\"]\ncycles = \"first\"\n"
+      "quantities = [\"error\", \"force_compensation\"]\n");
+  EXPECT_EQ(plan.by, (std::vector<std::string>{"group", "block"}));
+  ASSERT_EQ(plan.plan.tests.size(), 1u);
+  EXPECT_EQ(plan.reaching.cycles, ReachCycles::kFirst);
+  EXPECT_EQ(plan.reaching.quantities,
+            (std::vector{ReachQuantity::kError, ReachQuantity::kForceCompensation}));
+  EXPECT_THAT(haptrial::test::message_of([&] { read("tests = [\"a < b\"]\n"); }),
+              testing::HasSubstr("compares conditions, but there are none"));
+  EXPECT_THAT(haptrial::test::message_of([&] { read("quantities = [\"errors\"]\n"); }),
+              testing::HasSubstr("allowed: error, movement_time"));
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,261 @@
+#include "tests/core/device/device_rigs.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/device/coupled_mass.h"
+#include "core/device/force_dimension.h"
+#include "core/device/mouse.h"
+#include "core/device/open_haptics.h"
+#include "core/device/replay.h"
+#include "core/device/virtual_device.h"
+
+namespace haptrial::test {
+
+using Eigen::Vector3d;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+StandIn::StandIn(const std::string& name)
+    : path(std::string(HAPTRIAL_BINARY_DIR) + "/lib" + name + ".so"), library(path, "the tests") {
+  library.get(reset, "stand_in_reset");
+  library.get(fail, "stand_in_fail");
+  library.get(place, "stand_in_place");
+  library.get(turn, "stand_in_turn");
+  library.get(buttons, "stand_in_buttons");
+  library.get(view, "stand_in_view");
+  library.get(set_up, "stand_in_setup");
+  library.find(manual, "stand_in_manual");
+  library.find(step, "stand_in_step");
+  reset();
+}
+
+StandInView StandIn::look() const {
+  StandInView seen;
+  view(&seen);
+  return seen;
+}
+
+StandInSetup StandIn::setup() const {
+  StandInSetup seen;
+  set_up(&seen);
+  return seen;
+}
+
+namespace {
+
+device::VirtualDeviceParameters fine_electronics() {
+  device::VirtualDeviceParameters p;
+  p.position_quantum = 1e-7;
+  return p;
+}
+
+/// A handle that breaks on command.
+class BreakableMass final : public device::HandlePhysics {
+ public:
+  PointState step(const Vector3d& force, double dt) noexcept override {
+    PointState state = mass.step(force, dt);
+    if (++ticks >= failure_tick) {
+      if (failure == Failure::kNotFinite) {
+        state.position.y() = kNan;
+      } else if (failure == Failure::kJump) {
+        state.position.z() += 0.02;
+      }
+    }
+    return state;
+  }
+  PointState state() const noexcept override { return mass.state(); }
+
+  device::CoupledMass mass{device::CoupledMassParameters{}};
+  Failure failure{Failure::kNone};
+  long failure_tick{0};
+  long ticks{0};
+};
+
+class VirtualDeviceRig final : public Rig {
+ public:
+  device::Device& device() override { return *device_; }
+  double compliance() const override { return 1.0 / 400.0; }
+  void place(const Vector3d& p) override { handle_.mass.set_anchor(p); }
+  std::vector<RigFailure> failures() const override {
+    return {{Failure::kNotFinite, "not finite"}, {Failure::kJump, "jump"}};
+  }
+  void fail(Failure failure, long tick) override {
+    handle_.failure = failure;
+    handle_.failure_tick = tick;
+  }
+  double force_after_close() override { return 0.0; }
+
+ private:
+  BreakableMass handle_;
+  std::optional<device::VirtualDevice> device_{std::in_place, fine_electronics(), handle_,
+                                               kRigRate};
+};
+
+class MouseRig final : public Rig {
+ public:
+  device::Device& device() override { return device_; }
+  double compliance() const override { return 1.0 / 400.0; }
+  void place(const Vector3d& p) override {
+    device_.move(p.x(), p.z());
+    device_.press(-p.y() / compliance());
+  }
+  bool press_button() override {
+    device_.set_buttons(1);
+    return true;
+  }
+  double force_after_close() override { return 0.0; }
+
+ private:
+  static device::MouseParameters parameters() {
+    device::MouseParameters p;
+    p.electronics = fine_electronics();
+    return p;
+  }
+  device::MouseDevice device_{parameters(), kRigRate};
+};
+
+/// A hand that goes round in a circle.
+class ReplayRig final : public Rig {
+ public:
+  ReplayRig() { fail(Failure::kNone, 0); }
+  device::Device& device() override { return *device_; }
+  void place(const Vector3d& p) override {
+    device_.emplace(std::vector<PointState>(20000, {p, Vector3d::Zero()}), kRigRate);
+  }
+  std::vector<RigFailure> failures() const override {
+    return {{Failure::kLostLink, "end of the recording"},
+            {Failure::kNotFinite, "not finite"},
+            {Failure::kJump, "jump"}};
+  }
+  void fail(Failure failure, long tick) override {
+    std::vector<PointState> hand;
+    for (int i = 0; i < 20000; ++i) {
+      const double angle = 4.0 * i / kRigRate;
+      hand.push_back({0.02 * Vector3d(std::cos(angle), 0.0, std::sin(angle)),
+                      0.08 * Vector3d(-std::sin(angle), 0.0, std::cos(angle))});
+    }
+    if (failure == Failure::kLostLink) {
+      hand.resize(static_cast<std::size_t>(tick));
+    } else if (failure == Failure::kNotFinite) {
+      hand[static_cast<std::size_t>(tick)].velocity.x() = kNan;
+    } else if (failure == Failure::kJump) {
+      hand[static_cast<std::size_t>(tick)].position.y() = 0.02;
+    }
+    device_.emplace(std::move(hand), kRigRate);
+  }
+  double force_after_close() override { return 0.0; }
+
+ private:
+  std::optional<device::ReplayDevice> device_;
+};
+
+double norm(const double (&v)[3]) { return std::hypot(v[0], v[1], v[2]); }
+
+class ForceDimensionRig final : public Rig {
+ public:
+  explicit ForceDimensionRig(const std::string& library) : stand_in_(library) {
+    device_.emplace(device::ForceDimensionParameters{}, kRigRate, stand_in_.path);
+  }
+  device::Device& device() override { return *device_; }
+  double compliance() const override { return 1.0 / 200.0; }
+  void place(const Vector3d& p) override {
+    const double theirs[3] = {p.z(), p.x(), p.y()};  // to the user, right, up
+    stand_in_.place(theirs);
+  }
+  bool press_button() override {
+    stand_in_.buttons(1);
+    return true;
+  }
+  std::vector<RigFailure> failures() const override {
+    return {{Failure::kLostLink, "lost link"},
+            {Failure::kTimeout, "time-out"},
+            {Failure::kNotFinite, "not finite"},
+            {Failure::kJump, "jump"},
+            {Failure::kForcesOffByButton, "forces off by button"},
+            {Failure::kForcesOffByVelocity, "forces off by velocity"},
+            {Failure::kForcesOffByWatchdog, "forces off by watchdog"},
+            {Failure::kForceRefused, "force refused"},
+            {Failure::kSlowCall, "slow call", true},
+            {Failure::kSaturated, "saturated", true},
+            {Failure::kTimeGuard, "time guard", true}};
+  }
+  void fail(Failure failure, long tick) override {
+    stand_in_.fail(static_cast<int>(failure), tick + 1);  // one force is set at the start
+  }
+  double force_after_close() override {
+    device_.reset();
+    const StandInView seen = stand_in_.look();
+    return seen.forces_on || seen.open ? kNan : norm(seen.force);
+  }
+
+ private:
+  StandIn stand_in_;
+  std::optional<device::ForceDimensionDevice> device_;
+};
+
+class OpenHapticsRig final : public Rig {
+ public:
+  OpenHapticsRig() : stand_in_("stand_in_hd") {
+    stand_in_.manual(1);
+    device_.emplace(device::OpenHapticsParameters{}, kRigRate, stand_in_.path);
+  }
+  ~OpenHapticsRig() override {
+    device_.reset();
+    stand_in_.manual(0);
+  }
+  device::Device& device() override { return *device_; }
+  void period() override { stand_in_.step(); }
+  double compliance() const override { return 1.0 / 200.0; }
+  void place(const Vector3d& p) override {
+    const double theirs[3] = {1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()};  // [mm]
+    stand_in_.place(theirs);
+  }
+  bool press_button() override {
+    stand_in_.buttons(1);
+    return true;
+  }
+  std::vector<RigFailure> failures() const override {
+    return {{Failure::kLostLink, "lost link", false, 1},
+            {Failure::kTimeout, "time-out", false, 1},
+            {Failure::kNotFinite, "not finite", false, 1},
+            {Failure::kJump, "jump", false, 1},
+            {Failure::kForcesOffByVelocity, "forces off by velocity", false, 1},
+            {Failure::kMotorsWarm, "motors warm", false, 1},
+            {Failure::kForceRefused, "force refused", false, 1},
+            {Failure::kStall, "stall", false, 21}};
+  }
+  void fail(Failure failure, long tick) override {
+    stand_in_.fail(static_cast<int>(failure), tick);
+  }
+  double force_after_close() override {
+    device_.reset();
+    const StandInView seen = stand_in_.look();
+    return seen.forces_on || seen.open ? kNan : norm(seen.force);
+  }
+
+ private:
+  StandIn stand_in_;
+  std::optional<device::OpenHapticsDevice> device_;
+};
+
+}  // namespace
+
+std::vector<RigKind> every_rig() {
+  return {
+      {"virtual", []() -> std::unique_ptr<Rig> { return std::make_unique<VirtualDeviceRig>(); }},
+      {"replay", []() -> std::unique_ptr<Rig> { return std::make_unique<ReplayRig>(); }},
+      {"mouse", []() -> std::unique_ptr<Rig> { return std::make_unique<MouseRig>(); }},
+      {"force_dimension",
+       []() -> std::unique_ptr<Rig> {
+         return std::make_unique<ForceDimensionRig>("stand_in_dhd");
+       }},
+      {"force_dimension_without_drd",
+       []() -> std::unique_ptr<Rig> {
+         return std::make_unique<ForceDimensionRig>("stand_in_dhd_only");
+       }},
+      {"open_haptics",
+       []() -> std::unique_ptr<Rig> { return std::make_unique<OpenHapticsRig>(); }}};
+}
+
+}  // namespace haptrial::test

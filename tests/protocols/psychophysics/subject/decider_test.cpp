@@ -1,0 +1,32 @@
+#include "protocols/psychophysics/subject/decider.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace haptrial::protocols {
+namespace {
+
+constexpr std::array kTwoIntervals{4.0, 16.0};  // percepts
+
+TEST(DeciderTest, TheLastIntervalIsJudgedWhateverCameBefore) {
+  ObserverPlan plan;
+  subject::JudgementParameters judgement;
+  judgement.exponent = 0.5;
+  judgement.criterion = 8.0;
+  Question number;
+  number.high = 1000.0;
+  plan.decides = Decides::kMagnitude;
+  EXPECT_NEAR(Decider(plan, judgement, 1).decide(number, true, kTwoIntervals).value, 4.0, 1e-12);
+  Question choice;
+  choice.choices.resize(2);
+  plan.decides = Decides::kYes;
+  plan.yes = 1;
+  EXPECT_EQ(Decider(plan, judgement, 1).decide(choice, true, kTwoIntervals).choice, 1);
+  plan.decides = Decides::kNearest;
+  plan.prototypes = {4.0, 16.0};
+  EXPECT_EQ(Decider(plan, judgement, 1).decide(choice, true, kTwoIntervals).choice, 1);
+}
+
+}  // namespace
+}  // namespace haptrial::protocols
