@@ -23,13 +23,13 @@ run_tests() {
 case "${1:-release}" in
   release)
     install_packages build test site
-    build build -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON -DHAPTRIAL_PYTHON=ON
+    build build -DHAPTRIAL_WERROR=ON -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON -DHAPTRIAL_PYTHON=ON
     run_tests build
     ;;
   asan | tsan)
     install_packages build test
     [ "$1" = asan ] && sanitizer=address || sanitizer=thread
-    build "build-$1" -DHAPTRIAL_SANITIZER=$sanitizer -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON
+    build "build-$1" -DHAPTRIAL_WERROR=ON -DHAPTRIAL_SANITIZER=$sanitizer -DHAPTRIAL_TESTS=ON -DHAPTRIAL_UNITY=ON
     run_tests "build-$1"
     ;;
   bench)

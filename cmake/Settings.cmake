@@ -10,10 +10,11 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_CXX_FLAGS_RELEASE "-O2")  # kernels take more: haptrial_optimise
 
+option(HAPTRIAL_WERROR "Warnings are errors, as check.sh builds" OFF)
 # No fused multiply-add unless it is written: the same source gives the same bits on every
 # instruction set that a kernel is dispatched to.
-add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
-                    -ffp-contract=off)
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                    $<$<BOOL:${HAPTRIAL_WERROR}>:-Werror> -ffp-contract=off)
 # Eigen adds up in an order that follows the processor's caches, unless it is told their sizes: then a
 # product has the same bits everywhere. haptrial_base hands this on to programs that link it.
 set(HAPTRIAL_EIGEN EIGEN_NO_CPUID EIGEN_DEFAULT_L1_CACHE_SIZE=32768 EIGEN_DEFAULT_L2_CACHE_SIZE=1048576

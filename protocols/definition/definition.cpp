@@ -26,6 +26,39 @@ void read_devices(Table& root, Definition& setup) {
   read("pedal", setup.pedal, device::pedal_schema());
 }
 
+const Schema<Definition>& experiment_schema() {
+  using D = Definition;
+  static const auto schema =
+      Schema<D>()
+          .text("name", &D::name, "Name of the study, for reports and new folders")
+          .required()
+          .text("protocol", &D::protocol, "Kind of experiment")
+          .otherwise("force_training")
+          .number("rate", &D::rate, {100.0, 20000.0}, "Hz", "Ticks of the servo loop per second")
+          .required();
+  return schema;
+}
+
+const Schema<Definition>& lab_schema() {
+  static const auto schema =
+      Schema<Definition>()
+          .text("use", &Definition::lab,
+                "File with tables of devices and screen, relative to the definition; without [lab] "
+                "the definition has them")
+          .required();
+  return schema;
+}
+
+const Schema<Definition>& integrator_schema() {
+  static const auto schema =
+      Schema<Definition>()
+          .choice("integrator", &Definition::integrator,
+                  {{"exact", Integrator::kExact}, {"cvode", Integrator::kCvode}},
+                  "Integrator of the virtual hand: its exact solution, or CVODE's")
+          .required();
+  return schema;
+}
+
 }  // namespace
 
 void read_common(Table& root, std::string_view file_name, Definition& definition) {
@@ -36,19 +69,15 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   Table screen = root.table("screen");
   Table texts = root.table("texts");
   if (root.has("lab")) {
-    definition.lab = root.table("lab").text("use");
+    Table lab = root.table("lab");
+    lab_schema().read(lab, definition);
   }
   definition.text = root.source();
   definition.file_name = std::filesystem::path(file_name).filename().string();
-  definition.name = experiment.text("name");
-  if (experiment.has("protocol")) {
-    definition.protocol = experiment.text("protocol");
-  }
-  definition.rate = experiment.number("rate", {100.0, 20000.0}, "Hz");
+  experiment_schema().read(experiment, definition);
   definition.envelope = device::envelope_schema().read(envelope);
   definition.device = device::virtual_device_schema().read(device);
-  const bool cvode = hand.choice("integrator", {"exact", "cvode"}) == "cvode";
-  definition.integrator = cvode ? Integrator::kCvode : Integrator::kExact;
+  integrator_schema().read(hand, definition);
   definition.hand = subject::hand_schema().read(hand);
   if (!envelope.has("holding_force")) {  // friction holds on both sides of a standstill
     definition.envelope.holding_force =

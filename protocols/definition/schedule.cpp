@@ -5,12 +5,16 @@
 #include <numeric>
 #include <set>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/random.h"
 
 namespace haptrial::protocols {
 
 bool read_break_until_ready(Table& table, int break_after) {
+  table.describe({"break_until",
+                  "What ends a break: its duration, or after that the participant or the "
+                  "experimenter",
+                  "time", false});
   if (!table.has("break_until")) {
     return false;
   }
@@ -23,17 +27,8 @@ bool read_break_until_ready(Table& table, int break_after) {
   return ready;
 }
 
-Design read_design(Table& table) {
-  Design d;
-  d.participants = static_cast<int>(table.integer("participants", 1, 10000));
-  d.trials = static_cast<int>(table.integer("trials", 1, 100000));
-  d.repetitions = static_cast<int>(table.integer("repetitions", 1, 1000));
-  d.break_after = static_cast<int>(table.integer("break_after", 0, 100000));
-  d.break_duration = table.number("break_duration", {0.0, 86400.0}, "s");
-  d.break_until_ready = read_break_until_ready(table, d.break_after);
-  d.practice = table.has("practice") ? static_cast<int>(table.integer("practice", 0, 100)) : 0;
-  d.conditions = table.texts("conditions");
-
+/// What no key of a design can see alone.
+static void check_design(Table& table, Design& d) {
   const int group = d.repetitions * static_cast<int>(d.conditions.size());
   if (group > 0 && d.trials % group != 0) {
     table.reject("trials", fmt::format("{}", d.trials),
@@ -51,7 +46,35 @@ Design read_design(Table& table) {
       d.conditions.size()) {
     table.reject("conditions", "names a condition twice; name each condition once");
   }
-  return d;
+}
+
+const Schema<Design>& design_schema() {
+  using D = Design;
+  static const auto schema =
+      Schema<D>()
+          .integer("participants", &D::participants, 1, 10000, "Participants of the study")
+          .required()
+          .integer("trials", &D::trials, 1, 100000, "Trials of each participant")
+          .required()
+          .integer("repetitions", &D::repetitions, 1, 1000,
+                   "Trials of a block, which share stimulus and condition")
+          .required()
+          .integer("break_after", &D::break_after, 0, 100000,
+                   "Trials after which a break comes; 0: no breaks")
+          .required()
+          .number("break_duration", &D::break_duration, {0.0, 86400.0}, "s", "Duration of a break")
+          .required()
+          .integer("practice", &D::practice, 0, 100,
+                   "Practice trials of each condition, which are not scored")
+          .custom(
+              "conditions", "Conditions of training",
+              [](Table& table, const std::string& key, D& d) { d.conditions = table.texts(key); })
+          .required()
+          .check([](Table& table, D& d) {
+            d.break_until_ready = read_break_until_ready(table, d.break_after);
+            check_design(table, d);
+          });
+  return schema;
 }
 
 std::vector<std::vector<int>> williams_rows(int n) {

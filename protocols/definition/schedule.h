@@ -5,8 +5,10 @@
 #include <vector>
 
 namespace haptrial {
+template <class T>
+class Schema;
 class Table;
-}
+}  // namespace haptrial
 
 namespace haptrial::protocols {
 
@@ -24,8 +26,8 @@ struct Design {
   int blocks() const { return trials / repetitions; }
 };
 
-/// Reads a [design] table; a design that does not divide is noted as a problem.
-Design read_design(Table& table);
+/// The keys of a [design] table; a design that does not divide is noted as a problem.
+const Schema<Design>& design_schema();
 
 /// Reads the key `break_until` of a [design] table, "time" (as if left out) or "ready".
 /// @param break_after  that the design has; 0: no breaks

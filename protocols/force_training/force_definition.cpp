@@ -126,6 +126,15 @@ void reject_gains(Table& root, const ForceDefinition& d) {
   }
 }
 
+const Schema<ForceDefinition>& recording_schema() {
+  static const auto schema =
+      Schema<ForceDefinition>()
+          .number("stimulus_rate", &ForceDefinition::stimulus_rate, {10.0, 10000.0}, "Hz",
+                  "Samples a second at which trajectory and force pattern are kept")
+          .required();
+  return schema;
+}
+
 }  // namespace
 
 ForceDefinition read_force_definition(Table& root, std::string_view file_name,
@@ -146,9 +155,9 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   read_common(root, file_name, d);
   d.trajectory = stimulus::trajectory_schema().read(trajectory);
   d.force_pattern = stimulus::force_pattern_schema().read(force_pattern);
-  d.guidance = read_guidance_parameters(guidance);
-  d.stimulus_rate = recording.number("stimulus_rate", {10.0, 10000.0}, "Hz");
-  d.design = read_design(design);
+  d.guidance = guidance_schema().read(guidance);
+  recording_schema().read(recording, d);
+  d.design = design_schema().read(design);
   d.recovery = d.guidance.recovery;
   d.display = render::read_trial_display_style(display);
   if (d.guidance.kind == Guidance::kCurve) {

@@ -20,28 +20,56 @@ constexpr double kShortestMove = 0.2;  // a move of a millimetre would jerk at f
 
 }  // namespace
 
-GuidanceParameters read_guidance_parameters(Table& table) {
-  GuidanceParameters p;
-  const bool curve = table.has("kind") && table.choice("kind", {"trajectory", "curve"}) == "curve";
-  Table trajectory = table.table("trajectory");
-  Table plane = table.table("plane");
-  p.trajectory = control::pd_gains_schema().read(trajectory);
-  p.plane = control::pd_gains_schema().read(plane);
-  p.force_limit = table.number("force_limit", {0.0, 100.0, true}, "N");
-  p.approach_speed = table.number("approach_speed", {0.001, 1.0}, "m/s");
-  p.settle_distance = table.number("settle_distance", {0.0, 0.1, true}, "m");
-  p.wait = table.number("wait", {0.0, 60.0}, "s");
-  p.wait_timeout = table.number("wait_timeout", {p.wait, 600.0, true}, "s");
-  p.recovery = table.number("recovery", {0.0, 600.0}, "s");
-  p.free_recall = table.has("recall") && table.choice("recall", {"guided", "free"}) == "free";
-  p.pause_beyond = table.number_or("pause_beyond", p.pause_beyond, {0.001, 1.0}, "m");
-  if (curve) {
-    p.kind = Guidance::kCurve;
-    p.run_timeout = table.number("run_timeout", {0.0, 3600.0, true}, "s");
-    Table following = table.table("curve");
-    p.curve = control::curve_following_schema().read(following);
-  }
-  return p;
+const Schema<GuidanceParameters>& guidance_schema() {
+  using P = GuidanceParameters;
+  const auto at_own_pace = [](const P& p) { return p.kind == Guidance::kCurve; };
+  static const auto schema =
+      Schema<P>()
+          .choice("kind", &P::kind,
+                  {{"trajectory", Guidance::kTrajectory}, {"curve", Guidance::kCurve}},
+                  "What the hand follows: a point that moves in time, or a curve at the "
+                  "participant's own pace")
+          .table("trajectory", &P::trajectory, control::pd_gains_schema(),
+                 "Gains of the spring to the trajectory")
+          .required()
+          .table("plane", &P::plane, control::pd_gains_schema(), "Gains of the spring to the plane")
+          .required()
+          .number("force_limit", &P::force_limit, {0.0, 100.0, true}, "N",
+                  "Greatest force that guidance commands")
+          .required()
+          .number("approach_speed", &P::approach_speed, {0.001, 1.0}, "m/s",
+                  "Peak speed at which the hand is led to the start")
+          .required()
+          .number("settle_distance", &P::settle_distance, {0.0, 0.1, true}, "m",
+                  "Distance from the start within which the hand has arrived")
+          .required()
+          .number("wait", &P::wait, {0.0, 60.0}, "s", "Time that the hand must stay at the start")
+          .required()
+          .number("wait_timeout", &P::wait_timeout, {0.0, 600.0, true}, "s",
+                  "Time after which a pass is aborted whose hand has not settled at the start")
+          .required()
+          .number("recovery", &P::recovery, {0.0, 600.0}, "s",
+                  "Time without force after an aborted pass")
+          .required()
+          .choice("recall", &P::free_recall, {{"guided", false}, {"free", true}},
+                  "Whether the hand is led in the test, or finds path and force by itself")
+          .number("pause_beyond", &P::pause_beyond, {0.001, 1.0}, "m",
+                  "Distance from the expert's hand beyond which a playback waits")
+          .number("run_timeout", &P::run_timeout, {0.0, 3600.0, true}, "s",
+                  "Longest duration of a run at the participant's own pace")
+          .required()
+          .only_if(at_own_pace)
+          .table("curve", &P::curve, control::curve_following_schema(),
+                 "How the place on the curve follows the hand")
+          .required()
+          .only_if(at_own_pace)
+          .check([](Table& table, const P& p) {
+            if (p.wait_timeout <= p.wait) {
+              table.reject("wait_timeout", fmt::format("{}", p.wait_timeout),
+                           fmt::format("a number above wait, {} [s]", p.wait));
+            }
+          });
+  return schema;
 }
 
 TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,

@@ -14,7 +14,8 @@
 #include "protocols/interface/pass.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::protocols {
@@ -54,9 +55,8 @@ enum class RunLead {
 /// Ticks of an expert's run.
 using ExpertLog = realtime::BlockLog<record::TutoringRow>;
 
-/// Reads a [guidance] table with its inner tables trajectory and plane, and curve where its `kind`
-/// is that; without a `kind` it is "trajectory".
-GuidanceParameters read_guidance_parameters(Table& table);
+/// The keys of [guidance].
+const Schema<GuidanceParameters>& guidance_schema();
 
 /// An instant of a pass, as far as it can be seen; a recorded sample holds the same.
 struct PassMoment {

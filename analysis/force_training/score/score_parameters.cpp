@@ -23,56 +23,89 @@ std::string exponent(double power) {
   return power == 1.0 ? "" : power == 2.0 ? "²" : fmt::format("^{}", power);
 }
 
-/// The keys that the published form does not need.
-void read_form(Table& analysis, ScoreParameters& p) {
-  if (analysis.has("step_pattern")) {
-    const std::string name = analysis.choice("step_pattern", pattern_names());
-    p.alignment.pattern = pattern_of(name).value_or(StepPattern::kPublished);
+std::vector<std::pair<std::string, StepPattern>> patterns() {
+  std::vector<std::pair<std::string, StepPattern>> words;
+  for (const std::string& name : pattern_names()) {
+    words.emplace_back(name, pattern_of(name).value_or(StepPattern::kPublished));
   }
-  if (analysis.has("window")) {
-    p.window = analysis.number("window", kNonNegative, "s");
-  }
-  if (analysis.has("open_begin")) {
-    p.alignment.open_begin = analysis.boolean("open_begin");
-  }
-  if (analysis.has("open_end")) {
-    p.alignment.open_end = analysis.boolean("open_end");
-  }
-  if (p.alignment.open_begin && doubles_straight(p.alignment.pattern)) {
-    analysis.reject(
-        "open_begin",
-        fmt::format("is true with the step pattern {}; choose published, symmetric1 or asymmetric",
-                    name_of(p.alignment.pattern)));
-  }
+  return words;
+}
+
+/// The keys of the alignment.
+const Schema<AlignmentOptions>& alignment_schema() {
+  using A = AlignmentOptions;
+  static const auto schema =
+      Schema<A>()
+          .number("power", &A::power, kPower, "",
+                  "Power to which differences of force and slope are raised")
+          .required()
+          .custom("force_weight", "Weight of a difference of force in the error matrix",
+                  [](Table& table, const std::string& key, A& a) {
+                    a.force_weight = table.number(key, kWeight, "1/N" + exponent(a.power));
+                  })
+          .required()
+          .custom("slope_weight", "Weight of a difference of slope in the error matrix",
+                  [](Table& table, const std::string& key, A& a) {
+                    const std::string raised = exponent(a.power);
+                    a.slope_weight = table.number(key, kWeight, fmt::format("s{0}/N{0}", raised));
+                  })
+          .required()
+          .number("penalty", &A::penalty, kWeight, "",
+                  "Penalty of a step of the alignment along one curve alone")
+          .required()
+          .choice("step_pattern", &A::pattern, patterns(), "Steps that the alignment may take")
+          .flag("open_begin", &A::open_begin, "Whether the applied curve may begin late")
+          .flag("open_end", &A::open_end, "Whether the applied curve may end early")
+          .check([](Table& table, const A& a) {
+            if (a.open_begin && doubles_straight(a.pattern)) {
+              table.reject("open_begin",
+                           fmt::format("is true with the step pattern {}; choose published, "
+                                       "symmetric1 or asymmetric",
+                                       name_of(a.pattern)));
+            }
+          });
+  return schema;
 }
 
 }  // namespace
 
-ScoreParameters read_score_parameters(Table& analysis) {
-  ScoreParameters p;
-  p.samples = static_cast<int>(analysis.integer("samples", 2, kMostSamples));
-  p.filter_width = analysis.number("filter_width", {0.0, kWidestFilter}, "s");
-  p.alignment.power = analysis.number("power", kPower, "");
-  const std::string raised = exponent(p.alignment.power);
-  p.alignment.force_weight = analysis.number("force_weight", kWeight, "1/N" + raised);
-  p.alignment.slope_weight =
-      analysis.number("slope_weight", kWeight, fmt::format("s{0}/N{0}", raised));
-  p.alignment.penalty = analysis.number("penalty", kWeight, "");
-  read_form(analysis, p);
-  p.cost_share = analysis.number("cost_share", kWeight, "");
-  p.force_share = analysis.number("force_share", kWeight, "1/N");
-  p.slope_share = analysis.number("slope_share", kWeight, "s/N");
-  const bool all_there =
-      analysis.has("cost_share") && analysis.has("force_share") && analysis.has("slope_share");
-  if (all_there && p.cost_share + p.force_share + p.slope_share == 0.0) {
-    analysis.reject("cost_share",
-                    "is 0, like force_share and slope_share; set at least one of them above 0");
-  }
-  return p;
+const Schema<ScoreParameters>& score_schema() {
+  using P = ScoreParameters;
+  static const auto schema =
+      Schema<P>()
+          .integer("samples", &P::samples, 2, kMostSamples,
+                   "Samples of the time base on which curves are compared")
+          .required()
+          .number("filter_width", &P::filter_width, {0.0, kWidestFilter}, "s",
+                  "Width of the box filter on the applied force")
+          .required()
+          .keys_of(&P::alignment, alignment_schema())
+          .number("window", &P::window, kNonNegative, "s",
+                  "Greatest difference in time that the alignment may make")
+          .otherwise("no window")
+          .number("cost_share", &P::cost_share, kWeight, "",
+                  "Share of the alignment's cost in the score")
+          .required()
+          .number("force_share", &P::force_share, kWeight, "1/N",
+                  "Share of the difference of force in the score")
+          .required()
+          .number("slope_share", &P::slope_share, kWeight, "s/N",
+                  "Share of the difference of slope in the score")
+          .required()
+          .check([](Table& table, const P& p) {
+            const bool all_there =
+                table.has("cost_share") && table.has("force_share") && table.has("slope_share");
+            if (all_there && p.cost_share + p.force_share + p.slope_share == 0.0) {
+              table.reject("cost_share",
+                           "is 0, like force_share and slope_share; set at least one of them "
+                           "above 0");
+            }
+          });
+  return schema;
 }
 
 ScoreParameters read_scoring(Table& root, Table& analysis) {
-  ScoreParameters p = read_score_parameters(analysis);
+  ScoreParameters p = score_schema().read(analysis);
   Table guidance = root.table("guidance");
   p.over_path = guidance.has("kind") && guidance.choice("kind", {"trajectory", "curve"}) == "curve";
   p.free_path = guidance.has("recall") && guidance.choice("recall", {"guided", "free"}) == "free";

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/alignment/options.h"
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::analysis {
 
@@ -31,13 +31,10 @@ struct ScoreParameters {
   double slope_share{0.5};  // s >= 0 [s/N]
 };
 
-/// Reads the [analysis] table of a definition: samples, filter_width, force_weight, slope_weight,
-/// power, penalty, cost_share, force_share, slope_share, all required; and step_pattern, window,
-/// open_begin, open_end, where they are not as published. Problems are noted in the table; its
-/// finish() throws them.
-ScoreParameters read_score_parameters(Table& analysis);
+/// The keys of [analysis] that say how a recall is scored.
+const Schema<ScoreParameters>& score_schema();
 
-/// The same with what follows from the guidance of a definition.
+/// Reads them with what follows from the guidance of a definition.
 /// @param analysis  the table of that name in `root`
 ScoreParameters read_scoring(Table& root, Table& analysis);
 

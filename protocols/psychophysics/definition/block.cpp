@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "protocols/definition/schedule.h"
 
 namespace haptrial::protocols {
@@ -33,10 +34,17 @@ std::vector<GivenValue> read_values(Table& table, const std::vector<std::string>
   return values;
 }
 
+const Schema<Probe>& probe_schema() {
+  static const auto schema = Schema<Probe>()
+                                 .text("name", &Probe::name, "Name of the probes among the trials")
+                                 .number("share", &Probe::share, {0.0, 0.5, true}, "1",
+                                         "Share of the block's trials that are probes")
+                                 .required();
+  return schema;
+}
+
 Probe read_probe(Table& table) {
-  Probe probe;
-  probe.name = table.has("name") ? table.text("name") : "probe";
-  probe.share = table.number("share", {0.0, 0.5, true}, "1");
+  Probe probe = probe_schema().read(table);
   probe.values = read_values(table, {"name", "share"});
   if (probe.values.empty()) {
     table.reject("share", "stands alone; say what a probe gives: field = \"null\"");
@@ -50,14 +58,27 @@ const std::vector<std::string>& block_keys() {
   return keys;
 }
 
+constexpr const char* kRightInARow =
+    "Right answers in a row with which practice ends before its last trial";
+
+const Schema<Block>& block_schema() {
+  using B = Block;
+  static const auto schema =
+      Schema<B>()
+          .text("name", &B::name, "Name of the block")
+          .required()
+          .flag("practice", &B::practice, "Whether the block is practice, which is not scored")
+          .integer("right_in_a_row", &B::right_in_a_row, 1, 1000, kRightInARow)
+          .otherwise("all trials");
+  return schema;
+}
+
+constexpr const char* kBlockTrials = "Trials of the block; needed without a procedure";
+
 Block read_block(Table& table, bool procedures) {
-  Block block;
-  block.name = table.text("name");
-  block.practice = table.has("practice") && table.boolean("practice");
+  Block block = block_schema().read(table);
   block.values = read_values(table, block_keys());
-  if (table.has("right_in_a_row")) {
-    block.right_in_a_row = static_cast<int>(table.integer("right_in_a_row", 1, 1000));
-  }
+  table.describe({"trials", kBlockTrials, "until its procedures are finished", false});
   if (table.has("trials") || block.practice || !procedures) {
     block.trials = static_cast<int>(table.integer("trials", 1, kMostInBlock));
   }
@@ -66,6 +87,17 @@ Block read_block(Table& table, bool procedures) {
     block.probe = read_probe(probe);
   }
   return block;
+}
+
+const Schema<Block>& practice_schema() {
+  using B = Block;
+  static const auto schema =
+      Schema<B>()
+          .integer("trials", &B::trials, 1, kMostInBlock, "Trials of practice")
+          .required()
+          .integer("right_in_a_row", &B::right_in_a_row, 1, 1000, kRightInARow)
+          .otherwise("all trials");
+  return schema;
 }
 
 std::vector<Factor> read_factors(Table& root) {
@@ -88,14 +120,28 @@ std::vector<Factor> read_factors(Table& root) {
   return factors;
 }
 
-void read_order(Table& design, TrialDesign& d) {
-  if (design.has("blocks")) {
-    d.order =
-        balance_named(design.choice("blocks", {"fixed", "latin", "williams", "full", "random"}));
-  }
-  if (design.has("most_in_a_row")) {
-    d.most_in_a_row = static_cast<int>(design.integer("most_in_a_row", 1, 1000));
-  }
+const Schema<TrialDesign>& trial_design_schema() {
+  using D = TrialDesign;
+  constexpr long kMostSessions = 100;
+  static const auto schema =
+      Schema<D>()
+          .integer("participants", &D::participants, 1, 100000, "Participants of the study")
+          .required()
+          .integer("break_after", &D::break_after, 0, kMostInBlock,
+                   "Trials after which a break comes; 0: no breaks")
+          .number("break_duration", &D::break_duration, {0.0, 36000.0}, "s", "Duration of a break")
+          .custom("blocks", "Order of the blocks over participants",
+                  [](Table& table, const std::string& key, D& d) {
+                    d.order = balance_named(
+                        table.choice(key, {"fixed", "latin", "williams", "full", "random"}));
+                  })
+          .otherwise("fixed")
+          .integer("most_in_a_row", &D::most_in_a_row, 1, 1000,
+                   "Most trials of one combination of factors that follow each other")
+          .otherwise("no limit")
+          .integer("sessions", &D::sessions, 1, kMostSessions,
+                   "Sessions of each participant, on days of their own");
+  return schema;
 }
 
 /// The places of the blocks that a session names.
@@ -139,10 +185,6 @@ void check_sessions(Table& design, const TrialDesign& d) {
 }
 
 void read_sessions(Table& design, TrialDesign& d) {
-  constexpr long kMostSessions = 100;
-  if (design.has("sessions")) {
-    d.sessions = static_cast<int>(design.integer("sessions", 1, kMostSessions));
-  }
   if (!design.has("session")) {
     return;
   }
@@ -182,25 +224,17 @@ std::string formula_of_value(Table& table, const std::string& key) {
 }
 
 TrialDesign read_trial_design(Table& root, bool procedures) {
-  TrialDesign d;
   Table design = root.table("design");
-  d.participants = static_cast<int>(design.integer("participants", 1, 100000));
-  if (design.has("break_after")) {
-    d.break_after = static_cast<int>(design.integer("break_after", 0, kMostInBlock));
-  }
-  if (design.has("break_duration")) {
-    d.break_duration = design.number("break_duration", {0.0, 36000.0}, "s");
-  }
+  TrialDesign d = trial_design_schema().read(design);
   d.break_until_ready = read_break_until_ready(design, d.break_after);
-  read_order(design, d);
   d.factors = read_factors(root);
   if (root.has("practice")) {
     Table table = root.table("practice");
-    d.blocks.push_back({"practice", static_cast<int>(table.integer("trials", 1, kMostInBlock)),
-                        true, 0, read_values(table, {"trials", "right_in_a_row"}), std::nullopt});
-    if (table.has("right_in_a_row")) {
-      d.blocks.back().right_in_a_row = static_cast<int>(table.integer("right_in_a_row", 1, 1000));
-    }
+    Block practice = practice_schema().read(table);
+    practice.name = "practice";
+    practice.practice = true;
+    practice.values = read_values(table, {"trials", "right_in_a_row"});
+    d.blocks.push_back(std::move(practice));
   }
   if (root.has("blocks")) {
     for (Table& table : root.tables("blocks")) {

@@ -26,7 +26,7 @@ struct Factor {
 
 /// Trials in which something else is given, unannounced: catch trials, error clamps.
 struct Probe {
-  std::string name;
+  std::string name{"probe"};
   double share{0.0};  // of the block's trials, above 0 and at most 1/2
   std::vector<GivenValue> values;
 };

@@ -9,7 +9,11 @@
 #include "analysis/alignment/alignment.h"
 #include "core/base/random.h"
 
+namespace haptrial::test {}
+
 namespace haptrial::analysis::test {
+
+using namespace haptrial::test;  // helpers of all tests, beside those of this folder
 
 /// A curve that owns its samples.
 struct Curve {

@@ -4,7 +4,11 @@
 
 #include "tests/analysis/alignment/cases.h"
 
+namespace haptrial::test {}
+
 namespace haptrial::analysis::test {
+
+using namespace haptrial::test;  // helpers of all tests, beside those of this folder
 
 /// The answer by trial of every legal path, for small curves. Written from the patterns as the
 /// literature prints them and from the band as the documentation has it, not from the search.

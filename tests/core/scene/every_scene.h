@@ -6,7 +6,11 @@
 #include "core/geometry/mesh/procedural.h"
 #include "core/scene/field.h"
 
+namespace haptrial::test {}
+
 namespace haptrial::scene::test {
+
+using namespace haptrial::test;  // helpers of all tests, beside those of this folder
 
 inline const Eigen::Vector3d kOrigin = Eigen::Vector3d::Zero();
 

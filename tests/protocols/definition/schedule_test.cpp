@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 
 namespace haptrial::protocols {
@@ -164,7 +164,7 @@ class DesignTest : public ::testing::Test {
         "break_duration = 600.0\nconditions = [\"haptic\", \"visual\", \"visuohaptic\"]\n";
     text.replace(text.find(from), from.size(), to);
     Table table = Table::parse(text, "d.toml");
-    read_design(table);
+    design_schema().read(table);
     try {
       table.finish();
     } catch (const InputError& error) {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "protocols/force_training/recorded_pass.h"
 #include "tests/support/allocation_guard.h"
@@ -229,7 +229,7 @@ TEST(CurveGuideTest, TheKindOfGuidanceIsRead) {
       "plane = { stiffness = 2000.0, damping = 300.0 }\n";
   const auto read = [](const std::string& from) {
     Table table = Table::parse(from, "f.toml");
-    const GuidanceParameters p = read_guidance_parameters(table);
+    const GuidanceParameters p = guidance_schema().read(table);
     table.finish();
     return p;
   };

@@ -37,7 +37,7 @@ std::string with(const std::string& line, const std::string& instead) {
 ScoreParameters read(const std::string& text) {
   Table document = Table::parse(text, "test.toml");
   Table analysis = document.table("analysis");
-  const ScoreParameters parameters = read_score_parameters(analysis);
+  const ScoreParameters parameters = score_schema().read(analysis);
   document.finish();
   return parameters;
 }

@@ -8,7 +8,11 @@
 #include "core/base/random.h"
 #include "core/bone/model/world.h"
 
+namespace haptrial::test {}
+
 namespace haptrial::bone::test {
+
+using namespace haptrial::test;  // helpers of all tests, beside those of this folder
 
 /// A grid of cubes of 0.5 mm with bone where `holds` says so; with densities above 0 drawn from a
 /// stream where there is one.

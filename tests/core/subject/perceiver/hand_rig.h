@@ -10,7 +10,11 @@
 #include "core/subject/hand.h"
 #include "core/subject/perceiver/probing.h"
 
+namespace haptrial::test {}
+
 namespace haptrial::subject::test {
+
+using namespace haptrial::test;  // helpers of all tests, beside those of this folder
 
 using Eigen::Vector3d;
 
