@@ -272,6 +272,7 @@ class Console::Implementation {
   void serve(const std::shared_ptr<protocols::AuxiliaryPage>& side);
   static void take(httplib::Response& response, const std::function<void()>& action);
   void send_picture(httplib::Response& response);
+  void send_mirror(httplib::Response& response);
   static void refuse(httplib::Response& response, int status, const std::string& reason);
 
   SessionControl& control_;
@@ -324,7 +325,7 @@ void Console::Implementation::set_up_server() {
     answer(request, response);
   };
   server_.Get("/", handler).Get("/events", handler).Post("/ask", handler).Post("/note", handler);
-  server_.Get("/picture", handler).Post("/answer", handler);
+  server_.Get("/picture", handler).Get("/mirror", handler).Post("/answer", handler);
   for (const std::shared_ptr<protocols::AuxiliaryPage>& side : options_.sides) {
     serve(side);
   }
@@ -352,6 +353,9 @@ void Console::Implementation::answer(const httplib::Request& request, httplib::R
   }
   if (request.path == "/picture") {
     return send_picture(response);
+  }
+  if (request.path == "/mirror") {
+    return send_mirror(response);
   }
   take(response, [&] {
     if (request.path == "/ask") {
@@ -402,6 +406,19 @@ void Console::Implementation::send_picture(httplib::Response& response) {
     return refuse(response, 404, "no picture is shown now");
   }
   response.set_content(*picture, "image/png");
+}
+
+/// Sends what the participant sees.
+void Console::Implementation::send_mirror(httplib::Response& response) {
+  try {
+    const std::string picture = control_.mirror();
+    if (picture.empty()) {
+      return refuse(response, 404, "the participant has no window");
+    }
+    response.set_content(picture, "image/png");
+  } catch (const RunError& error) {
+    refuse(response, 503, error.what());
+  }
 }
 
 Console::Implementation::MakeEvent Console::Implementation::status_events() {

@@ -68,7 +68,7 @@ std::optional<RequestFilter::Place> RequestFilter::place_of(const std::string& p
   if (path == "/") {
     return Place{true, true};
   }
-  if (path == "/events" || path == "/picture") {
+  if (path == "/events" || path == "/picture" || path == "/mirror") {
     return Place{false, true};
   }
   if (path == "/ask" || path == "/note" || path == "/answer") {
@@ -86,7 +86,7 @@ std::optional<RequestFilter::Place> RequestFilter::place_of(const std::string& p
 }
 
 std::string RequestFilter::places() const {
-  std::string all = "/, /events, /picture, /ask, /note and /answer";
+  std::string all = "/, /events, /picture, /mirror, /ask, /note and /answer";
   for (const std::string& side : rules_.sides) {
     all += fmt::format(", and /{0}, /{0}/events and /{0}/ask", side);
   }

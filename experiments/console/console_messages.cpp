@@ -186,6 +186,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"fault", s.fault},
       {"simulated", s.simulated},
       {"pilot", s.pilot},
+      {"window", s.window},
       {"rate", s.rate},
       {"rate_measured", s.rate_measured},
       {"ticks", s.ticks},

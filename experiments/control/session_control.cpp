@@ -9,6 +9,16 @@ void SessionControl::on_emergency(std::function<void()> stop) {
   stop_ = std::move(stop);
 }
 
+void SessionControl::on_mirror(std::function<std::string()> picture) {
+  const std::lock_guard lock(mirror_mutex_);
+  picture_ = std::move(picture);
+}
+
+std::string SessionControl::mirror() {
+  const std::lock_guard lock(mirror_mutex_);
+  return picture_ ? picture_() : "";
+}
+
 const char* name_of(RequestSource by) noexcept {
   switch (by) {
     case RequestSource::kConsole:

@@ -57,6 +57,7 @@ struct SessionStatus {
   std::string device;
   std::string fault;  // one sentence; empty where there is none
   bool simulated{false};
+  bool window{false};         // the participant has one
   bool pilot{false};          // no part of the study
   double rate{0.0};           // nominal [Hz]
   double rate_measured{0.0};  // over the last second; 0: not known yet [Hz]
@@ -90,6 +91,12 @@ class SessionControl {
   /// @param bad_trial  the text says why the present trial, or the last one, is bad
   void note(std::string text, bool bad_trial = false);
 
+  /// Where mirror() gets a PNG file of what the participant sees; empty: nowhere.
+  void on_mirror(std::function<std::string()> picture);
+  /// Any thread but the servo thread and the session's. @returns nothing without a window
+  /// @throws RunError if no picture comes
+  std::string mirror();
+
   /// An answer to what a page asks. @param number  of AskedItem  @param text  PageInput::give()
   void answer(int number, std::string text, RequestSource by = RequestSource::kConsole);
 
@@ -110,6 +117,8 @@ class SessionControl {
  private:
   std::mutex stop_mutex_;  // a stop waits for nobody who reads or publishes
   std::function<void()> stop_;
+  std::mutex mirror_mutex_;  // held while a picture is waited for
+  std::function<std::string()> picture_;
   mutable std::mutex mutex_;
   std::vector<Message> messages_;
   SessionStatus status_;

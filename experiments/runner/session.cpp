@@ -25,6 +25,7 @@
 #include "experiments/runner/session_pages.h"
 #include "experiments/runner/session_pedal.h"
 #include "experiments/runner/session_record.h"
+#include "experiments/screen/screen_mirror.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
@@ -91,6 +92,7 @@ class Session {
   PageKeys page_keys_;                       // likewise
   ReportedMistakes mistakes_;                // likewise
   std::unique_ptr<Screen> screen_;
+  std::optional<ScreenMirror> mirror_;  // of a screen
   std::unique_ptr<record::LiveFigures> live_;
   SessionRecord record_;  // opened when everything else is there
   SessionController controller_;
@@ -195,6 +197,7 @@ Session::Session(const SessionRequest& request)
   status.subject = request.subject;
   status.device = request.device.name;
   status.pilot = request.pilot;
+  status.window = screen_ != nullptr;
   status.simulated = rig_->device().info().simulated;
   status.rate = d_.rate;
   status.force_limit = std::min(d_.envelope.max_force, rig_->device().info().max_force);
@@ -205,6 +208,10 @@ Session::Session(const SessionRequest& request)
   watch_flashes();
   if (request.control != nullptr) {
     request.control->on_emergency([this] { task_.emergency_stop(); });
+    if (screen_) {
+      mirror_.emplace(*screen_);
+      request.control->on_mirror([this] { return mirror_->picture(); });
+    }
   }
 }
 
@@ -247,6 +254,7 @@ Session::~Session() {
   watched_.reset();
   if (request_.control != nullptr) {
     request_.control->on_emergency(nullptr);
+    request_.control->on_mirror(nullptr);
   }
 }
 

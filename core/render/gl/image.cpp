@@ -85,7 +85,7 @@ Image read_png(const std::filesystem::path& path) {
   return image;
 }
 
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::string png_bytes(const Image& image) {
   const auto expected = static_cast<std::size_t>(std::max(image.width, 0)) *
                         static_cast<std::size_t>(std::max(image.height, 0)) * kChannels;
   if (expected == 0 || image.rgb.size() != expected) {
@@ -94,7 +94,11 @@ void write_png(const std::filesystem::path& path, const Image& image) {
                     image.height, image.rgb.size(), expected));
   }
   const std::vector<std::uint8_t> bytes = encoded(image);
-  write_whole(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  write_whole(path, png_bytes(image));
 }
 
 }  // namespace haptrial::render

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace haptrial::render {
@@ -16,6 +17,10 @@ struct Image {
 /// Each pixel the mean of `times` x `times` of them; what is left over at right and below is lost.
 /// @param times  > 0
 Image coarser(const Image& fine, int times);
+
+/// The bytes of a PNG file.
+/// @throws RunError if the picture cannot be encoded; std::invalid_argument as write_png()
+std::string png_bytes(const Image& image);
 
 /// Writes a PNG file whole or not at all: the bytes go to a temporary file beside `path`, which
 /// then takes its name; an older picture there is replaced.

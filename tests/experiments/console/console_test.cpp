@@ -161,6 +161,29 @@ TEST_F(ConsoleTest, ThePictureOfAPageIsServedWhileItIsAsked) {
   EXPECT_EQ(status_of(exchange(console, stranger)), 403);
 }
 
+// What the participant sees, only to those who have the token, and only if there is a window.
+TEST_F(ConsoleTest, ThePictureOfTheWindowIsServedWhileThereIsOne) {
+  const Console console(control_);
+  EXPECT_EQ(status_of(exchange(console, reading(console, "/mirror"))), 404);
+  int asked = 0;
+  control_.on_mirror([&asked] {
+    ++asked;
+    return "\x89PNG of the window";
+  });
+  const std::string answer = exchange(console, reading(console, "/mirror"));
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_THAT(answer, HasSubstr("Content-Type: image/png"));
+  EXPECT_EQ(answer.substr(answer.find("\r\n\r\n") + 4), "\x89PNG of the window");
+  RawRequest stranger = reading(console, "/mirror");
+  stranger.target = "/mirror?token=" + std::string(32, '0');
+  EXPECT_EQ(status_of(exchange(console, stranger)), 403);
+  EXPECT_EQ(asked, 1) << "nobody else makes the screen copy a picture";
+  control_.on_mirror([]() -> std::string { throw RunError("the screen showed no picture"); });
+  EXPECT_EQ(status_of(exchange(console, reading(console, "/mirror"))), 503);
+  control_.on_mirror(nullptr);
+  EXPECT_EQ(status_of(exchange(console, reading(console, "/mirror"))), 404);
+}
+
 TEST_F(ConsoleTest, TheUrlOpensThePage) {
   const Console console(control_);
   const std::string start = "http://127.0.0.1:" + std::to_string(console.port());

@@ -3,18 +3,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/render/flat/frames.h"
+#include "core/render/gl/image.h"
+#include "core/render/trial/frames.h"
 #include "core/stimulus/stimulus.h"
+#include "experiments/screen/screen_mirror.h"
 #include "protocols/force_training/path_drawing.h"
 #include "tests/core/render/flat/pixels.h"
 #include "tests/experiments/frame_periods.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
 #include "tests/support/wait.h"
 
@@ -112,6 +116,26 @@ TEST_F(ScreenTest, ShowsATrialAsTheRendererDrawsItOffScreen) {
   const Image later = render::render_presentation(style(), path(), moved);
   test::wait_until([&] { return largest_difference(on_monitor(), later) <= 2; });
   EXPECT_EQ(screen.trouble(), "");
+}
+
+/// The copy against the server's own memory: each pixel the mean of those that it stands for.
+TEST_F(ScreenTest, IsMirroredInASmallPicture) {
+  Screen screen(options_, style());
+  ScreenMirror mirror(screen);
+  screen.show_text({"A page", "that is read", "", std::nullopt});
+  const test::TemporaryFolder folder;
+  const auto copy = [&] {
+    test::write_text(folder / "mirror.png", mirror.picture());
+    return render::read_png(folder / "mirror.png");
+  };
+  const int times = (kWidth + ScreenMirror::kWidth - 1) / ScreenMirror::kWidth;
+  test::wait_until([&] {
+    const Image small = copy();
+    const Image expected = render::coarser(on_monitor(), times);
+    const bool has_letters = *std::ranges::min_element(expected.rgb) < 128;
+    return has_letters && largest_difference(small, expected) <= 2;
+  });
+  EXPECT_LE(copy().width, ScreenMirror::kWidth);
 }
 
 TEST_F(ScreenTest, ShowsTextsAndCountsDownByItself) {
