@@ -175,6 +175,74 @@ std::vector<Eigen::Vector3d> mean_path(std::span<const TimedReach> reaches, std:
   return path;
 }
 
+std::vector<double> speed_profile(const TimedReach& reach) {
+  const double end = std::min(reach.onset + kProfileTime, reach.reach.time.back());
+  std::vector<double> speeds;
+  for (std::size_t i = 0;; ++i) {
+    const double time = reach.onset + kProfileStep * static_cast<double>(i);
+    if (i > 0 && time > end) {
+      return speeds;
+    }
+    const auto here = value_at(reach.reach.time, reach.reach.velocity, time);
+    if (!here) {
+      throw std::invalid_argument("the onset must lie inside the recording");
+    }
+    speeds.push_back(here->norm());
+  }
+}
+
+std::vector<double> mean_profile(std::span<const std::vector<double>> profiles) {
+  if (profiles.empty()) {
+    throw std::invalid_argument("profiles: at least one");
+  }
+  std::vector<double> means;
+  for (std::size_t i = 0;; ++i) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const std::vector<double>& each : profiles) {
+      if (i < each.size()) {
+        sum += each[i];
+        ++count;
+      }
+    }
+    if (count == 0 || 2 * count < profiles.size()) {
+      return means;
+    }
+    means.push_back(sum / static_cast<double>(count));
+  }
+}
+
+Figure speed_figure(std::span<const DrawnProfile> profiles, bool simulated) {
+  Figure figure;
+  figure.name = "speed-profiles";
+  figure.title = "Speed of the hand";
+  figure.x_label = "Time since the onset (s)";
+  figure.y_label = "Speed (cm/s)";
+  figure.simulated = simulated;
+  double fastest = 0.0;
+  for (const DrawnProfile& profile : profiles) {
+    Series line{profile.label, Mark::kLine, curve_look(profile.block)};
+    line.look.dash = profile.dash;
+    line.look.width = 2.0;
+    for (std::size_t i = 0; i < profile.speed.size(); ++i) {
+      line.x.push_back(kProfileStep * static_cast<double>(i));
+      line.y.push_back(kCentimetres * profile.speed[i]);
+    }
+    const auto peak = std::ranges::max_element(line.y);
+    if (peak != line.y.end()) {
+      fastest = std::max(fastest, *peak);
+      figure.alt += fmt::format("{}{}: at most {:.1f} cm/s after {:.2f} s.",
+                                figure.alt.empty() ? "" : " ", profile.label, *peak,
+                                line.x[static_cast<std::size_t>(peak - line.y.begin())]);
+      figure.series.push_back(std::move(line));
+    }
+  }
+  figure.y_range = Range{0.0, 1.05 * std::max(fastest, 1e-9)};
+  figure.caption =
+      "Mean speed of the hand from the onset of the reach on, as long as half of the reaches last.";
+  return figure;
+}
+
 std::vector<Figure> trajectory_figures(std::span<const BlockPaths> blocks, bool simulated) {
   std::vector<Figure> figures;
   if (!blocks.empty()) {

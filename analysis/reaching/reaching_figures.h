@@ -25,6 +25,27 @@ struct TimedReach {
 std::vector<Eigen::Vector3d> mean_path(std::span<const TimedReach> reaches,
                                        std::size_t samples = 101);
 
+/// The speed of one reach at equal times from its onset on, until the recording ends; at most for
+/// kProfileTime. @throws std::invalid_argument when the onset is outside of the recording.
+inline constexpr double kProfileStep = 0.01;                 // [s]
+inline constexpr double kProfileTime = 1.5;                  // [s]
+std::vector<double> speed_profile(const TimedReach& reach);  // [m/s]
+
+/// The mean of such profiles at each time, as long as half of them last.
+/// @throws std::invalid_argument when there is none
+std::vector<double> mean_profile(std::span<const std::vector<double>> profiles);
+
+/// One line of a figure of speeds.
+struct DrawnProfile {
+  std::string label;
+  std::size_t block{0};       // gives its colour
+  const char* dash{"solid"};  // as Look::dash
+  std::vector<double> speed;  // as mean_profile [m/s]
+};
+
+/// "Speed profiles" over the time since onset. @param simulated  marks the figure.
+Figure speed_figure(std::span<const DrawnProfile> profiles, bool simulated);
+
 /// The paths of a block, one for each target as a rule (mean_path).
 struct BlockPaths {
   std::string block;  // as in the definition

@@ -82,7 +82,7 @@ class ReachingStudyTest : public testing::Test {
     EXPECT_EQ(rows.rows(), 6u * 160u);
     const std::string markdown = file_text(report("report.md"));
     for (const char* picture :
-         {"learning-curve.svg", "force-compensation.svg",
+         {"learning-curve.svg", "force-compensation.svg", "speed-profiles.svg",
           "trajectories-adaptation--first-cycle-.svg", "trajectories-washout--first-cycle-.svg"}) {
       EXPECT_TRUE(fs::exists(report(picture))) << picture;
       EXPECT_THAT(markdown, HasSubstr(picture));

@@ -78,6 +78,7 @@ void measure(const ReachSamples& samples, double rate, StudyReach& reach) {
   const double end = reach.metrics.end.value_or(samples.time.back());
   const std::array one{TimedReach{recorded, *reach.metrics.onset, end}};
   reach.path = mean_path(one);
+  reach.speed = speed_profile(one.front());
   if (reach.kind == ReachKind::kClamp) {
     reach.compensation = force_compensation(recorded, reach.way.field, *reach.metrics.onset, end);
   }

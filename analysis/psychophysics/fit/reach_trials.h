@@ -45,6 +45,7 @@ struct StudyReach {
   std::optional<double> error_at_150_ms;  // perpendicular [m]
   Defined<ForceCompensation> compensation{Undefined{"there was no channel"}};
   std::vector<Eigen::Vector3d> path;  // at 101 equal parts of its time; empty: no onset
+  std::vector<double> speed;          // as speed_profile() [m/s]; empty: no onset
   double push{1.0};  // side to which the participant's field pushes: +1 left of the way, or -1
   double perturbation{0.0};  // 1 the participant's field, -1 the opposite one, 0 none
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <map>
 
-#include "analysis/psychophysics/report/trials_figures.h"
-#include "analysis/psychophysics/report/trials_words.h"
-#include "analysis/reaching/reaching_figures.h"
+#include "analysis/document/palette.h"
+#include "analysis/reaching/figures/reaching_figures.h"
+#include "analysis/trials/report/trials_figures.h"
+#include "analysis/trials/report/trials_words.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -49,17 +50,14 @@ void add_reach(std::vector<TargetPaths>& all, const StudyReach& reach) {
   ++at->count;
 }
 
-/// Mean paths of the reaches that `takes` accepts; nothing to draw: no target.
-template <class Takes>
-BlockPaths paths_of(const ReachingResult& reaching, std::string name, Takes&& takes) {
+/// Mean paths to each target.
+BlockPaths paths_of(std::string name, const std::vector<const StudyReach*>& reaches) {
   std::vector<TargetPaths> targets;
   BlockPaths paths;
   paths.block = std::move(name);
-  for (const StudyReach& reach : reaching.reaches) {
-    if (!reach.path.empty() && takes(reach)) {
-      paths.start = reach.way.start;
-      add_reach(targets, reach);
-    }
+  for (const StudyReach* reach : reaches) {
+    paths.start = reach->way.start;
+    add_reach(targets, *reach);
   }
   for (TargetPaths& each : targets) {
     for (Eigen::Vector3d& p : each.sum) {
@@ -71,32 +69,67 @@ BlockPaths paths_of(const ReachingResult& reaching, std::string name, Takes&& ta
   return paths;
 }
 
-/// First and last cycle of every block, and its catch trials.
-std::vector<BlockPaths> paths_of_blocks(const ReachingResult& reaching) {
+/// Reaches that are drawn together.
+struct DrawnReaches {
+  std::string name;
+  std::size_t block{0};
+  const char* dash;
+  std::vector<const StudyReach*> reaches{};
+};
+
+/// First and last cycle of every block, and its catch trials, as far as there are any.
+std::vector<DrawnReaches> drawn_reaches(const ReachingResult& reaching) {
   std::map<const StudyReach*, std::size_t> cycle;
   std::map<std::pair<std::size_t, std::string>, std::size_t> places;
   for (std::size_t i = 0; i < reaching.reaches.size(); ++i) {
     const StudyReach& reach = reaching.reaches[i];
     cycle[&reach] = places[{reaching.persons[i], reach.block}]++ / reaching.plan.cycle;
   }
-  std::vector<BlockPaths> all;
-  for (const ReachBlock& block : reaching.blocks) {
-    const auto of_cycle = [&](std::size_t number) {
-      return [&, number](const StudyReach& reach) {
-        return reach.block == block.name && reach.kind == ReachKind::kPlain &&
-               cycle[&reach] == number;
-      };
-    };
-    all.push_back(paths_of(reaching, block.name + " (first cycle)", of_cycle(0)));
-    if (block.cycles > 1) {
-      all.push_back(paths_of(reaching, block.name + " (last cycle)", of_cycle(block.cycles - 1)));
+  std::vector<DrawnReaches> all;
+  for (std::size_t b = 0; b < reaching.blocks.size(); ++b) {
+    const ReachBlock& block = reaching.blocks[b];
+    DrawnReaches first{block.name + " (first cycle)", b, palette::kLong};
+    DrawnReaches last{block.name + " (last cycle)", b, palette::kSolid};
+    DrawnReaches catches{block.name + " (catch trials)", b, palette::kShort};
+    for (const StudyReach& reach : reaching.reaches) {
+      if (reach.block != block.name || reach.path.empty()) {
+        continue;
+      }
+      if (reach.kind == ReachKind::kCatch) {
+        catches.reaches.push_back(&reach);
+      } else if (reach.kind == ReachKind::kPlain && cycle[&reach] == 0) {
+        first.reaches.push_back(&reach);
+      } else if (reach.kind == ReachKind::kPlain && cycle[&reach] + 1 == block.cycles) {
+        last.reaches.push_back(&reach);
+      }
     }
-    all.push_back(paths_of(reaching, block.name + " (catch trials)", [&](const StudyReach& reach) {
-      return reach.block == block.name && reach.kind == ReachKind::kCatch;
-    }));
+    for (DrawnReaches* some : {&first, &last, &catches}) {
+      if (!some->reaches.empty()) {
+        all.push_back(std::move(*some));
+      }
+    }
   }
-  std::erase_if(all, [](const BlockPaths& each) { return each.targets.empty(); });
   return all;
+}
+
+std::vector<BlockPaths> paths_of_blocks(const std::vector<DrawnReaches>& drawn) {
+  std::vector<BlockPaths> all;
+  for (const DrawnReaches& some : drawn) {
+    all.push_back(paths_of(some.name, some.reaches));
+  }
+  return all;
+}
+
+Figure speeds_of_blocks(const std::vector<DrawnReaches>& drawn, bool simulated) {
+  std::vector<DrawnProfile> profiles;
+  for (const DrawnReaches& some : drawn) {
+    std::vector<std::vector<double>> speeds;
+    for (const StudyReach* reach : some.reaches) {
+      speeds.push_back(reach->speed);
+    }
+    profiles.push_back({some.name, some.block, some.dash, mean_profile(speeds)});
+  }
+  return speed_figure(profiles, simulated);
 }
 
 /// The cycles of a block, as the figure counts them: from 1.
@@ -171,7 +204,11 @@ std::vector<Figure> reaching_pictures(const TrialsResult& result) {
     curve.simulated = result.simulated();
     figures.push_back(learning_figure(curve));
   }
-  for (Figure& figure : trajectory_figures(paths_of_blocks(reaching), result.simulated())) {
+  const std::vector<DrawnReaches> reaches = drawn_reaches(reaching);
+  if (!reaches.empty()) {
+    figures.push_back(speeds_of_blocks(reaches, result.simulated()));
+  }
+  for (Figure& figure : trajectory_figures(paths_of_blocks(reaches), result.simulated())) {
     figure.caption +=
         " Means over participants; paths of those whose field pushes to the right "
         "are mirrored at the straight way.";

@@ -16,7 +16,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr std::size_t kMostTracks = 4;
+constexpr std::size_t kMostTracks = 1;
 
 void add_quantity(Document& document, const Quantity& q) {
   document.subheading(capitalized(q.title));
@@ -58,6 +58,11 @@ void add_tracks(Document& document, const TrialsResult& result,
     return;  // listed levels have neither turns nor an estimate
   }
   add_section(document, result, "Tracks of the procedure");
+  for (const Drawing& drawing : drawings) {
+    if (drawing.figure.name.starts_with("panel-")) {
+      document.picture(drawing);
+    }
+  }
   add_pictures(document, drawings, "tracks-", kMostTracks);
   Rows rows;
   for (const TrackEstimate& track : result.tracks) {

@@ -167,7 +167,8 @@ void add_reaching(Document& document, const TrialsResult& result,
   add_exponentials(document, reaching);
   add_pictures(document, drawings, "force-compensation", 1);
   add_two_rate(document, reaching);
-  document.subheading("Paths");
+  document.subheading("Speeds and paths");
+  add_pictures(document, drawings, "speed-profiles", 1);
   add_pictures(document, drawings, "trajectories-", kMostPaths);
 }
 

@@ -206,6 +206,92 @@ std::vector<Figure> track_figures(const TrialsResult& result) {
   return figures;
 }
 
+namespace {
+
+constexpr std::size_t kPanels = 12;   // of a figure
+constexpr double kPanelWidth = 0.85;  // of the place of a panel
+
+/// Adds a track to the panel at `place`. @param steps  that fill the width of a panel
+void add_panel(const TrackEstimate& track, double place, std::size_t steps, Figure& figure) {
+  Look look = look_of(0);
+  look.width = 1.0;
+  Series line{"", Mark::kLine, look};
+  Series ones{"", Mark::kPoints, look};
+  ones.look.point = kFilled;
+  ones.look.point_size = 0.35;
+  Series zeros = ones;
+  zeros.look.point = kOpen;
+  zeros.look.point_size = 0.6;
+  for (std::size_t i = 0; i < track.steps.size(); ++i) {
+    const TrackStep& step = track.steps[i];
+    const double part =
+        static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(1, steps - 1));
+    line.x.push_back(place + kPanelWidth * (part - 0.5));
+    line.y.push_back(step.applied);
+    Series& answers = step.outcome == 0.0 ? zeros : ones;
+    answers.x.push_back(line.x.back());
+    answers.y.push_back(step.applied);
+  }
+  for (const Series& each : {line, ones, zeros, estimate_of(track, line, look_of(1))}) {
+    if (!each.x.empty()) {
+      figure.series.push_back(each);
+    }
+  }
+}
+
+/// The tracks of one name, in figures of kPanels.
+void add_panels(const TrialsResult& result, const std::vector<const TrackEstimate*>& tracks,
+                std::vector<Figure>& figures) {
+  std::size_t steps = 1;
+  for (const TrackEstimate* track : tracks) {
+    steps = std::max(steps, track->steps.size());
+  }
+  for (std::size_t first = 0; first < tracks.size(); first += kPanels) {
+    const std::string& name = tracks.front()->track;
+    const std::size_t count = std::min(kPanels, tracks.size() - first);
+    Figure figure =
+        new_figure(result,
+                   fmt::format("panel-{}{}", file_word(name),
+                               first == 0 ? "" : fmt::format("-{}", first / kPanels + 1)),
+                   "Tracks of all participants: " + name, "", level_label(result));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double place = static_cast<double>(i + 1);
+      figure.x_names.emplace_back(place, tracks[first + i]->participant);
+      add_panel(*tracks[first + i], place, steps, figure);
+    }
+    figure.x_range = Range{0.4, static_cast<double>(std::max<std::size_t>(count, 4)) + 0.6};
+    figure.height = 0.4;
+    figure.caption = fmt::format(
+        "The levels of each participant's {}, the width of a panel being as many as in the longest "
+        "track. Filled and open as below; dotted: the procedure's own estimate.",
+        counted(steps, "trial"));
+    figure.alt = fmt::format("{} beside each other.", counted(count, "track"));
+    figures.push_back(std::move(figure));
+  }
+}
+
+}  // namespace
+
+std::vector<Figure> panel_figures(const TrialsResult& result) {
+  std::map<std::string, std::vector<const TrackEstimate*>> by_name;
+  const std::span<const ParticipantTrials> drawn = drawn_participants(result);
+  for (const TrackEstimate& track : result.tracks) {
+    const bool is_drawn = std::ranges::any_of(drawn, [&](const ParticipantTrials& person) {
+      return person.participant == track.participant;
+    });
+    if (track.adaptive && !track.steps.empty() && is_drawn) {
+      by_name[track.track].push_back(&track);
+    }
+  }
+  std::vector<Figure> figures;
+  for (const auto& [name, tracks] : by_name) {
+    if (tracks.size() > 1) {
+      add_panels(result, tracks, figures);
+    }
+  }
+  return figures;
+}
+
 std::vector<Figure> quantity_figures(const TrialsResult& result) {
   std::vector<Figure> figures;
   for (const Quantity& q : result.quantities) {
@@ -308,7 +394,7 @@ std::vector<Figure> trials_figures(const TrialsResult& result) {
   std::vector<Figure> all;
   for (auto make :
        {cue_figures, quantity_figures, surface_figures, function_figures, magnitude_figures,
-        roc_figures, track_figures, reaction_figures, reaching_pictures}) {
+        roc_figures, panel_figures, track_figures, reaction_figures, reaching_pictures}) {
     std::vector<Figure> some = make(result);
     std::move(some.begin(), some.end(), std::back_inserter(all));
   }

@@ -23,6 +23,9 @@ std::string level_label(const TrialsResult& result);
 inline constexpr std::size_t kMostDrawn = 500;
 std::span<const ParticipantTrials> drawn_participants(const TrialsResult& result);
 
+/// The tracks of the same name side by side, a panel for each participant: "panel-TRACK", several
+/// where there are many participants. None where a participant is alone.
+std::vector<Figure> panel_figures(const TrialsResult& result);
 /// Levels of each participant's tracks over the trials, with reversals: "tracks-P01".
 std::vector<Figure> track_figures(const TrialsResult& result);
 /// Each participant's functions with data and band: "function-P01".
@@ -39,8 +42,8 @@ std::vector<Figure> roc_figures(const TrialsResult& result);
 /// Reaction times of each participant: "reaction-times".
 std::vector<Figure> reaction_figures(const TrialsResult& result);
 
-/// Learning curves, and paths of the first and last cycle of each block: "learning-curve",
-/// "force-compensation", "trajectories-BLOCK".
+/// Learning curves, and speeds and paths of the first and last cycle of each block:
+/// "learning-curve", "force-compensation", "speed-profiles", "trajectories-BLOCK".
 std::vector<Figure> reaching_pictures(const TrialsResult& result);
 
 /// All of them, as far as there is something to draw.

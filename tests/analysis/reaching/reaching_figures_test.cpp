@@ -34,6 +34,38 @@ TEST(ReachingFiguresTest, TheMeanOfOppositeArcsIsTheirChord) {
   EXPECT_THROW(mean_path(late), std::invalid_argument);
 }
 
+/// A reach of minimum jerk over 0.1 m in 0.5 s: its speed is 30 D/T (s² - 2 s³ + s⁴), s = t/T.
+TEST(ReachingFiguresTest, ASpeedProfileIsThatOfTheReach) {
+  const test::Recorded straight = test::straight(Vector3d::Zero(), {0.0, 0.0, -0.1});
+  const TimedReach one{straight.reach(), 0.5, 1.0};
+  const std::vector<double> speed = speed_profile(one);
+  ASSERT_GE(speed.size(), 50u);
+  const auto expected = [&](double time) {
+    const double s = time / 0.5;
+    return s < 1.0 ? 30.0 * 0.1 / 0.5 * s * s * (1.0 - s) * (1.0 - s) : 0.0;
+  };
+  for (std::size_t i = 0; i < speed.size(); ++i) {
+    EXPECT_NEAR(speed[i], expected(kProfileStep * static_cast<double>(i)), 1e-3) << i;
+  }
+  EXPECT_THROW(speed_profile({straight.reach(), -1.0, 1.0}), std::invalid_argument);
+}
+
+TEST(ReachingFiguresTest, AMeanProfileLastsAsLongAsHalfOfTheReaches) {
+  const std::vector<std::vector<double>> three{{1.0}, {2.0, 4.0, 5.0}, {3.0, 6.0}};
+  EXPECT_EQ(mean_profile(three), (std::vector<double>{2.0, 5.0}));
+  EXPECT_THROW(mean_profile({}), std::invalid_argument);
+}
+
+TEST(ReachingFiguresTest, SpeedsAreDrawnInCentimetresPerSecond) {
+  const std::vector<DrawnProfile> drawn{{"baseline (last cycle)", 0, "solid", {0.0, 0.2, 0.1}},
+                                        {"empty", 1, "solid", {}}};
+  const Figure figure = speed_figure(drawn, true);
+  ASSERT_EQ(figure.series.size(), 1u);
+  EXPECT_EQ(figure.series[0].x, (std::vector<double>{0.0, 0.01, 0.02}));
+  EXPECT_DOUBLE_EQ(figure.series[0].y[1], 20.0);
+  EXPECT_TRUE(figure.simulated);
+}
+
 BlockPaths block(const std::string& name, double bulge) {
   BlockPaths paths{name, {0.0, 0.0, 0.0}, {}, {}};
   for (int k = 0; k < 8; ++k) {

@@ -4,16 +4,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
 
 #include "analysis/files/csv.h"
-#include "analysis/psychophysics/data/read_trials.h"
-#include "analysis/psychophysics/report/trials_words.h"
-#include "analysis/psychophysics/study/trials_study.h"
-#include "core/base/file_text.h"
-#include "tests/analysis/psychophysics/simulated_trials.h"
-#include "tests/analysis/psychophysics/study/simulated_cues.h"
+#include "analysis/trials/data/read_trials.h"
+#include "analysis/trials/psychometric/trials_study.h"
+#include "analysis/trials/report/trials_figures.h"
+#include "analysis/trials/report/trials_words.h"
+#include "core/base/files/file_text.h"
+#include "tests/analysis/trials/psychometric/simulated_cues.h"
+#include "tests/analysis/trials/simulated_trials.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::analysis::trials {
@@ -88,6 +93,36 @@ TEST_P(WriteTrials, EverythingIsWrittenAndMarkedAsSimulatedTwiceWithEqualBytes) 
   std::filesystem::remove_all(place());
   written();
   EXPECT_EQ(first, file_text(place() / "results.json") + file_text(place() / "report.md"));
+}
+
+/// A panel for each participant, with every step of the track in its own place.
+TEST_P(WriteTrials, TracksOfAllParticipantsStandBesideEachOther) {
+  const TrialsResult result = written();
+  const std::vector<Figure> panels = panel_figures(result);
+  EXPECT_EQ(panels.empty(), std::ranges::none_of(result.tracks, &TrackEstimate::adaptive));
+  for (const Figure& panel : panels) {
+    ASSERT_EQ(panel.x_names.size(), 6u);
+    std::map<std::string, std::multiset<double>> drawn, presented;
+    for (const Series& series : panel.series) {
+      if (series.mark != Mark::kPoints) {
+        continue;
+      }
+      for (std::size_t i = 0; i < series.x.size(); ++i) {
+        const auto place = static_cast<std::size_t>(std::lround(series.x[i])) - 1;
+        EXPECT_NEAR(panel.x_names[place].first, series.x[i], 0.45) << "no panel meets another";
+        drawn[panel.x_names[place].second].insert(series.y[i]);
+      }
+    }
+    for (const TrackEstimate& track : result.tracks) {
+      if (panel.title.ends_with(": " + track.track)) {
+        for (const TrackStep& step : track.steps) {
+          presented[track.participant].insert(step.applied);
+        }
+      }
+    }
+    EXPECT_EQ(drawn, presented);
+    EXPECT_THAT(file_text(place() / "report.md"), HasSubstr(panel.name + ".svg"));
+  }
 }
 
 TEST(TrialsTextTest, TicksOnWhichABodyWasNotFeltAsItShouldBeAreTold) {
