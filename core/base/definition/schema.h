@@ -125,6 +125,14 @@ class Schema {
           }
         });
   }
+  Schema& texts(std::string name, std::vector<std::string> T::*member, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = table.texts(key.name);
+                 }
+               });
+  }
   /// Three numbers, x, y and z.
   Schema& vector(std::string name, Eigen::Vector3d T::*member, const Bounds& bounds,
                  std::string unit, std::string description) {
@@ -187,6 +195,10 @@ class Schema {
                    read(table, key.name, into);
                  }
                });
+  }
+  /// Members that follow from the keys so far, such as defaults of the keys below.
+  Schema& derive(std::function<void(T& value)> derive) {
+    return check([derive = std::move(derive)](Table&, T& into) { derive(into); });
   }
   /// What no key can see alone; by Table::reject.
   Schema& check(std::function<void(Table& table, T& value)> check) {

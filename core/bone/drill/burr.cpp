@@ -10,12 +10,13 @@
 #include <string>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::bone {
 namespace {
 
 constexpr Bounds kDiameter{0.0005, 0.03};
+constexpr double kShortest = 1e-4;  // length, and neck of a pear [m]
 constexpr double kMostSamples = 1e6;
 
 /// Distance between samples for a given number of them.
@@ -237,52 +238,90 @@ BurrParameters for_bone(const BurrParameters& burr, double voxel) {
 
 namespace {
 
-BurrDimensions read_dimensions(Table& table) {
-  BurrDimensions d;
-  if (table.has("shape")) {
-    const std::string shape = table.choice("shape", {"ball", "cylinder", "cone", "pear"});
-    for (const BurrForm form : {BurrForm::kCylinder, BurrForm::kCone, BurrForm::kPear}) {
-      d.form = shape == name_of(form) ? form : d.form;
-    }
-  }
-  d.diameter = table.number("diameter", kDiameter, "m");
-  if (d.form == BurrForm::kBall) {
-    return d;
-  }
-  const bool pear = d.form == BurrForm::kPear;
+using P = BurrParameters;
+
+double least_length(const P& p) {
   constexpr double kPearsLeast = 1.01;  // length over diameter: else it is a ball
-  d.length = table.number("length", {pear ? kPearsLeast * d.diameter : 1e-4, 0.04}, "m");
-  if (d.form != BurrForm::kCylinder) {
-    const double least = pear ? 1e-4 : 0.0;
-    d.narrow_diameter = table.has("narrow_diameter")
-                            ? table.number("narrow_diameter", {least, d.diameter}, "m")
-                            : 0.5 * d.diameter;
+  return p.form == BurrForm::kPear ? kPearsLeast * p.diameter : kShortest;
+}
+
+/// A problem of a burr's dimensions is noted and mended: what is computed from them needs a shape.
+void check_dimensions(Table& table, P& p) {
+  const std::string diameter = fmt::format("diameter, {} [m]", p.diameter);
+  if (p.form == BurrForm::kPear && p.length < least_length(p)) {
+    table.reject("length", fmt::format("{}", p.length), "at least 1.01 times " + diameter);
+    p.length = least_length(p);
   }
-  return d;
+  const double least = p.form == BurrForm::kPear ? kShortest : 0.0;
+  if (p.narrow_diameter > p.diameter) {
+    table.reject("narrow_diameter", fmt::format("{}", p.narrow_diameter), "at most " + diameter);
+    p.narrow_diameter = p.diameter;
+  } else if (p.form != BurrForm::kBall && p.form != BurrForm::kCylinder &&
+             p.narrow_diameter < least) {
+    table.reject("narrow_diameter", fmt::format("{}", p.narrow_diameter),
+                 fmt::format("at least {} [m] for shape \"pear\"", least));
+    p.narrow_diameter = least;
+  }
+}
+
+void check_samples(Table& table, P& p) {
+  p.follows_bone = !table.has("sample_spacing");
+  const double closest = spacing_of(BurrShape(p.dimensions()), kMostSamples);
+  if (!p.follows_bone && (p.sample_spacing < closest || p.sample_spacing > 0.5 * p.diameter)) {
+    table.reject("sample_spacing", fmt::format("{}", p.sample_spacing),
+                 fmt::format("at least {} (a million samples) and at most half of diameter, {} [m]",
+                             closest, p.diameter));
+  }
 }
 
 }  // namespace
 
-BurrParameters read_burr_parameters(Table& table) {
-  const BurrKind kind = table.choice("kind", {"diamond", "cutting"}) == "cutting"
-                            ? BurrKind::kCutting
-                            : BurrKind::kDiamond;
-  BurrParameters p = default_burr(kind, read_dimensions(table));
-  const auto optional = [&](const char* key, const Bounds& bounds, const char* unit,
-                            double& value) { value = table.number_or(key, value, bounds, unit); };
-  p.follows_bone = !table.has("sample_spacing");
-  const double closest = spacing_of(BurrShape(p.dimensions()), kMostSamples);
-  optional("sample_spacing", {closest, 0.5 * p.diameter}, "m", p.sample_spacing);
-  optional("removal_rate", {0.0, 1e6}, "1/(N·s)", p.removal_rate);
-  optional("falloff", {0.0, 1e6}, "1/(N·s·rad)", p.falloff);
-  optional("tangential_gain", {0.0, 1e15}, "N/m^4", p.tangential_gain);
-  if (table.has("wear_volume")) {
-    p.wear_volume = table.number("wear_volume", {0.0, 1.0, true}, "m3");
-  }
-  if (table.has("rotation")) {
-    p.clockwise = table.choice("rotation", {"clockwise", "counterclockwise"}) == "clockwise";
-  }
-  return p;
+const Schema<BurrParameters>& burr_schema() {
+  static const auto schema =
+      Schema<P>()
+          .choice("kind", &P::kind,
+                  {{"diamond", BurrKind::kDiamond}, {"cutting", BurrKind::kCutting}},
+                  "Kind of the burr; a cutting one removes more and pulls harder along the bone")
+          .required()
+          .choice("shape", &P::form,
+                  {{"ball", BurrForm::kBall},
+                   {"cylinder", BurrForm::kCylinder},
+                   {"cone", BurrForm::kCone},
+                   {"pear", BurrForm::kPear}},
+                  "Shape of the burr, or of the plate")
+          .otherwise("a burr is a ball")
+          .number("diameter", &P::diameter, kDiameter, "m", "Greatest diameter of the burr")
+          .required()
+          .number("length", &P::length, {kShortest, 0.04}, "m",
+                  "Length along its axis of a burr that is no ball")
+          .required()
+          .only_if([](const P& p) { return p.form != BurrForm::kBall; })
+          .derive([](P& p) {
+            const bool tapers = p.form == BurrForm::kCone || p.form == BurrForm::kPear;
+            p.narrow_diameter = tapers ? 0.5 * p.diameter : 0.0;
+          })
+          .number("narrow_diameter", &P::narrow_diameter, {0.0, kDiameter.high}, "m",
+                  "Diameter of the tip of a cone, or of the neck of a pear")
+          .otherwise("half of the diameter")
+          .only_if(
+              [](const P& p) { return p.form == BurrForm::kCone || p.form == BurrForm::kPear; })
+          .check(check_dimensions)
+          .derive([](P& p) { p = default_burr(p.kind, p.dimensions()); })
+          .number("sample_spacing", &P::sample_spacing, {0.0, 0.5 * kDiameter.high, true}, "m",
+                  "Edge of a cell of the burr with one sample; a finer sampling costs time")
+          .check(check_samples)
+          .number("removal_rate", &P::removal_rate, {0.0, 1e6}, "1/(N·s)",
+                  "Share of the bone within the burr that goes in a second at a force of 1 N")
+          .number("falloff", &P::falloff, {0.0, 1e6}, "1/(N·s·rad)",
+                  "Decrease of the removal rate from the burr's equator towards its tip")
+          .number("tangential_gain", &P::tangential_gain, {0.0, 1e15}, "N/m^4",
+                  "Strength with which the turning burr pulls along the bone")
+          .number("wear_volume", &P::wear_volume, {0.0, 1.0, true}, "m3",
+                  "Volume of bone after which the burr removes half as much")
+          .otherwise("never")
+          .choice("rotation", &P::clockwise, {{"clockwise", true}, {"counterclockwise", false}},
+                  "Direction in which the burr turns, seen from the handle");
+  return schema;
 }
 
 Burr::Burr(const BurrParameters& parameters)

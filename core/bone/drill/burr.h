@@ -8,7 +8,8 @@
 #include "core/bone/drill/burr_shape.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::bone {
@@ -52,9 +53,8 @@ BurrParameters default_burr(BurrKind kind, const BurrDimensions& dimensions);
 /// the burr, or as close as 400,000 samples allow. @param voxel  its edge [m]
 BurrParameters for_bone(const BurrParameters& burr, double voxel);
 
-/// Reads a [burr] table: kind ("diamond", "cutting") and diameter [m]; length [m] where shape is no
-/// ball; the others are optional.
-BurrParameters read_burr_parameters(Table& table);
+/// The keys of a burr; `length` only where its shape is no ball.
+const Schema<BurrParameters>& burr_schema();
 
 /// A burr as a cloud of samples that fills it: its shape is cut into cubic cells, and each cell has
 /// one sample at an uneven place, so that samples do not enter a flat bone by whole layers.

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::bone {
 namespace {
@@ -29,19 +29,27 @@ FeelParameters default_feel(double burr_radius) {
   return p;
 }
 
-FeelParameters read_feel_parameters(Table& table, double burr_radius) {
-  FeelParameters p = default_feel(burr_radius);
-  const auto optional = [&](const char* key, const Bounds& bounds, const char* unit,
-                            double& value) { value = table.number_or(key, value, bounds, unit); };
-  optional("first_gain", kPositive, "N/m^3", p.first_gain);
-  optional("second_gain", kPositive, "N/m^3", p.second_gain);
-  optional("threshold", kPositive, "m^3", p.threshold);
-  optional("force_limit", {0.0, 100.0, true}, "N", p.force_limit);
-  optional("least_agreement", {0.0, 1.0, true}, "", p.least_agreement);
-  if (p.second_gain < p.first_gain) {
-    table.reject("second_gain", fmt::format("{}", p.second_gain), "first_gain or more");
-  }
-  return p;
+const Schema<FeelParameters>& feel_schema() {
+  using P = FeelParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("first_gain", &P::first_gain, kPositive, "N/m^3",
+                  "Force over the immersed volume just after contact; higher feels harder")
+          .number("second_gain", &P::second_gain, kPositive, "N/m^3",
+                  "Force over the immersed volume beyond the threshold; higher lets the tool sink "
+                  "in less")
+          .number("threshold", &P::threshold, kPositive, "m^3",
+                  "Immersed volume at which the first gain changes to the second one")
+          .number("force_limit", &P::force_limit, {0.0, 100.0, true}, "N",
+                  "Greatest force of this contact with bone")
+          .number("least_agreement", &P::least_agreement, {0.0, 1.0, true}, "",
+                  "Agreement of the directions in which samples push; below it the force fades")
+          .check([](Table& table, P& p) {
+            if (p.second_gain < p.first_gain) {
+              table.reject("second_gain", fmt::format("{}", p.second_gain), "first_gain or more");
+            }
+          });
+  return schema;
 }
 
 void check(const FeelParameters& p) {

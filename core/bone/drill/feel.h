@@ -5,7 +5,8 @@
 #include "core/bone/drill/drill.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::bone {
@@ -24,8 +25,8 @@ struct FeelParameters {
 /// whole. How stiff and how stable: docs/algorithms/bone-feel.md. @param burr_radius  > 0 [m]
 FeelParameters default_feel(double burr_radius);
 
-/// Reads a [feel] table, whose keys are all optional: what is absent is default_feel().
-FeelParameters read_feel_parameters(Table& table, double burr_radius);
+/// The keys of a [feel] table, all optional; read them into default_feel() of the burr.
+const Schema<FeelParameters>& feel_schema();
 
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const FeelParameters& parameters);

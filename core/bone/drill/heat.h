@@ -1,7 +1,8 @@
 #pragma once
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::bone {
@@ -17,8 +18,8 @@ struct HeatParameters {
   double harmful{47.0};     // bone that is this hot for long dies [°C]
 };
 
-/// Reads a [heat] table: turns, share, capacity, loss, rinsed_loss, body, harmful, all optional.
-HeatParameters read_heat_parameters(Table& table);
+/// The keys of [heat], all optional.
+const Schema<HeatParameters>& heat_schema();
 
 /// The temperature at a burr, as one warm body that loses heat to what lies around it:
 ///

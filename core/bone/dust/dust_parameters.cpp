@@ -1,18 +1,32 @@
 #include "core/bone/dust/dust_parameters.h"
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::bone {
 
-DustParameters read_dust_parameters(Table& table) {
-  DustParameters p;
-  p.cell = table.number("cell", {1e-4, 5e-3}, "m");
-  p.bulking = table.number("bulking", {1.0, 100.0}, "");
-  p.fall_speed = table.number("fall_speed", {0.0, 10.0, true}, "m/s");
-  p.slope = table.number("slope", {0.05, 0.7}, "");
-  p.suction_rate = table.number("suction_rate", {0.0, 1e-3, true}, "m3/s");
-  p.suction_reach = table.number("suction_reach", {0.0, 0.02, true}, "m");
-  return p;
+const Schema<DustParameters>& dust_schema() {
+  using P = DustParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("cell", &P::cell, {1e-4, 5e-3}, "m",
+                  "Edge of a cell of the dust; smaller cells show finer piles and cost time")
+          .required()
+          .number("bulking", &P::bulking, {1.0, 100.0}, "",
+                  "Volume of loose dust over that of the solid bone from which the dust came")
+          .required()
+          .number("fall_speed", &P::fall_speed, {0.0, 10.0, true}, "m/s",
+                  "Speed at which dust falls")
+          .required()
+          .number("slope", &P::slope, {kLeastSlope, 0.7}, "",
+                  "Steepest slope of a pile of dust at rest, rise over run; a steeper pile slides")
+          .required()
+          .number("suction_rate", &P::suction_rate, {0.0, 1e-3, true}, "m3/s",
+                  "Volume of dust that a suction tube takes in a second, counted as solid bone")
+          .required()
+          .number("suction_reach", &P::suction_reach, {0.0, 0.02, true}, "m",
+                  "Distance from a suction tube's mouth within which dust is taken")
+          .required();
+  return schema;
 }
 
 }  // namespace haptrial::bone

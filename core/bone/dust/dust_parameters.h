@@ -3,7 +3,8 @@
 #include <Eigen/Geometry>
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::bone {
@@ -25,8 +26,7 @@ struct DustParameters {
   int max_blocks{4096};  // of 512 cells: bounds the memory, 1 to 100,000
 };
 
-/// Reads the keys of a [dust] table: cell, bulking, fall_speed, slope, suction_rate,
-/// suction_reach.
-DustParameters read_dust_parameters(Table& table);
+/// The keys of [dust].
+const Schema<DustParameters>& dust_schema();
 
 }  // namespace haptrial::bone

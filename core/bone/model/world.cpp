@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::bone {
 namespace {
@@ -66,17 +66,30 @@ void for_each_bit(Set set, F&& f) {
 
 }  // namespace
 
-WorldParameters read_world_parameters(Table& table) {
-  WorldParameters parameters;
-  parameters.capacity = static_cast<int>(table.integer("capacity", 1, kMaxPieces));
-  parameters.smallest_piece = static_cast<int>(table.integer("smallest_piece", 1, 100'000));
-  parameters.moves_per_tick = static_cast<int>(table.integer("moves_per_tick", 1, 100'000));
-  parameters.split_initial = table.boolean("split_initial");
-  if (parameters.moves_per_tick < parameters.smallest_piece) {
-    table.reject("moves_per_tick", fmt::format("{}", parameters.moves_per_tick),
-                 fmt::format("at least smallest_piece ({})", parameters.smallest_piece));
-  }
-  return parameters;
+const Schema<WorldParameters>& world_schema() {
+  using P = WorldParameters;
+  static const auto schema =
+      Schema<P>()
+          .integer("capacity", &P::capacity, 1, kMaxPieces,
+                   "Greatest number of pieces of bone, the whole bone included")
+          .required()
+          .integer("smallest_piece", &P::smallest_piece, 1, 100'000,
+                   "Voxels of the smallest part that becomes a piece; smaller parts turn to dust")
+          .required()
+          .integer("moves_per_tick", &P::moves_per_tick, 1, 100'000,
+                   "Greatest number of voxels that go over to a new piece in one tick; fewer "
+                   "spread a large piece over more ticks")
+          .required()
+          .flag("split_initial", &P::split_initial,
+                "Whether parts that are separate at the start become pieces")
+          .required()
+          .check([](Table& table, P& p) {
+            if (p.moves_per_tick < p.smallest_piece) {
+              table.reject("moves_per_tick", fmt::format("{}", p.moves_per_tick),
+                           fmt::format("at least smallest_piece ({})", p.smallest_piece));
+            }
+          });
+  return schema;
 }
 
 BoneWorld::BoneWorld(const BoneModel& model, const Eigen::Isometry3d& pose_WB,

@@ -16,7 +16,8 @@
 #include "core/bone/model/world_poses.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::bone {
@@ -33,8 +34,8 @@ struct WorldParameters {
   bool split_initial{false};  // parts that are separate from the start become pieces too
 };
 
-/// Reads `capacity`, `smallest_piece`, `moves_per_tick` and `split_initial`.
-WorldParameters read_world_parameters(Table& table);
+/// The keys of [pieces].
+const Schema<WorldParameters>& world_schema();
 
 /// An event of the pieces in a tick.
 struct WorldEvent {

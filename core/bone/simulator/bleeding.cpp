@@ -2,19 +2,27 @@
 
 #include <algorithm>
 
-#include "core/base/definition/table.h"
-#include "core/bone/data/anatomy.h"
+#include "core/base/definition/schema.h"
+#include "core/bone/anatomy/anatomy.h"
 
 namespace haptrial::bone {
 
-BleedingParameters read_bleeding(Table& table) {
-  BleedingParameters p;
-  p.structures = table.texts("structures");
-  if (p.structures.empty()) {
-    table.reject("structures", "is empty; name structures that bleed, as \"sigmoid sinus\"");
-  }
-  p.rate = table.number_or("rate", p.rate, {1e-9, 1e-5}, "m3/s");
-  return p;
+const Schema<BleedingParameters>& bleeding_schema() {
+  using P = BleedingParameters;
+  static const auto schema =
+      Schema<P>()
+          .texts("structures", &P::structures,
+                 "Structures of the bone, by any of their names, that bleed if they are opened")
+          .required()
+          .check([](Table& table, P& p) {
+            if (p.structures.empty()) {
+              table.reject("structures",
+                           "is empty; name structures that bleed, as \"sigmoid sinus\"");
+            }
+          })
+          .number("rate", &P::rate, {1e-9, 1e-5}, "m3/s",
+                  "Volume of blood that flows in a second from each opening of a structure");
+  return schema;
 }
 
 namespace {

@@ -10,7 +10,8 @@
 #include "core/bone/model/bone_model.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::bone {
@@ -21,8 +22,8 @@ struct BleedingParameters {
   double rate{1e-7};                    // of each opening > 0 [m3/s]
 };
 
-/// Reads a [bleeding] table: `structures` and `rate`.
-BleedingParameters read_bleeding(Table& table);
+/// The keys of [bleeding].
+const Schema<BleedingParameters>& bleeding_schema();
 
 /// @throws InputError for a structure that is neither the bone's nor known by its name
 void check_bleeding(const BoneModel& model, const BleedingParameters& parameters);

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/bone/model/voxel_walk.h"
 
 namespace haptrial::bone {
@@ -27,12 +27,18 @@ int rays_along(double length, double spacing) {
 
 }  // namespace
 
-CutPlane read_cut_plane(Table& table) {
-  CutPlane plane;
-  plane.width = table.number("width", {0.0, 0.3, true}, "m");
-  plane.height = table.number("height", {0.0, 0.3, true}, "m");
-  plane.depth = table.number("depth", {0.0, 0.3}, "m");
-  return plane;
+const Schema<CutPlane>& cut_plane_schema() {
+  using P = CutPlane;
+  static const auto schema =
+      Schema<P>()
+          .number("width", &P::width, {0.0, 0.3, true}, "m", "Width of the plane of a cut")
+          .required()
+          .number("height", &P::height, {0.0, 0.3, true}, "m", "Height of the plane of a cut")
+          .required()
+          .number("depth", &P::depth, {0.0, 0.3}, "m",
+                  "Thickness of the bone that a cut removes; 0: what the plane passes through")
+          .required();
+  return schema;
 }
 
 void CutPlaneTool::begin(const BoneWorld& world, const CutPlane& plane) noexcept {

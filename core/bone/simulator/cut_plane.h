@@ -18,8 +18,8 @@ struct CutPlane {
   double depth{0.001};  // >= 0; 0 cuts what the rectangle passes through [m]
 };
 
-/// Reads `width`, `height` and `depth`.
-CutPlane read_cut_plane(Table& table);
+/// The keys of a tool that cuts a plane.
+const Schema<CutPlane>& cut_plane_schema();
 
 /// Removes all bone on rays from the rectangle along its normal, without any force. The rays are
 /// 0.7 voxels apart at most, and there is one within half a voxel of every point of the rectangle:

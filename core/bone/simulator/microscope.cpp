@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/definition/schema.h"
 #include "core/base/definition/table_vector.h"
 
 namespace haptrial::bone {
@@ -14,35 +15,58 @@ namespace {
 constexpr double kPole = 0.02;  // how close the view comes to `up` [rad]
 constexpr Bounds kReach{-10.0, 10.0};
 
+const Schema<Camera>& view_schema() {
+  static const auto schema =
+      Schema<Camera>()
+          .vector("eye", &Camera::eye, kReach, "m", "Place of the microscope at the start")
+          .required()
+          .vector("target", &Camera::target, kReach, "m",
+                  "Point that the microscope looks at, at the start")
+          .required()
+          .vector("up", &Camera::up, kReach, "",
+                  "Direction in the world that is upward in the picture")
+          .required()
+          .number("field_of_view", &Camera::field_of_view, {0.001, 3.0}, "rad",
+                  "Field of view of the microscope at the start, from the bottom to the top of the "
+                  "picture")
+          .required()
+          .check([](Table& table, Camera& view) {
+            const Eigen::Vector3d way = view.eye - view.target;
+            if (view.eye == view.target) {
+              table.reject("eye", "is the same point as target; choose another point");
+            } else if (!(view.up.cross(way).norm() > 1e-6 * view.up.norm() * way.norm())) {
+              table.reject("up", "is zero or along the view; write a direction across the view");
+            }
+          });
+  return schema;
+}
+
 }  // namespace
 
-MicroscopeParameters read_microscope_parameters(Table& table) {
-  MicroscopeParameters p;
-  p.start.eye = read_vector(table, "eye", kReach, "m");
-  p.start.target = read_vector(table, "target", kReach, "m");
-  p.start.up = read_vector(table, "up", kReach, "");
-  const auto optional = [&](const char* key, double& value, const Bounds& bounds,
-                            const char* unit) {
-    value = table.number_or(key, value, bounds, unit);
-  };
-  optional("narrowest", p.narrowest, {0.001, 3.0}, "rad");
-  optional("widest", p.widest, {0.001, 3.0}, "rad");
-  optional("move_gain", p.move_gain, {0.0, 100.0}, "");
-  optional("turn_gain", p.turn_gain, {0.0, 1000.0}, "rad/m");
-  optional("zoom_rate", p.zoom_rate, {0.0, 100.0}, "1/s");
-  p.start.field_of_view = table.number("field_of_view", {0.001, 3.0}, "rad");
-  if (p.start.eye == p.start.target) {
-    table.reject("eye", "is the same point as target; choose another point");
-  } else if (!(p.start.up.cross(p.start.eye - p.start.target).norm() >
-               1e-6 * p.start.up.norm() * (p.start.eye - p.start.target).norm())) {
-    table.reject("up", "is zero or along the view; write a direction across the view");
-  }
-  if (p.narrowest > p.widest || p.start.field_of_view < p.narrowest ||
-      p.start.field_of_view > p.widest) {
-    table.reject("field_of_view", fmt::format("{}", p.start.field_of_view),
-                 fmt::format("from narrowest, {}, to widest, {} [rad]", p.narrowest, p.widest));
-  }
-  return p;
+const Schema<MicroscopeParameters>& microscope_schema() {
+  using P = MicroscopeParameters;
+  static const auto schema =
+      Schema<P>()
+          .keys_of(&P::start, view_schema())
+          .number("narrowest", &P::narrowest, {0.001, 3.0}, "rad",
+                  "Smallest field of view to which the microscope zooms in")
+          .number("widest", &P::widest, {0.001, 3.0}, "rad",
+                  "Largest field of view to which the microscope zooms out")
+          .number("move_gain", &P::move_gain, {0.0, 100.0}, "",
+                  "Distance that the view moves for a distance of the hand")
+          .number("turn_gain", &P::turn_gain, {0.0, 1000.0}, "rad/m",
+                  "Angle by which the view turns for a distance of the hand")
+          .number("zoom_rate", &P::zoom_rate, {0.0, 100.0}, "1/s",
+                  "Speed at which a held button zooms, in factors of e a second")
+          .check([](Table& table, P& p) {
+            const double view = p.start.field_of_view;
+            if (p.narrowest > p.widest || view < p.narrowest || view > p.widest) {
+              table.reject(
+                  "field_of_view", fmt::format("{}", view),
+                  fmt::format("from narrowest, {}, to widest, {} [rad]", p.narrowest, p.widest));
+            }
+          });
+  return schema;
 }
 
 Camera moved(const Camera& from, const Eigen::Vector3d& motion) noexcept {

@@ -3,7 +3,8 @@
 #include "core/base/camera.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::bone {
@@ -19,8 +20,8 @@ struct MicroscopeParameters {
   double widest{1.5};      // >= narrowest, < pi [rad]
 };
 
-/// Reads a [camera] table: eye, target, up and field_of_view; the rest is optional.
-MicroscopeParameters read_microscope_parameters(Table& table);
+/// The keys of [camera].
+const Schema<MicroscopeParameters>& microscope_schema();
 
 /// Eye and target go along with the hand, as if it held the microscope.
 /// @param motion  of the hand as the picture sees it: right, up, towards the eye [m]

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/bone/model/voxel_walk.h"
 #include "core/geometry/files/mesh_io.h"
@@ -143,13 +143,23 @@ Voxel voxel_of(const geometry::VoxelGrid& grid, const Vector3d& p_B) {
 
 }  // namespace
 
-PlateParameters read_plate_parameters(Table& table) {
-  PlateParameters parameters;
-  parameters.samples = static_cast<int>(table.integer("samples", 1, kMaxAnchors));
-  parameters.extrusion = table.number("extrusion", {0.0, 0.01}, "m");
-  parameters.reach = table.number("reach", {0.0, 0.1, true}, "m");
-  parameters.stiffness = table.number("stiffness", {0.0, 1e5}, "N/m");
-  return parameters;
+const Schema<PlateParameters>& plate_schema() {
+  using P = PlateParameters;
+  static const auto schema =
+      Schema<P>()
+          .integer("samples", &P::samples, 1, kMaxAnchors,
+                   "Number of points on the plate at which bone is felt")
+          .required()
+          .number("extrusion", &P::extrusion, {0.0, 0.01}, "m",
+                  "Distance by which the points that feel bone stand out of the plate's surface")
+          .required()
+          .number("reach", &P::reach, {0.0, 0.1, true}, "m",
+                  "Greatest depth in bone at which a point of the plate still pushes back")
+          .required()
+          .number("stiffness", &P::stiffness, {0.0, 1e5}, "N/m",
+                  "Stiffness of the contact of one point of the plate with bone")
+          .required();
+  return schema;
 }
 
 PlateModel::PlateModel(std::string name, geometry::Mesh mesh, const PlateParameters& parameters)

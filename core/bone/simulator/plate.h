@@ -23,8 +23,8 @@ struct PlateParameters {
   double stiffness{40.0};     // of one sample >= 0 [N/m]
 };
 
-/// Reads `samples`, `extrusion`, `reach` and `stiffness`.
-PlateParameters read_plate_parameters(Table& table);
+/// The keys of a plate's [contact].
+const Schema<PlateParameters>& plate_schema();
 
 /// A rigid thing that can be fixed to bone: a plate or a distractor. Its mesh is in the frame P,
 /// which the tool that holds it carries; samples are vertices of the mesh, spread evenly, a vertex

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/bone/data/anatomy.h"
 #include "core/bone/model/distance_field.h"
@@ -88,16 +88,27 @@ void smooth(std::vector<float>& values, const std::array<std::int32_t, 3>& size,
 
 }  // namespace
 
+const Schema<SoftTissueParameters>& soft_tissue_schema() {
+  using P = SoftTissueParameters;
+  static const auto schema =
+      Schema<P>()
+          .text("structure", &P::structure,
+                "Structure of the bone, by any of its names, that is soft instead of bone")
+          .required()
+          .number("stiffness", &P::stiffness, {0.0, 3000.0, true}, "N/m",
+                  "Stiffness of the soft structure's surface under a burr or a tube")
+          .number("tears_at", &P::tears_at, {0.0, 50.0, true}, "N",
+                  "Force at which the soft structure tears")
+          .number("suction", &P::suction, {0.0, 50.0}, "N",
+                  "Pull at which the soft structure comes off a tube that sucks");
+  return schema;
+}
+
 std::vector<SoftTissueParameters> read_soft_tissue(Table& table) {
   std::vector<SoftTissueParameters> all;
   for (const std::string& name : table.keys()) {
     Table own = table.table(name);
-    SoftTissueParameters p;
-    p.structure = own.text("structure");
-    p.stiffness = own.number_or("stiffness", p.stiffness, {0.0, 3000.0, true}, "N/m");
-    p.tears_at = own.number_or("tears_at", p.tears_at, {0.0, 50.0, true}, "N");
-    p.suction = own.number_or("suction", p.suction, {0.0, 50.0}, "N");
-    all.push_back(std::move(p));
+    all.push_back(soft_tissue_schema().read(own));
   }
   return all;
 }

@@ -11,8 +11,10 @@
 #include "core/bone/model/dent.h"
 
 namespace haptrial {
+template <class T>
+class Schema;
 class Table;
-}
+}  // namespace haptrial
 
 namespace haptrial::bone {
 
@@ -24,8 +26,10 @@ struct SoftTissueParameters {
   double suction{0.15};     // pull at which it comes off a sucking tube >= 0 [N]
 };
 
-/// Reads [soft_tissue]: a table for each structure, by any of its names (anatomy.h), with
-/// `structure`, `stiffness`, `tears_at` and `suction`, each but the first optional.
+/// The keys of a structure in [soft_tissue].
+const Schema<SoftTissueParameters>& soft_tissue_schema();
+
+/// Reads [soft_tissue]: a table for each structure.
 std::vector<SoftTissueParameters> read_soft_tissue(Table& table);
 
 /// @throws InputError for a structure that the bone does not have, or that is named twice

@@ -535,38 +535,6 @@ bone.place | x_to and y_to say | how an ear lies, instead of x_to and y_to: its 
 bone.mirror | false | whether left and right of the bones are exchanged
 bone.x_to | place says | direction of the bone's x axis in the world
 bone.y_to | place says | direction of its y axis
-tools.in_hand | | names of tools, in the order in which a button selects them
-tools.NAME.type | | what the tool is
-tools.NAME.handle_radius | | of the tool's handle
-tools.NAME.handle_length | | of the tool's handle
-tools.NAME.kind | | of the burr
-tools.NAME.diameter | | of the burr, the greatest
-tools.NAME.length | | of a burr that is no ball, along its axis
-tools.NAME.narrow_diameter | half of the diameter | of the tip of a cone or the neck of a pear
-tools.NAME.sample_spacing | | edge of a cell of the burr with one sample
-tools.NAME.removal_rate | | share of the immersed volume that is removed
-tools.NAME.falloff | | of that rate with latitude
-tools.NAME.tangential_gain | | of the force along the surface
-tools.NAME.rotation | clockwise | how the burr turns, seen from the handle
-tools.NAME.wear_volume | never | volume of bone after which the burr removes half as much
-tools.NAME.shaft_radius | not felt | of the shaft behind the burr, which bone is felt by
-tools.NAME.shaft_length | not felt | of that shaft
-tools.NAME.feel.first_gain | | force for an immersed volume just after contact
-tools.NAME.feel.second_gain | | the same deeper
-tools.NAME.feel.threshold | | immersed volume at which the gain changes
-tools.NAME.feel.force_limit | | of the contact
-tools.NAME.feel.least_agreement | | of the pushes of samples, below which the force fades
-tools.NAME.radius | | of the opening of a suction tube, or of the tip of a probe
-tools.NAME.width | | of the plane of a cut
-tools.NAME.height | | of the plane of a cut
-tools.NAME.depth | | of a cut
-tools.NAME.shape | a burr is a ball | of the burr, or of the plate
-tools.NAME.holes | 4 | of a straight plate
-tools.NAME.contact.samples | | of the plate that touch
-tools.NAME.contact.extrusion | | by which they stand out
-tools.NAME.contact.reach | | within which bone is felt
-tools.NAME.contact.stiffness | | of the contact
-tools.NAME.reach | | within which a grip takes a piece
 drilling.force_limit | | of the commanded force
 drilling.time_limit | | longest duration of a procedure
 drilling.handle | | direction from the tip along the handle
@@ -574,54 +542,17 @@ drilling.scale | | size of the device's workspace over that of the scene
 drilling.recovery | | time without force after an aborted pass
 buttons.analog_pedal | false | whether the pedal sets the speed of the burr
 keys.analog_pedal | false | the same as in [buttons]; the value in [keys] counts if both are there
-soft_tissue.NAME.structure | | of the bone, by any of its names, that is soft
-soft_tissue.NAME.stiffness | | of its surface under a burr or a tube
-soft_tissue.NAME.tears_at | | force at which it tears
-soft_tissue.NAME.suction | | pull at which it comes off a tube that sucks
 second_hand.radius | | of the opening of a tube at a second device, which sucks and rinses
 second_hand.handle_length | | of the tube
 second_hand.rinse_reach | | of its water
 second_hand.shaft_length | | of the tube behind its end that is felt, too
 second_hand.tool_stiffness | | of the tube at the tool in the first hand; 0: they pass through each other
 second_hand.tool_damping | | by which the speed of their approach makes that contact stiffer
-second_hand.feel.first_gain | | force for an immersed volume of the tube's end just after contact
-second_hand.feel.second_gain | | the same deeper
-second_hand.feel.threshold | | immersed volume at which the gain changes
-second_hand.feel.force_limit | | of the contact
-second_hand.feel.least_agreement | | of the pushes of samples, below which the force fades
 second_hand.handle | | direction from the tip along the handle of the second device
 second_hand.force_limit | | of the force that its device is given
 second_hand.suck | [0] | buttons of the second device that make it suck
 second_hand.rinse | [1] | buttons of the second device that let water run
 second_hand.beside | [0.003, 0.003, 0.0] | the burr's tip, where a virtual participant holds the tube
-heat.turns | | of the burr at full power; without [heat] nothing warms up
-heat.share | | of the work of its teeth that stays as heat
-heat.capacity | | of what is warmed
-heat.loss | | to what lies around
-heat.rinsed_loss | | likewise, under water
-heat.body | | temperature of what lies around
-heat.harmful | | temperature above which time is counted
-bleeding.structures | | of the bone, by any of their names, that bleed where they are opened
-bleeding.rate | | of each opening
-pieces.capacity | | greatest number of pieces
-pieces.smallest_piece | | in voxels; smaller parts turn to dust
-pieces.moves_per_tick | | voxels that are moved to a new piece per tick, at most
-pieces.split_initial | | whether parts that are separate at the start become pieces
-camera.eye | | of the microscope
-camera.target | | point that the microscope looks at
-camera.up | | upward in the picture
-camera.field_of_view | | at the start
-camera.move_gain | | distance of the view for a distance of the hand
-camera.turn_gain | | angle of the view for a distance of the hand
-camera.zoom_rate | | of a held button
-camera.narrowest | | field of view
-camera.widest | | field of view
-dust.cell | | edge of a cell
-dust.bulking | | volume of loose dust over that of solid bone
-dust.fall_speed | | of dust
-dust.slope | | steepest slope of a pile at rest
-dust.suction_rate | | volume of dust that suction takes
-dust.suction_reach | | distance from the mouth of the tube
 sound.card | false | whether sound is played live
 sound.vibration_gain | | strength of the burr's vibration in the handle
 sound.thin_threshold | | thinner bone sounds higher

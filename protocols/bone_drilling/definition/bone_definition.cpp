@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/definition/schema.h"
 #include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
 #include "core/bone/data/ear_side.h"
@@ -293,10 +294,10 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   d.placement = read_placement(bone);
   d.mirror = bone.has("mirror") && bone.boolean("mirror");
   d.simulator.tools = bone::read_tools(tools);
-  d.simulator.camera = bone::read_microscope_parameters(camera);
+  d.simulator.camera = bone::microscope_schema().read(camera);
   if (root.has("pieces")) {
     Table pieces = root.table("pieces");
-    d.simulator.world = bone::read_world_parameters(pieces);
+    d.simulator.world = bone::world_schema().read(pieces);
   }
   if (root.has("soft_tissue")) {
     Table soft = root.table("soft_tissue");
@@ -305,16 +306,16 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   d.companions.dusty = root.has("dust");
   if (d.companions.dusty) {
     Table dust = root.table("dust");
-    d.companions.dust = bone::read_dust_parameters(dust);
+    d.companions.dust = bone::dust_schema().read(dust);
   }
   if (root.has("bleeding")) {
     Table bleeding = root.table("bleeding");
-    d.simulator.bleeding = bone::read_bleeding(bleeding);
+    d.simulator.bleeding = bone::bleeding_schema().read(bleeding);
     d.companions.bleeds = true;
   }
   if (root.has("heat")) {
     Table heat = root.table("heat");
-    d.simulator.heat = bone::read_heat_parameters(heat);
+    d.simulator.heat = bone::heat_schema().read(heat);
   }
   d.drilling = read_drilling(root);
   if (d.drilling.second) {

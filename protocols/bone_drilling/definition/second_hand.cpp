@@ -17,7 +17,7 @@ SecondHandParameters read_second_hand(Table& table) {
   tube.feel = bone::default_feel(tube.outer_radius());
   if (table.has("feel")) {
     Table feel = table.table("feel");
-    tube.feel = bone::read_feel_parameters(feel, tube.outer_radius());
+    bone::feel_schema().read(feel, tube.feel);
   }
   bone::ToolContactParameters& at_tool = tube.at_tool;
   at_tool.stiffness = table.number_or("tool_stiffness", at_tool.stiffness, {0.0, 5000.0}, "N/m");

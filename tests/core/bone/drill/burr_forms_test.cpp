@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/bone/drill/drill.h"
@@ -256,7 +256,7 @@ TEST(BurrFormsTest, SharpnessHalvesAfterTheWearVolume) {
 
 BurrParameters read(const std::string& text) {
   Table table = Table::parse("kind = 'cutting'\n" + text, "a.toml");
-  const BurrParameters p = read_burr_parameters(table);
+  const BurrParameters p = burr_schema().read(table);
   table.finish();
   return p;
 }
@@ -284,10 +284,16 @@ TEST(BurrFormsTest, EveryWrongKeyGetsASentence) {
   };
   EXPECT_NE(says("shape = 'cube'\ndiameter = 0.002\n").find("'cube'"), std::string::npos);
   EXPECT_NE(says("shape = 'cylinder'\ndiameter = 0.002\n").find("length"), std::string::npos);
-  EXPECT_NE(says("shape = 'pear'\ndiameter = 0.002\nlength = 0.002\n").find("length is 0.002"),
+  EXPECT_NE(says("shape = 'pear'\ndiameter = 0.002\nlength = 0.002\n")
+                .find("length is 0.002; allowed: at least 1.01 times diameter, 0.002 [m]"),
             std::string::npos);
   EXPECT_NE(says("shape = 'cone'\ndiameter = 0.002\nlength = 0.004\nnarrow_diameter = 0.003\n")
-                .find("narrow_diameter is 0.003"),
+                .find("narrow_diameter is 0.003; allowed: at most diameter, 0.002 [m]"),
+            std::string::npos);
+  EXPECT_NE(says("diameter = 0.002\nsample_spacing = 0.0011\n")
+                .find("at most half of diameter, 0.002 [m]"),
+            std::string::npos);
+  EXPECT_NE(says("diameter = 0.03\nsample_spacing = 1e-5\n").find("a million samples"),
             std::string::npos);
   EXPECT_NE(says("diameter = 0.002\nlength = 0.004\n").find("length"), std::string::npos)
       << "a ball has none";

@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 
 namespace haptrial::bone {
@@ -114,7 +114,7 @@ TEST(BurrTest, ImpossibleParametersAreNamed) {
 
 TEST(BurrTest, IsReadFromADefinition) {
   Table table = Table::parse("kind = 'cutting'\ndiameter = 0.002\nfalloff = 3\n", "a.toml");
-  const BurrParameters p = read_burr_parameters(table);
+  const BurrParameters p = burr_schema().read(table);
   table.finish();
   EXPECT_EQ(p.kind, BurrKind::kCutting);
   EXPECT_EQ(p.diameter, 0.002);
@@ -126,7 +126,7 @@ TEST(BurrTest, IsReadFromADefinition) {
 TEST(BurrTest, EveryWrongKeyGetsASentence) {
   Table table = Table::parse(
       "kind = 'laser'\ndiameter = 4\nremoval_rate = -1\nrotation = 'left'\ncolour = 2\n", "a.toml");
-  read_burr_parameters(table);
+  burr_schema().read(table);
   try {
     table.finish();
     FAIL() << "accepted";

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/solid_bone.h"
@@ -116,13 +116,14 @@ TEST(FeelTest, SmallBurrsCarryTheForceLimit) {
 
 TEST(FeelTest, IsReadFromADefinition) {
   Table table = Table::parse("second_gain = 5e9\nforce_limit = 6\n", "a.toml");
-  const FeelParameters p = read_feel_parameters(table, 2e-3);
+  FeelParameters p = default_feel(2e-3);
+  feel_schema().read(table, p);
   table.finish();
   EXPECT_EQ(p.second_gain, 5e9);
   EXPECT_EQ(p.force_limit, 6.0);
   EXPECT_EQ(p.first_gain, default_feel(2e-3).first_gain);
   Table wrong = Table::parse("first_gain = 5e9\nsecond_gain = 1e9\n", "b.toml");
-  read_feel_parameters(wrong, 2e-3);
+  feel_schema().read(wrong);
   EXPECT_THROW(wrong.finish(), InputError);
 }
 

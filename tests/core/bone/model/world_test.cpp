@@ -6,7 +6,7 @@
 #include <set>
 #include <thread>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "tests/core/bone/model/pieces_support.h"
 #include "tests/support/allocation_guard.h"
@@ -309,7 +309,7 @@ TEST(BoneWorldTest, ParametersOutOfBoundsAreRefused) {
 TEST(BoneWorldTest, ParametersAreReadFromADefinition) {
   Table good = Table::parse(
       "capacity = 5\nsmallest_piece = 20\nmoves_per_tick = 300\nsplit_initial = true\n", "w.toml");
-  const WorldParameters read = read_world_parameters(good);
+  const WorldParameters read = world_schema().read(good);
   good.finish();
   EXPECT_EQ(read.capacity, 5);
   EXPECT_EQ(read.smallest_piece, 20);
@@ -317,7 +317,7 @@ TEST(BoneWorldTest, ParametersAreReadFromADefinition) {
   EXPECT_TRUE(read.split_initial);
   Table bad = Table::parse(
       "capacity = 5\nsmallest_piece = 400\nmoves_per_tick = 300\nsplit_initial = true\n", "w.toml");
-  read_world_parameters(bad);
+  world_schema().read(bad);
   EXPECT_THROW(bad.finish(), InputError);
 }
 

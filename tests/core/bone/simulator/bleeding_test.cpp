@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::bone::bleeding_test {
@@ -86,7 +86,7 @@ TEST(BleedingTest, AStructureThatTheBoneLacksIsNamed) {
                              testing::HasSubstr("sigmoid sinus and dura")));
   Table root = Table::parse("[bleeding]\nstructures = []\n", "a.toml");
   Table table = root.table("bleeding");
-  read_bleeding(table);
+  bleeding_schema().read(table);
   EXPECT_THAT(test::message_of([&] { root.finish(); }), testing::HasSubstr("structures"));
 }
 

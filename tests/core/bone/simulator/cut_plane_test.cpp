@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "tests/core/bone/model/pieces_support.h"
 #include "tests/support/allocation_guard.h"
@@ -159,13 +159,13 @@ TEST(CutPlaneTest, BesideBoneAndWithoutAPlaneNothingHappens) {
 
 TEST(CutPlaneTest, ItsSidesAreReadFromADefinition) {
   Table good = Table::parse("width = 0.02\nheight = 0.03\ndepth = 0.0\n", "c.toml");
-  const CutPlane plane = read_cut_plane(good);
+  const CutPlane plane = cut_plane_schema().read(good);
   good.finish();
   EXPECT_EQ(plane.width, 0.02);
   EXPECT_EQ(plane.height, 0.03);
   EXPECT_EQ(plane.depth, 0.0);
   Table bad = Table::parse("width = 0.0\nheight = 0.03\ndepth = 0.0\n", "c.toml");
-  read_cut_plane(bad);
+  cut_plane_schema().read(bad);
   EXPECT_THROW(bad.finish(), InputError);
 }
 

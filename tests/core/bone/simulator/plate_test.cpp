@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/bone/simulator/plate_shapes.h"
 #include "core/geometry/files/mesh_io.h"
@@ -289,14 +289,14 @@ TEST(PlateModelTest, LoadsMeshesOfOtherMakers) {
 TEST(PlateModelTest, ParametersAreReadFromADefinition) {
   Table good =
       Table::parse("samples = 50\nextrusion = 0.0002\nreach = 0.004\nstiffness = 80.0\n", "p.toml");
-  const PlateParameters read = read_plate_parameters(good);
+  const PlateParameters read = plate_schema().read(good);
   good.finish();
   EXPECT_EQ(read.samples, 50);
   EXPECT_EQ(read.extrusion, 0.0002);
   EXPECT_EQ(read.reach, 0.004);
   EXPECT_EQ(read.stiffness, 80.0);
   Table bad = Table::parse("samples = 101\nextrusion = 0\nreach = 1\nstiffness = 1\n", "p.toml");
-  read_plate_parameters(bad);
+  plate_schema().read(bad);
   EXPECT_THROW(bad.finish(), InputError);
 }
 
