@@ -159,7 +159,7 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   recording_schema().read(recording, d);
   d.design = design_schema().read(design);
   d.recovery = d.guidance.recovery;
-  d.display = render::read_trial_display_style(display);
+  d.display = render::trial_display_schema().read(display);
   if (d.guidance.kind == Guidance::kCurve) {
     Table pace = root.table("pace");
     d.pace.emplace(pace);

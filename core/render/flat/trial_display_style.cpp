@@ -16,15 +16,6 @@ constexpr double kLeastRoom = 32.0;  // for the trajectory, each way [px]
 constexpr Bounds kPixels{0.0, static_cast<double>(kLargestSide), true};
 constexpr Bounds kPixelsOrNone{0.0, static_cast<double>(kLargestSide), false};
 
-void read_side(Table& table, std::string_view key, int& value) {
-  value = table.integer_or(key, value, kSmallestSide, kLargestSide);
-}
-
-void read_number(Table& table, std::string_view key, const Bounds& bounds, std::string_view unit,
-                 double& value) {
-  value = table.number_or(key, value, bounds, unit);
-}
-
 /// Text of a colour as a definition writes it.
 std::string words_of(const Colour& colour) {
   const auto byte = [](double share) { return static_cast<int>(std::lround(255.0 * share)); };
@@ -32,20 +23,64 @@ std::string words_of(const Colour& colour) {
                      byte(colour.blue));
 }
 
-void read_colour(Table& table, std::string_view key, Colour& value) {
-  table.otherwise(key, words_of(value));
-  if (!table.has(key)) {
-    return;
+using Style = TrialDisplayStyle;
+
+/// A key with a colour, "#rrggbb".
+void add_colour(Schema<Style>& schema, const char* name, Colour Style::*member,
+                const char* description) {
+  schema
+      .custom(name, description,
+              [member](Table& table, const std::string& key, Style& style) {
+                const std::string text = table.text(key);
+                if (const auto colour = parse_colour(text)) {
+                  style.*member = *colour;
+                } else if (!text.empty()) {  // else noted by text()
+                  table.reject(key, fmt::format("'{}'", text),
+                               "a colour \"#rrggbb\" in hexadecimal digits");
+                }
+              })
+      .otherwise(words_of(Style{}.*member));
+}
+
+void check_room(Table& display, Style& style) {
+  if (!style.leaves_room()) {
+    display.reject("height",
+                   fmt::format("{} px with a width of {} px, margins of {} px and bars of {} px",
+                               style.height, style.width, style.margin, style.bar_height),
+                   fmt::format("sizes that leave the trajectory {} px each way", kLeastRoom));
   }
-  const std::string text = table.text(key);
-  if (text.empty()) {
-    return;  // noted by text()
-  }
-  if (const auto colour = parse_colour(text)) {
-    value = *colour;
-  } else {
-    table.reject(key, fmt::format("'{}'", text), "a colour \"#rrggbb\" in hexadecimal digits");
-  }
+}
+
+Schema<Style> make_schema() {
+  using S = Style;
+  Schema<S> schema;
+  schema
+      .integer("width", &S::width, kSmallestSide, kLargestSide, "Width of pictures and of a window")
+      .integer("height", &S::height, kSmallestSide, kLargestSide,
+               "Height of pictures and of a window")
+      .number("margin", &S::margin, kPixelsOrNone, "px",
+              "Room between the picture's edge and what is drawn")
+      .number("trajectory_width", &S::trajectory_width, kPixels, "px",
+              "Width of the line of the trajectory")
+      .number("marker_radius", &S::marker_radius, kPixels, "px", "Radius of the marker of the hand")
+      .number("full_scale", &S::full_scale, kPositive, "N",
+              "Force of a full bar; larger forces fill the bar")
+      .number("bar_width", &S::bar_width, kPixels, "px", "Width of the bars of force")
+      .number("bar_height", &S::bar_height, kPixels, "px", "Height of a full bar of force")
+      .number("bar_gap", &S::bar_gap, kPixelsOrNone, "px",
+              "Gap between the bars of force, and between the marker and the bars")
+      .number("saturation_size", &S::saturation_size, kPixels, "px",
+              "Side of the square that shows that the force limit is reached");
+  add_colour(schema, "background", &S::background, "Colour behind everything");
+  add_colour(schema, "trajectory_colour", &S::trajectory_colour, "Colour of the trajectory");
+  add_colour(schema, "marker_colour", &S::marker_colour, "Colour of the marker of the hand");
+  add_colour(schema, "target_colour", &S::target_colour, "Colour of the bar of the target force");
+  add_colour(schema, "applied_colour", &S::applied_colour,
+             "Colour of the bar of the applied force");
+  add_colour(schema, "saturation_colour", &S::saturation_colour,
+             "Colour of the square that shows that the force limit is reached");
+  schema.check(check_room);
+  return schema;
 }
 
 void require(bool good, std::string_view name, double value, std::string_view allowed) {
@@ -110,31 +145,9 @@ void check(const TrialDisplayStyle& style) {
   }
 }
 
-TrialDisplayStyle read_trial_display_style(Table& display) {
-  TrialDisplayStyle style;
-  read_side(display, "width", style.width);
-  read_side(display, "height", style.height);
-  read_number(display, "margin", kPixelsOrNone, "px", style.margin);
-  read_number(display, "trajectory_width", kPixels, "px", style.trajectory_width);
-  read_number(display, "marker_radius", kPixels, "px", style.marker_radius);
-  read_number(display, "full_scale", kPositive, "N", style.full_scale);
-  read_number(display, "bar_width", kPixels, "px", style.bar_width);
-  read_number(display, "bar_height", kPixels, "px", style.bar_height);
-  read_number(display, "bar_gap", kPixelsOrNone, "px", style.bar_gap);
-  read_number(display, "saturation_size", kPixels, "px", style.saturation_size);
-  read_colour(display, "background", style.background);
-  read_colour(display, "trajectory_colour", style.trajectory_colour);
-  read_colour(display, "marker_colour", style.marker_colour);
-  read_colour(display, "target_colour", style.target_colour);
-  read_colour(display, "applied_colour", style.applied_colour);
-  read_colour(display, "saturation_colour", style.saturation_colour);
-  if (!style.leaves_room()) {
-    display.reject("height",
-                   fmt::format("{} px with a width of {} px, margins of {} px and bars of {} px",
-                               style.height, style.width, style.margin, style.bar_height),
-                   fmt::format("sizes that leave the trajectory {} px each way", kLeastRoom));
-  }
-  return style;
+const Schema<TrialDisplayStyle>& trial_display_schema() {
+  static const auto schema = make_schema();
+  return schema;
 }
 
 }  // namespace haptrial::render

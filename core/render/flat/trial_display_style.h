@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/render/gl/colour.h"
 
 namespace haptrial::render {
@@ -54,22 +54,7 @@ struct TrialDisplayStyle {
 /// and margins leave no room for the trajectory.
 void check(const TrialDisplayStyle& style);
 
-/// Reads the `[display]` table of a definition. Every key is optional; what is absent stays as
-/// above.
-///
-///     width, height       size of the picture [px], 160 to 8192
-///     margin              [px]
-///     trajectory_width    [px]
-///     marker_radius       [px]
-///     full_scale          force of a full bar [N]; larger forces fill the bar
-///     bar_width           [px]
-///     bar_height          of a full bar [px]
-///     bar_gap             [px]
-///     saturation_size     side of the square [px]
-///     background, trajectory_colour, marker_colour,
-///     target_colour, applied_colour, saturation_colour    "#rrggbb"
-///
-/// Problems are noted in `display` (see Table); the style that comes back is then not to be used.
-TrialDisplayStyle read_trial_display_style(Table& display);
+/// The keys of [display] of a trial, all optional.
+const Schema<TrialDisplayStyle>& trial_display_schema();
 
 }  // namespace haptrial::render

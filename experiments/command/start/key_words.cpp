@@ -9,22 +9,6 @@ experiment.protocol | force_training | what kind of experiment it is
 experiment.rate | | ticks of the servo loop per second
 lab.use | | file with tables of devices and screen, relative to the definition; without [lab] the definition has them
 hand.integrator | | exact solution of the virtual hand, or CVODE's
-display.width | | of pictures and of a window
-display.height | | of pictures and of a window
-display.margin | | between the picture's edge and what is drawn
-display.trajectory_width | | of the line of the trajectory
-display.marker_radius | | of the marker of the hand
-display.full_scale | | force of a full bar
-display.bar_width | | of the bars of force
-display.bar_height | | of a full bar
-display.bar_gap | | between the bars, and between marker and bars
-display.saturation_size | | side of the square that shows that the force limit is reached
-display.background | | colour behind everything
-display.trajectory_colour | | of the line
-display.marker_colour | | of the marker
-display.target_colour | | of the bar of the target force
-display.applied_colour | | of the bar of the applied force
-display.saturation_colour | | of the square of the force limit
 display.seen_from | | above: x to the right, z down the screen; front: x to the right, y up
 display.extent | | part of the world that fills the screen's width
 display.hand_radius | | of the dot of the hand

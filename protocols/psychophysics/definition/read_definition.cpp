@@ -21,7 +21,7 @@ namespace {
 
 void read_view(Table& root, TrialsDefinition& d) {
   Table table = root.table("display");
-  d.display = render::read_trial_display_style(table);
+  d.display = render::trial_display_schema().read(table);
   d.view.from_above = table.choice("seen_from", {"above", "front"}) == "above";
   d.view.width = table.number("extent", {0.01, 1.0}, "m");
   d.view.hand_radius = table.number("hand_radius", {0.0005, 0.05}, "m");

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 TrialDisplayStyle read(const std::string& lines) {
   Table document = Table::parse("[display]\n" + lines, "look.toml");
   Table display = document.table("display");
-  const TrialDisplayStyle style = read_trial_display_style(display);
+  const TrialDisplayStyle style = trial_display_schema().read(display);
   document.finish();
   return style;
 }
