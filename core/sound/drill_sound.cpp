@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::sound {
 namespace {
@@ -26,11 +26,16 @@ double pitch(const ThinBone& thin, const DrillState& drill) noexcept {
   return 1.0 + thin.rise * (1.0 - std::max(0.0, drill.thickness) / thin.threshold);
 }
 
-ThinBone read_thin_bone(Table& table) {
-  ThinBone thin;
-  thin.threshold = table.number("thin_threshold", {0.0, 0.1, true}, "m");
-  thin.rise = table.number("thin_rise", {0.0, 10.0}, "");
-  return thin;
+const Schema<ThinBone>& thin_bone_schema() {
+  static const auto schema =
+      Schema<ThinBone>()
+          .number("thin_threshold", &ThinBone::threshold, {0.0, 0.1, true}, "m",
+                  "Thickness of bone below which the drill sounds higher")
+          .required()
+          .number("thin_rise", &ThinBone::rise, {0.0, 10.0}, "",
+                  "Rise of the drill's pitch, as a share, where no bone is left")
+          .required();
+  return schema;
 }
 
 DrillSound::DrillSound(SpectrumTable table, const ThinBone& thin, std::uint64_t seed)

@@ -7,7 +7,8 @@
 #include "core/sound/harmonics.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::sound {
@@ -32,8 +33,8 @@ struct ThinBone {
 };
 double pitch(const ThinBone& thin, const DrillState& drill) noexcept;
 
-/// Reads the keys `thin_threshold` and `thin_rise` of a table.
-ThinBone read_thin_bone(Table& table);
+/// The keys of [sound] about thin bone.
+const Schema<ThinBone>& thin_bone_schema();
 
 /// The sound of a drill, sample by sample. Frequencies and amplitudes follow the drill's speed.
 /// One thread; no allocation, lock or throw after construction.

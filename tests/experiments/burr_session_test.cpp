@@ -184,8 +184,10 @@ TEST(BurrDefinitionTest, WhatCannotBeIsSaid) {
   };
   EXPECT_THAT(says("shape = \"cube\"\ndiameter = 0.004"), HasSubstr("tools.cutting.shape"));
   EXPECT_THAT(says("shape = \"cylinder\"\ndiameter = 0.004"), HasSubstr("tools.cutting.length"));
-  EXPECT_THAT(says("diameter = 0.004\nshaft_radius = 0.003\nshaft_length = 0.02"),
-              HasSubstr("tools.cutting.shaft_radius is 0.003"));
+  EXPECT_THAT(
+      says("diameter = 0.004\nshaft_radius = 0.003\nshaft_length = 0.02"),
+      HasSubstr("tools.cutting.shaft_radius is 0.003; allowed: at most half of diameter, 0.004 "
+                "[m]"));
   EXPECT_THAT(says("diameter = 0.004\nshaft_radius = 0.001"),
               HasSubstr("tools.cutting.shaft_length"));
 }

@@ -249,7 +249,8 @@ TEST(TwoHandsDefinitionTest, WhatCannotBeIsSaid) {
   EXPECT_THAT(says(kSecond + "tool_stiffness = 9000.0\n"),
               HasSubstr("second_hand.tool_stiffness is 9000; allowed: a number of at least 0 and "
                         "at most 5000 [N/m]"));
-  EXPECT_THAT(says("[heat]\nloss = 1.0\nrinsed_loss = 0.5\n"), HasSubstr("heat.rinsed_loss"));
+  EXPECT_THAT(says("[heat]\nloss = 1.0\nrinsed_loss = 0.5\n"),
+              HasSubstr("heat.rinsed_loss is 0.5; allowed: at least loss, 1 [W/K]"));
 }
 
 /// The small drilling with one vessel that bleeds. @returns what validate says

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "analysis/document/palette.h"
-#include "analysis/reaching/figures/reaching_figures.h"
-#include "analysis/trials/report/trials_figures.h"
-#include "analysis/trials/report/trials_words.h"
+#include "analysis/psychophysics/report/trials_figures.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/reaching/reaching_figures.h"
 
 namespace haptrial::analysis::trials {
 namespace {

@@ -144,7 +144,7 @@ class Schema {
                });
   }
   /// Three numbers of any length above 0, which the member keeps.
-  Schema& direction(std::string name, Eigen::Vector3d T::*member, std::string description) {
+  Schema& any_direction(std::string name, Eigen::Vector3d T::*member, std::string description) {
     return add(std::move(name), std::move(description),
                [=](Table& table, const KeyDescription& key, T& into) {
                  if (key.stands_in(table)) {
@@ -158,6 +158,15 @@ class Schema {
                [=](Table& table, const KeyDescription& key, T& into) {
                  if (key.stands_in(table)) {
                    into.*member = read_seed(table, key.name);
+                 }
+               });
+  }
+  /// Three numbers from -1 to 1, made a direction of length 1.
+  Schema& direction(std::string name, Eigen::Vector3d T::*member, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = read_direction(table, key.name);
                  }
                });
   }

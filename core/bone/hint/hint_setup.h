@@ -11,7 +11,8 @@
 #include "core/bone/hint/safe_limits.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::hint {
@@ -47,8 +48,8 @@ struct HintSetup {
   bool needs_limits() const noexcept { return gives(HintKind::kForce) || gives(HintKind::kSpeed); }
 };
 
-/// Reads a [hints] table; the file of limits is not looked at.
-HintSetup read_hint_setup(Table& table);
+/// The keys of [hints]; the file of limits is not looked at.
+const Schema<HintSetup>& hint_schema();
 
 /// Reads the file of limits, if there is one. @param folder  of the definition
 /// @throws InputError where the file is missing, and as load_safe_limits() does.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/definition/schema.h"
-#include "core/bone/anatomy/anatomy.h"
+#include "core/bone/data/anatomy.h"
 
 namespace haptrial::bone {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/base/definition/schema.h"
-#include "core/bone/tools/plate_shapes.h"
+#include "core/bone/simulator/plate_shapes.h"
 
 namespace haptrial::bone {
 namespace {

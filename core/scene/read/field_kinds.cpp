@@ -170,7 +170,7 @@ const Schema<PlaneParameters>& plane_schema() {
       Schema<P>()
           .vector("through", &P::through, kPlaceBounds, "m", "Point of a channel or plane")
           .required()
-          .direction("normal", &P::normal, kNormal)
+          .any_direction("normal", &P::normal, kNormal)
           .required()
           .keys_of(&P::gains, field_gains_schema());
   return schema;
@@ -263,7 +263,7 @@ const Schema<GratingParameters>& grating_schema() {
       Schema<P>()
           .text("on", &P::on, kOn)
           .required()
-          .direction("direction", &P::direction, kDirection)
+          .any_direction("direction", &P::direction, kDirection)
           .required()
           .number("amplitude", &P::amplitude, {0.0, 0.1}, "m",
                   "Amplitude of a relief or of a vibration")
@@ -288,7 +288,7 @@ const Schema<TextureParameters>& texture_schema() {
       Schema<P>()
           .text("on", &P::on, kOn)
           .required()
-          .direction("normal", &P::normal, kNormal)
+          .any_direction("normal", &P::normal, kNormal)
           .required()
           .number("roughness", &P::roughness, {0.0, 0.1}, "m",
                   "Root mean square of a texture's height")
@@ -321,7 +321,7 @@ void keep_below_half_rate(Table& table, const char* key, double& frequency, doub
 const Schema<NoiseVibrationParameters>& noise_schema() {
   using P = NoiseVibrationParameters;
   static const auto schema = Schema<P>()
-                                 .direction("direction", &P::direction, kDirection)
+                                 .any_direction("direction", &P::direction, kDirection)
                                  .required()
                                  .number("rms", &P::rms, kStrengthBounds, "N",
                                          "Root mean square of a vibration that is noise")
@@ -339,7 +339,7 @@ const Schema<SineVibrationParameters>& sine_schema() {
   using P = SineVibrationParameters;
   static const auto schema =
       Schema<P>()
-          .direction("direction", &P::direction, kDirection)
+          .any_direction("direction", &P::direction, kDirection)
           .required()
           .number("amplitude", &P::amplitude, kStrengthBounds, "N",
                   "Amplitude of a relief or of a vibration")
@@ -374,7 +374,7 @@ const Schema<TapParameters>& tap_schema() {
       Schema<P>()
           .text("on", &P::on, kOn)
           .otherwise("everywhere")
-          .direction("direction", &P::direction, kDirection)
+          .any_direction("direction", &P::direction, kDirection)
           .required()
           .only_if([](const P& p) { return p.on.empty(); })
           .custom("amplitude", "Amplitude of a relief or of a vibration",
@@ -413,7 +413,7 @@ const Schema<DetentParameters>& detent_schema() {
       Schema<P>()
           .vector("at", &P::at, kPlaceBounds, "m", kAt)
           .required()
-          .direction("direction", &P::direction, kDirection)
+          .any_direction("direction", &P::direction, kDirection)
           .required()
           .number("spacing", &P::spacing, kLengthBounds, "m", "Distance between detents")
           .required()
@@ -436,7 +436,7 @@ const Schema<ClickParameters>& click_schema() {
       Schema<P>()
           .vector("at", &P::at, kPlaceBounds, "m", kAt)
           .required()
-          .direction("direction", &P::direction, kDirection)
+          .any_direction("direction", &P::direction, kDirection)
           .required()
           .number("peak", &P::peak, kStrengthBounds, "N", kPeak)
           .required()

@@ -36,7 +36,7 @@ const Schema<Cylinder>& cylinder_schema() {
       Schema<Cylinder>()
           .vector("centre", &Cylinder::centre, kPlaceBounds, "m", kCentre)
           .required()
-          .direction("axis", &Cylinder::axis, "Direction of a cylinder's axis")
+          .any_direction("axis", &Cylinder::axis, "Direction of a cylinder's axis")
           .required()
           .number("radius", &Cylinder::radius, kLengthBounds, "m", kRadius)
           .required()
@@ -49,7 +49,7 @@ const Schema<HalfSpace>& half_space_schema() {
                                  .vector("point", &HalfSpace::point, kPlaceBounds, "m",
                                          "Point on the surface of a wall or half space")
                                  .required()
-                                 .direction("normal", &HalfSpace::normal, kNormal)
+                                 .any_direction("normal", &HalfSpace::normal, kNormal)
                                  .required();
   return schema;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/definition/schema.h"
 #include "core/base/definition/table_vector.h"
 #include "core/subject/drilling/drilling_arm.h"
 #include "core/subject/subject_parameters.h"
@@ -31,40 +32,60 @@ SubjectParameters person_of(const DrillingHandParameters& p) {
 
 }  // namespace
 
-DrillingHandParameters read_drilling_hand_parameters(Table& table) {
-  DrillingHandParameters p;
-  p.start = read_vector(table, "start", {-1.0, 1.0}, "m", Eigen::Vector3d::UnitY());
-  p.inward = read_direction(table, "inward");
-  p.along = read_direction(table, "along");
-  if (!(p.along.cross(p.inward).norm() > 0.1)) {
-    table.reject("along", "is nearly the direction of inward; write a direction across it");
-  }
-  p.along = (p.along - p.along.dot(p.inward) * p.inward).normalized();
-  const auto number = [&](const char* key, double& value, const Bounds& bounds, const char* unit) {
-    value = table.number_or(key, value, bounds, unit);
-  };
-  number("width", p.width, {1e-4, 0.1}, "m");
-  number("height", p.height, {0.0, 0.1}, "m");
-  number("depth", p.depth, {0.0, 0.1}, "m");
-  number("line", p.line, {1e-4, 0.1}, "m");
-  number("press", p.press, {0.0, 20.0}, "N");
-  number("speed", p.speed, {1e-3, 0.2}, "m/s");
-  number("hover", p.hover, {0.0, 0.05}, "m");
-  number("force_noise", p.force_noise, {0.0, 1.0}, "");
-  number("force_noise_time", p.force_noise_time, {0.001, 10.0}, "s");
-  number("tremor", p.tremor, {0.0, 1.0}, "N");
-  number("tremor_frequency", p.tremor_frequency, {1.0, 50.0}, "Hz");
-  number("suction_time", p.suction_time, {0.0, 600.0}, "s");
-  const auto whole = [&](const char* key, int& value, long low, long high) {
-    value = table.integer_or(key, value, low, high);
-  };
-  whole("power_button", p.power_button, 0, 30);
-  whole("next_button", p.next_button, -1, 30);
-  whole("previous_button", p.previous_button, -1, 30);
-  whole("look_button", p.look_button, -1, 30);
-  whole("suction_tool", p.suction_tool, 1, 31);
-  whole("strokes_to_suction", p.strokes_to_suction, 1, 1'000'000);
-  return p;
+const Schema<DrillingHandParameters>& drilling_hand_schema() {
+  using P = DrillingHandParameters;
+  static const auto schema =
+      Schema<P>()
+          .vector("start", &P::start, {-1.0, 1.0}, "m",
+                  "Place at which the virtual hand begins, above the middle of the region to drill")
+          .required()
+          .direction("inward", &P::inward,
+                     "Direction into the bone in which the virtual hand presses")
+          .required()
+          .direction("along", &P::along, "Direction of the virtual hand's strokes")
+          .required()
+          .check([](Table& table, P& p) {
+            if (!(p.along.cross(p.inward).norm() > 0.1)) {
+              table.reject("along",
+                           "is nearly the direction of inward; write a direction across it");
+            }
+            p.along = (p.along - p.along.dot(p.inward) * p.inward).normalized();
+          })
+          .number("width", &P::width, {1e-4, 0.1}, "m",
+                  "Width of the region to drill, along strokes")
+          .number("height", &P::height, {0.0, 0.1}, "m",
+                  "Height of the region to drill, across strokes")
+          .number("depth", &P::depth, {0.0, 0.1}, "m",
+                  "Depth of the region to drill, below the place where bone was first touched")
+          .number("line", &P::line, {1e-4, 0.1}, "m", "Distance between neighbouring strokes")
+          .number("press", &P::press, {0.0, 20.0}, "N",
+                  "Force with which the virtual hand presses on the bone")
+          .number("speed", &P::speed, {1e-3, 0.2}, "m/s",
+                  "Speed of the virtual hand along a stroke")
+          .number("hover", &P::hover, {0.0, 0.05}, "m", "Height above the bone between strokes")
+          .number("force_noise", &P::force_noise, {0.0, 1.0}, "",
+                  "Noise of the virtual hand's force, as a share of the pressing force")
+          .number("force_noise_time", &P::force_noise_time, {0.001, 10.0}, "s",
+                  "Correlation time of the noise of the virtual hand's force")
+          .number("tremor", &P::tremor, {0.0, 1.0}, "N",
+                  "Root mean square of the virtual hand's tremor")
+          .number("tremor_frequency", &P::tremor_frequency, {1.0, 50.0}, "Hz",
+                  "Frequency of the virtual hand's tremor")
+          .number("suction_time", &P::suction_time, {0.0, 600.0}, "s", "Duration of a suction")
+          .integer("power_button", &P::power_button, 0, 30,
+                   "Button of the device with which the virtual hand turns the burr")
+          .integer("next_button", &P::next_button, -1, 30,
+                   "Button of the device with which the virtual hand takes the next tool; -1: no "
+                   "suction")
+          .integer("previous_button", &P::previous_button, -1, 30,
+                   "Button of the device with which the virtual hand takes the tool before")
+          .integer("look_button", &P::look_button, -1, 30,
+                   "Button of the device with which the virtual hand turns the camera while held; "
+                   "-1: never")
+          .integer("suction_tool", &P::suction_tool, 1, 31, "Place of the suction among the tools")
+          .integer("strokes_to_suction", &P::strokes_to_suction, 1, 1'000'000,
+                   "Number of strokes after which suction follows");
+  return schema;
 }
 
 DrillingHand::DrillingHand(const DrillingHandParameters& parameters, HandModel& hand,

@@ -10,7 +10,8 @@
 #include "core/subject/motor_noise.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::subject {
@@ -40,8 +41,8 @@ struct DrillingHandParameters {
   int look_button{-1};           // turns the camera while held; -1: it is never used
 };
 
-/// Reads a [drilling_hand] table; `start`, `inward` and `along` are required.
-DrillingHandParameters read_drilling_hand_parameters(Table& table);
+/// The keys of [drilling_hand].
+const Schema<DrillingHandParameters>& drilling_hand_schema();
 
 /// A simulated participant who drills a region away, stroke by stroke: goes down until bone is
 /// met, presses while it moves along, lifts, begins the next stroke; after some strokes it takes

@@ -15,10 +15,8 @@ display.hand_radius | | of the dot of the hand
 display.feedback_right | | what is shown after a right answer
 display.feedback_wrong | | what is shown after a wrong one
 display.feedback_time | | for which it is shown
-display.quality | auto | of the drilling's picture: plain light, with shadows, or full with smoothed edges; auto: what the machine draws 27 times a second
 display.stereo | false | pictures for the left and the right eye side by side
 trials:display.eye_distance | 0.063 | between the eyes
-display.eye_distance | | between the eyes, in the scene
 display.viewing_distance | 0.5 | from the eyes to the screen
 display.sound_right | none | sound after a right answer, where feedback is given
 display.sound_wrong | none | sound after a wrong one
@@ -38,9 +36,6 @@ sounds.masking.high | 20000, of a band needed | its highest frequency
 sounds.masking.level | | its root mean square below full scale
 sounds.masking.fade | 0.5 | time over which it comes and goes
 sounds.masking.stages | the whole session | stages in which it sounds
-feedback.page | | whether a page about the session is written beside its file at its end
-feedback.study | none | folder of a study relative to the definition; the page compares with its experts
-display.stills | 0 | stills of the bone's stages that can be shown
 texts.too_fast | Too fast | after an answer below `too_fast` of its response
 texts.too_slow | Too slow | after an answer above `too_slow`
 pages.before | none | names of pages before the first trial, in this order
@@ -68,10 +63,8 @@ design.sessions | 1 | of each participant, on days of their own
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
 trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
 design.break_until | time | what ends a break: its duration, or after that the participant or the experimenter
-bone_drilling:design.break_after | 0 | procedures after which a break comes; 0: no breaks
 design.break_after | | trials after which a break comes; 0: no breaks
 trials:design.break_duration | 60 | of a break
-bone_drilling:design.break_duration | | of a break
 design.break_duration | | of a break
 design.blocks | fixed | order of the blocks over participants
 design.most_in_a_row | no limit | trials of one combination of factors
@@ -79,7 +72,6 @@ design.trials | | of each participant
 design.repetitions | | trials of a block: same stimulus, same condition
 design.practice | 0 | practice trials of each condition; not scored
 design.conditions | needed | of training
-design.procedures | | trials of each participant, each with a new bone
 groups | one group of everybody | participants of each group, in the order of their numbers: NAME = 8
 groups.NAME | | participants of the group, in the order of their numbers
 factors.NAME | | levels of a factor: two or more numbers, words or formulas
@@ -90,7 +82,6 @@ places.NAME | | x, y, z: three numbers or formulas
 practice.trials | | of practice
 practice.right_in_a_row | all trials | practice ends with so many right answers in a row
 practice.NAME | | what a name is worth during practice
-practice.duration | | of practice before the first procedure
 blocks[].name | | of the block
 blocks[].trials | until its procedures are finished | of the block; needed without a procedure
 blocks[].practice | false | whether it is practice, which is not scored
@@ -511,136 +502,6 @@ force_training:analysis.step_pattern | published | steps that the alignment may 
 force_training:analysis.window | no window | greatest difference in time
 force_training:analysis.open_begin | false | whether the applied curve may begin late
 force_training:analysis.open_end | false | whether it may end early
-bone.bones | | procedural temporal, procedural mandible, or files; procedures use them in turn
-bone.seed | 1 | of procedural bones
-bone.spacing | of the bone | of voxels
-bone.centre | | of the volume in the world
-bone.place | x_to and y_to say | how an ear lies, instead of x_to and y_to: its side up, the back of the head to the participant
-bone.mirror | false | whether left and right of the bones are exchanged
-bone.x_to | place says | direction of the bone's x axis in the world
-bone.y_to | place says | direction of its y axis
-drilling.force_limit | | of the commanded force
-drilling.time_limit | | longest duration of a procedure
-drilling.handle | | direction from the tip along the handle
-drilling.scale | | size of the device's workspace over that of the scene
-drilling.recovery | | time without force after an aborted pass
-buttons.analog_pedal | false | whether the pedal sets the speed of the burr
-keys.analog_pedal | false | the same as in [buttons]; the value in [keys] counts if both are there
-second_hand.radius | | of the opening of a tube at a second device, which sucks and rinses
-second_hand.handle_length | | of the tube
-second_hand.rinse_reach | | of its water
-second_hand.shaft_length | | of the tube behind its end that is felt, too
-second_hand.tool_stiffness | | of the tube at the tool in the first hand; 0: they pass through each other
-second_hand.tool_damping | | by which the speed of their approach makes that contact stiffer
-second_hand.handle | | direction from the tip along the handle of the second device
-second_hand.force_limit | | of the force that its device is given
-second_hand.suck | [0] | buttons of the second device that make it suck
-second_hand.rinse | [1] | buttons of the second device that let water run
-second_hand.beside | [0.003, 0.003, 0.0] | the burr's tip, where a virtual participant holds the tube
-sound.card | false | whether sound is played live
-sound.vibration_gain | | strength of the burr's vibration in the handle
-sound.thin_threshold | | thinner bone sounds higher
-sound.thin_rise | | rise of the pitch, as a share, where no bone is left
-sound.spectra | built in | file with spectra of the sound
-sound.vibration | built in | file with spectra of the vibration
-drilling_hand.start | | of the hand, above the region's centre
-drilling_hand.inward | | direction into the bone
-drilling_hand.along | | direction of strokes
-drilling_hand.width | | of the region along strokes
-drilling_hand.height | | of the region across strokes
-drilling_hand.depth | | below the place where bone was first touched
-drilling_hand.line | | distance between neighbouring strokes
-drilling_hand.press | | pressing force
-drilling_hand.speed | | along a stroke
-drilling_hand.hover | | height above the bone between strokes
-drilling_hand.force_noise | | as a share of the press
-drilling_hand.force_noise_time | | its correlation time
-drilling_hand.tremor | | root mean square of the tremor
-drilling_hand.tremor_frequency | | of the tremor
-drilling_hand.suction_time | | duration of a suction
-drilling_hand.power_button | | of the device: the burr turns
-drilling_hand.next_button | | takes the next tool; -1: no suction
-drilling_hand.previous_button | | takes the tool before
-drilling_hand.look_button | | turns the camera while held; -1: it is never used
-drilling_hand.suction_tool | | place of the suction among the tools
-drilling_hand.strokes_to_suction | | suction follows after this many strokes
-cavity.inward | towards the structure that it ends at | direction into the bone
-cavity.beside | the facial nerve | structure beside which the cavity ends
-cavity.offset | none | of its end from that structure
-cavity.radius | | at its end
-cavity.slope | | radius by height
-cavity.margin | | to any structure
-cavity.structures | none | structures that have margins of their own
-cavity.margins | none | theirs
-nerve_monitor.threshold | | of an event
-nerve_monitor.highest_threshold | | to which it rises by itself while tones go on
-nerve_monitor.rises_after | | time with a tone after which it rises
-nerve_monitor.returns_after | | quiet after which it is as it was
-nerve_monitor.artefact_filter | true | whether what crosses in every channel at once is left out
-nerve_monitor.muted | false | whether all channels are silent at the beginning
-nerve_monitor.heard_in | all | procedures in which the participant hears the monitor; every other: the first participant from the first on, the second from the second on
-nerve_monitor.stimulus | | current of the probe
-nerve_monitor.stimuli | | pulses of the probe in a second
-nerve_monitor.bursts | | bursts in a second right beside a nerve, without force or speed
-nerve_monitor.reach | | distance over which they fall to 1/e
-nerve_monitor.heat | | power that a newton under a turning burr turns into heat
-nerve_monitor.nerves[].structure | | of the bone, that is watched
-nerve_monitor.nerves[].channels | | muscles, a channel each, eight in all at most; without, one named like the nerve
-nerve_monitor.curves[].name | | of a nerve that is drawn as a curve
-nerve_monitor.curves[].points_mm | | its points in the bone's frame
-nerve_monitor.curves[].radius_mm | | of the nerve
-nerve_monitor.curves[].channels | | muscles, a channel each; without, one named like the nerve
-hints.file | none | with safe values, as haptrial bone safe writes it; relative to the definition
-hints.kinds | | what hints are about: too much force, too much speed, bone that other bone hides
-hints.shown_in | all | procedures in which the participant sees hints; every other: the first participant from the first on, the second from the second on
-hints.reach | | distance from a structure up to which forces and speeds are judged
-hints.fewest | | faulty removals that begin a hint
-hints.within | | time in which they come
-hints.holds | | time for which a hint stays after the last one
-hints.sound | false | whether a chime is heard when a hint begins
-hints.force_text | | what a participant reads who presses too hard; {structure} is the nearest one's name
-hints.speed_text | | likewise of a tip that is too fast
-hints.hidden_text | | likewise of bone that cannot be seen
-virtual_surgeons.reaction | | time from a tone of the nerve monitor, or a hint, until it acts
-virtual_surgeons.heeds_hints | | share of hints that a virtual surgeon heeds
-virtual_surgeons.rough | | burr for most of the bone
-virtual_surgeons.fine | | burr near structures
-virtual_surgeons.between | | spread of skill between surgeons
-virtual_surgeons.within | | spread from procedure to procedure
-virtual_surgeons.learning | | share of the lack of skill that a procedure takes
-virtual_surgeons.power_button | | of the device: the burr turns
-virtual_surgeons.next_button | | takes the next tool
-virtual_surgeons.previous_button | | takes the tool before
-virtual_surgeons.look_button | | turns the camera while held; -1: none
-virtual_surgeons.finish_button | | ends the procedure; -1: none
-virtual_surgeons.skill | | from 0 to 1
-virtual_surgeons.skill.NAME | | skill of the group, from 0 to 1
-buttons.power | none | numbers of the device: the burr turns
-buttons.next_tool | none | numbers of the device: takes the next tool
-buttons.previous_tool | none | numbers of the device: takes the tool before
-buttons.camera_move | none | numbers of the device: while held, the hand moves the camera
-buttons.camera_turn | none | numbers of the device: while held, the hand turns the camera
-buttons.zoom_in | none | numbers of the device: makes the picture larger
-buttons.zoom_out | none | numbers of the device: makes it smaller
-buttons.carry | none | numbers of the device: while held, the touched piece of bone goes with the hand
-buttons.apply | none | numbers of the device: fixes the plate or cuts the plane
-buttons.detach | none | numbers of the device: the plate that was fixed last comes off
-buttons.finish | none | numbers of the device: ends the procedure
-buttons.still | none | numbers of the device: shows the next still
-buttons.reverse | none | numbers of the device: burrs turn the other way
-keys.power | none | keys of the window: the burr turns
-keys.next_tool | none | keys of the window: takes the next tool
-keys.previous_tool | none | keys of the window: takes the tool before
-keys.camera_move | none | keys of the window: while held, the hand moves the camera
-keys.camera_turn | none | keys of the window: while held, the hand turns the camera
-keys.zoom_in | none | keys of the window: makes the picture larger
-keys.zoom_out | none | keys of the window: makes it smaller
-keys.carry | none | keys of the window: while held, the touched piece of bone goes with the hand
-keys.apply | none | keys of the window: fixes the plate or cuts the plane
-keys.detach | none | keys of the window: the plate that was fixed last comes off
-keys.finish | none | keys of the window: ends the procedure
-keys.still | none | keys of the window: shows the next still
-keys.reverse | none | keys of the window: burrs turn the other way
 )";
 }
 

@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/base/definition/schema.h"
-#include "core/base/definition/table_vector.h"
 #include "core/base/error.h"
 #include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/data/mandible.h"
-#include "core/bone/data/temporal_bone.h"
+#include "protocols/bone_drilling/definition/bone_tables_internal.h"
 #include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/definition/groups.h"
 #include "protocols/definition/lab_file.h"
@@ -21,20 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void optional(Table& table, const char* key, double& value, const Bounds& bounds,
-              const char* unit) {
-  value = table.number_or(key, value, bounds, unit);
-}
-
 protocols::Design read_procedures(Table& table) {
   protocols::Design design;
-  design.participants = static_cast<int>(table.integer("participants", 1, 10000));
-  design.trials = static_cast<int>(table.integer("procedures", 1, 1000));
   design.repetitions = 1;
-  design.break_after =
-      table.has("break_after") ? static_cast<int>(table.integer("break_after", 0, 999)) : 0;
+  design.break_after = 0;
   design.break_duration = 0.0;
-  optional(table, "break_duration", design.break_duration, {0.0, 86400.0}, "s");
+  procedures_schema().read(table, design);
   design.break_until_ready = protocols::read_break_until_ready(table, design.break_after);
   design.conditions = {"drilling"};
   if (design.break_after >= design.trials && design.break_after > 0) {
@@ -45,42 +34,15 @@ protocols::Design read_procedures(Table& table) {
   return design;
 }
 
-protocols::DrillingParameters read_drilling(Table& root) {
+DrillingParameters read_drilling(Table& root) {
   Table table = root.table("drilling");
-  protocols::DrillingParameters p;
-  p.force_limit = table.number("force_limit", {0.0, 100.0, true}, "N");
-  p.time_limit = table.number("time_limit", {0.1, 36000.0}, "s");
-  p.handle = read_vector(table, "handle", {-1.0, 1.0}, "");
-  if (!(p.handle.norm() > 0.0)) {
-    table.reject("handle", "is zero; write the direction from the tip along the handle");
-    p.handle = Eigen::Vector3d::UnitY();
-  }
-  optional(table, "scale", p.scale, {0.1, 20.0}, "");
+  DrillingParameters p = drilling_schema().read(table);
   if (root.has("second_hand")) {
     Table second = root.table("second_hand");
-    p.second = protocols::read_second_hand(second);
+    p.second = second_hand_schema().read(second);
   }
-  p.controls = protocols::read_controls(root);
+  p.controls = read_controls(root);
   return p;
-}
-
-void read_display(Table& table, BoneDefinition& d) {
-  d.display.width = static_cast<int>(table.integer("width", 160, 8192));
-  d.display.height = static_cast<int>(table.integer("height", 120, 8192));
-  d.stereo = table.has("stereo") && table.boolean("stereo");
-  if (table.has("quality")) {
-    const std::string quality = table.choice("quality", {"auto", "plain", "shaded", "full"});
-    if (quality != "auto") {
-      d.quality = quality == "plain"    ? render::Quality::kPlain
-                  : quality == "shaded" ? render::Quality::kShaded
-                                        : render::Quality::kFull;
-    }
-  }
-  optional(table, "eye_distance", d.eye_distance, {0.0, 0.1}, "m");
-  d.stills = table.has("stills") ? static_cast<int>(table.integer("stills", 2, 20)) : 0;
-  if (d.stills > 0 && !d.cavity) {
-    table.reject("stills", "needs a cavity, whose stages the stills show; add a table [cavity]");
-  }
 }
 
 void read_groups(Table& root, BoneDefinition& d) {
@@ -130,26 +92,18 @@ void read_surgeons(Table& root, BoneDefinition& d) {
   }
   Table table = root.table("virtual_surgeons");
   subject::SurgeonParameters p;
+  table.describe({"rough", "Burr with which a virtual surgeon removes most of the bone", ""});
   p.rough = burr_named(table, "rough", d);
+  table.describe({"fine", "Burr with which a virtual surgeon works near structures", ""});
   p.fine = burr_named(table, "fine", d);
-  optional(table, "between", p.spread.between, {0.0, 1.0}, "");
-  optional(table, "within", p.spread.within, {0.0, 1.0}, "");
-  optional(table, "learning", p.spread.learning, kFraction, "");
-  optional(table, "reaction", p.reaction, {0.05, 10.0}, "s");
-  optional(table, "heeds_hints", p.heeds, kFraction, "");
-  const auto button = [&](const char* key, int& value, long low) {
-    value = table.integer_or(key, value, low, 30);
-  };
-  button("power_button", p.power_button, 0);
-  button("next_button", p.next_button, 0);
-  button("previous_button", p.previous_button, 0);
-  button("look_button", p.look_button, -1);
-  button("finish_button", p.finish_button, -1);
+  surgeon_schema().read(table, p);
+  table.describe({"skill", "Skill of virtual surgeons, from 0 to 1", ""});
   if (d.groups.empty()) {
     p.skill = table.number("skill", kFraction, "");
   } else {
     Table skill = table.table("skill");
     for (ParticipantGroup& group : d.groups) {
+      skill.describe({group.name, "Skill of the virtual surgeons of a group, from 0 to 1", ""});
       group.skill = skill.number(group.name, kFraction, "");
     }
   }
@@ -167,10 +121,9 @@ void read_sound(Table& root, BoneDefinition& d, const fs::path* folder) {
     return;
   }
   Table table = root.table("sound");
-  d.sound_card = table.has("card") && table.boolean("card");
-  optional(table, "vibration_gain", d.vibration_gain, {0.0, 100.0}, "");
-  d.thin_bone = sound::read_thin_bone(table);
-  const auto spectra = [&](const char* key, sound::SpectrumTable& into) {
+  bone_sound_schema().read(table, d);
+  const auto spectra = [&](const char* key, const char* words, sound::SpectrumTable& into) {
+    table.describe({key, words, "built in"});
     if (table.has(key)) {
       const std::string name = table.text(key);
       if (folder != nullptr) {
@@ -178,8 +131,10 @@ void read_sound(Table& root, BoneDefinition& d, const fs::path* folder) {
       }
     }
   };
-  spectra("spectra", d.sound_table);
-  spectra("vibration", d.vibration_table);
+  spectra("spectra", "File with spectra of the drill's sound, relative to the definition",
+          d.sound_table);
+  spectra("vibration", "File with spectra of the drill's vibration, relative to the definition",
+          d.vibration_table);
 }
 
 void check_together(Table& root, const BoneDefinition& d) {
@@ -210,17 +165,6 @@ void check_together(Table& root, const BoneDefinition& d) {
                                        "it within envelope.workspace_radius, {} [m]",
                                        reach, d.envelope.workspace_radius));
     }
-  }
-}
-
-void read_feedback(Table& root, BoneDefinition& d) {
-  if (!root.has("feedback")) {
-    return;
-  }
-  Table table = root.table("feedback");
-  d.trainee_page = table.boolean("page");
-  if (table.has("study")) {
-    d.experts_study = table.text("study");
   }
 }
 
@@ -281,18 +225,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   Table camera = root.table("camera");
   Table display = root.table("display");
   d.design = read_procedures(design);
-  d.sources = bone.texts("bones");
-  if (d.sources.empty()) {
-    bone.reject("bones", "is empty; name \"procedural temporal\" or a file");
-  }
-  d.bone_seed = bone.has("seed")
-                    ? static_cast<std::uint64_t>(bone.integer("seed", 0, 1'000'000'000))
-                    : d.bone_seed;
-  if (bone.has("spacing")) {
-    d.spacing = bone.number("spacing", {5e-5, 5e-3}, "m");
-  }
-  d.placement = read_placement(bone);
-  d.mirror = bone.has("mirror") && bone.boolean("mirror");
+  bone_schema().read(bone, d);
   d.simulator.tools = bone::read_tools(tools);
   d.simulator.camera = bone::microscope_schema().read(camera);
   if (root.has("pieces")) {
@@ -323,33 +256,34 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     d.simulator.tube->at_tool.force_limit =
         std::min(d.drilling.force_limit, d.drilling.second->force_limit);
     Table second = root.table("second_hand");
-    if (second.has("beside")) {
-      d.beside = read_vector(second, "beside", {-0.05, 0.05}, "m", d.beside);
-    }
+    beside_schema().read(second, d);
   }
   Table drilling = root.table("drilling");
-  optional(drilling, "recovery", d.recovery, {0.0, 600.0}, "s");
+  recovery_schema().read(drilling, d);
   if (root.has("drilling_hand")) {
     Table hand = root.table("drilling_hand");
-    d.hand_plan = subject::read_drilling_hand_parameters(hand);
+    d.hand_plan = subject::drilling_hand_schema().read(hand);
   }
   if (root.has("practice")) {
     Table practice = root.table("practice");
-    d.practice = practice.number("duration", {0.0, 36000.0}, "s");
+    bone_practice_schema().read(practice, d);
   }
   if (root.has("cavity")) {
     Table cavity = root.table("cavity");
-    d.cavity = read_cavity_parameters(cavity);
+    d.cavity = cavity_schema().read(cavity);
     if (d.placement.left_ear) {  // it is told for a right one
       d.cavity->offset_B.x() *= -1.0;
     }
   }
   read_groups(root, d);
   read_surgeons(root, d);
-  read_display(display, d);
+  bone_display_schema().read(display, d);
   read_sound(root, d, folder);
   read_given(root, d);
-  read_feedback(root, d);
+  if (root.has("feedback")) {
+    Table feedback = root.table("feedback");
+    feedback_schema().read(feedback, d);
+  }
   check_common(root, d);
   check_together(root, d);
   if (folder != nullptr && root.has("drilling_hand")) {

@@ -1,4 +1,4 @@
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::protocols {
@@ -12,7 +12,7 @@ void read_given(Table& root, BoneDefinition& d) {
   }
   if (root.has("hints")) {
     Table table = root.table("hints");
-    d.hints = hint::read_hint_setup(table);
+    d.hints = hint::hint_schema().read(table);
     conditions = joined_words(conditions, given_words(hint::kHints, d.hints->shown));
     if (d.nerves && d.nerves->heard == GivenIn::kEveryOther &&
         d.hints->shown == GivenIn::kEveryOther) {

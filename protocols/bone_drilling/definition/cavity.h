@@ -3,12 +3,13 @@
 #include "core/subject/drilling/cavity_chart.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::protocols {
 
-/// Reads a [cavity] table; every key is optional but `structures` goes with `margins`.
-subject::CavityParameters read_cavity_parameters(Table& table);
+/// The keys of [cavity]; every key is optional but `structures` goes with `margins`.
+const Schema<subject::CavityParameters>& cavity_schema();
 
 }  // namespace haptrial::protocols

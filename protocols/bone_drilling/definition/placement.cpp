@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/base/definition/table_vector.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/bone/data/ear_side.h"
 #include "core/subject/drilling/cavity_chart.h"
@@ -23,6 +23,17 @@ Eigen::Matrix3d turn_of_ear(bool left) {
 }
 
 void read_axes(Table& table, BonePlacement& placement) {
+  for (const char* key : {"x_to", "y_to"}) {
+    table.describe(
+        {key, fmt::format("Direction of the bone's {} axis in the world", key[0]), "place says"});
+    if (table.has("place") && table.has(key)) {
+      table.reject(key, "says how the bone lies, as place does; write one of the two");
+      read_vector(table, key, {-1.0, 1.0}, "");
+    }
+  }
+  if (table.has("place")) {
+    return;
+  }
   const Eigen::Vector3d x = read_vector(table, "x_to", {-1.0, 1.0}, "");
   const Eigen::Vector3d y = read_vector(table, "y_to", {-1.0, 1.0}, "");
   constexpr double kSquare = 1e-3;  // of the angle between them [rad]
@@ -66,22 +77,22 @@ Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelG
   return pose;
 }
 
-BonePlacement read_placement(Table& table) {
-  BonePlacement placement;
-  placement.centre = read_vector(table, "centre", {-1.0, 1.0}, "m");
-  if (!table.has("place")) {
-    read_axes(table, placement);
-    return placement;
-  }
-  placement.left_ear = table.choice("place", {kRightEar, kLeftEar}) == kLeftEar;
-  placement.turn = turn_of_ear(placement.left_ear);
-  for (const char* key : {"x_to", "y_to"}) {
-    if (table.has(key)) {
-      table.reject(key, "says how the bone lies, as place does; write one of the two");
-      read_vector(table, key, {-1.0, 1.0}, "");
-    }
-  }
-  return placement;
+const Schema<BonePlacement>& placement_schema() {
+  using P = BonePlacement;
+  static const auto schema =
+      Schema<P>()
+          .vector("centre", &P::centre, {-1.0, 1.0}, "m", "Place in the world of the bone's middle")
+          .required()
+          .custom("place",
+                  "Pose of an ear, instead of x_to and y_to: the ear's side up, the back of the "
+                  "head towards the participant",
+                  [](Table& table, const std::string& key, P& p) {
+                    p.left_ear = table.choice(key, {kRightEar, kLeftEar}) == kLeftEar;
+                    p.turn = turn_of_ear(p.left_ear);
+                  })
+          .otherwise("x_to and y_to say")
+          .check(read_axes);
+  return schema;
 }
 
 void check_placement(const BonePlacement& placement, const bone::BoneModel& bone,

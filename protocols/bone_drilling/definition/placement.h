@@ -6,7 +6,8 @@
 #include "core/bone/model/bone_model.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 namespace haptrial::subject {
 struct CavityParameters;
@@ -22,9 +23,9 @@ struct BonePlacement {
 };
 Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid);
 
-/// Reads centre and either x_to and y_to, or `place`: "surgeon's view of a right ear" (or left).
-/// The side of the head then faces up, its back the participant.
-BonePlacement read_placement(Table& table);
+/// The keys of [bone] about its place: centre and either x_to and y_to, or `place`: "surgeon's view
+/// of a right ear" (or left). The side of the head then faces up, its back the participant.
+const Schema<BonePlacement>& placement_schema();
 
 /// @param cavity  that is asked for; null: none
 /// @throws InputError where a labelled ear lies so that the camera, or the cavity, would begin

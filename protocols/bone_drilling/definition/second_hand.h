@@ -8,7 +8,8 @@
 #include "core/device/device.h"
 
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::protocols {
@@ -23,8 +24,8 @@ struct SecondHandParameters {
   double force_limit{4.0};  // of what its device is asked for > 0 [N]
 };
 
-/// Reads a [second_hand] table.
-SecondHandParameters read_second_hand(Table& table);
+/// The keys of [second_hand].
+const Schema<SecondHandParameters>& second_hand_schema();
 
 /// A reading of a device after the first as the session file keeps it: what is simulated from it
 /// is simulated again from the file. Servo thread.

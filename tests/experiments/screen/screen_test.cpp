@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/render/flat/frames.h"
 #include "core/render/gl/image.h"
-#include "core/render/trial/frames.h"
 #include "core/stimulus/stimulus.h"
 #include "experiments/screen/screen_mirror.h"
 #include "protocols/force_training/path_drawing.h"

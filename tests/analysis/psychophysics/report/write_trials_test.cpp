@@ -12,13 +12,13 @@
 #include <string>
 
 #include "analysis/files/csv.h"
-#include "analysis/trials/data/read_trials.h"
-#include "analysis/trials/psychometric/trials_study.h"
-#include "analysis/trials/report/trials_figures.h"
-#include "analysis/trials/report/trials_words.h"
-#include "core/base/files/file_text.h"
-#include "tests/analysis/trials/psychometric/simulated_cues.h"
-#include "tests/analysis/trials/simulated_trials.h"
+#include "analysis/psychophysics/data/read_trials.h"
+#include "analysis/psychophysics/report/trials_figures.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/psychophysics/study/trials_study.h"
+#include "core/base/file_text.h"
+#include "tests/analysis/psychophysics/simulated_trials.h"
+#include "tests/analysis/psychophysics/study/simulated_cues.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::analysis::trials {

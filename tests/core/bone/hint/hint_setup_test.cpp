@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::hint {
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 HintSetup read(const std::string& lines) {
   Table root = Table::parse("[hints]\n" + lines, "study.toml");
   Table table = root.table("hints");
-  HintSetup setup = read_hint_setup(table);
+  HintSetup setup = hint_schema().read(table);
   root.finish();
   return setup;
 }

@@ -1,0 +1,193 @@
+#include "protocols/bone_drilling/definition/bone_tables_internal.h"
+
+namespace haptrial::protocols {
+
+namespace {
+
+using D = BoneDefinition;
+
+const Schema<render::TrialDisplayStyle>& picture_schema() {
+  using S = render::TrialDisplayStyle;
+  static const auto schema =
+      Schema<S>()
+          .integer("width", &S::width, 160, 8192, "Width of pictures and of a window")
+          .required()
+          .integer("height", &S::height, 120, 8192, "Height of pictures and of a window")
+          .required();
+  return schema;
+}
+
+const Schema<subject::SkillSpread>& skill_schema() {
+  using S = subject::SkillSpread;
+  static const auto schema =
+      Schema<S>()
+          .number("between", &S::between, {0.0, 1.0}, "",
+                  "Standard deviation of skill between surgeons of a group")
+          .number("within", &S::within, {0.0, 1.0}, "",
+                  "Standard deviation of a surgeon's skill from procedure to procedure")
+          .number("learning", &S::learning, kFraction, "",
+                  "Share of the lack of skill that a surgeon loses with each procedure");
+  return schema;
+}
+
+}  // namespace
+
+const Schema<Design>& procedures_schema() {
+  static const auto schema =
+      Schema<Design>()
+          .integer("participants", &Design::participants, 1, 10000,
+                   "Number of participants of the study")
+          .required()
+          .integer("procedures", &Design::trials, 1, 1000,
+                   "Number of procedures of each participant, each on a new bone")
+          .required()
+          .integer("break_after", &Design::break_after, 0, 999,
+                   "Number of procedures after which a break comes; 0: no breaks")
+          .number("break_duration", &Design::break_duration, {0.0, 86400.0}, "s",
+                  "Duration of a break");
+  return schema;
+}
+
+const Schema<DrillingParameters>& drilling_schema() {
+  using P = DrillingParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("force_limit", &P::force_limit, {0.0, 100.0, true}, "N",
+                  "Greatest force that the device is given while drilling")
+          .required()
+          .number("time_limit", &P::time_limit, {0.1, 36000.0}, "s",
+                  "Longest duration of a procedure")
+          .required()
+          .vector("handle", &P::handle, {-1.0, 1.0}, "", "Direction from the tip along the handle")
+          .required()
+          .check([](Table& table, P& p) {
+            if (!(p.handle.norm() > 0.0)) {
+              table.reject("handle", "is zero; write the direction from the tip along the handle");
+              p.handle = Eigen::Vector3d::UnitY();
+            }
+          })
+          .number("scale", &P::scale, {0.1, 20.0}, "",
+                  "Size of the device's workspace over that of the scene; more than 1 scales "
+                  "motions down");
+  return schema;
+}
+
+const Schema<D>& bone_schema() {
+  static const auto schema =
+      Schema<D>()
+          .texts("bones", &D::sources,
+                 "Bones to drill: procedural temporal, procedural mandible, or files; procedures "
+                 "use them in turn")
+          .required()
+          .check([](Table& table, D& d) {
+            if (d.sources.empty()) {
+              table.reject("bones", "is empty; name \"procedural temporal\" or a file");
+            }
+          })
+          .integer("seed", &D::bone_seed, 0, 1'000'000'000,
+                   "Seed of procedural bones; another one gives another bone")
+          .number("spacing", &D::spacing, {5e-5, 5e-3}, "m",
+                  "Edge of a voxel; smaller voxels show more and cost memory and time")
+          .otherwise("of the bone")
+          .keys_of(&D::placement, placement_schema())
+          .flag("mirror", &D::mirror, "Whether left and right of the bones are exchanged");
+  return schema;
+}
+
+const Schema<D>& beside_schema() {
+  static const auto schema =
+      Schema<D>()
+          .vector("beside", &D::beside, {-0.05, 0.05}, "m",
+                  "Offset from the burr's tip at which a virtual participant holds the tube")
+          .otherwise("[0.003, 0.003, 0.0]");
+  return schema;
+}
+
+const Schema<D>& recovery_schema() {
+  static const auto schema = Schema<D>().number("recovery", &D::recovery, {0.0, 600.0}, "s",
+                                                "Time without force after an aborted pass");
+  return schema;
+}
+
+const Schema<D>& bone_practice_schema() {
+  static const auto schema = Schema<D>()
+                                 .number("duration", &D::practice, {0.0, 36000.0}, "s",
+                                         "Duration of practice before the first procedure")
+                                 .required();
+  return schema;
+}
+
+const Schema<D>& bone_display_schema() {
+  using render::Quality;
+  static const auto schema =
+      Schema<D>()
+          .keys_of<render::TrialDisplayStyle>(&D::display, picture_schema())
+          .flag("stereo", &D::stereo,
+                "Whether pictures for the left and the right eye stand side by side")
+          .choice("quality", &D::quality,
+                  {{"auto", std::nullopt},
+                   {"plain", Quality::kPlain},
+                   {"shaded", Quality::kShaded},
+                   {"full", Quality::kFull}},
+                  "Quality of the drilling's picture: plain light, with shadows, or full with "
+                  "smoothed edges; auto: what the machine draws 27 times a second")
+          .number("eye_distance", &D::eye_distance, {0.0, 0.1}, "m",
+                  "Distance between the eyes, in the scene")
+          .integer("stills", &D::stills, 2, 20,
+                   "Number of stills of the bone's stages that can be shown")
+          .check([](Table& table, D& d) {
+            if (d.stills > 0 && !d.cavity) {
+              table.reject("stills",
+                           "needs a cavity, whose stages the stills show; add a table [cavity]");
+            }
+          });
+  return schema;
+}
+
+const Schema<subject::SurgeonParameters>& surgeon_schema() {
+  using P = subject::SurgeonParameters;
+  static const auto schema =
+      Schema<P>()
+          .keys_of(&P::spread, skill_schema())
+          .number("reaction", &P::reaction, {0.05, 10.0}, "s",
+                  "Time from a tone of the nerve monitor, or a hint, until a virtual surgeon acts")
+          .number("heeds_hints", &P::heeds, kFraction, "",
+                  "Share of hints that a virtual surgeon heeds")
+          .integer("power_button", &P::power_button, 0, 30,
+                   "Button of the device with which a virtual surgeon turns the burr")
+          .integer("next_button", &P::next_button, 0, 30,
+                   "Button of the device with which a virtual surgeon takes the next tool")
+          .integer("previous_button", &P::previous_button, 0, 30,
+                   "Button of the device with which a virtual surgeon takes the tool before")
+          .integer("look_button", &P::look_button, -1, 30,
+                   "Button of the device with which a virtual surgeon turns the camera while held; "
+                   "-1: never")
+          .integer("finish_button", &P::finish_button, -1, 30,
+                   "Button of the device with which a virtual surgeon ends the procedure; -1: the "
+                   "time limit ends it");
+  return schema;
+}
+
+const Schema<D>& bone_sound_schema() {
+  static const auto schema = Schema<D>()
+                                 .flag("card", &D::sound_card, "Whether sound is played live")
+                                 .number("vibration_gain", &D::vibration_gain, {0.0, 100.0}, "",
+                                         "Strength of the burr's vibration in the handle; 0: none")
+                                 .keys_of(&D::thin_bone, sound::thin_bone_schema());
+  return schema;
+}
+
+const Schema<D>& feedback_schema() {
+  static const auto schema =
+      Schema<D>()
+          .flag("page", &D::trainee_page,
+                "Whether a page about the session is written beside the session's file at the end")
+          .required()
+          .text("study", &D::experts_study,
+                "Folder of a study, relative to the definition, with whose experts the page "
+                "compares the participant")
+          .otherwise("none");
+  return schema;
+}
+
+}  // namespace haptrial::protocols
