@@ -366,8 +366,7 @@ TEST(GuidanceTest, ParametersAreReadWithTheirBounds) {
     bad.finish();
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "f.toml:5: wait_timeout is 1; allowed: a number above wait, 1 [s]");
+    EXPECT_STREQ(error.what(), "f.toml:5: wait_timeout is 1; allowed: a number above wait, 1 [s]");
   }
 }
 
