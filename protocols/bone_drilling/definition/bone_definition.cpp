@@ -8,6 +8,8 @@
 #include "core/base/error.h"
 #include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
+#include "core/bone/data/mandible.h"
+#include "core/bone/data/temporal_bone.h"
 #include "protocols/bone_drilling/definition/bone_tables_internal.h"
 #include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/definition/groups.h"
