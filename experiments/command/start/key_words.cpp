@@ -15,7 +15,7 @@ display.hand_radius | | of the dot of the hand
 display.feedback_right | | what is shown after a right answer
 display.feedback_wrong | | what is shown after a wrong one
 display.feedback_time | | for which it is shown
-display.stereo | false | pictures for the left and the right eye side by side
+trials:display.stereo | false | pictures for the left and the right eye side by side
 trials:display.eye_distance | 0.063 | between the eyes
 display.viewing_distance | 0.5 | from the eyes to the screen
 display.sound_right | none | sound after a right answer, where feedback is given
@@ -58,14 +58,15 @@ pages.NAME.items[].step | 1 | between neighbouring values of the scale
 pages.NAME.items[].ends.low | | words at the scale's lowest value
 pages.NAME.items[].ends.high | | words at its highest value
 pages.NAME.items[].number | choices, a scale or words | lowest and highest number that may be typed
-design.participants | | of the study
+force_training:design.participants | | of the study
+trials:design.participants | | of the study
 design.sessions | 1 | of each participant, on days of their own
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
 trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
 design.break_until | time | what ends a break: its duration, or after that the participant or the experimenter
-design.break_after | | trials after which a break comes; 0: no breaks
+force_training:design.break_after | | trials after which a break comes; 0: no breaks
 trials:design.break_duration | 60 | of a break
-design.break_duration | | of a break
+force_training:design.break_duration | | of a break
 design.blocks | fixed | order of the blocks over participants
 design.most_in_a_row | no limit | trials of one combination of factors
 design.trials | | of each participant
