@@ -231,9 +231,11 @@ Figure speed_figure(std::span<const DrawnProfile> profiles, bool simulated) {
     const auto peak = std::ranges::max_element(line.y);
     if (peak != line.y.end()) {
       fastest = std::max(fastest, *peak);
-      figure.alt += fmt::format("{}{}: at most {:.1f} cm/s after {:.2f} s.",
-                                figure.alt.empty() ? "" : " ", profile.label, *peak,
-                                line.x[static_cast<std::size_t>(peak - line.y.begin())]);
+      if (!profile.label.empty()) {
+        figure.alt += fmt::format("{}{}: at most {:.1f} cm/s after {:.2f} s.",
+                                  figure.alt.empty() ? "" : " ", profile.label, *peak,
+                                  line.x[static_cast<std::size_t>(peak - line.y.begin())]);
+      }
       figure.series.push_back(std::move(line));
     }
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "analysis/document/palette.h"
 #include "analysis/psychophysics/report/trials_figures.h"
@@ -120,16 +121,24 @@ std::vector<BlockPaths> paths_of_blocks(const std::vector<DrawnReaches>& drawn) 
   return all;
 }
 
-Figure speeds_of_blocks(const std::vector<DrawnReaches>& drawn, bool simulated) {
+/// A line for each, labelled once a block: at its last cycle, if it has one beside the first.
+Figure speeds_of_blocks(const ReachingResult& reaching, const std::vector<DrawnReaches>& drawn,
+                        bool simulated) {
   std::vector<DrawnProfile> profiles;
   for (const DrawnReaches& some : drawn) {
     std::vector<std::vector<double>> speeds;
     for (const StudyReach* reach : some.reaches) {
       speeds.push_back(reach->speed);
     }
-    profiles.push_back({some.name, some.block, some.dash, mean_profile(speeds)});
+    const ReachBlock& block = reaching.blocks[some.block];
+    const char* labelled = block.cycles > 1 ? palette::kSolid : palette::kLong;
+    profiles.push_back(
+        {some.dash == labelled ? block.name : "", some.block, some.dash, mean_profile(speeds)});
   }
-  return speed_figure(profiles, simulated);
+  Figure figure = speed_figure(profiles, simulated);
+  figure.caption +=
+      " Dashed: the first cycle of a block; solid: its last one; dotted: its catch trials.";
+  return figure;
 }
 
 /// The cycles of a block, as the figure counts them: from 1.
@@ -206,7 +215,7 @@ std::vector<Figure> reaching_pictures(const TrialsResult& result) {
   }
   const std::vector<DrawnReaches> reaches = drawn_reaches(reaching);
   if (!reaches.empty()) {
-    figures.push_back(speeds_of_blocks(reaches, result.simulated()));
+    figures.push_back(speeds_of_blocks(reaching, reaches, result.simulated()));
   }
   for (Figure& figure : trajectory_figures(paths_of_blocks(reaches), result.simulated())) {
     figure.caption +=

@@ -262,8 +262,9 @@ void add_panels(const TrialsResult& result, const std::vector<const TrackEstimat
     figure.x_range = Range{0.4, static_cast<double>(std::max<std::size_t>(count, 4)) + 0.6};
     figure.height = 0.4;
     figure.caption = fmt::format(
-        "The levels of each participant's {}, the width of a panel being as many as in the longest "
-        "track. Filled and open as below; dotted: the procedure's own estimate.",
+        "The levels that were presented, a panel for each participant; a whole panel is as wide as "
+        "the longest track, {}. Filled if the procedure learnt a 1 (a right answer), open if it "
+        "learnt a 0; dotted: the procedure's own estimate.",
         counted(steps, "trial"));
     figure.alt = fmt::format("{} beside each other.", counted(count, "track"));
     figures.push_back(std::move(figure));
