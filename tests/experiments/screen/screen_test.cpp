@@ -17,6 +17,7 @@
 #include "protocols/force_training/path_drawing.h"
 #include "tests/core/render/flat/pixels.h"
 #include "tests/experiments/frame_periods.h"
+#include "tests/experiments/shipped.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
