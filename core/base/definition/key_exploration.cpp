@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/base/definition/table.h"
+
 namespace haptrial {
 namespace {
 
@@ -131,14 +133,17 @@ void KeyExploration::ask(KnownKey key) {
   }
 }
 
-void KeyExploration::describe(std::string_view table, std::string_view key,
-                              const std::string& words, const std::string& otherwise) {
-  std::string& known = described_[path_of(table, key)];
-  if (known.find(words) == std::string::npos) {
-    known += known.empty() ? words : "; " + words;  // kinds of one table may share a key
+void KeyExploration::describe(std::string_view table, const KeyDescription& key) {
+  const std::string path = path_of(table, key.name);
+  std::string& known = described_[path];
+  if (known.find(key.text) == std::string::npos) {
+    known += known.empty() ? key.text : "; " + key.text;  // kinds of one table may share a key
   }
-  if (!otherwise.empty()) {
-    note_default(table, key, otherwise);
+  if (key.required) {
+    required_.insert(path);
+  }
+  if (!key.otherwise.empty()) {
+    note_default(table, key.name, key.otherwise);
   }
 }
 
@@ -190,7 +195,8 @@ std::vector<KnownKey> KeyExploration::keys() const {
   for (const Known* known : all) {
     KnownKey key = known->key;
     const std::string path = key.path();
-    key.optional = optional_.contains(path) || !key.otherwise.empty();
+    key.optional =
+        (optional_.contains(path) && !required_.contains(path)) || !key.otherwise.empty();
     if (const auto at = defaults_.find(path); at != defaults_.end() && key.otherwise.empty()) {
       key.otherwise = at->second;
     }

@@ -13,6 +13,7 @@
 namespace haptrial {
 
 class Table;
+struct KeyDescription;
 
 /// A key that a reader of definitions knows.
 struct KnownKey {
@@ -42,8 +43,7 @@ class KeyExploration {
   std::string choose(std::string_view table, std::string_view key,
                      const std::vector<std::string>& allowed, const std::string& first);
   void ask(KnownKey key);
-  void describe(std::string_view table, std::string_view key, const std::string& words,
-                const std::string& otherwise);
+  void describe(std::string_view table, const KeyDescription& key);
   void note_default(std::string_view table, std::string_view key, const std::string& value);
   /// What note_default() said in any reading, if it is a number.
   std::optional<double> default_of(std::string_view table, std::string_view key) const;
@@ -73,7 +73,7 @@ class KeyExploration {
   bool bound_by(const Known& known, const std::string& choice) const;
   std::map<std::string, Known> known_;                                            // by path
   std::map<std::string, std::map<std::string, std::vector<std::string>>> words_;  // table, key
-  std::set<std::string> optional_, texts_;
+  std::set<std::string> optional_, required_, texts_;
   std::map<std::string, std::string> defaults_;
   std::map<std::string, std::string> described_;  // words, by path
 };

@@ -55,7 +55,7 @@ void Table::otherwise(std::string_view key, std::string_view value) const {
 
 void Table::describe(const KeyDescription& key) const {
   if (exploration() != nullptr) {
-    exploration()->describe(node_->path, key.name, key.text, key.otherwise);
+    exploration()->describe(node_->path, key);
   }
 }
 

@@ -82,7 +82,8 @@ bool same(const KnownKey& a, const KnownKey& b) {
 void add(std::vector<KnownKey>& keys, KnownKey key) {
   key.table = shared(key.table);
   if (key.path() == "experiment.protocol") {
-    key.otherwise.clear();  // stated for the reader here; a definition may leave it out
+    key.otherwise = "force_training";  // stated for the reader here; a definition may leave it out
+    key.optional = true;
   } else if (key.path() == "virtual_surgeons.skill.participants") {
     key.key = "NAME";  // of a group; this is the one of definitions without groups
   }

@@ -4,11 +4,11 @@ namespace haptrial::experiments {
 
 std::string_view key_words() {
   return R"(
-experiment.name | | of the study, for reports and new folders
-experiment.protocol | force_training | what kind of experiment it is
-experiment.rate | | ticks of the servo loop per second
-lab.use | | file with tables of devices and screen, relative to the definition; without [lab] the definition has them
-hand.integrator | | exact solution of the virtual hand, or CVODE's
+sounds.device | default | sound card, by ALSA's name
+pages.NAME.picture | none | file of a picture (PNG), relative to the definition
+level_script.file | | program or Python script (.py) that chooses the levels between trials, beside the definition
+observer.script.file | | program or Python script (.py) by which virtual participants answer, beside the definition
+observer.adaptation.matrix | | matrix B of the field that is learnt
 display.seen_from | | above: x to the right, z down the screen; front: x to the right, y up
 display.extent | | part of the world that fills the screen's width
 display.hand_radius | | of the dot of the hand
@@ -58,21 +58,7 @@ pages.NAME.items[].step | 1 | between neighbouring values of the scale
 pages.NAME.items[].ends.low | | words at the scale's lowest value
 pages.NAME.items[].ends.high | | words at its highest value
 pages.NAME.items[].number | choices, a scale or words | lowest and highest number that may be typed
-force_training:design.participants | | of the study
-trials:design.participants | | of the study
-design.sessions | 1 | of each participant, on days of their own
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
-trials:design.break_after | 0 | trials after which a break comes; 0: no breaks
-design.break_until | time | what ends a break: its duration, or after that the participant or the experimenter
-force_training:design.break_after | | trials after which a break comes; 0: no breaks
-trials:design.break_duration | 60 | of a break
-force_training:design.break_duration | | of a break
-design.blocks | fixed | order of the blocks over participants
-design.most_in_a_row | no limit | trials of one combination of factors
-design.trials | | of each participant
-design.repetitions | | trials of a block: same stimulus, same condition
-design.practice | 0 | practice trials of each condition; not scored
-design.conditions | needed | of training
 groups | one group of everybody | participants of each group, in the order of their numbers: NAME = 8
 groups.NAME | | participants of the group, in the order of their numbers
 factors.NAME | | levels of a factor: two or more numbers, words or formulas
@@ -80,16 +66,8 @@ variables.NAME | | a number, formula or quoted word
 variables.NAME.from | | name whose word chooses among the other keys
 variables.NAME.NAME | | what the name is worth with this word
 places.NAME | | x, y, z: three numbers or formulas
-practice.trials | | of practice
-practice.right_in_a_row | all trials | practice ends with so many right answers in a row
 practice.NAME | | what a name is worth during practice
-blocks[].name | | of the block
-blocks[].trials | until its procedures are finished | of the block; needed without a procedure
-blocks[].practice | false | whether it is practice, which is not scored
-blocks[].right_in_a_row | all trials | practice ends with so many right answers in a row
 blocks[].NAME | | what a name is worth in the block
-blocks[].probe.name | probe | what the trials are called
-blocks[].probe.share | | of the block's trials
 blocks[].probe.NAME | | what a name is worth in these trials
 intervals.order | as stated | whether they are shuffled in every trial
 intervals.NAME.NAME | | what a name is worth in the interval
@@ -217,118 +195,23 @@ procedure.expect.function | logistic | likewise
 procedure.expect.guess | 0.5 | likewise
 procedure.expect.lapse | 0 | likewise
 procedure.expect.share | 0.5 | of answers 1, guesses and lapses aside, at the threshold
-fields.NAME.type | | law of the field
 fields.NAME.device | all devices | device that feels the field
-fields.NAME.limit | | of the field's own force
-fields.NAME.fade_in | | time over which it grows
-fields.NAME.fade_out | | time over which it goes
-fields.NAME.force | | in the world frame
-fields.NAME.to | needed, but for a channel with axes | force at the end, or place that is pulled to
-fields.NAME.from | no force of a ramp, axes of a channel | force at the beginning, or end of the channel
-fields.NAME.rise | | time over which the force grows
-fields.NAME.duration | | of the pulse or movement
-fields.NAME.points | needed; or a curve | places that the path goes through
-fields.NAME.curve.length_x | | of a random path, from left to right
-fields.NAME.curve.range_z | | of its z
-fields.NAME.curve.sinusoids | | that are summed
-fields.NAME.curve.max_spatial_frequency | | of each
-fields.NAME.curve.seed | | of the path
-fields.NAME.delay | | before the pulse
-fields.NAME.stiffness | | of the spring that holds, or of the bristles of friction
-fields.NAME.damping | | against the motion; that of a surface begins over the first 1 mm
-fields.NAME.point | | of the wall
-fields.NAME.normal | | direction out of the surface
-fields.NAME.centre | | of the solid
-fields.NAME.radius | | of the solid
-fields.NAME.size | | edges of the box
-fields.NAME.turn | not turned | rotation vector of the box
-fields.NAME.axis | | direction of the cylinder
-fields.NAME.length | | of the cylinder
-fields.NAME.felt_from | outside | side from which the surface is felt
-fields.NAME.axes | | free axes of the channel: x, y, z
-fields.NAME.through | | point of the channel or plane
-fields.NAME.velocity_filter | | cut-off of the filter of velocity
-fields.NAME.mass | | mass that is felt
-fields.NAME.acceleration_filter | | cut-off of the filter of acceleration
-fields.NAME.on | everywhere | field of a surface that this one belongs to
-fields.NAME.static | | friction before it slips: a force, or on a surface a coefficient
-fields.NAME.dynamic | | friction while it slips, likewise
-fields.NAME.model | bristle | of friction
-fields.NAME.direction | | in which the field acts or is laid out
-fields.NAME.amplitude | | of the relief, or of the vibration
-fields.NAME.period | | of the grating
-fields.NAME.phase | | of the grating, or of the vibration
-fields.NAME.profile | sine | of the grating
-fields.NAME.roughness | | root mean square of the relief
-fields.NAME.lowest | | frequency of the noise
-fields.NAME.highest | | frequency of the noise
-fields.NAME.seed | | of the noise
-fields.NAME.rms | a sine with amplitude | root mean square of a vibration that is noise
-fields.NAME.frequency | | of the vibration
-fields.NAME.decay | | time constant of the tap
-fields.NAME.at | | place of the first detent, or of the click
-fields.NAME.spacing | | of detents
-fields.NAME.peak | | greatest force, at most the field's limit
-fields.NAME.count | no end | of detents
-fields.NAME.travel | | of the click up to its peak
-fields.NAME.drop | | of force after the peak
-fields.NAME.drop_travel | | over which it drops
-regions.NAME.type | | shape of the region
 regions.NAME.device | the first device | device whose tool must be in the region
-regions.NAME.point | | of the half space
-regions.NAME.normal | | direction out of the region
-regions.NAME.centre | | of the region
-regions.NAME.radius | | of the region
-regions.NAME.size | | edges of the box
-regions.NAME.turn | not turned | rotation vector of the box
-regions.NAME.axis | | direction of the cylinder
-regions.NAME.length | | of the cylinder
 objects.NAME.kind | rigid | whether it gives way to the hand
 objects.NAME.cells | | of a body that gives way: along its longest side
 objects.NAME.fixed | bottom | its sides that do not move
 objects.NAME.felt | all that are not fixed | its sides that can be touched
 objects.NAME.seen | yielding | whether it is seen as the hand presses it, or at rest
-objects.NAME.model | elements | what it is made of: elements that rest on every tick, or springs that move
-objects.NAME.constants | | of springs without `calibrated`: of every edge, face and tetrahedron
 objects.NAME.grasped | none | of springs: sides that the hand holds, and moves, instead of pressing the body
-objects.NAME.calibrated | needed, or constants | of springs: file of constants that haptrial deform calibrate made, beside the definition
-objects.NAME.density | | of springs
-objects.NAME.rate | the loop's | of springs: how often they move a second, if less often than they are felt
-objects.NAME.decay | | of springs: a free motion dies down with exp(-decay t)
-objects.NAME.spring | | between the hand and the ball that presses
-objects.NAME.inclusions.NAME.centre | | of a ball of another stiffness, from the body's origin
-objects.NAME.inclusions.NAME.radius | | of the ball; 0: it is not there
 objects.NAME.record | false | whether every tick of contact is a row of /contacts
 objects.NAME.device | every device | whose tool feels it
-objects.NAME.limit | | its force is scaled to at most this
-objects.NAME.fade_in | | after it is switched on
-objects.NAME.fade_out | | after it is switched off
-objects.NAME.centre | 0, 0, 0 | of the body's origin
-objects.NAME.turn | not turned | of its axes: axis times angle
-objects.NAME.scale | | of its size
-objects.NAME.stiffness | | of its surface
-objects.NAME.damping | | of its surface
-objects.NAME.tool_radius | | of the ball that stands for the hand; 0: a point
-objects.NAME.shading | none | edges less sharp than this angle feel round
-objects.NAME.renderer | proxy | how contact is rendered
-objects.NAME.resolution | | of voxel and distance field: cells along the longest side
 objects.NAME.shape | needed, or mesh | of the body
 objects.NAME.radius | | of the body, of a torus that of the circle in its middle
 objects.NAME.mesh | needed, or shape | file beside the definition: .obj, .ply or .stl
 objects.NAME.size | | along x, y and z
 objects.NAME.length | | along z
 objects.NAME.tube | | radius of a torus's tube
-objects.NAME.friction.static | | coefficient of what holds the tool where it rests
-objects.NAME.friction.dynamic | | coefficient of what resists the tool that slides
 level_script.deadline | | for its answer; where nobody waits it has a minute
-looks.NAME.type | | what can be seen: a bar of random dots
-looks.NAME.width | | of the bar
-looks.NAME.height | | of the bar
-looks.NAME.step | 0.03 | depth of the bar before its background
-looks.NAME.noise | 0 | spread of a dot's depth, as a share of the step
-looks.NAME.dot | 0.0012 | diameter of a dot
-looks.NAME.centre | 0, 0, 0 | of the bar
-looks.NAME.dots | 2500 | number of dots on the screen
 observer.senses | force | what the virtual participant feels
 observer.in_stage | throughout the interval | stage in which it is felt
 observer.decides | largest | how what is felt becomes an answer
@@ -454,17 +337,6 @@ power.responses | nothing is known | what responses need to know (docs/guide-pow
 power.vary[].key | | key that is varied, with its tables: observer.lapse.median
 power.vary[].values | | its values
 power.vary[].none | it makes no effect | its value without an effect
-guidance.kind | trajectory | whether a point is followed in time, or a curve at the participant's own pace
-guidance.force_limit | | of the commanded force
-guidance.approach_speed | | peak speed on the way to the start
-guidance.settle_distance | | the hand has arrived when it is this near the start
-guidance.wait | | time that the hand must stay there
-guidance.wait_timeout | | the pass is aborted after this time
-guidance.recovery | | time without force after an aborted pass
-guidance.recall | guided | whether the hand is led in the test, or finds path and force itself
-guidance.pause_beyond | | a playback waits for a hand that is farther from the expert's
-guidance.run_timeout | | longest duration of a run at one's own pace
-recording.stimulus_rate | | samples of the stored target curves
 path_memory.visual_noise | needed | of a place that was seen
 path_memory.haptic_noise | needed | of a place to which the hand was led
 path_memory.forgetting | needed | drift between passes
@@ -490,19 +362,6 @@ subject.force_noise | needed | spread of a held force, as a share of it
 subject.force_noise_time | needed | its correlation time
 subject.tremor | needed | root mean square of the tremor
 subject.tremor_frequency | needed | of the tremor
-force_training:analysis.samples | | of the common time base
-force_training:analysis.filter_width | | of the box filter on the applied force
-force_training:analysis.power | | exponent of the differences
-force_training:analysis.force_weight | | weight of the difference of forces
-force_training:analysis.slope_weight | | weight of the difference of slopes
-force_training:analysis.penalty | | cost of a step that stretches or compresses time
-force_training:analysis.cost_share | needed | weight of the alignment's cost in the score
-force_training:analysis.force_share | needed | weight of the difference of forces in the score
-force_training:analysis.slope_share | needed | weight of the difference of slopes in the score
-force_training:analysis.step_pattern | published | steps that the alignment may take
-force_training:analysis.window | no window | greatest difference in time
-force_training:analysis.open_begin | false | whether the applied curve may begin late
-force_training:analysis.open_end | false | whether it may end early
 )";
 }
 
