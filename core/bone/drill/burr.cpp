@@ -246,7 +246,7 @@ double least_length(const P& p) {
 }
 
 /// A problem of a burr's dimensions is noted and mended: what is computed from them needs a shape.
-void check_dimensions(Table& table, P& p) {
+void check_burr(Table& table, P& p) {
   const std::string diameter = fmt::format("diameter, {} [m]", p.diameter);
   if (p.form == BurrForm::kPear && p.length < least_length(p)) {
     table.reject("length", fmt::format("{}", p.length), "at least 1.01 times " + diameter);
@@ -305,7 +305,7 @@ const Schema<BurrParameters>& burr_schema() {
           .otherwise("half of the diameter")
           .only_if(
               [](const P& p) { return p.form == BurrForm::kCone || p.form == BurrForm::kPear; })
-          .check(check_dimensions)
+          .check(check_burr)
           .derive([](P& p) { p = default_burr(p.kind, p.dimensions()); })
           .number("sample_spacing", &P::sample_spacing, {0.0, 0.5 * kDiameter.high, true}, "m",
                   "Edge of a cell of the burr with one sample; a finer sampling costs time")

@@ -1,5 +1,8 @@
 #include "protocols/bone_drilling/definition/bone_tables_internal.h"
 
+#include "core/base/definition/schema.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
 namespace haptrial::protocols {
 
 namespace {

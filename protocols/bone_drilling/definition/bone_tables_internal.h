@@ -1,9 +1,19 @@
 #pragma once
 
-#include "core/base/definition/schema.h"
-#include "protocols/bone_drilling/definition/bone_definition.h"
+namespace haptrial {
+template <class T>
+class Schema;
+}
+
+namespace haptrial::subject {
+struct SurgeonParameters;
+}
 
 namespace haptrial::protocols {
+
+struct BoneDefinition;
+struct Design;
+struct DrillingParameters;
 
 /// The keys of [design].
 const Schema<Design>& procedures_schema();

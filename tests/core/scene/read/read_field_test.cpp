@@ -165,7 +165,7 @@ TEST(ReadFieldTest, EveryMistakeGetsItsSentence) {
       {R"(a = { type = "vibration", direction = [0, 1, 0], amplitude = 1, frequency = 500 })",
        "below half the servo loop's rate, 500 Hz"},
       {R"(a = { type = "detent", at = [0, 0, 0], direction = [1, 0, 0], spacing = 0.01, peak = 4, limit = 3 })",
-       "fields.a.peak is 4; allowed: a number of at least 0 and at most 3 [N]"},
+       "fields.a.peak is 4; allowed: at most the limit, 3 [N]"},
       {R"(a = { type = "click", at = [0, 0, 0], direction = [1, 0, 0], travel = 0.01, peak = 1, drop = 2, drop_travel = 0.01 })",
        "fields.a.drop is 2 N; allowed: at most the peak, 1 N"},
       {R"(a = { type = "minimum_jerk", to = [0, 0, 3], duration = 1, stiffness = 5, damping = 0 })",
