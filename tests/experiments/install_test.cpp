@@ -66,7 +66,7 @@ TEST_F(InstallTest, AProgramWithAProtocolOfItsOwnRunsStudies) {
             std::string::npos)
       << ran.errors;
   ran = test::run_command(program + "keys springs");
-  EXPECT_NE(ran.output.find("at most 1000 | stiffness of the spring that others are compared with"),
+  EXPECT_NE(ran.output.find("at most 1000 | Stiffness of the spring that others are compared with"),
             std::string::npos)
       << ran.output << ran.errors;
   ran = test::run_command(program + "validate " HAPTRIAL_SOURCE_DIR
@@ -98,7 +98,7 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
   EXPECT_EQ(ran.status, 0) << ran.errors;
   ran = test::run_command(valley + "keys trials");
   EXPECT_NE(ran.output.find("| `strength` | number or text | N | needed | "), std::string::npos);
-  EXPECT_NE(ran.output.find("distance at which a valley has its strength (type: valley) |"),
+  EXPECT_NE(ran.output.find("Distance at which a valley has its strength (type: valley) |"),
             std::string::npos);
   for (const char* line : {"analyze sessions", "replay sessions/S01.h5 --frames nowhere"}) {
     ran = test::run_command("cd '" + root_ + "' && haptrial " + line);

@@ -184,7 +184,7 @@ TEST_F(LiveDrillingWindowTest, EveryKeyDoesItsPartAndTheReplayKnows) {
   });
   ASSERT_NE(picture, events.end());
   const std::uint64_t first_sample = reader.passes().at(0).first_sample;
-  EXPECT_LE(picture->time_ns, 1'000'000 * static_cast<std::int64_t>(first_sample));
+  EXPECT_LE(picture->time_ns, reader.samples(first_sample, 1).at(0).time_ns);
   for (const record::RemovalRow& row : reader.rows<record::RemovalRow>()) {
     ASSERT_GE(row.sequence, first_sample);
   }

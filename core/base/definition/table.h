@@ -36,8 +36,8 @@ struct KeyDescription {
   bool required{false};
 
   /// Whether its value is to be read; an optional key may be absent.
-  /// @param usual  what it is worth then
   bool stands_in(const Table& table) const;
+  /// The same of a key with a default, which lists of keys show.
   bool stands_in(const Table& table, double usual) const;
   bool stands_in(const Table& table, std::string_view usual) const;
 };

@@ -151,6 +151,12 @@ std::string Table::choice(std::string_view key, const std::vector<std::string>& 
         node_->path, key, allowed,
         states(key) ? node_->table->get(key)->value_or(std::string()) : "");
   }
+  if (allowed.empty()) {  // the caller's own list has no word
+    if (const auto found = get<std::string>(key, "no value; leave it out", false)) {
+      refuse(key, fmt::format("'{}'", *found), "no value; leave it out");
+    }
+    return "";
+  }
   const auto value = get<std::string>(key, joined(allowed), false);
   if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
     note(line(key), not_allowed(node_->full(key), shown(*node_->table->get(key)), allowed));

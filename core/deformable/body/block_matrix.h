@@ -38,8 +38,8 @@ class BlockMatrix {
   const double* block(std::int32_t at) const {
     return values_.data() + 9 * static_cast<std::size_t>(at);
   }
-  /// Places of the blocks of a group with n vertices: n (n + 1) / 2 places, those of (0, 0), (0, 1)
-  /// .. (1, 1) .. in the group's numbers.
+  /// Places of the blocks of a group with n vertices: n (n + 1) / 2 places, in the order of the upper
+  /// triangle by rows, in the group's numbers.
   std::span<const std::int32_t> places(std::size_t group) const;
 
   void set_zero();

@@ -310,6 +310,11 @@ TEST(TableTest, AValueOfAChoiceNamesTheNearestOne) {
               ElementsAre("f.toml:1: kind is 3; allowed: trajectory, curve"));
 }
 
+TEST(TableTest, AChoiceAmongNothingIsRefused) {
+  EXPECT_THAT(problems("kind = \"line\"\n", [](Table& t) { EXPECT_EQ(t.choice("kind", {}), ""); }),
+              ElementsAre("f.toml:1: kind is 'line'; allowed: no value; leave it out"));
+}
+
 TEST(TableTest, AValueInQuotesThatShouldHaveNoneIsSaidToBeSo) {
   const auto found = problems(
       "rate = \"1000\"\nrange = \"0.05\"\nfull = \"true\"\nname = 5\nlist = [1, \"2\"]\n"
