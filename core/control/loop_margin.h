@@ -18,9 +18,8 @@ struct LoopMargin {
   double bare_stiffness{0.0};  // that it carries with that damping, three ticks late [N/m]
 };
 
-/// Heaviest hand that gains may need [kg]: of a whole arm no more than that follows a swing of 15
-/// Hz. Gains that need a heavier one are refused.
-constexpr double kHeaviestHand = 0.8;
+/// Heaviest hand that gains may need [kg]; gains that need a heavier one are refused.
+constexpr double kHeaviestHand = 2.0;
 
 /// @returns a delay as sentences name it: "a tick", "3 ticks"
 std::string ticks_in_words(int ticks);
