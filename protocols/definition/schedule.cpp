@@ -27,7 +27,7 @@ bool read_break_until_ready(Table& table, int break_after) {
   return ready;
 }
 
-/// What no key of a design can see alone.
+/// Notes contradictions between the keys of a design.
 static void check_design(Table& table, Design& d) {
   const int group = d.repetitions * static_cast<int>(d.conditions.size());
   if (group > 0 && d.trials % group != 0) {

@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::size_t kLongestText = 4000;  // [bytes]; more would not be legible on a screen
 
-}  // namespace
-
-static void read_mistake_key(Table& table, const std::string& key, ScreenOptions& options) {
+void read_mistake_key(Table& table, const std::string& key, ScreenOptions& options) {
   const std::string name = table.text(key);
   const auto code = name == "backspace" ? std::optional<int>(kBackspaceKey) : key_code(name);
   if (!code || *code == kSpaceKey || *code == kEnterKey) {
@@ -22,6 +20,8 @@ static void read_mistake_key(Table& table, const std::string& key, ScreenOptions
   }
   options.mistake_key = *code;
 }
+
+}  // namespace
 
 const Schema<ScreenOptions>& screen_schema() {
   using O = ScreenOptions;

@@ -17,10 +17,6 @@ namespace haptrial {
 
 namespace {
 
-bool within(double x, const Bounds& b) {
-  return std::isfinite(x) && (b.open_low ? x > b.low : x >= b.low) && x <= b.high;
-}
-
 double fallback(const Bounds& b) {
   if (std::isfinite(b.low)) {
     return b.open_low ? std::nextafter(b.low, b.high) : b.low;

@@ -19,11 +19,7 @@ using Eigen::Vector3d;
 constexpr const char* kMatrix =
     "three rows of three numbers, [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]";
 
-bool is_within(double x, const Bounds& b) {
-  return std::isfinite(x) && (b.open_low ? x > b.low : x >= b.low) && x <= b.high;
-}
-
-/// What the numbers of one key are held to.
+/// The key, bounds and unit that every number of a value has.
 struct Allowed {
   std::string_view key;
   const Bounds& bounds;
@@ -40,8 +36,8 @@ std::optional<Vector3d> place(Table& table, const Allowed& allowed, std::string_
     table.reject(allowed.key, fmt::format("is \"{}\": {}", text, error.what()));
     return std::nullopt;
   }
-  if (!found || !is_within(found->minCoeff(), allowed.bounds) ||
-      !is_within(found->maxCoeff(), allowed.bounds)) {
+  if (!found || !within(found->minCoeff(), allowed.bounds) ||
+      !within(found->maxCoeff(), allowed.bounds)) {
     table.reject(allowed.key, fmt::format("the text \"{}\"", text), allowed.words);
     return std::nullopt;
   }
@@ -53,7 +49,7 @@ double entry(Table& table, const Allowed& allowed, const NumberOrText& each,
              const std::string& words) {
   const auto value =
       each.number ? each.number : table.worth(allowed.key, each.text, allowed.bounds, allowed.unit);
-  if (value && !is_within(*value, allowed.bounds)) {
+  if (value && !within(*value, allowed.bounds)) {
     table.reject(allowed.key, fmt::format("an array with {}", *value), words);
   }
   return value.value_or(0.0);

@@ -19,6 +19,10 @@ std::string shortened(std::string_view text, std::size_t most) {
 
 }  // namespace
 
+bool within(double x, const Bounds& b) {
+  return std::isfinite(x) && (b.open_low ? x > b.low : x >= b.low) && x <= b.high;
+}
+
 std::string words(const Bounds& bounds, std::string_view unit) {
   const std::string in = unit.empty() ? "" : fmt::format(" [{}]", unit);
   const bool low = std::isfinite(bounds.low);

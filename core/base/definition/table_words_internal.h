@@ -14,6 +14,9 @@ namespace haptrial {
 
 // The parts of a table's error sentences.
 
+/// Whether a finite number lies within the bounds.
+bool within(double x, const Bounds& bounds);
+
 /// "a number above 0 [m/s]"
 std::string words(const Bounds& bounds, std::string_view unit);
 

@@ -309,7 +309,7 @@ const Schema<TextureParameters>& texture_schema() {
   return schema;
 }
 
-/// What the loop cannot present is refused.
+/// A frequency that the loop cannot present is refused.
 void keep_below_half_rate(Table& table, const char* key, double& frequency, double rate) {
   if (!(frequency < 0.5 * rate)) {
     table.reject(key, fmt::format("{} Hz", frequency),

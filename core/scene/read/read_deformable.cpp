@@ -104,7 +104,7 @@ const Schema<deformable::TouchOptions>& touch_schema() {
   return schema;
 }
 
-/// What the body is made of.
+/// The material: elements or springs.
 void read_material(Table& table, DeformableObjectParameters& p) {
   table.describe({"model",
                   "What a body that gives way is made of: elements that rest on every tick, or "
