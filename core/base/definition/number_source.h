@@ -18,7 +18,7 @@ class NumberSource {
   /// @returns nothing if the text is not allowed
   /// @throws InputError saying why it has no value: a part of the sentence that is noted
   virtual std::optional<double> value_of(std::string_view text) const = 0;
-  /// The same of a text that stands for three numbers, x, y and z.
+  /// Three numbers, x, y and z, that a text stands for; nothing or a throw as above.
   virtual std::optional<Eigen::Vector3d> vector_of(std::string_view text) const = 0;
 };
 

@@ -209,7 +209,7 @@ class Schema {
   Schema& derive(std::function<void(T& value)> derive) {
     return check([derive = std::move(derive)](Table&, T& into) { derive(into); });
   }
-  /// What no key can see alone; by Table::reject.
+  /// A check of keys together, which notes problems by Table::reject; it may also change the value.
   Schema& check(std::function<void(Table& table, T& value)> check) {
     keys_.push_back({{}, [check = std::move(check)](Table& table, const KeyDescription&, T& into) {
                        check(table, into);
@@ -222,7 +222,7 @@ class Schema {
     keys_.back().description.required = true;
     return *this;
   }
-  /// What holds if the key that was added last is left out, where no value says it: "none".
+  /// Words for lists of keys on the absence of the key that was added last: "none".
   Schema& otherwise(std::string words) {
     keys_.back().description.otherwise = std::move(words);
     return *this;

@@ -28,7 +28,7 @@ struct NumberOrText {
   std::string text;
 };
 
-/// What lists of keys and documents say about a key of a table.
+/// Description of a key for lists of keys and documents.
 struct KeyDescription {
   std::string name;
   std::string text;       // a noun phrase and its consequence
@@ -37,7 +37,7 @@ struct KeyDescription {
 
   /// Whether its value is to be read; an optional key may be absent.
   bool stands_in(const Table& table) const;
-  /// The same of a key with a default, which lists of keys show.
+  /// Likewise for a key with a default, which lists of keys show.
   bool stands_in(const Table& table, double usual) const;
   bool stands_in(const Table& table, std::string_view usual) const;
 };
@@ -93,7 +93,7 @@ class Table {
   void otherwise(std::string_view key, double value) const;
   void otherwise(std::string_view key, std::string_view value) const;
 
-  /// The same table with texts that may stand for its numbers, and for those of its tables.
+  /// A view of this table in which texts may stand for numbers, also within its tables.
   /// @param numbers  outlives what is read from it
   Table with(const NumberSource& numbers) const;
   const NumberSource* numbers() const { return numbers_; }  // null: no text may stand for a number

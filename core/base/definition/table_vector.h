@@ -20,7 +20,7 @@ Eigen::Vector3d read_vector(Table& table, std::string_view key, const Bounds& bo
 /// a problem
 Eigen::Vector3d read_direction(Table& table, std::string_view key);
 
-/// The same for a direction of any length above 0, which it keeps.
+/// A required direction of any length above 0, which it keeps.
 Eigen::Vector3d read_any_direction(Table& table, std::string_view key);
 
 /// A list of places: [[x, y, z], …], or texts that stand for one each.

@@ -24,7 +24,7 @@ class Companions {
   /// Gives the quads if they changed since `version`, which is brought up to date. One other
   /// thread.
   virtual bool quads(std::vector<DustQuad>& quads, std::uint64_t& version) const = 0;
-  /// The same for blood.
+  /// Balance and quads of the blood, as those of the dust.
   virtual DustBalance blood() const = 0;
   virtual bool blood_quads(std::vector<DustQuad>& quads, std::uint64_t& version) const = 0;
   /// Waits, while nothing ticks, until the dust has taken up all that was left for it. The thread

@@ -111,7 +111,7 @@ class SoftTissue {
   Eigen::Vector3d tick(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
   /// The same, after tick(), for the tube in the other hand, which tears as well.
   Eigen::Vector3d tick_second(const Eigen::Vector3d& c_B, double radius, bool sucks) noexcept;
-  /// The same for a tool that tears nothing: where the first one would, it slips through, and feels
+  /// Force on a tool that tears nothing [N]: beyond the force of a tear it slips through, and feels
   /// nothing until it is out of the structure.
   Eigen::Vector3d feel(Touch& touch, const Eigen::Vector3d& c_B, double radius,
                        bool sucks) const noexcept;

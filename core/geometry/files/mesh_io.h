@@ -40,7 +40,7 @@ std::string encode_mesh(const Mesh& mesh, MeshFormat format);
 /// @throws InputError where it cannot be written or is there; RunError when writing fails half-way.
 void write_mesh(const std::filesystem::path& file, const Mesh& mesh, bool overwrite = false);
 
-/// Memory that read_mesh takes at most for a file of so many bytes, beside the file itself [bytes].
+/// Largest memory that read_mesh needs for a file of this size, beside the file itself [bytes].
 std::uint64_t reading_memory(std::uint64_t file_bytes, MeshFormat format);
 
 }  // namespace haptrial::geometry

@@ -10,7 +10,7 @@
 
 namespace haptrial::scene {
 
-/// What the bounds of a field's keys may depend on.
+/// Numbers of the loop and the field that bounds of its keys may depend on.
 struct FieldSetting {
   double rate{1000.0};  // of the servo loop [Hz]
   double limit{10.0};   // of the field [N]
