@@ -41,7 +41,7 @@ def look(page, url, folder):
     assert page.run("return document.getElementById('hand_row').classList.contains('near')")
     width = page.run("return document.getElementById('hand_bar').getAttribute('width')")
     assert abs(float(width) - 100 * 11 / 12) < 0.01, width
-    assert "limit of 12.0 N" in page.text("scale"), page.text("scale")
+    wait("the drawn scale", lambda: "limit of 12.0 N" in page.text("scale"))
     page.run("document.getElementById('loop').open = true")  # its figures are read below
     for name, wanted in EXPECTED.items():
         shown = page.text(name).strip().removeprefix("\u26a0\ufe0e").strip()
