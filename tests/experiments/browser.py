@@ -95,8 +95,14 @@ class Driver:
         self.call("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": [
             {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
 
-    def picture(self, file, width=1280, height=900):
+    def resize(self, width=1280, height=900):
+        """Until it is so: a click would fall beside what moves meanwhile."""
         self.call("POST", "/window/rect", {"width": width, "height": height})
+        wait(f"a window of {width} x {height}",
+             lambda: self.run("return [innerWidth, outerHeight]") == [width, height])
+
+    def picture(self, file, width=1280, height=900):
+        self.resize(width, height)
         time.sleep(0.3)
         file.write_bytes(base64.b64decode(self.call("GET", "/screenshot")))
 
@@ -129,6 +135,18 @@ def wait(what, condition):
         if time.monotonic() - told > 60:
             told = time.monotonic()
             print("still waiting for " + what, file=sys.stderr, flush=True)
+
+
+def ask(page, *buttons):
+    """As an experimenter does at the console: again, where the page says that a request was not
+    delivered."""
+    delivered = False
+    while not delivered:
+        page.run("document.getElementById('said').replaceChildren()")
+        for button in buttons:
+            page.click(button)
+        wait(f"a receipt of '{buttons[-1]}'", lambda: page.text("said") != "")
+        delivered = "NOT DELIVERED" not in page.text("said")
 
 
 def state(page, wanted):

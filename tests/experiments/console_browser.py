@@ -71,7 +71,7 @@ def click_through(page, url, folder):
         "const r = document.getElementById('emergency_stop').getBoundingClientRect();"
         "return [r.top, r.bottom, window.innerHeight]")
     assert 0 <= top and bottom <= height, "the emergency stop is always in sight"
-    page.call("POST", "/window/rect", {"width": 1280, "height": 900})
+    page.resize()
     page.click("clear")
     state(page, "Paused")
 

@@ -3,10 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
@@ -14,6 +12,7 @@
 #include "experiments/console/console.h"
 #include "experiments/console/console_messages.h"
 #include "experiments/studies/drilling/drilled_procedure.h"
+#include "tests/experiments/browser.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {
@@ -123,22 +122,14 @@ TEST(ConsoleBrowserTest, ASessionIsClickedThrough) {
   SessionControl control;
   ScriptedSession session(control);
   auto console = std::make_unique<Console>(control);
-  const std::string command = "python3 '" HAPTRIAL_SOURCE_DIR
-                              "/tests/experiments/console_browser.py' '" +
-                              console->url() + "' '" + folder.path().string() + "' 2>&1";
-  FILE* script = ::popen(command.c_str(), "r");
-  ASSERT_NE(script, nullptr);
-  std::string output;
   std::vector<std::string> refusals;
-  for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
-    output += line.data();
-    if (output.ends_with("CLOSE\n")) {
-      refusals = console->refusals();
-      console.reset();
-    }
-  }
-  const int status = ::pclose(script);
-  EXPECT_EQ(status, 0) << output;
+  const int status = test::run_browser(
+      "console_browser.py", {console->url(), folder.path().string()}, [&](const std::string& line) {
+        ASSERT_EQ(line, "CLOSE\n");
+        refusals = console->refusals();
+        console.reset();
+      });
+  EXPECT_EQ(status, 0);
   EXPECT_THAT(session.stop_and_tell(),
               ElementsAre("start", "pause", "note: hand slips <b>&amp; \u00e9 r s a c p", "start",
                           "repeat", "skip", "emergency_stop", "clear", "emergency_stop", "clear"));
@@ -197,21 +188,13 @@ TEST(ConsoleBrowserTest, ADrillingHasAPanelOfItsFigures) {
     }
   });
   int status = 0;
-  std::string output;
   {
     const Console console(control);
-    const std::string command = "python3 '" HAPTRIAL_SOURCE_DIR
-                                "/tests/experiments/console_drilling.py' '" +
-                                console.url() + "' '" + folder.path().string() + "' 2>&1";
-    FILE* script = ::popen(command.c_str(), "r");
-    for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
-      output += line.data();
-    }
-    status = ::pclose(script);
+    status = test::run_browser("console_drilling.py", {console.url(), folder.path().string()});
   }
   ended = true;
   session.join();
-  EXPECT_EQ(status, 0) << output;
+  EXPECT_EQ(status, 0);
   if (const char* kept = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
     for (const char* picture : {"console-drilling.png", "console-drilling-narrow.png"}) {
       fs::copy_file(folder / picture, fs::path(kept) / picture,
@@ -265,21 +248,13 @@ TEST(ConsoleBrowserTest, ASessionOfTwoHasAPanelOfItsLink) {
     }
   });
   int status = 0;
-  std::string output;
   {
     const Console console(control);
-    const std::string command = "python3 '" HAPTRIAL_SOURCE_DIR
-                                "/tests/experiments/console_partner.py' '" +
-                                console.url() + "' '" + folder.path().string() + "' 2>&1";
-    FILE* script = ::popen(command.c_str(), "r");
-    for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
-      output += line.data();
-    }
-    status = ::pclose(script);
+    status = test::run_browser("console_partner.py", {console.url(), folder.path().string()});
   }
   ended = true;
   session.join();
-  EXPECT_EQ(status, 0) << output;
+  EXPECT_EQ(status, 0);
   EXPECT_THAT(asked, ElementsAre("take_lead", "hand_over"));
   if (const char* kept = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
     fs::copy_file(folder / "console-partner.png", fs::path(kept) / "console-partner.png",

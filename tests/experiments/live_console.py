@@ -11,7 +11,7 @@ import pathlib
 import sys
 import time
 
-from browser import Driver, state, wait
+from browser import Driver, ask, state, wait
 
 PLOT_SECONDS = float(os.environ.get("HAPTRIAL_PLOT_SECONDS", "0"))
 NO_FORCE = "0.00 N"
@@ -58,12 +58,12 @@ def instructions(page, url):
 
 def pause_and_go_on(page):
     """A pause lets the present pass come to its end, and no other begins."""
-    page.click("start")
+    ask(page, "start")
     wait("a pass", lambda: page.text("what").endswith("training \u00b7 trial runs"))
     assert page.text("state") == "Running"
     assert page.hidden("screen"), "the instructions are gone: " + page.text("screen")
     moves(page, "target", "position")
-    page.click("pause")
+    ask(page, "pause")
     assert page.text("state") == "Running", "not in the middle of a pass"
     state(page, "Paused")
     assert page.text("what").endswith("training"), page.text("what")
@@ -71,7 +71,7 @@ def pause_and_go_on(page):
     assert page.text("state") == "Paused"
     assert page.text("applied") == NO_FORCE, page.text("applied")
     assert page.text("trial") == "1 of 72", page.text("trial")
-    page.click("start")
+    ask(page, "start")
     running(page, condition(page) + " \u00b7 test \u00b7 trial runs")
     moves(page, "target", "applied", "position")
 
@@ -82,11 +82,11 @@ def note_repeat_skip(page, folder):
     wait("the note's receipt", lambda: "note: hand rested" in page.text("said"))
     picture(page, folder / "console-running.png")
     assert page.text("aborted") == "0"
-    page.click("repeat")
+    ask(page, "repeat")
     wait("an aborted pass", lambda: page.text("aborted") == "1")
     running(page, condition(page) + " \u00b7 training \u00b7 trial runs")
     assert page.text("trial") == "1 of 72", page.text("trial")
-    page.click("skip")
+    ask(page, "skip")
     wait("the next trial", lambda: page.text("trial") == "2 of 72")
     running(page, condition(page) + " \u00b7 training \u00b7 trial runs")
 
@@ -94,7 +94,7 @@ def note_repeat_skip(page, folder):
 def stop_and_clear(page, folder):
     moves(page, "position")
     time.sleep(PLOT_SECONDS)
-    page.click("emergency_stop")
+    ask(page, "emergency_stop")
     state(page, "STOPPED")
     assert "The force is zero" in page.text("fault"), page.text("fault")
     wait("no force", lambda: page.text("applied") == NO_FORCE)
@@ -105,10 +105,10 @@ def stop_and_clear(page, folder):
     assert page.text("state") == "STOPPED"
     assert page.text("applied") == NO_FORCE
     page.picture(folder / "console-stopped.png", height=980)
-    page.click("clear")
+    ask(page, "clear")
     state(page, "Paused")
     assert page.hidden("fault"), page.text("fault")
-    page.click("start")
+    ask(page, "start")
     running(page, condition(page) + " \u00b7 training \u00b7 trial runs")
     assert page.text("trial") == "2 of 72", page.text("trial")
 
@@ -119,9 +119,7 @@ def end(page):
     page.click("go_on")
     wait("no question", lambda: page.hidden("confirm"))
     assert page.text("state") == "Running", page.text("state")
-    page.click("abort")
-    wait("the question", lambda: not page.hidden("confirm"))
-    page.click("for_good")
+    ask(page, "abort", "for_good")
     state(page, "Ended")
     wait("the end of the link", lambda: page.text("link") == "closed")
     assert page.hidden("lost"), page.text("lost")

@@ -9,6 +9,7 @@
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "tests/experiments/browser.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
@@ -38,11 +39,6 @@ class LiveConsoleTest : public testing::Test {
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  CommandResult click_through(const std::string& url) const {
-    return test::run_command("python3 '" HAPTRIAL_SOURCE_DIR
-                             "/tests/experiments/live_console.py' '" +
-                             url + "' '" + folder_.path().string() + "'");
-  }
   static std::string outline(const PassRow& pass) {
     return "trial " + std::to_string(pass.trial) + " attempt " + std::to_string(pass.attempt) +
            (pass.phase == Phase::kTraining ? " training " : " test ") +
@@ -67,8 +63,7 @@ TEST_F(LiveConsoleTest, WhatIsClickedIsDoneAndIsInTheFile) {
                             "' --console");
   const std::string url = session.line_after("console: ");
   ASSERT_THAT(url, HasSubstr("http://127.0.0.1:")) << session.errors();
-  const CommandResult clicked = click_through(url);
-  EXPECT_EQ(clicked.status, 0) << clicked.errors;
+  EXPECT_EQ(test::run_browser("live_console.py", {url, folder_.path().string()}), 0);
   const CommandResult ended = session.wait();
   ASSERT_EQ(ended.status, 0) << ended.errors;
   EXPECT_THAT(ended.output, HasSubstr("4 passes aborted"));

@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <atomic>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
@@ -14,6 +12,7 @@
 #include "core/bone/nerve/nerve_beside.h"
 #include "experiments/console/console.h"
 #include "protocols/bone_drilling/nerve_page.h"
+#include "tests/experiments/browser.h"
 #include "tests/experiments/console_client.h"
 #include "tests/support/temporary_folder.h"
 
@@ -82,20 +81,13 @@ TEST(NerveBrowserTest, ATechnicianWatchesMutesAndSetsAThreshold) {
   options.sides = {page};
   const Drilling drilling(page->buffer());
   auto console = std::make_unique<Console>(control, options);
-  const std::string command =
-      "python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/nerve_browser.py' '" +
-      console->side_url("nerves") + "' '" + folder.path().string() + "' 2>&1";
-  FILE* script = ::popen(command.c_str(), "r");
-  ASSERT_NE(script, nullptr);
-  std::string output;
-  for (std::array<char, 512> line; std::fgets(line.data(), line.size(), script) != nullptr;) {
-    output += line.data();
-    if (output.ends_with("CLOSE\n")) {
-      console.reset();
-    }
-  }
-  const int status = ::pclose(script);
-  EXPECT_EQ(status, 0) << output;
+  const int status =
+      test::run_browser("nerve_browser.py", {console->side_url("nerves"), folder.path().string()},
+                        [&](const std::string& line) {
+                          ASSERT_EQ(line, "CLOSE\n");
+                          console.reset();
+                        });
+  EXPECT_EQ(status, 0);
   if (const char* kept = std::getenv("HAPTRIAL_KEEP_PICTURES")) {
     for (const char* picture : {"nerve-monitor.png", "nerve-monitor-narrow.png"}) {
       fs::copy_file(folder / picture, fs::path(kept) / picture,

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "tests/experiments/browser.h"
 #include "tests/experiments/command.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -26,10 +27,7 @@ TEST(SiteTest, IsMadeAndWorksInABrowser) {
                            "docs/sections.html", "headers/bvh_8h.html"}) {
     EXPECT_TRUE(std::filesystem::exists(site + "/" + page)) << page;
   }
-  const test::CommandResult shown =
-      test::run_command("python3 -B " HAPTRIAL_SOURCE_DIR "/tests/experiments/site_browser.py '" +
-                        site + "' '" + folder.path().string() + "'");
-  EXPECT_EQ(shown.status, 0) << shown.output << shown.errors;
+  EXPECT_EQ(test::run_browser("site_browser.py", {site, folder.path().string()}), 0);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ def drag(page, across, upwards):
 
 
 def turned(page, url, folder):
-    page.call("POST", "/window/rect", {"width": 640, "height": 600})  # drawn by the processor
+    page.resize(640, 600)  # drawn by the processor
     page.call("POST", "/url", {"url": url})
     links = page.run("return [...document.querySelectorAll('#procedures a')].map((a) => a.href)")
     assert len(links) == 2, links

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/experiments/browser.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
@@ -45,10 +46,9 @@ TEST(TraineePagesTest, ABrowserTurnsTheBoneAndAsksNobody) {
   ASSERT_EQ(made.status, 0) << made.errors;
   EXPECT_LT(fs::file_size(folder / "S01-1.html"), 5'000'000u);
   EXPECT_THAT(test::read_text(folder / "S01-2.html"), HasSubstr("Expert S02, procedure"));
-  const auto seen =
-      run_command("python3 '" HAPTRIAL_SOURCE_DIR "/tests/experiments/trainee_browser.py' '" +
-                  (folder / "S01.html").string() + "' '" + folder.path().string() + "' 2>&1");
-  EXPECT_EQ(seen.status, 0) << seen.output;
+  EXPECT_EQ(test::run_browser("trainee_browser.py",
+                              {(folder / "S01.html").string(), folder.path().string()}),
+            0);
 }
 
 TEST(TraineePagesTest, ALeftEarIsSeenFromItsSurgeonsSide) {
