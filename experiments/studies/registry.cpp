@@ -18,21 +18,6 @@ std::vector<const Study*>& all() {
   return studies;
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> names;
-  for (const Study* study : all()) {
-    names.emplace_back(study->protocol().name());
-  }
-  return names;
-}
-
-const Study* named(std::string_view name) {
-  const auto found = std::find_if(all().begin(), all().end(), [&](const Study* study) {
-    return study->protocol().name() == name;
-  });
-  return found != all().end() ? *found : nullptr;
-}
-
 }  // namespace
 
 std::unique_ptr<StudySimulation> Study::study_simulation(const std::vector<NamedText>& definition,
@@ -46,8 +31,27 @@ std::unique_ptr<StudySimulation> Study::study_simulation(const std::vector<Named
 
 const std::vector<const Study*>& studies() { return all(); }
 
+std::vector<std::string> protocol_words() {
+  std::vector<std::string> words;
+  for (const Study* study : all()) {
+    words.emplace_back(study->protocol().name());
+    if (!study->protocol().synonym().empty()) {
+      words.emplace_back(study->protocol().synonym());
+    }
+  }
+  return words;
+}
+
+const Study* find_study(std::string_view word) {
+  const auto found = std::find_if(all().begin(), all().end(), [&](const Study* study) {
+    const std::string_view synonym = study->protocol().synonym();
+    return study->protocol().name() == word || (!synonym.empty() && synonym == word);
+  });
+  return found != all().end() ? *found : nullptr;
+}
+
 void add_study(const Study& study) {
-  if (named(study.protocol().name()) != nullptr) {
+  if (find_study(study.protocol().name()) != nullptr) {
     throw std::invalid_argument(
         fmt::format("add_study: there is a protocol '{}' already", study.protocol().name()));
   }
@@ -83,9 +87,10 @@ const Study& study_of(Table& root) {
   }
   Table experiment = root.table("experiment");
   const bool said = !experiment.misspelled("protocol") && experiment.has("protocol");
-  const std::string name = said ? experiment.choice("protocol", names()) : names().front();
+  const std::string name =
+      said ? experiment.choice("protocol", protocol_words()) : protocol_words().front();
   root.check();
-  return *named(name);
+  return *find_study(name);
 }
 
 const Study& study_of(const record::SessionInfo& session) {

@@ -15,6 +15,11 @@ namespace haptrial::experiments {
 /// Every study that this program has added, the default one first. Call before threads are started.
 const std::vector<const Study*>& studies();
 
+/// The words that [experiment] may have for protocols, synonyms too.
+std::vector<std::string> protocol_words();
+/// The study of one of these words; null for any other word.
+const Study* find_study(std::string_view word);
+
 /// One more. It lives as long as the program.
 /// @throws std::invalid_argument for a name that is taken
 void add_study(const Study& study);

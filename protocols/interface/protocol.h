@@ -20,6 +20,8 @@ class Protocol {
  public:
   virtual ~Protocol() = default;
   virtual std::string_view name() const = 0;
+  /// Another word that a definition may use for it; empty: none.
+  virtual std::string_view synonym() const { return ""; }
   /// A definition from a table that others read on: its problems are noted and still to be thrown.
   /// @param folder  of the file, for what it names; null for a text that a session file keeps
   virtual std::unique_ptr<Definition> read(Table& root, std::string_view file_name,

@@ -18,6 +18,7 @@ namespace {
 class TrialsProtocol final : public Protocol {
  public:
   std::string_view name() const override { return kTrials; }
+  std::string_view synonym() const override { return "psychophysics"; }
   std::vector<std::string> virtual_tables() const override { return {"observer"}; }
   std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
                                    const std::filesystem::path* folder) const override {

@@ -14,6 +14,7 @@
 #include "core/base/file_text.h"
 #include "experiments/studies/registry.h"
 #include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::keys_test {
 namespace {
@@ -137,6 +138,75 @@ TEST(KeysTest, EveryKeyOfTheShippedDefinitionsIsListed) {
     }
   }
   EXPECT_GT(checked, 500);
+}
+
+/// What Debian's python3-jsonschema says of a definition; empty: it keeps the schema.
+std::string schema_errors(const test::TemporaryFolder& folder, const std::string& definition) {
+  const std::string protocol =
+      toml::parse(definition)["experiment"]["protocol"].value_or(std::string("force_training"));
+  const fs::path schema = folder / (protocol + ".json");
+  if (!fs::exists(schema)) {
+    const auto printed = test::run_command("haptrial keys " + protocol + " --json-schema");
+    EXPECT_EQ(printed.status, 0) << printed.errors;
+    write_text(schema, printed.output);
+  }
+  write_text(folder / "definition.toml", definition);
+  const auto checked = test::run_command(
+      "/usr/bin/python3 -B " HAPTRIAL_SOURCE_DIR "/tests/experiments/check_json_schema.py '" +
+      schema.string() + "' '" + (folder / "definition.toml").string() + "'");
+  EXPECT_EQ(checked.errors, "");
+  return checked.output;
+}
+
+TEST(KeysTest, ShippedDefinitionsKeepTheJsonSchema) {
+  const test::TemporaryFolder folder;
+  int checked = 0;
+  for (const auto& entry : fs::directory_iterator(HAPTRIAL_SOURCE_DIR "/experiments")) {
+    const bool translation = entry.path().stem().string().find(".texts.") != std::string::npos;
+    if (entry.path().extension() == ".toml" && !translation) {
+      EXPECT_EQ(schema_errors(folder, file_text(entry.path())), "") << entry.path().filename();
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 15);
+}
+
+TEST(KeysTest, TheJsonSchemaFindsMistakes) {
+  const test::TemporaryFolder folder;
+  const std::string text =
+      file_text(HAPTRIAL_SOURCE_DIR "/experiments/stiffness_discrimination.toml");
+  const auto errors_with = [&](const std::string& before, const std::string& after) {
+    std::string changed = text;
+    const std::size_t at = changed.find(before);
+    EXPECT_NE(at, std::string::npos) << before;
+    return schema_errors(folder, changed.replace(at, before.size(), after));
+  };
+  EXPECT_THAT(errors_with("[design]\n", "[design]\nparticipents = 3\n"), HasSubstr("participents"));
+  EXPECT_THAT(errors_with("break_duration = 60.0", "break_duration = \"long\""),
+              HasSubstr("design.break_duration"));
+  EXPECT_THAT(errors_with("[response]\n", "[response]\ntouch_for = -1\n"),
+              HasSubstr("response.touch_for"));
+}
+
+TEST(KeysTest, PsychophysicsIsAnotherWordForTrials) {
+  std::string text = file_text(HAPTRIAL_SOURCE_DIR "/experiments/wall_detection.toml");
+  const std::string word = "protocol = \"trials\"";
+  ASSERT_NE(text.find(word), std::string::npos);
+  const test::TemporaryFolder folder;
+  write_text(folder / "own.toml",
+             text.replace(text.find(word), word.size(), "protocol = \"psychophysics\""));
+  EXPECT_EQ(schema_errors(folder, text), "");
+  const auto run = test::run_command("cd '" + folder.path().string() +
+                                     "' && haptrial dry-run own.toml --subjects 1 --out out && "
+                                     "haptrial analyze out");
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_TRUE(fs::exists(folder / "out/report.html"));
+}
+
+TEST(KeysTest, AJsonSchemaNeedsAProtocol) {
+  const auto none = test::run_command("haptrial keys --json-schema");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.errors, HasSubstr("--json-schema: no word is not a protocol; allowed: "));
 }
 
 }  // namespace

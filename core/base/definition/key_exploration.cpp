@@ -30,6 +30,28 @@ void join(std::string& all, const std::string& another) {
   all += all.empty() ? another : ways < kMost ? " or " + another : kDepends;
 }
 
+Bounds either(const Bounds& a, const Bounds& b) {
+  const bool open =
+      a.low == b.low ? a.open_low && b.open_low : (a.low < b.low ? a.open_low : b.open_low);
+  return {std::min(a.low, b.low), std::max(a.high, b.high), open};
+}
+
+/// Joins forms of one type: what either allows.
+void join(std::vector<KeyForm>& all, const KeyForm& another) {
+  const auto same = std::find_if(all.begin(), all.end(),
+                                 [&](const KeyForm& each) { return each.type == another.type; });
+  if (same == all.end()) {
+    all.push_back(another);
+    return;
+  }
+  same->bounds = either(same->bounds, another.bounds);
+  std::copy_if(another.words.begin(), another.words.end(), std::back_inserter(same->words),
+               [&](const std::string& word) {
+                 return std::find(same->words.begin(), same->words.end(), word) ==
+                        same->words.end();
+               });
+}
+
 }  // namespace
 
 void KeyExploration::begin(Plan plan) {
@@ -123,6 +145,7 @@ void KeyExploration::ask(KnownKey key) {
     join(known.key.type, key.type);
     join(known.key.unit, key.unit);
     join(known.key.allowed, key.allowed);
+    join(known.key.forms, key.forms.at(0));
   }
   ++known.askings;
   for (const auto& [choice, word] : chosen_[table]) {
@@ -205,6 +228,7 @@ std::vector<KnownKey> KeyExploration::keys() const {
     }
     if (texts_.contains(path) && key.type.find("text") == std::string::npos) {
       key.type += " or text";
+      key.forms.push_back({"text", {}, {}});
     }
     const auto choices = words_.find(key.table);
     for (const auto& [choice, with] : known->with) {

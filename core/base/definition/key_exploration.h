@@ -10,10 +10,19 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/definition/bounds.h"
+
 namespace haptrial {
 
 class Table;
 struct KeyDescription;
+
+/// A kind of value that a key takes.
+struct KeyForm {
+  std::string type;                // one of KnownKey::type
+  Bounds bounds{};                 // of each number; the widest, if other keys choose between some
+  std::vector<std::string> words;  // of a choice
+};
 
 /// A key that a reader of definitions knows.
 struct KnownKey {
@@ -26,6 +35,7 @@ struct KnownKey {
   bool optional{false};   // the reader asks whether it is there
   std::vector<std::string> when;  // "type: wall, box": only with these choices of the same table
   std::string words;              // what it is; empty: its reader has no schema
+  std::vector<KeyForm> forms;     // `type` and `allowed` for programs, each type once
 
   std::string path() const { return table.empty() ? key : table + "." + key; }
 };

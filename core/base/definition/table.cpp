@@ -223,7 +223,7 @@ std::vector<Table> Table::tables(std::string_view key) {
 void Table::leave(std::string_view key) {
   node_->read.emplace(key);
   if (exploration() != nullptr) {
-    tell(key, "table", "");
+    tell(key, {"table", {}, {}}, "");
   }
 }
 

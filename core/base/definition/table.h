@@ -13,6 +13,7 @@
 namespace haptrial {
 
 class KeyExploration;
+struct KeyForm;
 class NumberSource;
 class Table;
 
@@ -168,7 +169,7 @@ class Table {
   unsigned line(std::string_view key) const;
   KeyExploration* exploration() const;
   bool states(std::string_view key) const;
-  void tell(std::string_view key, const char* type, std::string_view allowed,
+  void tell(std::string_view key, const KeyForm& form, std::string_view allowed,
             std::string_view unit = "") const;
   template <class T>
   std::optional<T> get(std::string_view key, std::string_view allowed, bool any = true);

@@ -28,17 +28,18 @@ bool Table::states(std::string_view key) const {
 }
 
 /// What an exploration is to know of a key.
-void Table::tell(std::string_view key, const char* type, std::string_view allowed,
+void Table::tell(std::string_view key, const KeyForm& form, std::string_view allowed,
                  std::string_view unit) const {
   exploration()->ask({node_->path,
                       std::string(key),
-                      type,
+                      form.type,
                       std::string(allowed),
                       std::string(unit),
                       states(key) ? shown(*node_->table->get(key)) : "",
                       false,
                       {},
-                      ""});
+                      "",
+                      {form}});
 }
 
 void Table::otherwise(std::string_view key, double value) const {

@@ -93,7 +93,7 @@ double Table::number(std::string_view key, const Bounds& bounds, std::string_vie
   }
   const std::string allowed = words(bounds, unit);
   if (exploration() != nullptr) {
-    tell(key, "number", allowed, unit);
+    tell(key, {"number", bounds, {}}, allowed, unit);
     const double usual = exploration()->default_of(node_->path, key).value_or(harmless(bounds));
     return states(key) ? node_->table->get(key)->value<double>().value_or(usual) : usual;
   }
@@ -108,7 +108,7 @@ double Table::number(std::string_view key, const Bounds& bounds, std::string_vie
 long Table::integer(std::string_view key, long low, long high) {
   const std::string allowed = fmt::format("a whole number from {} to {}", low, high);
   if (exploration() != nullptr) {
-    tell(key, "whole number", allowed);
+    tell(key, {"whole number", {static_cast<double>(low), static_cast<double>(high)}, {}}, allowed);
     return states(key) ? node_->table->get(key)->value<long>().value_or(low)
                        : std::clamp(1L, low, high);
   }
@@ -122,7 +122,7 @@ long Table::integer(std::string_view key, long low, long high) {
 
 bool Table::boolean(std::string_view key) {
   if (exploration() != nullptr) {
-    tell(key, "true or false", "true or false");
+    tell(key, {"true or false", {}, {}}, "true or false");
     return exploration()->is_there(node_->path, key, "true", true);
   }
   return get<bool>(key, "true or false").value_or(false);
@@ -130,7 +130,7 @@ bool Table::boolean(std::string_view key) {
 
 std::string Table::text(std::string_view key) {
   if (exploration() != nullptr) {
-    tell(key, "text", "a text in quotes that is not empty");
+    tell(key, {"text", {}, {}}, "a text in quotes that is not empty");
     return states(key) ? node_->table->get(key)->value<std::string>().value_or("NAME") : "NAME";
   }
   auto value = get<std::string>(key, "a text in quotes that is not empty");
@@ -142,7 +142,7 @@ std::string Table::text(std::string_view key) {
 
 std::string Table::choice(std::string_view key, const std::vector<std::string>& allowed) {
   if (exploration() != nullptr) {
-    tell(key, "choice", joined(allowed));
+    tell(key, {"choice", {}, allowed}, joined(allowed));
     return exploration()->choose(
         node_->path, key, allowed,
         states(key) ? node_->table->get(key)->value_or(std::string()) : "");
@@ -201,7 +201,7 @@ std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
                                    std::string_view unit) {
   const std::string allowed = fmt::format("an array, each {}", words(bounds, unit));
   if (exploration() != nullptr) {
-    tell(key, "list of numbers", allowed, unit);
+    tell(key, {"list of numbers", bounds, {}}, allowed, unit);
     constexpr std::size_t kOfAVector = 3;
     return std::vector<double>(kOfAVector, harmless(bounds));
   }
@@ -216,7 +216,7 @@ std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
 
 std::vector<std::string> Table::texts(std::string_view key) {
   if (exploration() != nullptr) {
-    tell(key, "list of texts", "an array of texts in quotes");
+    tell(key, {"list of texts", {}, {}}, "an array of texts in quotes");
     return {"NAME"};
   }
   return array<std::string>(key, "an array of texts in quotes");
@@ -225,7 +225,7 @@ std::vector<std::string> Table::texts(std::string_view key) {
 std::vector<std::vector<NumberOrText>> Table::rows(std::string_view key, std::string_view allowed) {
   std::vector<std::vector<NumberOrText>> rows;
   if (exploration() != nullptr) {
-    tell(key, "list", allowed);
+    tell(key, {"list", {}, {}}, allowed);
     return {{{1.0, ""}, {1.0, ""}, {1.0, ""}}};
   }
   if (node_->table == nullptr) {

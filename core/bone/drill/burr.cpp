@@ -312,10 +312,13 @@ const Schema<BurrParameters>& burr_schema() {
           .check(check_samples)
           .number("removal_rate", &P::removal_rate, {0.0, 1e6}, "1/(N·s)",
                   "Share of the bone within the burr that goes in a second at a force of 1 N")
+          .otherwise("25 of a cutting burr, 10 of a diamond")
           .number("falloff", &P::falloff, {0.0, 1e6}, "1/(N·s·rad)",
                   "Decrease of the removal rate from the burr's equator towards its tip")
+          .otherwise("12 of a cutting burr, 2 of a diamond")
           .number("tangential_gain", &P::tangential_gain, {0.0, 1e15}, "N/m^4",
                   "Strength with which the turning burr pulls along the bone")
+          .otherwise("as fits kind and size of the burr")
           .number("wear_volume", &P::wear_volume, {0.0, 1.0, true}, "m3",
                   "Volume of bone after which the burr removes half as much")
           .otherwise("never")

@@ -35,11 +35,14 @@ const Schema<FeelParameters>& feel_schema() {
       Schema<P>()
           .number("first_gain", &P::first_gain, kPositive, "N/m^3",
                   "Force over the immersed volume just after contact; higher feels harder")
+          .otherwise("as fits the radius of the tool")
           .number("second_gain", &P::second_gain, kPositive, "N/m^3",
                   "Force over the immersed volume beyond the threshold; higher lets the tool sink "
                   "in less")
+          .otherwise("as fits the radius of the tool")
           .number("threshold", &P::threshold, kPositive, "m^3",
                   "Immersed volume at which the first gain changes to the second one")
+          .otherwise("as fits the radius of the tool")
           .number("force_limit", &P::force_limit, {0.0, 100.0, true}, "N",
                   "Greatest force of this contact with bone")
           .number("least_agreement", &P::least_agreement, {0.0, 1.0, true}, "",

@@ -44,10 +44,12 @@ void add_doctor(CLI::App& app, int& status) {
 void add_keys(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "keys", "List the keys that a definition may have",
                              "haptrial keys stiffness", {"", "keys.md"});
-  auto& word = options_of<std::string>(*sub, status, keys);
-  sub->add_option("WORD", word,
+  auto& options = options_of<KeysOptions>(*sub, status, keys);
+  sub->add_option("WORD", options.word,
                   "Protocol whose keys are listed, or a word to search keys for (default: all "
                   "keys)");
+  sub->add_flag("--json-schema", options.json_schema,
+                "Print a JSON Schema of the protocol's definitions, for editors");
 }
 
 }  // namespace haptrial::experiments

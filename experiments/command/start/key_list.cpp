@@ -18,9 +18,8 @@
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {
-namespace {
+namespace {}  // namespace
 
-/// Tables that take the keys of another one.
 const std::map<std::string, std::string>& shared_tables() {
   static const std::map<std::string, std::string> tables{
       {"procedures[]", "procedure"},
@@ -30,6 +29,8 @@ const std::map<std::string, std::string>& shared_tables() {
       {"design.session.1", "design.session.NAME"}};
   return tables;
 }
+
+namespace {
 
 std::string shared(const std::string& table) {
   std::string found = table;
@@ -113,6 +114,7 @@ std::vector<KnownKey> without_spreads(const std::vector<KnownKey>& keys) {
   for (KnownKey key : keys) {
     if (varies(key.path())) {
       key.type = "number or { median, spread }";
+      key.forms.push_back({"table", {}, {}});
     } else if (varies(key.table)) {
       if (key.key == "spread" || paths.contains(key.table)) {
         continue;
@@ -121,6 +123,7 @@ std::vector<KnownKey> without_spreads(const std::vector<KnownKey>& keys) {
       key.key = key.table.substr(dot + 1);
       key.table = key.table.substr(0, dot);
       key.type = "{ median, spread }";
+      key.forms = {{"table", {}, {}}};
     }
     rest.push_back(std::move(key));
   }
@@ -186,14 +189,6 @@ Words* words_of(std::map<std::string, Words>& all, const std::string& protocol,
   return any != all.end() ? &any->second : nullptr;
 }
 
-std::vector<std::string> protocol_names() {
-  std::vector<std::string> names;
-  for (const Study* study : studies()) {
-    names.emplace_back(study->protocol().name());
-  }
-  return names;
-}
-
 /// The keys of each protocol, and first those that all of them have alike.
 std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
   std::vector<KeySection> sections(1);
@@ -213,14 +208,14 @@ std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
                      !key.otherwise.empty() || own == nullptr ? key.otherwise : own->otherwise};
   };
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    sections.push_back({protocol_names()[i], {}});
+    sections.push_back({std::string(studies()[i]->protocol().name()), {}});
     for (const KnownKey& key : keys[i]) {
       const bool common = std::all_of(keys.begin(), keys.end(), [&](const auto& others) {
         return std::any_of(others.begin(), others.end(),
                            [&](const KnownKey& other) { return same(key, other); });
       });
       if (!common) {
-        sections.back().keys.push_back(listed(protocol_names()[i], key));
+        sections.back().keys.push_back(listed(std::string(studies()[i]->protocol().name()), key));
       } else if (i == 0) {
         sections.front().keys.push_back(listed("", key));
       }
@@ -263,11 +258,6 @@ std::vector<KeySection> key_sections(const std::string& protocol) {
   return sections;
 }
 
-bool is_protocol(const std::string& word) {
-  const std::vector<std::string> names = protocol_names();
-  return std::find(names.begin(), names.end(), word) != names.end();
-}
-
 static std::string lower_case(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
@@ -287,7 +277,7 @@ std::vector<KeySection> sections_with(const std::string& word) {
     throw InputError(
         fmt::format("no key has '{}' in its name or its words; haptrial keys lists all keys, and "
                     "haptrial keys PROTOCOL those of {}",
-                    word, fmt::join(protocol_names(), ", ")));
+                    word, fmt::join(protocol_words(), ", ")));
   }
   return sections;
 }

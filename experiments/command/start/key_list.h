@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,9 @@ class Study;
 /// Every key of a definition of a study, each once: what tables share is under one of them, and
 /// keys that vary over people are "number or { median, spread }". The readers say what is there.
 std::vector<KnownKey> keys_of(const Study& study);
+
+/// Tables that take the keys of another one, which alone are listed: "responses[]", "response".
+const std::map<std::string, std::string>& shared_tables();
 
 /// A key and whose it is.
 struct ListedKey {
@@ -30,7 +34,6 @@ struct KeySection {
 /// All keys of the program; those that every protocol has, with the same bounds and defaults, once.
 /// @param protocol  its keys alone, with those of every protocol; empty: all
 std::vector<KeySection> key_sections(const std::string& protocol);
-bool is_protocol(const std::string& word);
 /// The keys with a word in their path or in what they are, whatever its case.
 /// @throws InputError if no key has it
 std::vector<KeySection> sections_with(const std::string& word);
@@ -39,6 +42,9 @@ std::vector<KeySection> sections_with(const std::string& word);
 std::string found_keys(const std::vector<KeySection>& sections);
 /// The page docs/keys.md.
 std::string key_page(const std::vector<KeySection>& sections);
+/// A JSON Schema (draft 7) by which editors complete and check definitions of one protocol. Checks
+/// of keys together are left to `haptrial validate`.
+std::string key_json_schema(const std::vector<KeySection>& sections, const std::string& protocol);
 
 /// Keys that have no line of words, and lines of words that no key has, with lines that state a
 /// default which the reader states itself: all of them mistakes of key_words.cpp.

@@ -172,7 +172,7 @@ TEST(DefinitionTest, AMistakeInTheProtocolIsReportedAlone) {
   EXPECT_EQ(problem_of_file(with("protocol = \"bone_driling\"")),
             "study.toml:" + line +
                 ": experiment.protocol is 'bone_driling'; did you mean "
-                "bone_drilling? allowed: force_training, bone_drilling, trials");
+                "bone_drilling? allowed: force_training, bone_drilling, trials, psychophysics");
   EXPECT_EQ(problem_of_file(with("protocl = \"bone_drilling\"")),
             "study.toml:" + line +
                 ": experiment.protocl is not a known key; did you mean experiment.protocol?");
