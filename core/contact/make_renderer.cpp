@@ -1,19 +1,13 @@
 #include "core/contact/make_renderer.h"
 
 #include <cmath>
-#include <stdexcept>
 
+#include "core/base/require.h"
 #include "core/contact/field_renderers.h"
 #include "core/contact/proxy_renderer.h"
 
 namespace haptrial::contact {
 namespace {
-
-void require(bool good, const char* sentence) {
-  if (!good) {
-    throw std::invalid_argument(sentence);
-  }
-}
 
 void check(RendererKind kind, const RendererOptions& options) {
   require(options.stiffness > 0.0 && std::isfinite(options.stiffness),

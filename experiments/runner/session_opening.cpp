@@ -18,6 +18,7 @@
 #include "core/record/rows/trial_facts.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
+#include "experiments/screen/frame_pacing.h"
 #include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
@@ -202,15 +203,22 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
   if (!request.window) {
     return nullptr;
   }
-  const auto says_mistake = [key = request.definition->screen.mistake_key,
+  // Both are called on the screen's thread.
+  constexpr std::int64_t kNotedFor = 1'500'000'000;  // [ns]
+  const auto noted_until = std::make_shared<std::int64_t>(0);
+  const auto says_mistake = [key = request.definition->screen.mistake_key, noted_until,
                              mistake = std::move(mistake)](const render::KeyPress& press) {
     const bool says = key != 0 && press.key == key;
     if (says) {
       mistake();
+      *noted_until = screen_ns() + kNotedFor;
     }
     return says;
   };
   ScreenCallbacks callbacks;
+  callbacks.words = [noted_until, &words = request.definition->texts.mistake_noted] {
+    return screen_ns() < *noted_until ? words : std::string();
+  };
   SessionControl* control = request.control;
   if (control != nullptr) {
     const bool steers = request.definition->screen.participant_steers;

@@ -50,7 +50,7 @@ bool ParticipantCanvas::take(const Scene& scene) {
   return true;
 }
 
-void ParticipantCanvas::draw(const stimulus::Shown& shown) {
+void ParticipantCanvas::draw(const stimulus::Shown& shown, const std::string& words) {
   if (drawing_) {
     drawing_->draw(shown);
   } else {
@@ -62,7 +62,20 @@ void ParticipantCanvas::draw(const stimulus::Shown& shown) {
   }
   ++frames_;
   draw_mark();
+  draw_words(words);
   draw_patch(shown);
+}
+
+void ParticipantCanvas::draw_words(const std::string& words) {
+  if (words.empty()) {
+    return;
+  }
+  constexpr double kSize = 0.035;  // of the screen's shorter side
+  const double size = kSize * std::min(style_.width, style_.height);
+  words_.begin();
+  words_.paragraphs(words, {0.5 * style_.width, style_.height - 2.5 * size}, 0.9 * style_.width,
+                    {static_cast<int>(size), false, style_.marker_colour}, render::Align::kCentre);
+  words_.end();
 }
 
 void ParticipantCanvas::draw_mark() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "core/render/flat/painter.h"
 #include "core/render/flat/text_screen.h"
@@ -39,7 +40,8 @@ class ParticipantCanvas {
   /// @returns whether it is another one than before.
   bool take(const Scene& scene);
   std::uint64_t version() const noexcept { return scene_.version; }  // of the scene it draws
-  void draw(const stimulus::Shown& shown);
+  /// @param words  over the picture, at its lower edge
+  void draw(const stimulus::Shown& shown, const std::string& words);
   /// The square is white from this frame on. @returns the onsets that it shows first; 0: no new
   /// ones
   std::uint64_t flash(std::uint64_t onsets);
@@ -54,6 +56,7 @@ class ParticipantCanvas {
   bool is_white(const stimulus::Shown& shown) const;
   void draw_patch(const stimulus::Shown& shown);
   void draw_mark();
+  void draw_words(const std::string& words);
 
   render::Window& window_;
   render::TrialDisplayStyle style_;

@@ -196,7 +196,7 @@ void Screen::Impl::show_pictures(render::Window& window, ParticipantCanvas& canv
     const bool other_view = take_scene(canvas);
     shown.read(seen);
     const std::uint64_t flashed = canvas.flash(onsets_so_far());  // after what they belong to
-    canvas.draw(seen);
+    canvas.draw(seen, callbacks.words ? callbacks.words() : "");
     give_picture(window);
     const std::int64_t drawn = screen_ns();
     window.swap();

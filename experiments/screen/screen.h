@@ -48,6 +48,8 @@ struct ScreenCallbacks {
   std::function<void()> closed;                       // the window's close button, once
   /// State of a game controller in the place of the mouse; empty: there is none.
   std::function<device::GamepadState()> pad;
+  /// Words over the next picture, at its lower edge; empty: none.
+  std::function<std::string()> words;
   /// Keys that are held, when they change; one that was tapped between two pictures is among them
   /// once.
   std::function<void(const std::vector<int>&)> held;

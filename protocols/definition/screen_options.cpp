@@ -86,6 +86,8 @@ const Schema<SessionTexts>& text_schema() {
     add("go_back", &T::go_back, "Second small line below a page that follows another one");
     add("answered", &T::answered,
         "Text after several questions, while answers may still be changed");
+    add("mistake_noted", &T::mistake_noted,
+        "Words over the picture for a moment after the key `mistake_key` of [screen]");
     add("declined", &T::declined, "Text for a participant who does not consent");
     return texts;
   }();

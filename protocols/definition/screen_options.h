@@ -60,6 +60,7 @@ struct SessionTexts {
   std::string go_back{"Press Backspace to go back"};
   std::string answered{"Thank you\nThese were all questions for now."};  // answers may be changed
   std::string declined{"Thank you\nThe session ends here."};             // who does not consent
+  std::string mistake_noted{"Noted: your last answer was a mistake"};  // after the key of a mistake
 };
 
 /// The keys of [screen].

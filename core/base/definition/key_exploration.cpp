@@ -30,7 +30,7 @@ void join(std::string& all, const std::string& another) {
   all += all.empty() ? another : ways < kMost ? " or " + another : kDepends;
 }
 
-Bounds either(const Bounds& a, const Bounds& b) {
+Bounds widest(const Bounds& a, const Bounds& b) {
   const bool open =
       a.low == b.low ? a.open_low && b.open_low : (a.low < b.low ? a.open_low : b.open_low);
   return {std::min(a.low, b.low), std::max(a.high, b.high), open};
@@ -44,7 +44,7 @@ void join(std::vector<KeyForm>& all, const KeyForm& another) {
     all.push_back(another);
     return;
   }
-  same->bounds = either(same->bounds, another.bounds);
+  same->bounds = widest(same->bounds, another.bounds);
   std::copy_if(another.words.begin(), another.words.end(), std::back_inserter(same->words),
                [&](const std::string& word) {
                  return std::find(same->words.begin(), same->words.end(), word) ==

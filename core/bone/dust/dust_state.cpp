@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "core/bone/dust/dust_state.h"
+
+#include "core/base/require.h"
 
 namespace haptrial::bone {
 namespace {
@@ -19,12 +20,6 @@ Eigen::Matrix3d frame_with_up(const Eigen::Vector3d& up) {
   Eigen::Matrix3d frame;
   frame << x, z.cross(x), z;
   return frame;
-}
-
-void require(bool good, const char* what) {
-  if (!good) {
-    throw std::invalid_argument(what);
-  }
 }
 
 const DustParameters& checked(const DustParameters& p) {

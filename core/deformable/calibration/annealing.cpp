@@ -2,23 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+
+#include "core/base/require.h"
 
 namespace haptrial::deformable {
 namespace {
 
-void require_search(bool good, const char* sentence) {
-  if (!good) {
-    throw std::invalid_argument(sentence);
-  }
-}
-
 const AnnealingOptions& checked_options(const AnnealingOptions& o) {
-  require_search(o.samples >= 1 && o.batch >= 1, "samples and batch must be 1 or more");
-  require_search(o.ratio > 0.0 && o.ratio < 1.0, "ratio must lie inside (0, 1)");
-  require_search(o.scale > 1.0, "scale must be above 1");
-  require_search(o.accepted_until >= 1, "accepted_until must be 1 or more");
-  require_search(o.probe > 0.0 && o.probe < 0.5, "probe must lie inside (0, 0.5)");
+  require(o.samples >= 1 && o.batch >= 1, "samples and batch must be 1 or more");
+  require(o.ratio > 0.0 && o.ratio < 1.0, "ratio must lie inside (0, 1)");
+  require(o.scale > 1.0, "scale must be above 1");
+  require(o.accepted_until >= 1, "accepted_until must be 1 or more");
+  require(o.probe > 0.0 && o.probe < 0.5, "probe must lie inside (0, 0.5)");
   return o;
 }
 
@@ -44,10 +39,10 @@ Annealing::Annealing(std::vector<SearchRange> ranges, std::uint64_t seed,
       options_(checked_options(options)),
       random_(seed, "annealing"),
       steps_(ranges_.size(), 0.0) {
-  require_search(!ranges_.empty(), "there must be a range");
+  require(!ranges_.empty(), "there must be a range");
   for (const SearchRange& range : ranges_) {
-    require_search(std::isfinite(range.low) && std::isfinite(range.high) && range.low < range.high,
-                   "a range must be finite and not empty");
+    require(std::isfinite(range.low) && std::isfinite(range.high) && range.low < range.high,
+            "a range must be finite and not empty");
   }
 }
 
@@ -103,10 +98,10 @@ const std::vector<std::vector<double>>& Annealing::ask() {
 }
 
 void Annealing::tell(std::span<const double> costs) {
-  require_search(costs.size() == asked_.size() && !costs.empty(),
-                 "costs must be those of the points that were asked for");
-  require_search(std::none_of(costs.begin(), costs.end(), [](double c) { return std::isnan(c); }),
-                 "a cost must be a number");
+  require(costs.size() == asked_.size() && !costs.empty(),
+          "costs must be those of the points that were asked for");
+  require(std::none_of(costs.begin(), costs.end(), [](double c) { return std::isnan(c); }),
+          "a cost must be a number");
   evaluations_ += static_cast<long>(costs.size());
   const Phase phase = phase_;
   for (std::size_t i = 0; i < costs.size(); ++i) {

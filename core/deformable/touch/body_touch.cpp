@@ -1,16 +1,12 @@
 #include "core/deformable/touch/body_touch.h"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "core/base/require.h"
 
 namespace haptrial::deformable {
 
 void check(const TouchOptions& options) {
-  const auto require = [](bool good, const char* sentence) {
-    if (!good) {
-      throw std::invalid_argument(sentence);
-    }
-  };
   require(std::isfinite(options.radius) && options.radius >= 0.0,
           "radius must be finite and at least 0");
   require(std::isfinite(options.stiffness) && options.stiffness > 0.0,

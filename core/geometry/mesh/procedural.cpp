@@ -4,22 +4,16 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "core/base/random.h"
+#include "core/base/require.h"
 
 namespace haptrial::geometry {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kMaxFrequency = 5000;  // 500 million triangles
-
-void require(bool good, const char* what) {
-  if (!good) {
-    throw std::invalid_argument(what);
-  }
-}
 
 bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
+#include "core/base/require.h"
 #include "core/geometry/mesh/procedural.h"
 
 namespace haptrial::render {
@@ -15,12 +15,6 @@ constexpr double kHandleBegins = 0.55;     // of the length
 constexpr double kThinnestShaft = 1.2e-3;  // of a burr that is thicker, diameter [m]
 constexpr double kShaftShare = 0.4;        // of a thick burr's diameter
 constexpr double kHandleThickness = 2.5;   // times the shaft's
-
-void require(bool good, const char* what) {
-  if (!good) {
-    throw std::invalid_argument(what);
-  }
-}
 
 /// A ring of vertices around z. @returns the first one's number
 std::int32_t add_ring(geometry::Mesh& mesh, double radius, double z) {

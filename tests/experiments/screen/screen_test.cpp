@@ -174,6 +174,32 @@ TEST_F(ScreenTest, APilotHasAnOrangeFrameAndSaysSo) {
   EXPECT_GT(letters, 100);
 }
 
+TEST_F(ScreenTest, WordsOverThePictureStandAtItsLowerEdgeAndGo) {
+  std::atomic<bool> noted{false};
+  ScreenCallbacks callbacks;
+  callbacks.words = [&] { return std::string(noted ? "Noted: a mistake" : ""); };
+  Screen screen(options_, style(), callbacks);
+  screen.show(protocols::path_drawing(style(), path()));
+  screen.observe(running(), kNoForce, 1e-3);
+  const Image expected = render::render_presentation(style(), path(), running());
+  const auto differs = [&](int from, int to) {
+    const Image seen = on_monitor();
+    int count = 0;
+    for (int i = 3 * kWidth * from; i < 3 * kWidth * to; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      count += std::abs(int{seen.rgb[at]} - int{expected.rgb[at]}) > 40 ? 1 : 0;
+    }
+    return count;
+  };
+  constexpr int kEdge = kHeight - kHeight / 8;
+  test::wait_until([&] { return differs(0, kHeight) == 0; });
+  noted = true;
+  test::wait_until([&] { return differs(kEdge, kHeight) > 300; });
+  EXPECT_EQ(differs(0, kEdge), 0);
+  noted = false;
+  test::wait_until([&] { return differs(0, kHeight) == 0; });
+}
+
 TEST_F(ScreenTest, CountsItsFramesFromTheFirstTickOn) {
   Screen screen(options_, style());
   const ScreenSummary pace = screen.summary();
