@@ -10,5 +10,5 @@ set xlabel "time [ms]"
 set ylabel "force [N]"
 set xrange [-50:200]
 set yrange [-13:13]
-plot data u 1:2 w l lc rgb "#d1701c" lw 1.5 t "all the damping, until the envelope ends the pass", \
-     data u 1:3 w l lc rgb "#1f5ca8" lw 2 t "governed"
+plot data u 1:2 w l lc rgb "#d1701c" lw 1.5 t "without the guard, until the envelope ends the pass", \
+     data u 1:3 w l lc rgb "#1f5ca8" lw 2 t "with the guard"

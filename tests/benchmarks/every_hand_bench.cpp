@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
     return std::ranges::count_if(forces, [](double f) { return std::abs(f) >= 0.98 * 12.0; });
   };
   fmt::print(
-      "let go: {} ms at the limit without the governor, until the envelope ended it; {} ms "
+      "let go: {} ms at the limit without the guard, until the envelope ended it; {} ms "
       "with it\n",
       at_limit(without), at_limit(with));
   print_costs(stimulus);
