@@ -90,14 +90,20 @@ class Schema {
                  }
                });
   }
-  /// A text that participants read, which translations may replace; in bytes no longer than `most`.
+  /// A text that participants read, which translations may replace.
+  Schema& shown_text(std::string name, std::string T::*member, std::string description) {
+    return shown_text(std::move(name), member, std::string::npos, std::move(description));
+  }
+  /// The same, in bytes no longer than `most`.
   Schema& shown_text(std::string name, std::string T::*member, std::size_t most,
                      std::string description) {
     return add(std::move(name), std::move(description),
                [=](Table& table, const KeyDescription& key, T& into) {
-                 const bool stands = key.stands_in(table, into.*member);
-                 into.*member =
-                     stands ? table.shown_text(key.name) : table.shown_as(key.name, into.*member);
+                 if (key.stands_in(table, into.*member)) {
+                   into.*member = table.shown_text(key.name);
+                 } else if (!(into.*member).empty()) {
+                   into.*member = table.shown_as(key.name, into.*member);
+                 }
                  if ((into.*member).size() > most) {
                    table.reject(key.name, std::to_string((into.*member).size()) + " bytes long",
                                 "at most " + std::to_string(most) + " bytes");
@@ -211,10 +217,9 @@ class Schema {
   }
   /// A check of keys together, which notes problems by Table::reject; it may also change the value.
   Schema& check(std::function<void(Table& table, T& value)> check) {
-    keys_.push_back({{}, [check = std::move(check)](Table& table, const KeyDescription&, T& into) {
-                       check(table, into);
-                     }});
-    return *this;
+    return add({}, {}, [check = std::move(check)](Table& table, const KeyDescription&, T& into) {
+      check(table, into);
+    });
   }
 
   /// The key that was added last must be there.
@@ -231,22 +236,25 @@ class Schema {
   /// The key that was added last is read only if the members so far say so; elsewhere it is not
   /// known.
   Schema& only_if(std::function<bool(const T&)> applies) {
-    keys_.back().read = [applies = std::move(applies), read = std::move(keys_.back().read)](
-                            Table& table, const KeyDescription& key, T& into) {
-      if (applies(into)) {
-        read(table, key, into);
-      }
-    };
+    keys_.back().applies = std::move(applies);
     return *this;
   }
 
   /// Problems are noted in the table.
   void read(Table& table, T& into) const {
     for (const Key& key : keys_) {
-      if (!key.description.name.empty()) {
-        table.describe(key.description);
+      if (!key.applies || key.applies(into)) {
+        key.read_from(table, into);
       }
-      key.read(table, key.description, into);
+    }
+  }
+  /// Each key is read from `own` if it stands there, and else from `shared`; checks see `own`.
+  void read(Table& own, Table& shared, T& into) const {
+    for (const Key& key : keys_) {
+      if (!key.applies || key.applies(into)) {
+        const std::string& name = key.description.name;
+        key.read_from(name.empty() || own.has(name) ? own : shared, into);
+      }
     }
   }
   T read(Table& table) const {
@@ -260,9 +268,17 @@ class Schema {
   struct Key {
     KeyDescription description;
     Reader read;
+    std::function<bool(const T&)> applies;  // none: always
+
+    void read_from(Table& table, T& into) const {
+      if (!description.name.empty()) {
+        table.describe(description);
+      }
+      read(table, description, into);
+    }
   };
   Schema& add(std::string name, std::string description, Reader read) {
-    keys_.push_back({{std::move(name), std::move(description), "", false}, std::move(read)});
+    keys_.push_back({{std::move(name), std::move(description), "", false}, std::move(read), {}});
     return *this;
   }
 
