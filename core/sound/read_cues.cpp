@@ -1,6 +1,8 @@
 #include "core/sound/read_cues.h"
 
-#include "core/base/definition/table.h"
+#include <utility>
+
+#include "core/base/definition/schema.h"
 
 namespace haptrial::sound {
 namespace {
@@ -11,67 +13,121 @@ constexpr Bounds kHeard{20.0, 20'000.0, false};  // [Hz]
 constexpr Bounds kLength{0.0, 60.0, true};       // [s]
 constexpr Bounds kLevel{-120.0, -3.1, false};    // a sine that just fits has -3.01 dB
 
-NoiseColour read_colour(Table& table, NoiseColour colour) {
-  if (table.has("colour")) {
-    const std::string word = table.choice("colour", {"white", "pink", "band"});
-    colour.kind = word == "pink"   ? NoiseColour::Kind::kPink
-                  : word == "band" ? NoiseColour::Kind::kBand
-                                   : NoiseColour::Kind::kWhite;
-  }
-  const bool band = colour.kind == NoiseColour::Kind::kBand;
-  if (band || table.has("low")) {
-    colour.low = table.number("low", kHeard, "Hz");
-  }
-  if (band || table.has("high")) {
-    colour.high = table.number("high", kHeard, "Hz");
+bool is_file(const Cue& cue) { return cue.kind == Cue::Kind::kFile; }
+bool is_no_file(const Cue& cue) { return !is_file(cue); }
+bool is_click(const Cue& cue) { return cue.kind == Cue::Kind::kClick; }
+bool is_tone(const Cue& cue) { return cue.kind == Cue::Kind::kTone; }
+bool is_noise(const Cue& cue) { return cue.kind == Cue::Kind::kNoise; }
+bool has_ramps(const Cue& cue) { return is_tone(cue) || is_noise(cue); }
+
+/// A band needs both of its ends, and every noise some width.
+void check_ends(Table& table, NoiseColour& colour) {
+  for (const char* key : {"low", "high"}) {
+    if (colour.kind == NoiseColour::Kind::kBand && !table.has(key)) {
+      table.number(key, kHeard, "Hz");  // notes that it is missing
+    }
   }
   if (!(colour.high > colour.low)) {
     table.reject("high", "must be above low; change one of them");
     colour = {colour.kind};
   }
-  return colour;
 }
 
-Cue read_cue(Table& table, const std::string& name) {
-  Cue cue;
-  cue.name = name;
-  const std::string type = table.choice("type", {"tone", "noise", "click", "file"});
-  if (type == "file") {
-    cue.kind = Cue::Kind::kFile;
-    cue.file = table.text("file");
-    cue.level = table.has("level") ? table.number("level", {-120.0, 0.0}, "dB") : 0.0;
-    return cue;
-  }
-  cue.level = table.number("level", kLevel, "dB");
-  if (type == "click") {
-    cue.kind = Cue::Kind::kClick;
-    cue.duration = table.has("duration") ? table.number("duration", kLength, "s") : 0.001;
-    return cue;
-  }
-  cue.duration = table.number("duration", kLength, "s");
-  cue.rise = table.has("rise") ? table.number("rise", kNonNegative, "s") : cue.rise;
-  if (2.0 * cue.rise > cue.duration) {
+const Schema<NoiseColour>& colour_schema() {
+  using C = NoiseColour;
+  static const auto schema =
+      Schema<C>()
+          .choice("colour", &C::kind,
+                  {{"white", C::Kind::kWhite}, {"pink", C::Kind::kPink}, {"band", C::Kind::kBand}},
+                  "Spectrum of a noise: equal power in every hertz, in every octave, or between "
+                  "two frequencies alone")
+          .number("low", &C::low, kHeard, "Hz", "Lowest frequency of a noise")
+          .otherwise("20, of a band needed")
+          .number("high", &C::high, kHeard, "Hz", "Highest frequency of a noise")
+          .otherwise("20000, of a band needed")
+          .check(check_ends);
+  return schema;
+}
+
+void set_defaults_of_kind(Cue& cue) {
+  cue.level = is_file(cue) ? 0.0 : cue.level;
+  cue.duration = is_click(cue) ? 0.001 : cue.duration;
+}
+
+void check_ramps(Table& table, Cue& cue) {
+  if (has_ramps(cue) && 2.0 * cue.rise > cue.duration) {
     table.reject(table.has("rise") ? "rise" : "duration",
                  "leaves nothing between the ramps; rise must be at most half the duration");
   }
-  if (type == "tone") {
-    cue.frequency = table.number("frequency", kHeard, "Hz");
-  } else {
-    cue.kind = Cue::Kind::kNoise;
-    cue.colour = read_colour(table, cue.colour);
-  }
-  return cue;
 }
 
-Masking read_masking(Table& table) {
-  Masking masking;
-  masking.colour = read_colour(table, masking.colour);
-  masking.level = table.number("level", kLevel, "dB");
-  masking.fade = table.has("fade") ? table.number("fade", {0.0, 60.0}, "s") : masking.fade;
-  if (table.has("stages")) {
-    masking.stages = table.texts("stages");
-  }
-  return masking;
+constexpr const char* kLevelText =
+    "Root mean square of a sound, below full scale; gain of a recording";
+constexpr const char* kLevelAbsent = "0 of a file, else needed";
+constexpr const char* kDurationText = "Duration of a sound";
+constexpr const char* kDurationAbsent = "0.001 of a click, else needed";
+
+const Schema<Cue>& cue_schema() {
+  using C = Cue;
+  static const auto schema =
+      Schema<C>()
+          .choice("type", &C::kind,
+                  {{"tone", C::Kind::kTone},
+                   {"noise", C::Kind::kNoise},
+                   {"click", C::Kind::kClick},
+                   {"file", C::Kind::kFile}},
+                  "Kind of a sound: a sine, a burst of noise, a pulse or a recording")
+          .required()
+          .derive(set_defaults_of_kind)
+          .custom("file", "Recording at 48,000 samples a second (WAV), relative to the definition",
+                  [](Table& table, const std::string& key, C& cue) { cue.file = table.text(key); })
+          .required()
+          .only_if(is_file)
+          .number("level", &C::level, {-120.0, 0.0}, "dB", kLevelText)
+          .otherwise(kLevelAbsent)
+          .only_if(is_file)
+          .number("level", &C::level, kLevel, "dB", kLevelText)
+          .required()
+          .otherwise(kLevelAbsent)
+          .only_if(is_no_file)
+          .number("duration", &C::duration, kLength, "s", kDurationText)
+          .otherwise(kDurationAbsent)
+          .only_if(is_click)
+          .number("duration", &C::duration, kLength, "s", kDurationText)
+          .required()
+          .otherwise(kDurationAbsent)
+          .only_if(has_ramps)
+          .number("rise", &C::rise, kNonNegative, "s",
+                  "Duration of the ramps at both ends of a tone or noise, against clicks")
+          .only_if(has_ramps)
+          .check(check_ramps)
+          .number("frequency", &C::frequency, kHeard, "Hz", "Frequency of a tone")
+          .required()
+          .only_if(is_tone)
+          .keys_of(&C::colour, colour_schema())
+          .only_if(is_noise);
+  return schema;
+}
+
+const Schema<Masking>& masking_schema() {
+  using M = Masking;
+  static const auto schema =
+      Schema<M>()
+          .keys_of(&M::colour, colour_schema())
+          .number("level", &M::level, kLevel, "dB",
+                  "Root mean square of the masking noise, below full scale")
+          .required()
+          .number("fade", &M::fade, {0.0, 60.0}, "s",
+                  "Time over which the masking noise grows at its beginning and falls at its end")
+          .texts("stages", &M::stages, "Names of the stages in which the masking noise sounds")
+          .otherwise("the whole session");
+  return schema;
+}
+
+const Schema<CueSet>& device_schema() {
+  static const auto schema = Schema<CueSet>().text(
+      kDevice, &CueSet::device, "Sound card that plays the sounds, by its name in ALSA");
+  return schema;
 }
 
 }  // namespace
@@ -87,17 +143,16 @@ std::vector<std::string> cue_names(const Table& table) {
 }
 
 CueSet read_cues(Table& table) {
-  CueSet set;
-  if (table.has(kDevice)) {
-    set.device = table.text(kDevice);
-  }
+  CueSet set = device_schema().read(table);
   for (const std::string& name : cue_names(table)) {
-    Table cue = table.table(name);
-    set.cues.push_back(read_cue(cue, name));
+    Table inner = table.table(name);
+    Cue cue = cue_schema().read(inner);
+    cue.name = name;
+    set.cues.push_back(std::move(cue));
   }
   if (table.has(kMasking)) {
     Table masking = table.table(kMasking);
-    set.masking = read_masking(masking);
+    set.masking = masking_schema().read(masking);
   }
   return set;
 }

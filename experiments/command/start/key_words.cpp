@@ -4,7 +4,6 @@ namespace haptrial::experiments {
 
 std::string_view key_words() {
   return R"(
-sounds.device | default | sound card, by ALSA's name
 pages.NAME.picture | none | file of a picture (PNG), relative to the definition
 level_script.file | | program or Python script (.py) that chooses the levels between trials, beside the definition
 observer.script.file | | program or Python script (.py) by which virtual participants answer, beside the definition
@@ -21,21 +20,6 @@ display.viewing_distance | 0.5 | from the eyes to the screen
 display.sound_right | none | sound after a right answer, where feedback is given
 display.sound_wrong | none | sound after a wrong one
 devices.NAME.start | | where the hand of a virtual participant begins
-sounds.NAME.type | | what the sound is
-sounds.NAME.level | 0 of a file, else needed | root mean square below full scale; of a file, its gain
-sounds.NAME.duration | 0.001 of a click, else needed | of the sound
-sounds.NAME.rise | 0.005 | time of the ramps at both ends
-sounds.NAME.frequency | | of the tone
-sounds.NAME.colour | white | spectrum of the noise
-sounds.NAME.low | 20, of a band needed | lowest frequency of the noise
-sounds.NAME.high | 20000, of a band needed | highest frequency of the noise
-sounds.NAME.file | | recording at 48,000 samples a second, relative to the definition
-sounds.masking.colour | pink | spectrum of the masking noise
-sounds.masking.low | 20, of a band needed | its lowest frequency
-sounds.masking.high | 20000, of a band needed | its highest frequency
-sounds.masking.level | | its root mean square below full scale
-sounds.masking.fade | 0.5 | time over which it comes and goes
-sounds.masking.stages | the whole session | stages in which it sounds
 texts.too_fast | Too fast | after an answer below `too_fast` of its response
 texts.too_slow | Too slow | after an answer above `too_slow`
 pages.before | none | names of pages before the first trial, in this order
