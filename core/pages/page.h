@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,9 +18,9 @@ enum class ItemKind {
 };
 
 struct ItemChoice {
-  std::string value;   // what is recorded
-  std::string label;   // what is shown
-  double number{0.0};  // what is recorded as the value; NaN: it has none
+  std::string value;                                        // what is recorded
+  std::string label;                                        // what is shown
+  double number{std::numeric_limits<double>::quiet_NaN()};  // recorded as the value; NaN: none
 };
 
 /// One screenful of a page.

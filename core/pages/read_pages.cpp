@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/pages/known_questionnaires.h"
 
 namespace haptrial::pages {
@@ -17,46 +16,80 @@ constexpr std::size_t kLongestText = 4000;  // [bytes]; more would not be legibl
 constexpr std::size_t kMostChoices = 12;
 constexpr double kMostSteps = 200.0;  // of a scale
 
-std::string text_of(Table& table, const char* key) {
-  std::string text = table.shown_text(key);
-  if (text.size() > kLongestText) {
-    table.reject(key, fmt::format("{} bytes long", text.size()),
-                 fmt::format("at most {} bytes", kLongestText));
-  }
-  return text;
+const Schema<Item>& title_schema() {
+  static const auto schema =
+      Schema<Item>()
+          .shown_text("title", &Item::title, kLongestText, "Heading of the page")
+          .otherwise("none");
+  return schema;
 }
 
-void take_title(Table& table, Item& item) {
-  if (table.has("title")) {
-    item.title = text_of(table, "title");
-  }
+const Schema<Item>& reading_schema() {
+  static const auto schema = Schema<Item>()
+                                 .shown_text("text", &Item::text, kLongestText, "Text of the page")
+                                 .required()
+                                 .text("picture", &Item::picture,
+                                       "Picture on the page, a PNG file relative to the definition")
+                                 .otherwise("none");
+  return schema;
 }
 
 Item reading(Table& table, const char* name, ItemKind kind) {
   Item item;
   item.name = name;
   item.kind = kind;
-  take_title(table, item);
-  item.text = text_of(table, "text");
-  if (table.has("picture")) {
-    item.picture = table.text("picture");
-  }
+  title_schema().read(table, item);
+  reading_schema().read(table, item);
   return item;
+}
+
+struct ConsentWords {
+  std::string accept{"I agree to take part"};
+  std::string decline{"I do not agree"};
+};
+
+const Schema<ConsentWords>& consent_schema() {
+  using W = ConsentWords;
+  static const auto schema =
+      Schema<W>()
+          .shown_text("accept", &W::accept, "Words of the choice of people who take part")
+          .shown_text("decline", &W::decline,
+                      "Words of the choice of people who do not take part, "
+                      "which ends the session");
+  return schema;
 }
 
 Item consent(Table& table) {
   Item item = reading(table, "consent", ItemKind::kConsent);
-  item.choices = {{"accepted", table.shown_text("accept", "I agree to take part"), 1.0},
-                  {"declined", table.shown_text("decline", "I do not agree"), 0.0}};
+  const ConsentWords words = consent_schema().read(table);
+  item.choices = {{"accepted", words.accept, 1.0}, {"declined", words.decline, 0.0}};
   return item;
 }
 
-void take_name(Table& table, const char* key, std::string& name) {
-  name = table.text(key);
+/// Gives an entry of a list its name, which files and translations have.
+void name_entry(Table& table, const char* key, const std::string& name) {
   if (name.size() > kNameBytes || name.find('.') != std::string::npos) {
     table.reject(key, fmt::format("\"{}\"", name),
                  fmt::format("a name without a point, of at most {} bytes", kNameBytes));
   }
+  table.name_entry(name);
+}
+
+const Schema<ItemChoice>& choice_schema() {
+  using C = ItemChoice;
+  static const auto schema =
+      Schema<C>()
+          .text("value", &C::value, "Value of the choice in files")
+          .required()
+          .check([](Table& table, C& choice) {
+            name_entry(table, "value", choice.value);
+            choice.label = choice.value;
+          })
+          .shown_text("label", &C::label, "Words of the choice that participants read")
+          .otherwise("the value")
+          .number("number", &C::number, {}, "", "Number that a choice counts as in scores")
+          .otherwise("none");
+  return schema;
 }
 
 void take_choices(Table& table, Item& item) {
@@ -67,12 +100,7 @@ void take_choices(Table& table, Item& item) {
   }
   std::set<std::string> values;
   for (Table& each : choices) {
-    ItemChoice choice;
-    take_name(each, "value", choice.value);
-    each.name_entry(choice.value);
-    choice.label = each.shown_text("label", choice.value);
-    choice.number = each.has("number") ? each.number("number", {}, "")
-                                       : std::numeric_limits<double>::quiet_NaN();
+    ItemChoice choice = choice_schema().read(each);
     if (!values.insert(choice.value).second) {
       each.reject("value", fmt::format("\"{}\"", choice.value), "a value that no other choice has");
     }
@@ -80,7 +108,7 @@ void take_choices(Table& table, Item& item) {
   }
 }
 
-void take_range(Table& table, const char* key, Item& item) {
+void read_range(Table& table, const std::string& key, Item& item) {
   const std::vector<double> range = table.numbers(key, {}, "");
   if (range.size() != 2 || range[1] <= range[0]) {
     table.reject(key, "another list", "[lowest, highest]");
@@ -90,29 +118,71 @@ void take_range(Table& table, const char* key, Item& item) {
   item.high = range[1];
 }
 
-void take_scale(Table& table, Item& item) {
-  take_range(table, "scale", item);
-  if (table.has("step")) {
-    item.step = table.number("step", {0.0, 1e9, true}, "");
-  }
+void check_steps(Table& table, Item& item) {
   const double steps = (item.high - item.low) / item.step;
   if (std::abs(steps - std::round(steps)) > 1e-9 * steps || steps > kMostSteps) {
     table.reject(table.has("step") ? "step" : "scale", fmt::format("{} steps long", steps),
                  fmt::format("a whole number of steps, at most {}", kMostSteps));
   }
-  if (table.has("ends")) {
-    Table ends = table.table("ends");
-    item.low_end = ends.shown_text("low");
-    item.high_end = ends.shown_text("high");
-  }
+}
+
+const Schema<Item>& ends_schema() {
+  static const auto schema =
+      Schema<Item>()
+          .shown_text("low", &Item::low_end, "Words at the lowest value of a scale")
+          .required()
+          .shown_text("high", &Item::high_end, "Words at the highest value of a scale")
+          .required();
+  return schema;
+}
+
+const Schema<Item>& scale_schema() {
+  static const auto schema =
+      Schema<Item>()
+          .custom("scale", "Lowest and highest value of a scale on which a mark is moved",
+                  read_range)
+          .otherwise("choices, a number or words")
+          .number("step", &Item::step, {0.0, 1e9, true}, "",
+                  "Distance between neighbouring values of a scale")
+          .check(check_steps)
+          .custom("ends", "Words at both ends of a scale",
+                  [](Table& table, const std::string& key, Item& item) {
+                    Table ends = table.table(key);
+                    ends_schema().read(ends, item);
+                  })
+          .otherwise("none");
+  return schema;
+}
+
+const Schema<Item>& number_schema() {
+  static const auto schema =
+      Schema<Item>()
+          .custom("number", "Lowest and highest number that may be typed", read_range)
+          .otherwise("choices, a scale or words");
+  return schema;
+}
+
+const Schema<Item>& question_schema() {
+  static const auto schema =
+      Schema<Item>()
+          .text("name", &Item::name, "Name of the question in files")
+          .required()
+          .check([](Table& table, Item& item) { name_entry(table, "name", item.name); })
+          .shown_text("question", &Item::text, kLongestText, "Text of the question")
+          .required()
+          .custom("words",
+                  "Whether the answer is any typed words; else the question has choices, a scale "
+                  "or a number",
+                  [](Table& table, const std::string& key, Item& item) {
+                    item.kind = table.boolean(key) ? ItemKind::kText : item.kind;
+                  })
+          .otherwise("false");
+  return schema;
 }
 
 Item question(Table& table) {
-  Item item;
-  take_name(table, "name", item.name);
-  table.name_entry(item.name);
-  item.text = text_of(table, "question");
-  const bool words = table.has("words") && table.boolean("words");
+  Item item = question_schema().read(table);
+  const bool words = item.kind == ItemKind::kText;
   const int kinds = (table.has("choices") ? 1 : 0) + (table.has("scale") ? 1 : 0) +
                     (table.has("number") ? 1 : 0) + (words ? 1 : 0);
   if (kinds != 1) {
@@ -123,19 +193,17 @@ Item question(Table& table) {
     take_choices(table, item);
   } else if (table.has("scale")) {
     item.kind = ItemKind::kScale;
-    take_scale(table, item);
+    scale_schema().read(table, item);
   } else if (table.has("number")) {
     item.kind = ItemKind::kNumber;
-    take_range(table, "number", item);
-  } else {
-    item.kind = ItemKind::kText;
+    number_schema().read(table, item);
   }
   return item;
 }
 
 std::vector<Item> questions(Table& table) {
   std::vector<Item> items;
-  const std::string title = table.has("title") ? text_of(table, "title") : "";
+  const std::string title = title_schema().read(table).title;
   std::set<std::string> names;
   for (Table& each : table.tables("items")) {
     items.push_back(question(each));
@@ -168,25 +236,33 @@ std::vector<Item> known(Table& table, std::vector<Item> items) {
   return items;
 }
 
+const Schema<Page>& page_schema() {
+  static const auto schema =
+      Schema<Page>()
+          .choice("kind", &Page::kind,
+                  {{"text", PageKind::kText},
+                   {"consent", PageKind::kConsent},
+                   {"nasa_tlx", PageKind::kNasaTlx},
+                   {"edinburgh", PageKind::kEdinburgh},
+                   {"questions", PageKind::kQuestions}},
+                  "Kind of the page: a text, consent, a known questionnaire, or questions of the "
+                  "definition")
+          .flag("weighted", &Page::weighted,
+                "Whether the NASA-TLX also asks its 15 pairs of scales, which weight the ratings")
+          .only_if([](const Page& page) { return page.kind == PageKind::kNasaTlx; });
+  return schema;
+}
+
 Page read_page(Table& table, const std::string& name) {
-  Page page;
+  Page page = page_schema().read(table);
   page.name = name;
-  const std::string kind =
-      table.has("kind")
-          ? table.choice("kind", {"text", "consent", "nasa_tlx", "edinburgh", "questions"})
-          : "text";
-  if (kind == "consent") {
-    page.kind = PageKind::kConsent;
+  if (page.kind == PageKind::kConsent) {
     page.items = {consent(table)};
-  } else if (kind == "nasa_tlx") {
-    page.kind = PageKind::kNasaTlx;
-    page.weighted = table.has("weighted") && table.boolean("weighted");
+  } else if (page.kind == PageKind::kNasaTlx) {
     page.items = known(table, nasa_tlx_items(page.weighted));
-  } else if (kind == "edinburgh") {
-    page.kind = PageKind::kEdinburgh;
+  } else if (page.kind == PageKind::kEdinburgh) {
     page.items = known(table, edinburgh_items());
-  } else if (kind == "questions") {
-    page.kind = PageKind::kQuestions;
+  } else if (page.kind == PageKind::kQuestions) {
     page.items = questions(table);
   } else {
     page.items = {reading(table, "read", ItemKind::kRead)};
@@ -208,6 +284,31 @@ std::vector<std::string> names_of(Table& table, const std::string& key, const Pa
     }
   }
   return names;
+}
+
+/// Keys that say when pages are shown, once all pages are read.
+const Schema<PagePlan>& order_schema() {
+  static const auto schema =
+      Schema<PagePlan>()
+          .custom("before", "Names of the pages before the first trial, in their order",
+                  [](Table& table, const std::string& key, PagePlan& plan) {
+                    plan.before = names_of(table, key, plan);
+                  })
+          .otherwise("none")
+          .custom("after", "Names of the pages after the last trial, in their order",
+                  [](Table& table, const std::string& key, PagePlan& plan) {
+                    plan.after = names_of(table, key, plan);
+                  })
+          .otherwise("none");
+  return schema;
+}
+
+void read_after_block(Table& table, PagePlan& plan) {
+  for (const std::string& block : table.keys()) {
+    table.describe(
+        {block, "Names of the pages after the last trial of the block of this name", "", true});
+    plan.after_block[block] = names_of(table, block, plan);
+  }
 }
 
 bool is_when(const std::string& key) {
@@ -249,17 +350,10 @@ PagePlan read_pages(Table& root) {
     Table page = table.table(name);
     plan.pages.push_back(read_page(page, name));
   }
-  if (table.has("before")) {
-    plan.before = names_of(table, "before", plan);
-  }
-  if (table.has("after")) {
-    plan.after = names_of(table, "after", plan);
-  }
+  order_schema().read(table, plan);
   if (table.has("after_block")) {
     Table blocks = table.table("after_block");
-    for (const std::string& block : blocks.keys()) {
-      plan.after_block[block] = names_of(blocks, block, plan);
-    }
+    read_after_block(blocks, plan);
   }
   check_use(table, plan);
   return plan;

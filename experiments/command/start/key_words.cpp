@@ -4,7 +4,6 @@ namespace haptrial::experiments {
 
 std::string_view key_words() {
   return R"(
-pages.NAME.picture | none | file of a picture (PNG), relative to the definition
 level_script.file | | program or Python script (.py) that chooses the levels between trials, beside the definition
 observer.script.file | | program or Python script (.py) by which virtual participants answer, beside the definition
 observer.adaptation.matrix | | matrix B of the field that is learnt
@@ -22,26 +21,6 @@ display.sound_wrong | none | sound after a wrong one
 devices.NAME.start | | where the hand of a virtual participant begins
 texts.too_fast | Too fast | after an answer below `too_fast` of its response
 texts.too_slow | Too slow | after an answer above `too_slow`
-pages.before | none | names of pages before the first trial, in this order
-pages.after | none | names of pages after the last trial
-pages.after_block.NAME | | names of pages after the last trial of the block of this name
-pages.NAME.kind | text | what the page is
-pages.NAME.title | none | heading of the page
-pages.NAME.text | | what is read
-pages.NAME.accept | I agree to take part | choice of those who take part
-pages.NAME.decline | I do not agree | choice that ends the session
-pages.NAME.weighted | false | whether the 15 pairs of NASA-TLX are asked, too
-pages.NAME.items[].name | | of the question, in files
-pages.NAME.items[].question | | what is read
-pages.NAME.items[].words | false | whether words are typed; one of choices, scale, number and words is needed
-pages.NAME.items[].choices[].value | | of the choice, as files have it
-pages.NAME.items[].choices[].label | the value | what is shown
-pages.NAME.items[].choices[].number | none | value of the choice as a number
-pages.NAME.items[].scale | choices, a number or words | lowest and highest value of a scale
-pages.NAME.items[].step | 1 | between neighbouring values of the scale
-pages.NAME.items[].ends.low | | words at the scale's lowest value
-pages.NAME.items[].ends.high | | words at its highest value
-pages.NAME.items[].number | choices, a scale or words | lowest and highest number that may be typed
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
 groups | one group of everybody | participants of each group, in the order of their numbers: NAME = 8
 groups.NAME | | participants of the group, in the order of their numbers
