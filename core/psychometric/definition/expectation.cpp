@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/function/response_observer.h"
 #include "core/psychometric/procedure/staircase_chain.h"
@@ -77,6 +77,31 @@ std::optional<std::string> by_simulation(const Track& track,
          " (simulated)";
 }
 
+/// @throws std::invalid_argument naming the sigmoids, from its read(), if there is none of the name
+const Schema<PsychometricParameters>& expectation_schema() {
+  using P = PsychometricParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("threshold", &P::threshold, {}, "",
+                  "Threshold that participants are expected to have, from which validate predicts "
+                  "the estimate")
+          .required()
+          .number("width", &P::width, kPositive, "",
+                  "Expected width of the psychometric function, from 5 to 95 % of its rise, on the "
+                  "axis of the scale")
+          .required()
+          .number("guess", &P::guess, {0.0, 0.99}, "1", "Expected guess rate")
+          .number("lapse", &P::lapse, {0.0, 0.5}, "1", "Expected lapse rate")
+          .number("share", &P::share, {0.01, 0.99}, "1",
+                  "Share of answers 1 at the expected threshold, guesses and lapses aside")
+          .custom("function", "Sigmoid of the expected psychometric function, by its name",
+                  [](Table& table, const std::string& key, P& p) {
+                    set_sigmoid(p, table.text(key), p.axis.scale);
+                  })
+          .otherwise("logistic");
+  return schema;
+}
+
 }  // namespace
 
 std::optional<PsychometricParameters> read_expectation(Table& procedure, const Axis& axis) {
@@ -84,21 +109,8 @@ std::optional<PsychometricParameters> read_expectation(Table& procedure, const A
   PsychometricParameters p;
   p.axis = axis;
   p.guess = 0.5;
-  p.threshold = table.number("threshold", {}, "");
-  p.width = table.number("width", kPositive, "");
-  if (table.has("guess")) {
-    p.guess = table.number("guess", {0.0, 0.99}, "1");
-  }
-  if (table.has("lapse")) {
-    p.lapse = table.number("lapse", {0.0, 0.5}, "1");
-  }
-  if (table.has("share")) {
-    p.share = table.number("share", {0.01, 0.99}, "1");
-  }
   try {
-    if (table.has("function")) {
-      set_sigmoid(p, table.text("function"), axis.scale);
-    }
+    expectation_schema().read(table, p);
     static_cast<void>(PsychometricFunction(p));
   } catch (const std::invalid_argument& error) {
     procedure.reject("expect", fmt::format("is refused: {}", error.what()));

@@ -4,9 +4,57 @@
 
 #include <cmath>
 
+#include "core/base/definition/schema.h"
 #include "core/psychometric/definition/track.h"
 
 namespace haptrial::psychometric {
+namespace {
+
+struct SpacedGrid {
+  double from{0.0}, to{1.0};
+  int count{2};
+  bool log{false};  // equal ratios of neighbours, else equal differences
+};
+
+const Schema<SpacedGrid>& spaced_grid_schema() {
+  using G = SpacedGrid;
+  static const auto schema =
+      Schema<G>()
+          .number("from", &G::from, {}, "", "First value of a grid of levels or parameters")
+          .required()
+          .number("to", &G::to, {}, "", "Last value of a grid of levels or parameters")
+          .required()
+          .integer("count", &G::count, 2, 2000, "Number of values of a grid, its ends among them")
+          .required()
+          .choice("spacing", &G::log, {{"linear", false}, {"log", true}},
+                  "Spacing of the values of a grid: equal differences, or equal ratios");
+  return schema;
+}
+
+const Schema<Track>& axis_schema() {
+  static const auto schema =
+      Schema<Track>()
+          .custom("scale",
+                  "Scale of the axis on which steps and the psychometric function are stated: the "
+                  "level's difference to the origin, or a logarithm of it",
+                  [](Table& table, const std::string& key, Track& track) {
+                    const std::string scale = table.choice(key, {"linear", "log10", "decibel"});
+                    track.axis.scale = scale == "log10"     ? Scale::kLog10
+                                       : scale == "decibel" ? Scale::kDecibel
+                                                            : Scale::kLinear;
+                  })
+          .otherwise("linear")
+          .custom("origin",
+                  "Level from which the axis of steps and of the psychometric function counts, "
+                  "such as that of the reference",
+                  [](Table& table, const std::string& key, Track& track) {
+                    track.axis.origin = table.number(key, {}, track.unit);
+                  })
+          .otherwise("0");
+  return schema;
+}
+
+}  // namespace
 
 std::vector<double> read_grid(Table& table, const std::string& key) {
   if (table.is_table(key)) {
@@ -17,32 +65,25 @@ std::vector<double> read_grid(Table& table, const std::string& key) {
                              : std::vector<double>{table.number(key, {}, "")};
 }
 
-std::vector<double> read_spaced_grid(Table& grid) {
-  const double from = grid.number("from", {}, ""), to = grid.number("to", {}, "");
-  const auto count = static_cast<int>(grid.integer("count", 2, 2000));
-  const bool log = grid.has("spacing") && grid.choice("spacing", {"linear", "log"}) == "log";
-  if (!(from < to) || (log && from <= 0.0)) {
-    grid.reject("from", fmt::format("{}", from), log ? "above 0 and below `to`" : "below `to`");
-    return {from};
+std::vector<double> read_spaced_grid(Table& table) {
+  const SpacedGrid grid = spaced_grid_schema().read(table);
+  if (!(grid.from < grid.to) || (grid.log && grid.from <= 0.0)) {
+    table.reject("from", fmt::format("{}", grid.from),
+                 grid.log ? "above 0 and below `to`" : "below `to`");
+    return {grid.from};
   }
   std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    const double share = static_cast<double>(i) / (count - 1);
-    values.push_back(log ? from * std::pow(to / from, share) : from + share * (to - from));
+  for (int i = 0; i < grid.count; ++i) {
+    const double share = static_cast<double>(i) / (grid.count - 1);
+    values.push_back(grid.log ? grid.from * std::pow(grid.to / grid.from, share)
+                              : grid.from + share * (grid.to - grid.from));
   }
   return values;
 }
 
-Axis read_axis(const TrackKeys& keys, const Track& track) {
-  Axis axis;
-  if (keys.has("scale")) {
-    const std::string scale = keys.of("scale").choice("scale", {"linear", "log10", "decibel"});
-    axis.scale = scale == "log10"     ? Scale::kLog10
-                 : scale == "decibel" ? Scale::kDecibel
-                                      : Scale::kLinear;
-  }
-  keys.track.otherwise("origin", 0.0);
-  axis.origin = keys.has("origin") ? keys.of("origin").number("origin", {}, track.unit) : 0.0;
+const Axis& read_axis(const TrackKeys& keys, Track& track) {
+  axis_schema().read(keys.track, keys.procedure, track);
+  Axis& axis = track.axis;
   if (axis.scale != Scale::kLinear && track.low <= axis.origin) {
     keys.of("scale").reject("scale", "logarithmic", "\"linear\", or a range above the origin");
     axis.scale = Scale::kLinear;

@@ -20,8 +20,12 @@ struct TrackKeys {
   Table& of(std::string_view key) const { return track.has(key) ? track : procedure; }
 };
 
+/// Absence of a key that every track needs, in words for lists of keys.
+inline constexpr const char* kProceduresOwn = "needed; a track takes its procedure's";
+
 /// Reads `scale` and `origin` of the steps or the function of a track whose range is known.
-Axis read_axis(const TrackKeys& keys, const Track& track);
+/// @returns the track's axis
+const Axis& read_axis(const TrackKeys& keys, Track& track);
 
 /// A list of numbers, one number, or { from, to, count, [spacing] }. Problems are noted.
 std::vector<double> read_grid(Table& table, const std::string& key);

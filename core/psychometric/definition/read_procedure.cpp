@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "core/base/definition/schema.h"
 #include "core/psychometric/definition/expectation.h"
 #include "core/psychometric/definition/grid.h"
 #include "core/psychometric/definition/read_quest.h"
@@ -23,27 +24,10 @@ namespace {
 
 constexpr long kMostTrials = 100000;
 
-double number(const TrackKeys& keys, const char* key, const Bounds& bounds, const char* unit) {
-  return keys.of(key).number(key, bounds, unit);
-}
-double number_or(const TrackKeys& keys, const char* key, double otherwise, const Bounds& bounds,
-                 const char* unit) {
-  keys.track.otherwise(key, otherwise);
-  return keys.has(key) ? number(keys, key, bounds, unit) : otherwise;
-}
-int whole_or(const TrackKeys& keys, const char* key, int otherwise, int low, int high) {
-  keys.track.otherwise(key, otherwise);
-  return keys.has(key) ? static_cast<int>(keys.of(key).integer(key, low, high)) : otherwise;
-}
-bool truth_of(const TrackKeys& keys, const char* key) {
-  keys.track.otherwise(key, "false");
-  return keys.has(key) && keys.of(key).boolean(key);
-}
-
-void read_range(const TrackKeys& keys, Track& track) {
-  const std::vector<double> range = keys.of("range").numbers("range", {}, track.unit);
+void read_range(Table& table, const std::string& key, Track& track) {
+  const std::vector<double> range = table.numbers(key, {}, track.unit);
   if (range.size() != 2 || !(range[0] < range[1])) {
-    keys.of("range").reject("range", "another list", "[lowest, highest]");
+    table.reject(key, "another list", "[lowest, highest]");
     track.high = 1.0;
     return;
   }
@@ -51,25 +35,52 @@ void read_range(const TrackKeys& keys, Track& track) {
   track.high = range[1];
 }
 
-/// Reversals and trials at which a track stops; 0: not by these.
+const Schema<Track>& range_schema() {
+  static const auto schema =
+      Schema<Track>()
+          .custom("range", "Lowest and highest level that the procedure presents", read_range)
+          .required()
+          .otherwise(kProceduresOwn);
+  return schema;
+}
+
+/// Reads the range and the axis of a track whose levels are not listed.
+void read_range_and_axis(const TrackKeys& keys, Track& track) {
+  range_schema().read(keys.track, keys.procedure, track);
+  read_axis(keys, track);
+}
+
+double read_start(const TrackKeys& keys, const Track& track) {
+  Table& table = keys.of("start");
+  table.describe({"start", "First level of a staircase or of PEST", kProceduresOwn, true});
+  return table.number("start", {track.low, track.high}, track.unit);
+}
+
+/// Events at which a track stops; 0: not by these.
 struct Stop {
   int reversals{0};
   int trials{0};
-  double entropy{0.0};
+  double entropy{0.0};  // [nat]
 };
 
+const Schema<Stop>& stop_schema() {
+  using S = Stop;
+  static const auto schema =
+      Schema<S>()
+          .integer("reversals", &S::reversals, 1, 1000,
+                   "Reversals of a staircase after which the track ends")
+          .otherwise("no such end")
+          .integer("trials", &S::trials, 1, kMostTrials, "Trials after which the track ends")
+          .otherwise("needed")
+          .number("entropy", &S::entropy, kPositive, "nat",
+                  "Entropy of the posterior of psi or QUEST+ below which the track ends")
+          .otherwise("no such end");
+  return schema;
+}
+
 Stop read_stop(const TrackKeys& keys) {
-  Stop stop;
   Table table = keys.of("stop").table("stop");
-  if (table.has("reversals")) {
-    stop.reversals = static_cast<int>(table.integer("reversals", 1, 1000));
-  }
-  if (table.has("trials")) {
-    stop.trials = static_cast<int>(table.integer("trials", 1, kMostTrials));
-  }
-  if (table.has("entropy")) {
-    stop.entropy = table.number("entropy", kPositive, "nat");
-  }
+  Stop stop = stop_schema().read(table);
   if (stop.trials == 0) {
     keys.of("stop").reject("stop",
                            "names no number of trials, so a session might never end; add "
@@ -79,16 +90,16 @@ Stop read_stop(const TrackKeys& keys) {
   return stop;
 }
 
-std::vector<StaircaseStep> read_steps(const TrackKeys& keys) {
+std::vector<StaircaseStep> read_steps(Table& table, const std::string& key) {
   const char* allowed = "sizes above 0, or pairs [down, up]: [0.08, 0.04] or [[0.02, 0.04]]";
   std::vector<StaircaseStep> steps;
-  const auto rows = keys.of("steps").rows("steps", allowed);
+  const auto rows = table.rows(key, allowed);
   const auto add = [&](double down, double up) {
     steps.push_back({down, up, static_cast<int>(steps.size())});
   };
   bool good = !rows.empty();
   for (const auto& row : rows) {
-    const bool pairs = rows.size() > 1 || keys.of("steps").is_nested("steps");
+    const bool pairs = rows.size() > 1 || table.is_nested(key);
     good = good && std::all_of(row.begin(), row.end(), [](const NumberOrText& each) {
              return each.number.value_or(0) > 0;
            });
@@ -106,127 +117,234 @@ std::vector<StaircaseStep> read_steps(const TrackKeys& keys) {
     }
   }
   if (!good) {
-    keys.of("steps").reject("steps", "another list", allowed);
+    table.reject(key, "another list", allowed);
     return {{1.0, 1.0, 0}};
   }
   return steps;
 }
 
-void read_estimate(const TrackKeys& keys, StaircaseParameters& p) {
-  if (!keys.has("estimate")) {
-    return;
-  }
-  using Estimator = StaircaseParameters::Estimator;
-  Table table = keys.of("estimate").table("estimate");
-  const std::string of =
-      table.choice("of", {"mean of reversals", "median of reversals", "mean of levels"});
-  p.estimator = of == "mean of levels"        ? Estimator::kMeanOfLevels
-                : of == "median of reversals" ? Estimator::kMedianOfReversals
-                                              : Estimator::kMeanOfReversals;
-  if (table.has("skip")) {
-    p.skip = static_cast<int>(table.integer("skip", 0, 1000));
-  }
-  if (table.has("last")) {
-    p.last = static_cast<int>(table.integer("last", 0, 1000));
-  }
+constexpr const char* kStepsText =
+    "Sizes of the steps, on the axis of the scale, the next one after each reversal; of a "
+    "staircase also pairs [down, up]";
+constexpr const char* kRightRaisesText =
+    "Whether right answers raise the level; then they get rarer as it rises, and the function of "
+    "[analysis] falls (neg_norm)";
+
+const Schema<StaircaseParameters>& estimate_schema() {
+  using P = StaircaseParameters;
+  static const auto schema =
+      Schema<P>()
+          .choice("of", &P::estimator,
+                  {{"mean of reversals", P::Estimator::kMeanOfReversals},
+                   {"median of reversals", P::Estimator::kMedianOfReversals},
+                   {"mean of levels", P::Estimator::kMeanOfLevels}},
+                  "Statistic of a staircase that estimates the threshold")
+          .required()
+          .integer("skip", &P::skip, 0, 1000,
+                   "First reversals, or levels, that the estimate of a staircase leaves out")
+          .integer("last", &P::last, 0, 1000,
+                   "Number of the last reversals, or levels, that alone count for the estimate of "
+                   "a staircase")
+          .otherwise("all");
+  return schema;
+}
+
+const Schema<StaircaseParameters>& staircase_schema() {
+  using P = StaircaseParameters;
+  static const auto schema =
+      Schema<P>()
+          .integer("down", &P::down, 1, 100,
+                   "Right answers in a row after which a staircase makes the task harder")
+          .integer("up", &P::up, 1, 100,
+                   "Wrong answers in a row after which a staircase makes the task easier")
+          .integer("first_down", &P::first_down, 0, 100,
+                   "Right answers in a row for a harder task before the first reversal; 0: as "
+                   "after it")
+          .integer("first_up", &P::first_up, 0, 100,
+                   "Wrong answers in a row for an easier task before the first reversal; 0: as "
+                   "after it")
+          .custom(
+              "steps", kStepsText,
+              [](Table& table, const std::string& key, P& p) { p.steps = read_steps(table, key); })
+          .required()
+          .otherwise(kProceduresOwn)
+          .choice("schedule", &P::schedule,
+                  {{"reversals", P::Schedule::kReversals}, {"trials", P::Schedule::kTrials}},
+                  "Event after each of which a staircase takes the next size of its steps")
+          .choice("at_bound", &P::at_bound,
+                  {{"hold", P::AtBound::kHold},
+                   {"uncounted", P::AtBound::kHoldUncounted},
+                   {"end", P::AtBound::kEnd}},
+                  "Consequence of a step beyond the range: the level stays, stays and the turn is "
+                  "no reversal, or the track ends")
+          .flag("right_raises", &P::right_raises, kRightRaisesText);
+  return schema;
 }
 
 void read_staircase(const TrackKeys& keys, Track& track) {
-  read_range(keys, track);
+  read_range_and_axis(keys, track);
   StaircaseParameters p;
-  p.axis = track.axis = read_axis(keys, track);
+  p.axis = track.axis;
   p.low = track.low;
   p.high = track.high;
-  p.start = number(keys, "start", {track.low, track.high}, track.unit.c_str());
-  p.down = whole_or(keys, "down", 2, 1, 100);
-  p.up = whole_or(keys, "up", 1, 1, 100);
-  p.first_down = whole_or(keys, "first_down", 0, 0, 100);
-  p.first_up = whole_or(keys, "first_up", 0, 0, 100);
-  p.steps = read_steps(keys);
-  if (keys.has("schedule")) {
-    const bool trials = keys.of("schedule").choice("schedule", {"reversals", "trials"}) == "trials";
-    p.schedule =
-        trials ? StaircaseParameters::Schedule::kTrials : StaircaseParameters::Schedule::kReversals;
-  }
-  if (keys.has("at_bound")) {
-    const std::string word = keys.of("at_bound").choice("at_bound", {"hold", "uncounted", "end"});
-    p.at_bound = word == "end"         ? StaircaseParameters::AtBound::kEnd
-                 : word == "uncounted" ? StaircaseParameters::AtBound::kHoldUncounted
-                                       : StaircaseParameters::AtBound::kHold;
-  }
-  p.right_raises = truth_of(keys, "right_raises");
+  p.start = read_start(keys, track);
+  staircase_schema().read(keys.track, keys.procedure, p);
   track.falls = p.right_raises;
   const Stop stop = read_stop(keys);
   p.stop_reversals = stop.reversals;
   p.stop_trials = stop.trials;
-  read_estimate(keys, p);
+  if (keys.has("estimate")) {
+    Table estimate = keys.of("estimate").table("estimate");
+    estimate_schema().read(estimate, p);
+  }
   track.most_trials = stop.trials;
   track.staircase = p;
   track.begin = [p](std::uint64_t, const std::string&) { return std::make_unique<Staircase>(p); };
 }
 
+const Schema<PestParameters>& pest_schema() {
+  using P = PestParameters;
+  static const auto schema =
+      Schema<P>()
+          .number("target", &P::target, {0.01, 0.99}, "1", "Share of right answers that PEST seeks")
+          .number("deviation", &P::deviation, kPositive, "1",
+                  "Deviation of the count of right answers from the target beyond which PEST makes "
+                  "a step")
+          .number("first_step", &P::first_step, kPositive, "",
+                  "First step of PEST, on the axis of the scale")
+          .required()
+          .otherwise(kProceduresOwn)
+          .number("smallest_step", &P::smallest_step, kPositive, "",
+                  "Smallest step of PEST, on the axis of the scale; a step as small ends the track")
+          .required()
+          .otherwise(kProceduresOwn)
+          .number("largest_step", &P::largest_step, kPositive, "",
+                  "Largest step of PEST, on the axis of the scale")
+          .required()
+          .otherwise(kProceduresOwn)
+          .flag("right_raises", &P::right_raises, kRightRaisesText);
+  return schema;
+}
+
 void read_pest(const TrackKeys& keys, Track& track) {
-  read_range(keys, track);
+  read_range_and_axis(keys, track);
   PestParameters p;
-  p.axis = track.axis = read_axis(keys, track);
+  p.axis = track.axis;
   p.low = track.low;
   p.high = track.high;
-  p.start = number(keys, "start", {track.low, track.high}, track.unit.c_str());
-  p.target = number_or(keys, "target", p.target, {0.01, 0.99}, "1");
-  p.deviation = number_or(keys, "deviation", p.deviation, kPositive, "1");
-  p.first_step = number(keys, "first_step", kPositive, "");
-  p.smallest_step = number(keys, "smallest_step", kPositive, "");
-  p.largest_step = number(keys, "largest_step", kPositive, "");
+  p.start = read_start(keys, track);
+  pest_schema().read(keys.track, keys.procedure, p);
   p.stop_trials = read_stop(keys).trials;
-  p.right_raises = truth_of(keys, "right_raises");
   track.falls = p.right_raises;
   track.most_trials = p.stop_trials;
   track.begin = [p](std::uint64_t, const std::string&) { return std::make_unique<Pest>(p); };
 }
 
-void read_listed(const TrackKeys& keys, Track& track, ListParameters& list) {
-  list.levels = read_grid(keys.of("levels"), "levels");
-  list.repetitions = whole_or(keys, "repetitions", 1, 1, 10000);
-  list.in_rounds = truth_of(keys, "in_rounds");
+void read_grid_into(Table& table, const std::string& key, std::vector<double>& values) {
+  values = read_grid(table, key);
+}
+
+const Schema<std::vector<double>>& levels_schema() {
+  static const auto schema =
+      Schema<std::vector<double>>()
+          .custom("levels", "Levels that may be presented: a list, or { from, to, count, spacing }",
+                  read_grid_into)
+          .required()
+          .otherwise(kProceduresOwn);
+  return schema;
+}
+
+const Schema<std::vector<double>>& starts_schema() {
+  static const auto schema =
+      Schema<std::vector<double>>()
+          .custom("starts",
+                  "Levels at which adjustments begin: a list, or { from, to, count, spacing }",
+                  read_grid_into)
+          .required()
+          .otherwise(kProceduresOwn);
+  return schema;
+}
+
+/// The order of levels that stand in a list.
+const Schema<ListParameters>& list_schema() {
+  using L = ListParameters;
+  static const auto schema =
+      Schema<L>()
+          .integer("repetitions", &L::repetitions, 1, 10000,
+                   "Presentations of each level, or adjustments from each start")
+          .flag("in_rounds", &L::in_rounds,
+                "Whether each level, or start, comes once before any comes again");
+  return schema;
+}
+
+ListParameters read_list(const TrackKeys& keys, const Schema<std::vector<double>>& levels) {
+  ListParameters list;
+  levels.read(keys.track, keys.procedure, list.levels);
+  list_schema().read(keys.track, keys.procedure, list);
+  return list;
+}
+
+ListParameters read_listed(const TrackKeys& keys, Track& track) {
+  ListParameters list = read_list(keys, levels_schema());
   const auto [least, most] = std::minmax_element(list.levels.begin(), list.levels.end());
   track.low = list.levels.empty() ? 0.0 : *least;
   track.high = list.levels.empty() ? 0.0 : *most;
   track.most_trials = static_cast<int>(list.levels.size()) * list.repetitions;
   track.listed = true;
+  return list;
 }
 
 void read_constant(const TrackKeys& keys, Track& track) {
-  ListParameters list;
-  read_listed(keys, track, list);
+  const ListParameters list = read_listed(keys, track);
   track.begin = [list](std::uint64_t seed, const std::string& name) {
     return std::make_unique<ConstantStimuli>(list, seed, name);
   };
 }
 
+const Schema<std::optional<double>>& modulus_schema() {
+  static const auto schema =
+      Schema<std::optional<double>>()
+          .custom("modulus", "Number that the first level of a magnitude estimation is called",
+                  [](Table& table, const std::string& key, std::optional<double>& modulus) {
+                    modulus = table.number(key, kPositive, "");
+                  })
+          .otherwise("none is stated");
+  return schema;
+}
+
 void read_magnitude(const TrackKeys& keys, Track& track) {
-  ListParameters list;
-  read_listed(keys, track, list);
+  const ListParameters list = read_listed(keys, track);
   std::optional<double> modulus;
-  if (keys.has("modulus")) {
-    modulus = number(keys, "modulus", kPositive, "");
-  }
+  modulus_schema().read(keys.track, keys.procedure, modulus);
   track.begin = [list, modulus](std::uint64_t seed, const std::string& name) {
     return std::make_unique<MagnitudeEstimation>(list, modulus, seed, name);
   };
 }
 
+const Schema<AdjustingParameters>& adjusting_schema() {
+  using P = AdjustingParameters;
+  static const auto schema =
+      Schema<P>()
+          .custom("steps", kStepsText,
+                  [](Table& table, const std::string& key, P& p) {
+                    p.steps = table.numbers(key, kPositive, "");
+                  })
+          .required()
+          .otherwise(kProceduresOwn)
+          .integer("most_presentations", &P::most_presentations, 1, 1000,
+                   "Most presentations of one adjustment, which then ends without a setting");
+  return schema;
+}
+
 /// Steps that get finer, from starts of either side.
 void read_adjustment(const TrackKeys& keys, Track& track) {
-  read_range(keys, track);
+  read_range_and_axis(keys, track);
   AdjustingParameters p;
-  p.axis = track.axis = read_axis(keys, track);
+  p.axis = track.axis;
   p.low = track.low;
   p.high = track.high;
-  p.starts.levels = read_grid(keys.of("starts"), "starts");
-  p.starts.repetitions = whole_or(keys, "repetitions", 1, 1, 10000);
-  p.starts.in_rounds = truth_of(keys, "in_rounds");
-  p.steps = keys.of("steps").numbers("steps", kPositive, "");
-  p.most_presentations = whole_or(keys, "most_presentations", p.most_presentations, 1, 1000);
+  p.starts = read_list(keys, starts_schema());
+  adjusting_schema().read(keys.track, keys.procedure, p);
   track.most_trials =
       static_cast<int>(p.starts.levels.size()) * p.starts.repetitions * p.most_presentations;
   track.begin = [p](std::uint64_t seed, const std::string& name) {
@@ -234,22 +352,34 @@ void read_adjustment(const TrackKeys& keys, Track& track) {
   };
 }
 
+void read_sigmoid(Table& table, const std::string& key, PsychometricParameters& function) {
+  try {
+    set_sigmoid(function, table.text(key), Scale::kLog10);
+  } catch (const std::invalid_argument& error) {
+    table.reject(key, fmt::format("is refused: {}", error.what()));
+  }
+}
+
+const Schema<PsychometricParameters>& psi_function_schema() {
+  using P = PsychometricParameters;
+  static const auto schema = Schema<P>()
+                                 .number("guess", &P::guess, {0.0, 0.99}, "1",
+                                         "Share of answers 1 far below the threshold")
+                                 .custom("function", kFunctionText, read_sigmoid)
+                                 .otherwise(kFunctionAbsent);
+  return schema;
+}
+
 /// The levels that a psi may present, as the range of a track.
 PsiParameters read_psi_function(const TrackKeys& keys, Track& track) {
   PsiParameters p;
-  p.levels = read_grid(keys.of("levels"), "levels");
+  levels_schema().read(keys.track, keys.procedure, p.levels);
   const auto [least, most] = std::minmax_element(p.levels.begin(), p.levels.end());
   track.low = p.levels.empty() ? 0.0 : *least;
   track.high = p.levels.empty() ? 1.0 : *most;
-  p.function.axis = track.axis = read_axis(keys, track);
-  p.function.guess = number_or(keys, "guess", 0.5, {0.0, 0.99}, "1");
-  if (keys.has("function")) {
-    try {
-      set_sigmoid(p.function, keys.of("function").text("function"), Scale::kLog10);
-    } catch (const std::invalid_argument& error) {
-      keys.of("function").reject("function", fmt::format("is refused: {}", error.what()));
-    }
-  }
+  p.function.axis = read_axis(keys, track);
+  p.function.guess = 0.5;
+  psi_function_schema().read(keys.track, keys.procedure, p.function);
   track.falls = p.function.falling;
   return p;
 }
@@ -272,17 +402,49 @@ std::vector<double> thresholds_around(const PsiParameters& p, const Track& track
   return values;
 }
 
+void set_default_grids(const Track& track, PsiParameters& p) {
+  const Axis& axis = p.function.axis;
+  const double span = std::abs(axis.at(track.high) - axis.at(track.low));
+  p.threshold.values = thresholds_around(p, track);
+  p.width.values = {0.125 * span, 0.25 * span, 0.5 * span, span};
+  p.lapse.values = {0.0, 0.02, 0.05};
+}
+
+const Schema<PsiParameters>& psi_schema() {
+  using P = PsiParameters;
+  static const auto schema =
+      Schema<P>()
+          .custom("threshold",
+                  "Thresholds that psi considers: a list, or { from, to, count, spacing }",
+                  [](Table& table, const std::string& key, P& p) {
+                    p.threshold.values = read_grid(table, key);
+                  })
+          .otherwise("the levels, and half as far beyond them")
+          .custom("width",
+                  "Widths of the psychometric function that psi considers, on the axis of the "
+                  "scale: a list, or { from, to, count, spacing }",
+                  [](Table& table, const std::string& key, P& p) {
+                    p.width.values = read_grid(table, key);
+                  })
+          .otherwise("an eighth, a quarter, half and all of the range")
+          .custom("lapse",
+                  "Lapse rates that psi considers: a list, or { from, to, count, spacing }",
+                  [](Table& table, const std::string& key, P& p) {
+                    p.lapse.values = read_grid(table, key);
+                  })
+          .otherwise("0, 0.02, 0.05")
+          .custom("marginal", "Whether psi chooses levels that tell of the threshold alone",
+                  [](Table& table, const std::string& key, P& p) {
+                    p.width.nuisance = p.lapse.nuisance = table.boolean(key);
+                  })
+          .otherwise("false");
+  return schema;
+}
+
 void read_psi(const TrackKeys& keys, Track& track) {
   PsiParameters p = read_psi_function(keys, track);
-  const auto axis_of = [&](double level) { return p.function.axis.at(level); };
-  const double span = std::abs(axis_of(track.high) - axis_of(track.low));
-  p.threshold.values = keys.has("threshold") ? read_grid(keys.of("threshold"), "threshold")
-                                             : thresholds_around(p, track);
-  p.width.values = keys.has("width") ? read_grid(keys.of("width"), "width")
-                                     : std::vector{0.125 * span, 0.25 * span, 0.5 * span, span};
-  p.lapse.values =
-      keys.has("lapse") ? read_grid(keys.of("lapse"), "lapse") : std::vector{0.0, 0.02, 0.05};
-  p.width.nuisance = p.lapse.nuisance = truth_of(keys, "marginal");
+  set_default_grids(track, p);
+  psi_schema().read(keys.track, keys.procedure, p);
   const Stop stop = read_stop(keys);
   track.most_trials = stop.trials;
   try {

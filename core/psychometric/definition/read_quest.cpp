@@ -13,6 +13,7 @@
 
 #include "core/base/definition/expression.h"
 #include "core/base/definition/labels.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/psychometric/definition/grid.h"
@@ -27,74 +28,136 @@ namespace {
 constexpr double kMostPairs = 1e7;
 constexpr std::size_t kMostOutcomes = 64;
 
-/// Reads the levels that stand beside a grid, which has a table of its own then.
-std::vector<double> read_levels(Table& all, const std::string& name) {
-  if (!all.is_table(name)) {
-    return read_grid(all, name);
+constexpr const char* kForms = ": a list, { from, to, count, spacing } or { values }";
+
+const Schema<QuestDimension>& dimension_schema() {
+  static const auto schema =
+      Schema<QuestDimension>()
+          .custom("values", "Values of a level or parameter, one by one",
+                  [](Table& table, const std::string& key, QuestDimension& dimension) {
+                    dimension.values = table.numbers(key, {}, "");
+                  })
+          .otherwise("from, to and count")
+          .check([](Table& table, QuestDimension& dimension) {
+            if (!table.has("values")) {
+              dimension.values = read_spaced_grid(table);
+            }
+          });
+  return schema;
+}
+
+/// Reads a list of values, or the values of a table that may have further keys.
+QuestDimension read_dimension(Table& all, const std::string& name) {
+  QuestDimension dimension{name, {}, {}, false};
+  if (all.is_table(name)) {
+    Table own = all.table(name);
+    dimension_schema().read(own, dimension);
+  } else {
+    dimension.values = read_grid(all, name);
   }
-  Table own = all.table(name);
-  return own.has("values") ? own.numbers("values", {}, "") : read_spaced_grid(own);
+  return dimension;
+}
+
+const Schema<TrackDimension>& resolution_schema() {
+  using D = TrackDimension;
+  static const auto schema = Schema<D>()
+                                 .number("resolution", &D::resolution, kPositive, "",
+                                         "Number to whose multiples the variable is rounded")
+                                 .otherwise("not rounded");
+  return schema;
 }
 
 void read_stimulus(const TrackKeys& keys, QuestDefinition& quest, Track& track) {
   Table all = keys.of("stimulus").table("stimulus");
   for (const std::string& name : all.keys_as_written()) {
-    std::vector<double> values = read_levels(all, name);
-    double resolution = 0.0;
+    all.describe({name, std::string("Levels of the variable of this name") + kForms, "", true});
+    QuestDimension levels = read_dimension(all, name);
+    TrackDimension own{name};
     if (all.is_table(name)) {
-      Table own = all.table(name);
-      resolution = own.number_or("resolution", 0.0, kPositive, "");
+      Table table = all.table(name);
+      resolution_schema().read(table, own);
     }
-    if (values.empty()) {
+    if (levels.values.empty()) {
       continue;
     }
-    const auto [low, high] = std::ranges::minmax(values);
+    const auto [low, high] = std::ranges::minmax(levels.values);
+    own.low = low;
+    own.high = high;
     if (quest.stimulus.empty()) {
       track.variable = name;
-      track.low = low;
-      track.high = high;
-      track.resolution = resolution;
+      track.low = own.low;
+      track.high = own.high;
+      track.resolution = own.resolution;
     } else {
-      track.further.push_back({name, low, high, resolution});
+      track.further.push_back(own);
     }
-    quest.stimulus.push_back({name, std::move(values), {}, false});
+    quest.stimulus.push_back(std::move(levels));
   }
   if (quest.stimulus.empty()) {
     keys.of("stimulus").reject("stimulus", "names no variable; add NAME = [levels]");
   }
 }
 
-std::vector<double> read_prior(Table& own, const std::vector<double>& values) {
-  if (!own.is_table("prior")) {
-    std::vector<double> weights = own.numbers("prior", kNonNegative, "");
-    if (weights.size() != values.size()) {
-      own.reject("prior", fmt::format("a list of {}", weights.size()),
-                 fmt::format("{}, a weight for each value", values.size()));
-      return {};
+struct NormalPrior {
+  double mean{0.0};
+  double sd{1.0};
+};
+
+const Schema<NormalPrior>& normal_prior_schema() {
+  using N = NormalPrior;
+  static const auto schema =
+      Schema<N>()
+          .number("mean", &N::mean, {}, "",
+                  "Mean of the normal distribution of a parameter before the first trial")
+          .required()
+          .number(
+              "sd", &N::sd, kPositive, "",
+              "Standard deviation of the normal distribution of a parameter before the first trial")
+          .required();
+  return schema;
+}
+
+void read_prior(Table& own, const std::string& key, QuestDimension& parameter) {
+  const std::size_t count = parameter.values.size();
+  if (!own.is_table(key)) {
+    parameter.prior = own.numbers(key, kNonNegative, "");
+    if (parameter.prior.size() != count) {
+      own.reject(key, fmt::format("a list of {}", parameter.prior.size()),
+                 fmt::format("{}, a weight for each value", count));
+      parameter.prior.clear();
     }
-    return weights;
+    return;
   }
-  Table normal = own.table("prior");
-  const double mean = normal.number("mean", {}, "");
-  const double sd = normal.number("sd", kPositive, "");
-  std::vector<double> weights;
-  for (const double value : values) {
-    const double z = (value - mean) / sd;
-    weights.push_back(std::exp(-0.5 * z * z));
+  Table table = own.table(key);
+  const NormalPrior normal = normal_prior_schema().read(table);
+  for (const double value : parameter.values) {
+    const double z = (value - normal.mean) / normal.sd;
+    parameter.prior.push_back(std::exp(-0.5 * z * z));
   }
-  return weights;
+}
+
+const Schema<QuestDimension>& parameter_schema() {
+  static const auto schema =
+      Schema<QuestDimension>()
+          .custom("prior",
+                  "Weights of a parameter's values before the first trial, or { mean, sd } of a "
+                  "normal distribution",
+                  read_prior)
+          .otherwise("all equal")
+          .flag("nuisance", &QuestDimension::nuisance,
+                "Whether a parameter is a nuisance, on which no trials are spent");
+  return schema;
 }
 
 void read_parameters(const TrackKeys& keys, QuestDefinition& quest) {
   Table all = keys.of("parameters").table("parameters");
   for (const std::string& name : all.keys_as_written()) {
-    QuestDimension parameter{name, read_levels(all, name), {}, false};
+    all.describe(
+        {name, std::string("Values that the parameter of this name may have") + kForms, "", true});
+    QuestDimension parameter = read_dimension(all, name);
     if (all.is_table(name)) {
       Table own = all.table(name);
-      if (own.has("prior")) {
-        parameter.prior = read_prior(own, parameter.values);
-      }
-      parameter.nuisance = own.has("nuisance") && own.boolean("nuisance");
+      parameter_schema().read(own, parameter);
     }
     const auto same = [&](const QuestDimension& each) { return each.name == name; };
     if (std::ranges::any_of(quest.stimulus, same)) {
@@ -171,13 +234,27 @@ class Formulas {
   std::vector<double> values_;
 };
 
-std::vector<std::string> read_probability(const TrackKeys& keys) {
-  if (!keys.has("probability")) {
-    return {};
-  }
-  Table& table = keys.of("probability");
-  return table.is_array("probability") ? table.texts("probability")
-                                       : std::vector{table.text("probability")};
+/// Ways from a stimulus to the probabilities of answers, of which one is stated.
+struct AnswerModel {
+  std::vector<std::string> formulas;
+  std::string function;
+};
+
+const Schema<AnswerModel>& answer_model_schema() {
+  using M = AnswerModel;
+  static const auto schema =
+      Schema<M>()
+          .custom("probability",
+                  "Formula of the probability of the answer 1, or a list of formulas, for the "
+                  "answers 1, 2 and so on",
+                  [](Table& table, const std::string& key, M& model) {
+                    model.formulas =
+                        table.is_array(key) ? table.texts(key) : std::vector{table.text(key)};
+                  })
+          .otherwise("needed; or a function")
+          .text("function", &M::function, kFunctionText)
+          .otherwise(kFunctionAbsent);
+  return schema;
 }
 
 void take_formulas(const TrackKeys& keys, const std::vector<std::string>& texts,
@@ -205,7 +282,7 @@ QuestDefinition take_function(const TrackKeys& keys, const std::string& name,
                               const QuestDefinition& quest, Track& track) {
   PsiParameters p;
   p.levels = quest.stimulus.front().values;
-  p.function.axis = track.axis = read_axis(keys, track);
+  p.function.axis = read_axis(keys, track);
   p.function.guess = 0.5;
   set_sigmoid(p.function, name, Scale::kLog10);
   track.falls = p.function.falling;
@@ -271,9 +348,9 @@ void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
   QuestDefinition quest;
   read_stimulus(keys, quest, track);
   read_parameters(keys, quest);
-  const std::vector<std::string> formulas = read_probability(keys);
+  AnswerModel model;
+  answer_model_schema().read(keys.track, keys.procedure, model);
   const bool named = keys.has("function");
-  const std::string name = named ? keys.of("function").text("function") : "";
   const char* key = named ? "function" : "probability";
   if (named == keys.has("probability")) {
     keys.of("kind").reject("kind",
@@ -286,11 +363,11 @@ void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
   }
   try {
     if (!named) {
-      take_formulas(keys, formulas, quest);
+      take_formulas(keys, model.formulas, quest);
     }
     check_size(quest);
     if (named) {
-      quest = take_function(keys, name, quest, track);
+      quest = take_function(keys, model.function, quest, track);
     }
     if (!quest.model) {
       return;

@@ -9,6 +9,10 @@ namespace haptrial::psychometric {
 struct Track;
 struct TrackKeys;
 
+/// Description of `function`, which psi has, too.
+inline constexpr const char* kFunctionText = "Sigmoid of the psychometric function, by its name";
+inline constexpr const char* kFunctionAbsent = "logistic, or of quest_plus a probability";
+
 /// Begins a track with these tables, its own or those of psi. An entropy of `stop` that ends it
 /// before its first trial is noted.
 void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>& tables,

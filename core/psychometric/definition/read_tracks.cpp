@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/psychometric/definition/grid.h"
 #include "core/psychometric/definition/read_procedure.h"
 
@@ -13,29 +13,53 @@ namespace {
 
 constexpr std::size_t kMostTracks = 64;
 
+bool names_one_variable(const Track& track) { return track.kind != "quest_plus"; }
+
 /// Keys of a track, and of the procedure that it belongs to.
-void read_common_keys(TrackKeys& keys, Track& track, std::size_t number) {
-  track.kind = keys.of("kind").choice("kind", procedure_kinds());
-  if (track.kind != "quest_plus") {  // which names several in its stimulus
-    track.variable = keys.of("variable").text("variable");
-  }
-  track.name = keys.track.has("name") ? keys.track.text("name") : fmt::format("track {}", number);
-  track.unit = keys.has("unit") ? keys.of("unit").text("unit") : "";
-  if (keys.has("by")) {
-    track.by = keys.of("by").texts("by");
-  }
-  if (keys.has("counts")) {
-    track.counts = keys.of("counts").text("counts");
-  }
-  if (track.kind != "quest_plus" && keys.has("resolution")) {
-    track.resolution = keys.of("resolution").number("resolution", kPositive, track.unit);
-  }
+const Schema<Track>& track_schema() {
+  using T = Track;
+  static const auto schema =
+      Schema<T>()
+          .custom("kind", "Kind of the procedure: the rule by which levels follow from outcomes",
+                  [](Table& table, const std::string& key, T& track) {
+                    track.kind = table.choice(key, procedure_kinds());
+                  })
+          .required()
+          .otherwise(kProceduresOwn)
+          .text("variable", &T::variable, "Name of the variable whose levels the procedure sets")
+          .required()
+          .otherwise(kProceduresOwn)
+          .only_if(names_one_variable)
+          .text("unit", &T::unit, "Unit of the levels, as reports show it")
+          .otherwise("none")
+          .texts("by", &T::by, "Factors whose every combination of levels has a track of its own")
+          .otherwise("none")
+          .text("counts", &T::counts, "Formula of the outcome that the procedure learns from")
+          .otherwise("whether the first answer was right")
+          .custom("resolution", "Number to whose multiples levels are rounded",
+                  [](Table& table, const std::string& key, T& track) {
+                    track.resolution = table.number(key, kPositive, track.unit);
+                  })
+          .otherwise("not rounded")
+          .only_if(names_one_variable);
+  return schema;
+}
+
+/// Keys that a track does not take from its procedure.
+const Schema<Track>& track_name_schema() {
+  static const auto schema =
+      Schema<Track>()
+          .text("name", &Track::name, "Name of the track, in files and reports")
+          .otherwise("track 1, track 2, ...");
+  return schema;
 }
 
 Track read_track(Table& procedure, Table& own, std::size_t number) {
   Track track;
-  TrackKeys keys{own, procedure};
-  read_common_keys(keys, track, number);
+  track.name = fmt::format("track {}", number);
+  track_name_schema().read(own, track);
+  track_schema().read(own, procedure, track);
+  const TrackKeys keys{own, procedure};
   read_procedure(keys, track);
   if (track.begin) {  // a mistake in it is seen now and not in the first session
     try {
