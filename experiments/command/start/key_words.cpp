@@ -19,8 +19,6 @@ display.viewing_distance | 0.5 | from the eyes to the screen
 display.sound_right | none | sound after a right answer, where feedback is given
 display.sound_wrong | none | sound after a wrong one
 devices.NAME.start | | where the hand of a virtual participant begins
-texts.too_fast | Too fast | after an answer below `too_fast` of its response
-texts.too_slow | Too slow | after an answer above `too_slow`
 design.session.NAME.blocks | | blocks of the session of this number; without [design.session] every session has all of them
 groups | one group of everybody | participants of each group, in the order of their numbers: NAME = 8
 groups.NAME | | participants of the group, in the order of their numbers
@@ -54,24 +52,6 @@ stages[].require.else | | what happens if it was not enough
 stages[].onset.speed_above | | speed at which a movement begins; without [onset] none is looked for
 stages[].sound | none | sound that begins with the stage
 stages[].marker | counted on from markers.stage | code of the stage's marker
-response.name | answer | in formulas and files
-response.question | | what is read
-response.choices[].value | | of the choice, as files and formulas have it
-response.choices[].label | the value | what is shown
-response.choices[].keys | the digit of its place | of the window, that choose it
-response.choices[].buttons | the button of its place | of the device, that choose it
-response.choices[].touch | none | region into which the tip of the tool is moved for it
-response.choices[].pedal | none | depth of an analog pedal from which on it chooses it
-response.scale | choices or a number | lowest and highest digit
-response.number | choices or a scale | lowest and highest number that may be typed
-response.correct | no answer is right | formula of the right choice: its number, or its value as a word
-response.feedback | never | when right or wrong is shown
-response.timeout | none | then the trial is aborted and comes again
-response.reaction_time_from | the question | stage from which the reaction is counted
-response.touch_for | 0.2 | how long the tip stays in a region that is touched
-response.too_fast | no limit | reaction time below which an answer is told to be too fast
-response.too_slow | no limit | reaction time above which an answer is told to be too slow
-response.out_of_time | go on | what follows from such an answer: it counts, or the trial comes again at the end of its block
 fields.NAME.device | all devices | device that feels the field
 regions.NAME.device | the first device | device whose tool must be in the region
 objects.NAME.kind | rigid | whether it gives way to the hand

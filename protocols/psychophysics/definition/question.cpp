@@ -8,8 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/definition/table.h"
-#include "core/base/definition/table_vector.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/record/rows/response.h"
 #include "protocols/definition/window_keys.h"
@@ -33,9 +32,41 @@ struct Means {
   std::vector<std::string> regions;
 };
 
-void read_touch(Table& table, const Means& means, Choice& choice) {
-  choice.touch = table.text("touch");
-  if (std::ranges::find(means.regions, choice.touch) == means.regions.end()) {
+const Schema<Choice>& choice_schema() {
+  using C = Choice;
+  static const auto schema =
+      Schema<C>()
+          .text("value", &C::value, "Value of the choice, in formulas and files")
+          .required()
+          .check([](Table& table, C& choice) {
+            table.name_entry(choice.value);
+            choice.label = choice.value;
+          })
+          .shown_text("label", &C::label, "Words of the choice that participants read")
+          .otherwise("the value")
+          .bits("buttons", &C::buttons, "Buttons of the device that make the choice")
+          .otherwise("the button of its place")
+          .text("touch", &C::touch,
+                "Region into which the tip of the tool is moved to make the choice")
+          .otherwise("none")
+          .number("pedal", &C::pedal, {0.0, 1.0, true}, "1",
+                  "Depth from which on an analog pedal makes the choice")
+          .otherwise("none");
+  return schema;
+}
+
+void read_choice_keys(Table& table, KeyBits& keys, Choice& choice) {
+  table.describe({"keys", "Keys of the participant's window that make the choice",
+                  "the digit of its place", false});
+  if (table.has("keys")) {
+    choice.keys = keys_of(table, "keys", keys);
+    const std::vector<std::string> names = table.texts("keys");
+    choice.hint = names.empty() ? "" : names.front();
+  }
+}
+
+void check_touch(Table& table, const Means& means, const Choice& choice) {
+  if (table.has("touch") && std::ranges::find(means.regions, choice.touch) == means.regions.end()) {
     table.reject("touch", fmt::format("\"{}\"", choice.touch),
                  means.regions.empty()
                      ? "no region: the definition states none; add [regions.NAME]"
@@ -44,27 +75,11 @@ void read_touch(Table& table, const Means& means, Choice& choice) {
 }
 
 Choice read_choice(Table& table, std::size_t place, Means& means) {
-  KeyBits& keys = means.keys;
-  Choice choice;
-  choice.value = table.text("value");
-  table.name_entry(choice.value);
-  choice.label = table.shown_text("label", choice.value);
-  if (table.has("keys")) {
-    choice.keys = keys_of(table, "keys", keys);
-    const std::vector<std::string> names = table.texts("keys");
-    choice.hint = names.empty() ? "" : names.front();
-  }
-  if (table.has("buttons")) {
-    choice.buttons = read_bits(table, "buttons");
-  }
-  if (table.has("touch")) {
-    read_touch(table, means, choice);
-  }
-  if (table.has("pedal")) {
-    choice.pedal = table.number("pedal", {0.0, 1.0, true}, "1");
-  }
+  Choice choice = choice_schema().read(table);
+  read_choice_keys(table, means.keys, choice);
+  check_touch(table, means, choice);
   if (choice.keys == 0 && choice.buttons == 0 && choice.touch.empty() && choice.pedal == 0.0) {
-    choice.keys = keys.bit_of(static_cast<int>('1' + place));
+    choice.keys = means.keys.bit_of(static_cast<int>('1' + place));
     choice.hint = fmt::format("{}", place + 1);
     choice.buttons = std::uint32_t{1} << place;
   }
@@ -111,6 +126,7 @@ void read_choices(Table& table, Question& question, Means& means) {
 }
 
 void read_scale(Table& table, Question& question, KeyBits& keys) {
+  table.describe({"scale", "Lowest and highest digit of a rating", "choices or a number", false});
   const std::vector<double> range = table.numbers("scale", {0.0, 9.0}, "");
   const bool whole =
       std::all_of(range.begin(), range.end(), [](double each) { return each == std::floor(each); });
@@ -128,6 +144,8 @@ void read_scale(Table& table, Question& question, KeyBits& keys) {
 }
 
 void read_number(Table& table, Question& question, KeyBits& keys) {
+  table.describe(
+      {"number", "Lowest and highest number that may be typed", "choices or a scale", false});
   const std::vector<double> range = table.numbers("number", {}, "");
   if (range.size() != 2 || range[1] <= range[0]) {
     table.reject("number", "another list", "[lowest, highest]");
@@ -143,26 +161,36 @@ void read_number(Table& table, Question& question, KeyBits& keys) {
   }
 }
 
-/// Reads the limits of an answer's time: the text after one that comes too early or too late, and
-/// the consequence.
-void read_limits(Table& table, Table& root, Question& question) {
-  constexpr Bounds kLimit{0.0, 3600.0, true};
-  if (table.has("too_fast")) {
-    question.too_fast = table.number("too_fast", kLimit, "s");
+void read_answer(Table& table, Question& question, Means& means) {
+  const int kinds =
+      (table.has("choices") ? 1 : 0) + (table.has("scale") ? 1 : 0) + (table.has("number") ? 1 : 0);
+  if (kinds != 1) {
+    table.reject("question", "has no one way to be answered; state one of choices, scale, number");
+  } else if (table.has("choices")) {
+    read_choices(table, question, means);
+  } else if (table.has("scale")) {
+    read_scale(table, question, means.keys);
+  } else {
+    read_number(table, question, means.keys);
   }
-  if (table.has("too_slow")) {
-    question.too_slow = table.number("too_slow", kLimit, "s");
+}
+
+void check_feedback(Table& table, Question& question) {
+  if (question.feedback != Feedback::kNever && question.correct.empty()) {
+    table.reject("feedback", question.feedback == Feedback::kAlways ? "\"always\"" : "\"practice\"",
+                 "\"never\" unless `correct` says which answer is right");
   }
-  if (table.has("out_of_time")) {
-    question.again = table.choice("out_of_time", {"go on", "repeat"}) == "repeat";
-    if (!question.has_limits()) {
-      table.reject("out_of_time", "stands alone; add too_fast or too_slow, a limit in seconds");
-    }
+}
+
+void check_touch_time(Table& table, Question& question) {
+  if (table.has("touch_for") && !question.touched()) {
+    table.reject("touch_for", "stands alone; add touch, a region, to a choice");
   }
-  if (question.has_limits()) {
-    Table texts = root.table("texts");
-    question.fast_text = texts.shown_text("too_fast", "Too fast");
-    question.slow_text = texts.shown_text("too_slow", "Too slow");
+}
+
+void check_limits(Table& table, Question& question) {
+  if (table.has("out_of_time") && !question.has_limits()) {
+    table.reject("out_of_time", "stands alone; add too_fast or too_slow, a limit in seconds");
   }
   if (question.too_fast >= question.too_slow) {
     table.reject("too_slow", fmt::format("{} s", question.too_slow),
@@ -175,55 +203,81 @@ void read_limits(Table& table, Table& root, Question& question) {
   }
 }
 
+constexpr Bounds kLimit{0.0, 3600.0, true};  // [s]
+
+/// Keys of a question whose answers are read.
+const Schema<Question>& question_schema() {
+  using Q = Question;
+  static const auto schema =
+      Schema<Q>()
+          .text("correct", &Q::correct,
+                "Formula of the right choice: its number, or its value as a word")
+          .otherwise("no answer is right")
+          .choice("feedback", &Q::feedback,
+                  {{"never", Feedback::kNever},
+                   {"practice", Feedback::kPractice},
+                   {"always", Feedback::kAlways}},
+                  "Trials after which participants are shown whether the answer was right")
+          .check(check_feedback)
+          .number("timeout", &Q::timeout, {0.1, 3600.0}, "s",
+                  "Time for an answer; without one the trial is aborted and comes again")
+          .otherwise("none")
+          .text("reaction_time_from", &Q::onset,
+                "Stage from whose beginning the reaction time is counted")
+          .otherwise("the question")
+          .number("touch_for", &Q::touch_for, {0.0, 60.0}, "s",
+                  "Time for which the tip of the tool stays in a region to make a choice")
+          .check(check_touch_time)
+          .number("too_fast", &Q::too_fast, kLimit, "s",
+                  "Reaction time below which participants read that the answer was too fast")
+          .otherwise("no limit")
+          .number("too_slow", &Q::too_slow, kLimit, "s",
+                  "Reaction time above which participants read that the answer was too slow")
+          .otherwise("no limit")
+          .choice("out_of_time", &Q::again, {{"go on", false}, {"repeat", true}},
+                  "Consequence of an answer that is too fast or too slow: it counts, or the trial "
+                  "comes again at the end of its block")
+          .check(check_limits);
+  return schema;
+}
+
+/// The keys of [texts] that a question with limits has.
+const Schema<Question>& limit_text_schema() {
+  using Q = Question;
+  static const auto schema =
+      Schema<Q>()
+          .shown_text("too_fast", &Q::fast_text,
+                      "Text after an answer below the limit `too_fast` of its response")
+          .shown_text("too_slow", &Q::slow_text,
+                      "Text after an answer above the limit `too_slow` of its response");
+  return schema;
+}
+
+const Schema<Question>& question_name_schema() {
+  static const auto schema = Schema<Question>().text("name", &Question::name,
+                                                     "Name of the question, in formulas and files");
+  return schema;
+}
+
+const Schema<Question>& question_text_schema() {
+  static const auto schema =
+      Schema<Question>().shown_text("question", &Question::text, "Text of the question").required();
+  return schema;
+}
+
 /// @param listed  one of several, which translations tell apart by their names
 Question read_question(Table& table, Table& root, Means& means, bool listed) {
-  KeyBits& keys = means.keys;
-  Question question;
-  question.name = "answer";
-  if (table.has("name")) {
-    question.name = table.text("name");
-  }
+  Question question = question_name_schema().read(table);
   if (listed) {
     table.name_entry(question.name);
   }
-  question.text = table.shown_text("question");
-  const int kinds =
-      (table.has("choices") ? 1 : 0) + (table.has("scale") ? 1 : 0) + (table.has("number") ? 1 : 0);
-  if (kinds != 1) {
-    table.reject("question", "has no one way to be answered; state one of choices, scale, number");
-  } else if (table.has("choices")) {
-    read_choices(table, question, means);
-  } else if (table.has("scale")) {
-    read_scale(table, question, keys);
-  } else {
-    read_number(table, question, keys);
+  question_text_schema().read(table, question);
+  read_answer(table, question, means);
+  question_schema().read(table, question);
+  if (question.has_limits()) {
+    Table texts = root.table("texts");
+    limit_text_schema().read(texts, question);
   }
-  if (table.has("correct")) {
-    question.correct = table.text("correct");
-  }
-  if (table.has("feedback")) {
-    const std::string when = table.choice("feedback", {"never", "practice", "always"});
-    question.feedback = when == "always"     ? Feedback::kAlways
-                        : when == "practice" ? Feedback::kPractice
-                                             : Feedback::kNever;
-    if (question.feedback != Feedback::kNever && question.correct.empty()) {
-      table.reject("feedback", fmt::format("\"{}\"", when),
-                   "\"never\" unless `correct` says which answer is right");
-    }
-  }
-  if (table.has("timeout")) {
-    question.timeout = table.number("timeout", {0.1, 3600.0}, "s");
-  }
-  if (table.has("reaction_time_from")) {
-    question.onset = table.text("reaction_time_from");
-  }
-  if (table.has("touch_for")) {
-    question.touch_for = table.number("touch_for", {0.0, 60.0}, "s");
-    if (!question.touched()) {
-      table.reject("touch_for", "stands alone; add touch, a region, to a choice");
-    }
-  }
-  read_limits(table, root, question);
   if (question.name.size() > record::kQuestionBytes) {
     table.reject("name", "too long", fmt::format("at most {} bytes", record::kQuestionBytes));
   }

@@ -46,7 +46,7 @@ enum class Pace : std::uint8_t { kInTime, kTooFast, kTooSlow };
 
 /// A question to the participant after the last interval.
 struct Question {
-  std::string name;             // in /responses and in formulas
+  std::string name{"answer"};   // in /responses and in formulas
   std::string text;             // what is read
   std::vector<Choice> choices;  // empty: a number is typed, and ended with enter
   double first{1.0};            // what formulas take choice 0 for; each further one counts 1 more
@@ -62,7 +62,7 @@ struct Question {
   double too_fast{0.0};   // an answer before it is told so [s]
   double too_slow{std::numeric_limits<double>::infinity()};  // an answer after it, likewise [s]
   bool again{false};  // the trial of such an answer comes again at the end of its block
-  std::string fast_text, slow_text;  // what is told
+  std::string fast_text{"Too fast"}, slow_text{"Too slow"};  // what is told
 
   bool types() const { return choices.empty(); }
   bool touched() const;     // whether a choice is given by touch
