@@ -32,26 +32,6 @@ blocks[].NAME | | what a name is worth in the block
 blocks[].probe.NAME | | what a name is worth in these trials
 intervals.order | as stated | whether they are shuffled in every trial
 intervals.NAME.NAME | | what a name is worth in the interval
-stages[].name | | unlike every other stage's
-stages[].fields | none | fields that act; "$name" is the field that the name stands for
-stages[].show | nothing | hand, interval_number, regions, looks, objects and places
-stages[].until.time | no such condition | the stage ends after this time
-stages[].until.inside | no such condition | the hand is in this region
-stages[].until.contact | no such condition | the hand touches this field
-stages[].until.speed_below | no such condition | the hand is slower
-stages[].until.speed_above | no such condition | the hand is faster
-stages[].until.buttons | no such condition | one of these buttons is pressed
-stages[].until.keys | no such condition | one of these keys is pressed
-stages[].until.for | 0 | how long all of it must hold; [shortest, longest] is drawn in every trial
-stages[].timeout.after | | longest duration of the stage
-stages[].timeout.then | | whether the trial comes again, the interval does, or the trial goes on
-stages[].require.max_of | | what must have been enough; without [require] nothing must
-stages[].require.field | | in which depth or force counts
-stages[].require.at_least | | of the largest value in the stage
-stages[].require.else | | what happens if it was not enough
-stages[].onset.speed_above | | speed at which a movement begins; without [onset] none is looked for
-stages[].sound | none | sound that begins with the stage
-stages[].marker | counted on from markers.stage | code of the stage's marker
 fields.NAME.device | all devices | device that feels the field
 regions.NAME.device | the first device | device whose tool must be in the region
 objects.NAME.kind | rigid | whether it gives way to the hand

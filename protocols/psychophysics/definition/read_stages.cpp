@@ -4,11 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
+#include <string>
 #include <utility>
 
-#include "core/base/definition/table.h"
-#include "core/base/definition/table_vector.h"
+#include "core/base/definition/schema.h"
 #include "core/base/random.h"
 
 namespace haptrial::protocols {
@@ -19,207 +18,304 @@ constexpr Bounds kDuration{0.0, kLongest, false};
 constexpr Bounds kTimeoutBounds{0.0, kLongest, true};
 constexpr Bounds kSpeed{0.0, 10.0, true};
 
-constexpr std::array<std::pair<const char*, Consequence>, 3> kConsequences{
-    {{"abort", Consequence::kAbort},
-     {"repeat", Consequence::kRepeat},
-     {"go on", Consequence::kGoOn}}};
-
-Consequence read_consequence(Table& table, const char* key) {
-  const std::string word = table.choice(key, {"abort", "repeat", "go on"});
-  for (const auto& [name, what] : kConsequences) {
-    if (word == name) {
-      return what;
-    }
-  }
-  return Consequence::kAbort;
+const std::vector<std::pair<std::string, Consequence>>& consequences() {
+  static const std::vector<std::pair<std::string, Consequence>> words{
+      {"abort", Consequence::kAbort},
+      {"repeat", Consequence::kRepeat},
+      {"go on", Consequence::kGoOn}};
+  return words;
 }
 
-class StageReader {
- public:
-  StageReader(Table& table, const StageSource& source) : table_(table), source_(source) {}
+/// A stage while it is read.
+struct StageReading {
+  const StageSource* source{nullptr};
+  NamedStage named{};
+  bool waits{false};         // for more than a time
+  double longest_hold{0.0};  // that `for` of until may ask [s]
 
-  NamedStage read() {
-    result_.name = table_.text("name");
-    if (table_.has("fields")) {
-      result_.stage.fields = mask(table_, "fields", source_.fields, "field");
-    }
-    for (const std::string& text : texts("show")) {
-      const std::string name = word(text);
-      if (name == "null") {
-        continue;
-      }
-      if (source_.sights.empty() || index_of(table_, "show", name, source_.sights, "sight") >= 0) {
-        result_.show.push_back(name);
-      }
-    }
-    Table until = table_.table("until");
-    read_until(until);
-    read_timeout();
-    read_requirement();
-    if (table_.has("onset")) {
-      Table onset = table_.table("onset");
-      result_.stage.onset_speed = number(onset, "speed_above", kSpeed, "m/s");
-    }
-    if (table_.has("sound")) {
-      result_.sound = index_of(table_, "sound", table_.text("sound"), source_.sounds, "sound");
-    }
-    if (table_.has("marker")) {
-      result_.marker = static_cast<int>(table_.integer("marker", 1, 255));
-    }
-    return std::move(result_);
-  }
-
- private:
-  std::vector<std::string> texts(const char* key) {
-    return table_.has(key) ? table_.texts(key) : std::vector<std::string>{};
-  }
-  double number(Table& table, const char* key, const Bounds& bounds, const char* unit) {
-    return table.number(key, bounds, unit);
-  }
-
+  Stage& stage() { return named.stage; }
   std::string word(const std::string& text) const {
-    return source_.word ? source_.word(text) : text;
+    return source->word ? source->word(text) : text;
   }
-
-  /// A bit for each name: of one text or of an array of them.
-  std::uint64_t mask(Table& table, const char* key, const std::vector<std::string>& known,
-                     const char* what) {
-    const std::vector<std::string> names =
-        table.is_array(key) ? table.texts(key) : std::vector{table.text(key)};
-    std::uint64_t bits = 0;
-    for (const std::string& name : names) {
-      const int index = index_of(table, key, name, known, what);
-      bits |= index < 0 ? 0 : std::uint64_t{1} << static_cast<unsigned>(index);
-    }
-    return bits;
-  }
-
-  /// -1 for "null" and, with a problem noted, for what is not there.
-  int index_of(Table& table, const char* key, const std::string& text,
-               const std::vector<std::string>& known, const char* what) {
-    const std::string name = word(text);
-    if (name == "null") {
-      return -1;
-    }
-    const auto found = std::ranges::find(known, name);
-    if (found == known.end()) {
-      table.reject(key, fmt::format("\"{}\"", name),
-                   known.empty() ? fmt::format("no {}: the definition states none", what)
-                                 : fmt::format("a {}: {}", what, fmt::join(known, ", ")));
-      return -1;
-    }
-    return static_cast<int>(found - known.begin());
-  }
-
-  void read_until(Table& table) {
-    Until& until = result_.stage.until;
-    int asked = 0;
-    const auto has = [&](const char* key) {
-      const bool there = table.has(key);
-      asked += there ? 1 : 0;
-      return there;
-    };
-    if (has("inside")) {
-      until.inside = mask(table, "inside", source_.regions, "region");
-    }
-    if (has("contact")) {
-      until.contact = mask(table, "contact", source_.fields, "field");
-    }
-    if (has("speed_below")) {
-      until.speed_below = number(table, "speed_below", kSpeed, "m/s");
-    }
-    if (has("speed_above")) {
-      until.speed_above = number(table, "speed_above", kSpeed, "m/s");
-    }
-    if (has("buttons")) {
-      until.buttons = read_bits(table, "buttons");
-    }
-    if (has("keys")) {
-      until.keys = source_.keys ? source_.keys(table, "keys") : 0;
-    }
-    waits_ = asked > 0;
-    if (has("time")) {
-      until.time = number(table, "time", kDuration, "s");
-    }
-    if (asked == 0) {
-      table_.reject("until",
-                    "names no end of the stage; state a time, a place, a contact, a speed, "
-                    "buttons or keys");
-    }
-    if (table.has("for")) {
-      until.hold = read_hold(table);
-    }
-    if (until.speed_above >= until.speed_below) {
-      table.reject("speed_above", fmt::format("{:g} [m/s]", until.speed_above),
-                   fmt::format("less than speed_below, {:g} [m/s]", until.speed_below));
-    }
-  }
-
-  double read_hold(Table& table) {
-    const std::vector<double> range = holds_range(table)
-                                          ? table.numbers("for", kDuration, "s")
-                                          : std::vector{number(table, "for", kDuration, "s")};
-    longest_hold_ = range.empty() ? 0.0 : range.back();
-    if (range.size() == 1) {
-      return range.front();
-    }
-    if (range.size() != 2 || range[1] < range[0]) {
-      table.reject("for", fmt::format("[{}]", fmt::join(range, ", ")),
-                   "a time or [shortest, longest] [s]");
-      return 0.0;
-    }
-    return source_.random != nullptr ? source_.random->uniform(range[0], range[1]) : range[0];
-  }
-  static bool holds_range(Table& table) { return table.is_array("for"); }
-
-  void read_timeout() {
-    if (table_.has("timeout")) {
-      Table timeout = table_.table("timeout");
-      result_.stage.timeout = number(timeout, "after", kTimeoutBounds, "s");
-      result_.stage.late = read_consequence(timeout, "then");
-      const double soonest = std::max(result_.stage.until.time, longest_hold_);
-      if (result_.stage.timeout < soonest) {
-        timeout.reject("after",
-                       fmt::format("{:g}, before the stage can end", result_.stage.timeout),
-                       fmt::format("at least the {:g} s that until takes", soonest));
-      }
-    } else if (waits_) {
-      table_.reject("until", "may never come; add timeout = { after = …, then = \"abort\" }");
-    }
-  }
-
-  void read_requirement() {
-    if (!table_.has("require")) {
-      return;
-    }
-    Table table = table_.table("require");
-    Requirement require;
-    const std::string of = table.choice("max_of", {"depth", "force", "speed"});
-    require.of = of == "depth"   ? Requirement::Of::kDepth
-                 : of == "force" ? Requirement::Of::kForce
-                                 : Requirement::Of::kSpeed;
-    const char* unit = of == "depth" ? "m" : of == "force" ? "N" : "m/s";
-    if (require.of != Requirement::Of::kSpeed) {
-      require.field = index_of(table, "field", table.text("field"), source_.fields, "field");
-    }
-    require.at_least = number(table, "at_least", kNonNegative, unit);
-    require.otherwise = read_consequence(table, "else");
-    result_.stage.require = require;
-  }
-
-  Table& table_;
-  const StageSource& source_;
-  NamedStage result_;
-  bool waits_{false};         // for more than a time
-  double longest_hold_{0.0};  // that `for` of until may ask [s]
 };
+
+using Reading = StageReading;
+
+/// @returns -1 for "null" and, with a problem noted, for what is not there
+int index_of(Table& table, const std::string& key, const std::string& text, const Reading& reading,
+             const std::vector<std::string>& known, const char* what) {
+  const std::string name = reading.word(text);
+  if (name == "null") {
+    return -1;
+  }
+  const auto found = std::ranges::find(known, name);
+  if (found == known.end()) {
+    table.reject(key, fmt::format("\"{}\"", name),
+                 known.empty() ? fmt::format("no {}: the definition states none", what)
+                               : fmt::format("a {}: {}", what, fmt::join(known, ", ")));
+    return -1;
+  }
+  return static_cast<int>(found - known.begin());
+}
+
+/// A bit for each name of one text or of an array of them.
+std::uint64_t read_mask(Table& table, const std::string& key, const Reading& reading,
+                        const std::vector<std::string>& known, const char* what) {
+  const std::vector<std::string> names =
+      table.is_array(key) ? table.texts(key) : std::vector{table.text(key)};
+  std::uint64_t bits = 0;
+  for (const std::string& name : names) {
+    const int index = index_of(table, key, name, reading, known, what);
+    bits |= index < 0 ? 0 : std::uint64_t{1} << static_cast<unsigned>(index);
+  }
+  return bits;
+}
+
+constexpr const char* kNoCondition = "no such condition";
+
+const Schema<Until>& until_schema() {
+  using U = Until;
+  static const auto schema =
+      Schema<U>()
+          .number("speed_below", &U::speed_below, kSpeed, "m/s",
+                  "Speed that the hand must stay below for the stage to end")
+          .otherwise(kNoCondition)
+          .number("speed_above", &U::speed_above, kSpeed, "m/s",
+                  "Speed that the hand must exceed for the stage to end")
+          .otherwise(kNoCondition)
+          .bits("buttons", &U::buttons,
+                "Buttons of the device of which one must be pressed for the stage to end")
+          .otherwise(kNoCondition)
+          .number("time", &U::time, kDuration, "s",
+                  "Time that must have passed since the stage began for it to end")
+          .otherwise(kNoCondition);
+  return schema;
+}
+
+/// One time, or one that is drawn from a range.
+void read_hold(Table& table, const std::string& key, Reading& reading) {
+  const std::vector<double> range = table.is_array(key)
+                                        ? table.numbers(key, kDuration, "s")
+                                        : std::vector{table.number(key, kDuration, "s")};
+  reading.longest_hold = range.empty() ? 0.0 : range.back();
+  double& hold = reading.stage().until.hold;
+  if (range.size() == 1) {
+    hold = range.front();
+  } else if (range.size() != 2 || range[1] < range[0]) {
+    table.reject(key, fmt::format("[{}]", fmt::join(range, ", ")),
+                 "a time or [shortest, longest] [s]");
+  } else {
+    RandomStream* random = reading.source->random;
+    hold = random != nullptr ? random->uniform(range[0], range[1]) : range[0];
+  }
+}
+
+/// Keys of until whose words the definition explains, or of which trials draw a value.
+const Schema<Reading>& condition_schema() {
+  using R = Reading;
+  static const auto schema =
+      Schema<R>()
+          .custom("inside",
+                  "Region, or several, in all of which the hand must be for the stage to end",
+                  [](Table& table, const std::string& key, R& reading) {
+                    reading.stage().until.inside =
+                        read_mask(table, key, reading, reading.source->regions, "region");
+                  })
+          .otherwise(kNoCondition)
+          .custom("contact",
+                  "Field, or several, all of which the hand must touch for the stage to end",
+                  [](Table& table, const std::string& key, R& reading) {
+                    reading.stage().until.contact =
+                        read_mask(table, key, reading, reading.source->fields, "field");
+                  })
+          .otherwise(kNoCondition)
+          .custom("keys",
+                  "Keys of the participant's window of which one must be pressed for the stage to "
+                  "end",
+                  [](Table& table, const std::string& key, R& reading) {
+                    const auto& keys = reading.source->keys;
+                    reading.stage().until.keys = keys ? keys(table, key) : 0;
+                  })
+          .otherwise(kNoCondition)
+          .custom("for",
+                  "Time for which every condition of the stage's end must hold; [shortest, "
+                  "longest] is drawn in every trial",
+                  read_hold)
+          .otherwise("0");
+  return schema;
+}
+
+void read_until(Table& table, const std::string& key, Reading& reading) {
+  Table inner = table.table(key);
+  Until& until = reading.stage().until;
+  condition_schema().read(inner, reading);
+  until_schema().read(inner, until);
+  for (const char* condition :
+       {"inside", "contact", "speed_below", "speed_above", "buttons", "keys"}) {
+    reading.waits = inner.has(condition) || reading.waits;
+  }
+  if (!reading.waits && !inner.has("time")) {
+    table.reject(key,
+                 "names no end of the stage; state a time, a place, a contact, a speed, "
+                 "buttons or keys");
+  }
+  if (until.speed_above >= until.speed_below) {
+    inner.reject("speed_above", fmt::format("{:g} [m/s]", until.speed_above),
+                 fmt::format("less than speed_below, {:g} [m/s]", until.speed_below));
+  }
+}
+
+const Schema<Stage>& timeout_schema() {
+  static const auto schema =
+      Schema<Stage>()
+          .number("after", &Stage::timeout, kTimeoutBounds, "s", "Longest duration of the stage")
+          .required()
+          .choice("then", &Stage::late, consequences(),
+                  "Consequence of a stage that takes too long: the trial is aborted and comes "
+                  "again, the interval begins again, or the trial goes on")
+          .required();
+  return schema;
+}
+
+void read_timeout(Table& table, const std::string& key, Reading& reading) {
+  Table inner = table.table(key);
+  Stage& stage = reading.stage();
+  timeout_schema().read(inner, stage);
+  const double soonest = std::max(stage.until.time, reading.longest_hold);
+  if (stage.timeout < soonest) {
+    inner.reject("after", fmt::format("{:g}, before the stage can end", stage.timeout),
+                 fmt::format("at least the {:g} s that until takes", soonest));
+  }
+}
+
+void check_timeout(Table& table, Reading& reading) {
+  if (reading.waits && !table.has("timeout")) {
+    table.reject("until", "may never come; add timeout = { after = …, then = \"abort\" }");
+  }
+}
+
+const char* unit_of(const Requirement& require) {
+  return require.of == Requirement::Of::kDepth   ? "m"
+         : require.of == Requirement::Of::kForce ? "N"
+                                                 : "m/s";
+}
+
+const Schema<Requirement>& requirement_schema() {
+  using R = Requirement;
+  static const auto schema =
+      Schema<R>()
+          .choice("max_of", &R::of,
+                  {{"depth", R::Of::kDepth}, {"force", R::Of::kForce}, {"speed", R::Of::kSpeed}},
+                  "Quantity whose largest value in the stage must be enough; without [require] "
+                  "nothing must")
+          .required()
+          .custom("at_least", "Smallest value of the required quantity that is enough",
+                  [](Table& table, const std::string& key, R& require) {
+                    require.at_least = table.number(key, kNonNegative, unit_of(require));
+                  })
+          .required()
+          .choice("else", &R::otherwise, consequences(),
+                  "Consequence of a stage in which the required quantity was not enough: the "
+                  "trial is aborted and comes again, the interval begins again, or the trial goes "
+                  "on")
+          .required();
+  return schema;
+}
+
+void read_requirement(Table& table, const std::string& key, Reading& reading) {
+  Table inner = table.table(key);
+  Requirement require = requirement_schema().read(inner);
+  if (require.of != Requirement::Of::kSpeed) {
+    inner.describe({"field", "Field whose depth or force is required", "", true});
+    require.field =
+        index_of(inner, "field", inner.text("field"), reading, reading.source->fields, "field");
+  }
+  reading.stage().require = require;
+}
+
+const Schema<Stage>& onset_schema() {
+  static const auto schema =
+      Schema<Stage>()
+          .number("speed_above", &Stage::onset_speed, kSpeed, "m/s",
+                  "Speed of the hand above which a movement has begun; without [onset] no "
+                  "beginning is recorded")
+          .required();
+  return schema;
+}
+
+void read_sights(Table& table, const std::string& key, Reading& reading) {
+  const std::vector<std::string>& sights = reading.source->sights;
+  for (const std::string& text : table.texts(key)) {
+    const std::string name = reading.word(text);
+    if (name != "null" &&
+        (sights.empty() || index_of(table, key, name, reading, sights, "sight") >= 0)) {
+      reading.named.show.push_back(name);
+    }
+  }
+}
+
+const Schema<NamedStage>& named_stage_schema() {
+  static const auto schema =
+      Schema<NamedStage>()
+          .text("name", &NamedStage::name, "Name of the stage, which no other stage has")
+          .required()
+          .integer("marker", &NamedStage::marker, 1, 255,
+                   "Code of the marker at the beginning of the stage")
+          .otherwise("counted on from markers.stage");
+  return schema;
+}
+
+const Schema<Reading>& stage_schema() {
+  using R = Reading;
+  static const auto schema =
+      Schema<R>()
+          .keys_of(&R::named, named_stage_schema())
+          .custom("fields",
+                  "Fields that act in the stage; \"$name\" is the field that the name stands for",
+                  [](Table& table, const std::string& key, R& reading) {
+                    reading.stage().fields =
+                        read_mask(table, key, reading, reading.source->fields, "field");
+                  })
+          .otherwise("none")
+          .custom("show",
+                  "Sights of the stage: hand, interval_number, regions, looks, objects and places",
+                  read_sights)
+          .otherwise("nothing")
+          .custom("until", "Conditions that hold together at the end of the stage", read_until)
+          .required()
+          .custom("timeout", "Longest duration of the stage, and its consequence", read_timeout)
+          .otherwise("none; needed if the stage may never end")
+          .check(check_timeout)
+          .custom("require", "Event without which the stage was not done as asked",
+                  read_requirement)
+          .otherwise("nothing")
+          .custom("onset", "Beginning of a movement, whose time is recorded",
+                  [](Table& table, const std::string& key, R& reading) {
+                    Table onset = table.table(key);
+                    onset_schema().read(onset, reading.stage());
+                  })
+          .otherwise("none")
+          .custom("sound", "Sound that begins with the stage",
+                  [](Table& table, const std::string& key, R& reading) {
+                    reading.named.sound = index_of(table, key, table.text(key), reading,
+                                                   reading.source->sounds, "sound");
+                  })
+          .otherwise("none");
+  return schema;
+}
+
+NamedStage read_stage(Table& table, const StageSource& source) {
+  StageReading reading{&source};
+  stage_schema().read(table, reading);
+  return std::move(reading.named);
+}
 
 }  // namespace
 
 std::vector<NamedStage> read_stages(Table& root, const StageSource& source) {
   std::vector<NamedStage> stages;
   for (Table& table : root.tables("stages")) {
-    NamedStage stage = StageReader(table, source).read();
+    NamedStage stage = read_stage(table, source);
     if (std::ranges::find(stages, stage.name, &NamedStage::name) != stages.end()) {
       table.reject("name", fmt::format("\"{}\"", stage.name), "a name that no other stage has");
     }
