@@ -31,6 +31,18 @@ const Schema<SpacedGrid>& spaced_grid_schema() {
   return schema;
 }
 
+const Schema<std::vector<double>>& levels_schema() {
+  static const auto schema =
+      Schema<std::vector<double>>()
+          .custom("levels", "Levels that may be presented: a list, or { from, to, count, spacing }",
+                  [](Table& table, const std::string& key, std::vector<double>& levels) {
+                    levels = read_grid(table, key);
+                  })
+          .required()
+          .otherwise(kProceduresOwn);
+  return schema;
+}
+
 const Schema<Track>& axis_schema() {
   static const auto schema =
       Schema<Track>()
@@ -79,6 +91,12 @@ std::vector<double> read_spaced_grid(Table& table) {
                               : grid.from + share * (grid.to - grid.from));
   }
   return values;
+}
+
+std::vector<double> read_levels(const TrackKeys& keys) {
+  std::vector<double> levels;
+  levels_schema().read(keys.track, keys.procedure, levels);
+  return levels;
 }
 
 const Axis& read_axis(const TrackKeys& keys, Track& track) {

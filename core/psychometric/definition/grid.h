@@ -33,4 +33,7 @@ std::vector<double> read_grid(Table& table, const std::string& key);
 /// The last of these. @param grid  the table itself
 std::vector<double> read_spaced_grid(Table& grid);
 
+/// Reads `levels`, a grid of what a track may present.
+std::vector<double> read_levels(const TrackKeys& keys);
+
 }  // namespace haptrial::psychometric
