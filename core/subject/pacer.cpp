@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/definition/table.h"
+#include "core/subject/population_schema.h"
 
 namespace haptrial::subject {
 namespace {
@@ -20,17 +20,29 @@ constexpr double kMostCorrection = 2.0;  // [N]
 
 }  // namespace
 
-PaceHabits::PaceHabits(Table& table)
-    : pace_(read_variation(table, "pace", {0.001, 0.2}, "m/s")),
-      variability_(read_variation(table, "variability", {0.0, 1.0}, "")),
-      correlation_(read_variation(table, "correlation", {0.05, 60.0}, "s")) {}
-
-PaceParameters PaceHabits::draw(std::uint64_t seed) const {
-  PaceParameters person;
-  person.pace = subject::draw(pace_, seed, "pace", {0.0, 0.2});
-  person.variability = subject::draw(variability_, seed, "pace variability", {0.0, 1.0});
-  person.correlation = subject::draw(correlation_, seed, "pace correlation", {0.0, 60.0});
-  return person;
+const Schema<Population<PaceParameters>>& pace_schema() {
+  using P = PaceParameters;
+  static const auto schema = population_schema<P>(
+      "pace ", true,
+      {{"pace",
+        &P::pace,
+        {0.001, 0.2},
+        "m/s",
+        "Speed of the hand along a path whose radius of curvature is 1 cm, where participants set "
+        "their own speed",
+        false,
+        "pace"},
+       {"variability",
+        &P::variability,
+        {0.0, 1.0},
+        "",
+        "Standard deviation of the intended speed within a pass, as a logarithm"},
+       {"correlation",
+        &P::correlation,
+        {0.05, 60.0},
+        "s",
+        "Time over which deviations of the intended speed are alike"}});
+  return schema;
 }
 
 Pacer::Pacer(const PaceParameters& person, const HandParameters& hand, RandomStream random,

@@ -6,9 +6,16 @@
 #include "core/base/random.h"
 #include "core/subject/hand_parameters.h"
 #include "core/subject/smooth_noise.h"
-#include "core/subject/subject_parameters.h"
+
+namespace haptrial {
+template <class T>
+class Schema;
+}
 
 namespace haptrial::subject {
+
+template <class Person>
+struct Population;
 
 /// How somebody moves along a path at their own pace. Sources: docs/algorithms/virtual-subject.md.
 struct PaceParameters {
@@ -17,17 +24,9 @@ struct PaceParameters {
   double correlation{1.0};  // time over which it is alike [s]
 };
 
-/// How that varies over people: every field has its variation.
-class PaceHabits {
- public:
-  /// Reads a [pace] table in which every field is { median = M, spread = S } or a number.
-  explicit PaceHabits(Table& table);
-  /// The habits of a person; their own streams, so that nothing else about the person changes.
-  PaceParameters draw(std::uint64_t seed) const;
-
- private:
-  Variation pace_, variability_, correlation_;
-};
+/// The keys of [pace], which say how each parameter varies over people. Their streams are their
+/// own, so that nothing else about a person changes.
+const Schema<Population<PaceParameters>>& pace_schema();
 
 /// The arm that carries a hand along a path. Its intended speed follows the two-thirds power law
 ///

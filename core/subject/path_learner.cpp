@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/definition/table.h"
+#include "core/subject/population_schema.h"
 #include "core/subject/smooth_noise.h"
 
 namespace haptrial::subject {
@@ -17,20 +17,22 @@ constexpr int kAxes[] = {0, 2};       // of W
 
 }  // namespace
 
-PathHabits::PathHabits(Table& table)
-    : visual_(read_variation(table, "visual_noise", {0.0, 0.1}, "m")),
-      haptic_(read_variation(table, "haptic_noise", {0.0, 0.1}, "m")),
-      forgetting_(read_variation(table, "forgetting", {0.0, 0.1}, "m")),
-      correlation_(read_variation(table, "correlation", {0.05, 60.0}, "s")) {}
-
-PathParameters PathHabits::draw(std::uint64_t seed) const {
+const Schema<Population<PathParameters>>& path_memory_schema() {
+  using P = PathParameters;
   constexpr Bounds kNoise{0.0, 0.1};
-  PathParameters person;
-  person.visual_noise = subject::draw(visual_, seed, "path visual_noise", kNoise);
-  person.haptic_noise = subject::draw(haptic_, seed, "path haptic_noise", kNoise);
-  person.forgetting = subject::draw(forgetting_, seed, "path forgetting", kNoise);
-  person.correlation = subject::draw(correlation_, seed, "path correlation", {0.0, 60.0});
-  return person;
+  static const auto schema = population_schema<P>(
+      "path ", true,
+      {{"visual_noise", &P::visual_noise, kNoise, "m",
+        "Standard deviation of a remembered place of the path that was seen"},
+       {"haptic_noise", &P::haptic_noise, kNoise, "m",
+        "Standard deviation of a remembered place of the path to which the hand was led"},
+       {"forgetting", &P::forgetting, kNoise, "m", "Drift of the remembered path between passes"},
+       {"correlation",
+        &P::correlation,
+        {0.05, 60.0},
+        "s",
+        "Time over which errors of the remembered path are alike"}});
+  return schema;
 }
 
 PathLearner::PathLearner(const PathParameters& person, const HandParameters& hand,

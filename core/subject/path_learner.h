@@ -7,9 +7,16 @@
 #include "core/base/random.h"
 #include "core/subject/force_memory.h"
 #include "core/subject/hand_parameters.h"
-#include "core/subject/variation.h"
+
+namespace haptrial {
+template <class T>
+class Schema;
+}
 
 namespace haptrial::subject {
+
+template <class Person>
+struct Population;
 
 /// How somebody learns where a path goes. Sources: docs/algorithms/tutoring-study.md.
 struct PathParameters {
@@ -19,17 +26,9 @@ struct PathParameters {
   double correlation{1.5};     // time over which these errors are alike [s]
 };
 
-/// How that varies over people: every field has its variation.
-class PathHabits {
- public:
-  /// Reads a [path_memory] table in which every field is { median = M, spread = S } or a number.
-  explicit PathHabits(Table& table);
-  /// The habits of a person; their own streams, so that nothing else about the person changes.
-  PathParameters draw(std::uint64_t seed) const;
-
- private:
-  Variation visual_, haptic_, forgetting_, correlation_;
-};
+/// The keys of [path_memory], which say how each parameter varies over people. Their streams are
+/// their own, so that nothing else about a person changes.
+const Schema<Population<PathParameters>>& path_memory_schema();
 
 /// Remembers a path in the xz plane and moves a hand along it again. What was seen and what was
 /// felt of one exposure combine by their variances (Ernst and Banks 2002); exposures of a block are

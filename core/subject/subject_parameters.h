@@ -1,14 +1,14 @@
 #pragma once
 
-#include <cstdint>
-
-#include "core/subject/variation.h"
-
 namespace haptrial {
-class Table;
+template <class T>
+class Schema;
 }
 
 namespace haptrial::subject {
+
+template <class Person>
+struct Population;
 
 /// One virtual person. No value belongs to a training condition: each describes a sense, the memory
 /// or the hand, and what a condition gives follows from the senses it uses.
@@ -34,18 +34,8 @@ struct SubjectParameters {
   double tremor_frequency{9.0};    // [Hz]
 };
 
-/// A population of virtual people: every field of SubjectParameters has its variation.
-class Population {
- public:
-  /// Reads a [subject] table in which every parameter is { median = M, spread = S } or a number.
-  explicit Population(Table& table);
-  /// The person of a seed; each parameter has its own stream.
-  SubjectParameters draw(std::uint64_t seed) const;
-
- private:
-  static constexpr int kCount = 18;
-  Variation variations_[kCount];
-};
+/// The keys of [subject], which say how each parameter varies over virtual people.
+const Schema<Population<SubjectParameters>>& subject_schema();
 
 /// Everything at zero but delays and time constants: perceives, remembers and acts without error.
 SubjectParameters noiseless_subject();

@@ -150,7 +150,8 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   if (root.has("power")) {
     root.leave("power");  // of who simulates it
   }
-  ForceDefinition d{subject::Population(subject)};
+  ForceDefinition d;
+  d.population = subject::subject_schema().read(subject);
   d.protocol = kForceTraining;
   read_common(root, file_name, d);
   d.trajectory = stimulus::trajectory_schema().read(trajectory);
@@ -162,11 +163,11 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   d.display = render::trial_display_schema().read(display);
   if (d.guidance.kind == Guidance::kCurve) {
     Table pace = root.table("pace");
-    d.pace.emplace(pace);
+    d.pace = subject::pace_schema().read(pace);
   }
   if (d.guidance.free_recall) {
     Table path_memory = root.table("path_memory");
-    d.paths.emplace(path_memory);
+    d.paths = subject::path_memory_schema().read(path_memory);
   }
   if (!root.has("tutoring") || !root.table("tutoring").has("pause_buttons")) {
     d.tutoring.pause_buttons = ~std::uint32_t{0};  // buttons mean nothing else here

@@ -9,6 +9,7 @@
 #include "core/stimulus/stimulus.h"
 #include "core/subject/pacer.h"
 #include "core/subject/path_learner.h"
+#include "core/subject/population.h"
 #include "core/subject/subject_parameters.h"
 #include "protocols/definition/definition.h"
 #include "protocols/force_training/trajectory_pass.h"
@@ -23,15 +24,13 @@ inline constexpr const char* kForceTraining = "force_training";  // its name in 
 
 /// An experiment of forces along a path, read from a definition file and valid as a whole.
 struct ForceDefinition : Definition {
-  explicit ForceDefinition(subject::Population people) : population(std::move(people)) {}
-
   stimulus::TrajectoryParameters trajectory;
   stimulus::ForcePatternParameters force_pattern;
   GuidanceParameters guidance;
-  subject::Population population;
-  std::optional<subject::PaceHabits> pace;   // where participants set their own
-  std::optional<subject::PathHabits> paths;  // where the test is free
-  double stimulus_rate{1000.0};              // [Hz]
+  subject::Population<subject::SubjectParameters> population;
+  std::optional<subject::Population<subject::PaceParameters>> pace;   // if it is their own
+  std::optional<subject::Population<subject::PathParameters>> paths;  // if the test is free
+  double stimulus_rate{1000.0};                                       // [Hz]
 
   /// Whether a condition of training has an expert.
   bool shows_expert() const;

@@ -4,36 +4,38 @@
 
 #include "core/subject/perceiver/felt.h"
 #include "core/subject/perceiver/judgement.h"
-#include "core/subject/variation.h"
+#include "core/subject/population.h"
 
 namespace haptrial {
+template <class T>
+class Schema;
 class Table;
-}
+}  // namespace haptrial
 
 namespace haptrial::subject {
 
-/// How senses and decisions vary over people. Every key of a definition's table may be left out
-/// (the default for everybody), a number, or { median = M, spread = S } (variation.h). Keys are the
-/// names of the fields; bias_first, repetition and drift are shifts, and so is the criterion of a
-/// judge that is not logarithmic.
+/// The keys of [observer] that describe senses and decisions. Each may be left out, which is the
+/// default for everybody. bias_first, repetition and drift are shifts (variation.h), and so is the
+/// criterion of a judge that is not logarithmic.
+const Schema<Population<SenseParameters>>& sense_schema();
+const Schema<Population<JudgementParameters>>& judgement_schema(bool logarithmic);
+
+/// How senses and decisions vary over people.
 class PerceiverPopulation {
  public:
-  /// @param judge  what is not read: `logarithmic`, and the defaults
-  explicit PerceiverPopulation(Table& table, const JudgementParameters& judge = {});
+  /// @param logarithmic  whether evidence is the logarithm of a percept
+  explicit PerceiverPopulation(Table& table, bool logarithmic = true);
 
   /// Whether any parameter differs between people.
-  bool varies() const;
+  bool varies() const { return senses_.varies() || judgements_.varies(); }
 
   /// The person of a seed; each parameter has its own stream "observer KEY".
-  SenseParameters draw_senses(std::uint64_t seed) const;
-  JudgementParameters draw_judgement(std::uint64_t seed) const;
+  SenseParameters draw_senses(std::uint64_t seed) const { return senses_.draw(seed); }
+  JudgementParameters draw_judgement(std::uint64_t seed) const { return judgements_.draw(seed); }
 
  private:
-  static constexpr int kSenses = 9;
-  static constexpr int kJudgements = 10;
-  Variation senses_[kSenses];
-  Variation judgements_[kJudgements];
-  bool logarithmic_;
+  Population<SenseParameters> senses_;
+  Population<JudgementParameters> judgements_;
 };
 
 }  // namespace haptrial::subject

@@ -102,25 +102,6 @@ observer.adaptation.slow.learning | | of the slow process from an error; without
 observer.sight.noise | | noises of the picture, rising
 observer.sight.sd | | spread of a seen size at each of these noises
 observer.sight.spread | 0 | spread of it between people, as a logarithm
-observer.force_weber | | spread of a felt force, as a share of it
-observer.force_floor | | spread of a felt force of zero
-observer.displacement_bias | | share of a displacement that is not felt
-observer.displacement_weber | | spread of a felt displacement, as a share of it
-observer.speed_weber | | spread of a felt speed, as a share of it
-observer.extent_weber | | spread of a felt extent, as a share of it
-observer.usual_deflection | | of a surface that is pressed
-observer.contact_force | | above which something is felt to be touched
-observer.moving_speed | | above which the hand is felt to move
-observer.decision_noise | | spread of the evidence, beside that of the sense
-observer.bias_first | | added to the evidence of the first interval
-observer.repetition | | added to the evidence of the answer before
-observer.criterion | | above which the answer is yes
-observer.drift | | of the criterion a trial
-observer.lapse | | probability of an answer at random
-observer.exponent | | of magnitudes
-observer.modulus | | magnitude of a percept of 1
-observer.magnitude_noise | | spread of the logarithm of a magnitude
-observer.tolerance | | of an adjustment
 trials:analysis.kind | as the procedure is | what is computed
 trials:analysis.by | all factors; of detection, identification and reaching none | factors whose levels are told apart
 trials:analysis.tests | none | planned: "a < b", "a > b" or "a != b" of levels
@@ -174,31 +155,6 @@ power.responses | nothing is known | what responses need to know (docs/guide-pow
 power.vary[].key | | key that is varied, with its tables: observer.lapse.median
 power.vary[].values | | its values
 power.vary[].none | it makes no effect | its value without an effect
-path_memory.visual_noise | needed | of a place that was seen
-path_memory.haptic_noise | needed | of a place to which the hand was led
-path_memory.forgetting | needed | drift between passes
-path_memory.correlation | needed | time over which errors are alike
-pace.pace | needed | along a path of the reference curvature
-pace.variability | needed | spread of the intended speed within a pass
-pace.correlation | needed | time over which it is alike
-subject.visual_weber | needed | spread of a seen bar height, as a share of it
-subject.haptic_weber | needed | spread of a felt force, as a share of it
-subject.visual_memory_noise | needed | of a height kept in memory, as a force
-subject.haptic_memory_noise | needed | of a force kept in memory
-subject.haptic_bias | needed | spread of the felt scale from pass to pass
-subject.bar_misjudgement | needed | spread of newtons per bar height before calibration
-subject.calibration_loss | needed | share of a calibration that is gone after a block
-subject.forgetting | needed | drift of the memory between passes
-subject.memory_correlation | needed | time over which memory errors are alike
-subject.production_bias | needed | spread of the produced scale from recall to recall
-subject.timing_error | needed | spread of the time at which a remembered force comes
-subject.timing_correlation | needed | time over which timing errors are alike
-subject.visual_delay | needed | reaction to what is seen
-subject.haptic_delay | needed | reaction to what is felt
-subject.force_noise | needed | spread of a held force, as a share of it
-subject.force_noise_time | needed | its correlation time
-subject.tremor | needed | root mean square of the tremor
-subject.tremor_frequency | needed | of the tremor
 )";
 }
 

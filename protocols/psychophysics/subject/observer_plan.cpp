@@ -277,10 +277,8 @@ ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
     plan.sight = read_sight(sight);
   }
   plan.script = read_decision_script(table);
-  subject::JudgementParameters judge;
   // Nothing at all has no logarithm.
-  judge.logarithmic = plan.decides != Decides::kYes && plan.decides != Decides::kNearest;
-  plan.people.emplace(table, judge);
+  plan.people.emplace(table, plan.decides != Decides::kYes && plan.decides != Decides::kNearest);
   return plan;
 }
 

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/subject/hand.h"
+#include "core/subject/population.h"
 #include "core/subject/virtual_subject.h"
 #include "tests/support/allocation_guard.h"
 
@@ -105,17 +106,17 @@ TEST(PacerTest, ADriveDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(PaceHabitsTest, PeopleDifferAndAreReadWithTheirBounds) {
+TEST(PaceSchemaTest, PeopleDifferAndAreReadWithTheirBounds) {
   const std::string text =
       "pace = { median = 0.02, spread = 0.2 }\nvariability = { median = 0.1, spread = 0.0 }\n"
       "correlation = { median = 1.0, spread = 0.0 }\n";
   Table table = Table::parse(text, "f.toml");
-  const PaceHabits habits(table);
+  const Population<PaceParameters> people = pace_schema().read(table);
   EXPECT_NO_THROW(table.finish());
   double sum = 0.0;
   double square = 0.0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
-    const PaceParameters p = habits.draw(seed);
+    const PaceParameters p = people.draw(seed);
     EXPECT_EQ(p.variability, 0.1);
     sum += std::log(p.pace / 0.02) / 2000;
     square += std::pow(std::log(p.pace / 0.02), 2) / 2000;
@@ -123,7 +124,7 @@ TEST(PaceHabitsTest, PeopleDifferAndAreReadWithTheirBounds) {
   EXPECT_NEAR(sum, 0.0, 0.02);
   EXPECT_NEAR(std::sqrt(square), 0.2, 0.01);
   Table bad = Table::parse("pace = { median = 0.0, spread = 0.2 }\n", "f.toml");
-  PaceHabits{bad};
+  pace_schema().read(bad);
   EXPECT_THROW(bad.finish(), InputError);
 }
 

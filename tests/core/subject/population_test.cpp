@@ -3,8 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
+#include "core/subject/population.h"
 #include "core/subject/subject_parameters.h"
 
 namespace haptrial::subject {
@@ -28,9 +29,9 @@ std::string definition(double median, double spread, const std::string& replaced
   return text;
 }
 
-Population population(const std::string& text) {
+Population<SubjectParameters> population(const std::string& text) {
   Table table = Table::parse(text, "people.toml");
-  Population read(table);
+  const auto read = subject_schema().read(table);
   table.finish();
   return read;
 }
@@ -42,7 +43,7 @@ TEST(PopulationTest, WithoutSpreadEverybodyIsTheMedian) {
 }
 
 TEST(PopulationTest, ANumberIsTheSameForEverybody) {
-  const Population people = population(definition(0.1, 0.3, "tremor", "tremor = 0.02"));
+  const auto people = population(definition(0.1, 0.3, "tremor", "tremor = 0.02"));
   EXPECT_EQ(people.draw(1).tremor, 0.02);
   EXPECT_EQ(people.draw(2).tremor, 0.02);
   EXPECT_NE(people.draw(1).haptic_weber, people.draw(2).haptic_weber);
@@ -68,7 +69,7 @@ TEST(PopulationTest, AShiftIsAddedAndCanBeNegative) {
 }
 
 TEST(PopulationTest, SpreadIsThatOfTheLogarithm) {
-  const Population people = population(definition(0.1, 0.3));
+  const auto people = population(definition(0.1, 0.3));
   double sum = 0.0;
   double squares = 0.0;
   constexpr int kPeople = 20000;
@@ -82,7 +83,7 @@ TEST(PopulationTest, SpreadIsThatOfTheLogarithm) {
 }
 
 TEST(PopulationTest, ParametersVaryIndependentlyAndRepeatably) {
-  const Population people = population(definition(0.1, 0.3));
+  const auto people = population(definition(0.1, 0.3));
   double product = 0.0;
   constexpr int kPeople = 20000;
   for (int i = 0; i < kPeople; ++i) {

@@ -17,9 +17,7 @@ using testing::HasSubstr;
 
 PerceiverPopulation read(const std::string& text, bool logarithmic = true) {
   Table table = Table::parse(text, "people.toml");
-  JudgementParameters judge;
-  judge.logarithmic = logarithmic;
-  PerceiverPopulation people(table, judge);
+  PerceiverPopulation people(table, logarithmic);
   table.finish();
   return people;
 }
