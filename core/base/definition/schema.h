@@ -139,6 +139,15 @@ class Schema {
                  }
                });
   }
+  Schema& numbers(std::string name, std::vector<double> T::*member, const Bounds& bounds,
+                  std::string unit, std::string description) {
+    return add(std::move(name), std::move(description),
+               [=](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   into.*member = table.numbers(key.name, bounds, unit);
+                 }
+               });
+  }
   /// Three numbers, x, y and z.
   Schema& vector(std::string name, Eigen::Vector3d T::*member, const Bounds& bounds,
                  std::string unit, std::string description) {
@@ -198,6 +207,18 @@ class Schema {
                  if (key.stands_in(table)) {
                    Table inner = table.table(key.name);
                    schema.read(inner, into.*member);
+                 }
+               });
+  }
+  /// Likewise; nothing while the table is left out.
+  template <class U>
+  Schema& table(std::string name, std::optional<U> T::*member, const Schema<U>& schema,
+                std::string description) {
+    return add(std::move(name), std::move(description),
+               [member, &schema](Table& table, const KeyDescription& key, T& into) {
+                 if (key.stands_in(table)) {
+                   Table inner = table.table(key.name);
+                   into.*member = schema.read(inner);
                  }
                });
   }

@@ -1,12 +1,37 @@
 #include "core/subject/perceiver/sight.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/base/definition/schema.h"
 #include "core/base/random.h"
 
 namespace haptrial::subject {
+
+const Schema<SightParameters>& sight_schema() {
+  using S = SightParameters;
+  static const auto schema =
+      Schema<S>()
+          .numbers("noise", &S::noise, kNonNegative, "",
+                   "Noises of a picture at which `sd` is known, rising")
+          .required()
+          .numbers("sd", &S::sd, kPositive, "m",
+                   "Standard deviation of a seen size at each of the noises of the picture")
+          .required()
+          .number("spread", &S::spread, {0.0, 2.0}, "",
+                  "Standard deviation of the precision of sight between people, as a logarithm")
+          .check([](Table& table, S& sight) {
+            try {
+              check(sight);
+            } catch (const std::invalid_argument& error) {
+              table.reject("noise", fmt::format("cannot be used with sd: {}", error.what()));
+            }
+          });
+  return schema;
+}
 
 void check(const SightParameters& sight) {
   const bool rising = std::adjacent_find(sight.noise.begin(), sight.noise.end(),

@@ -5,6 +5,11 @@
 
 #include "core/subject/perceiver/cue_combination.h"
 
+namespace haptrial {
+template <class T>
+class Schema;
+}
+
 namespace haptrial::subject {
 
 /// How well a size is seen: the standard deviation at each noise of the picture.
@@ -13,6 +18,9 @@ struct SightParameters {
   std::vector<double> sd;     // (noise) > 0 [m]
   double spread{0.0};         // between people: sd of the log of a factor on all of them >= 0
 };
+
+/// The keys of [observer.sight].
+const Schema<SightParameters>& sight_schema();
 
 /// @throws std::invalid_argument naming what breaks its bound.
 void check(const SightParameters& sight);

@@ -1,7 +1,11 @@
 #include "core/subject/perceiver/two_rate.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 #include <string>
+
+#include "core/base/definition/schema.h"
 
 namespace haptrial::subject {
 namespace {
@@ -15,7 +19,34 @@ void require_rate(const LearningRate& rate, const char* name) {
   }
 }
 
+/// @param process  "fast"; @param usual  rates if its table is left out
+Schema<LearningRate> make_rate_schema(const char* process, const LearningRate& usual) {
+  using R = LearningRate;
+  return Schema<R>()
+      .number("retention", &R::retention, kFraction, "1",
+              fmt::format("Share of what the {} process of adaptation knows that it keeps from "
+                          "trial to trial; without the table {}",
+                          process, usual.retention))
+      .required()
+      .number("learning", &R::learning, kFraction, "1",
+              fmt::format("Share of an error that the {} process of adaptation learns; without "
+                          "the table {}",
+                          process, usual.learning))
+      .required();
+}
+
 }  // namespace
+
+const Schema<TwoRateParameters>& two_rate_schema() {
+  using P = TwoRateParameters;
+  static const auto fast = make_rate_schema("fast", P{}.fast);
+  static const auto slow = make_rate_schema("slow", P{}.slow);
+  static const auto schema =
+      Schema<P>()
+          .table("fast", &P::fast, fast, "Process of adaptation that learns and forgets fast")
+          .table("slow", &P::slow, slow, "Process of adaptation that learns and forgets slowly");
+  return schema;
+}
 
 TwoRate::TwoRate(const TwoRateParameters& parameters) : parameters_(parameters) {
   require_rate(parameters.fast, "fast");

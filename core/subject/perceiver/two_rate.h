@@ -2,6 +2,11 @@
 
 #include <Eigen/Core>
 
+namespace haptrial {
+template <class T>
+class Schema;
+}
+
 namespace haptrial::subject {
 
 /// One process of adaptation: x' = retention x + learning e.
@@ -14,6 +19,9 @@ struct TwoRateParameters {
   LearningRate fast{0.59, 0.21};
   LearningRate slow{0.992, 0.02};
 };
+
+/// The tables [observer.adaptation.fast] and [observer.adaptation.slow].
+const Schema<TwoRateParameters>& two_rate_schema();
 
 /// Motor adaptation at two rates. After a trial with error e = f - x, with f the disturbance,
 ///

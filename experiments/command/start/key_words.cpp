@@ -4,9 +4,6 @@ namespace haptrial::experiments {
 
 std::string_view key_words() {
   return R"(
-level_script.file | | program or Python script (.py) that chooses the levels between trials, beside the definition
-observer.script.file | | program or Python script (.py) by which virtual participants answer, beside the definition
-observer.adaptation.matrix | | matrix B of the field that is learnt
 display.seen_from | | above: x to the right, z down the screen; front: x to the right, y up
 display.extent | | part of the world that fills the screen's width
 display.hand_radius | | of the dot of the hand
@@ -48,60 +45,6 @@ objects.NAME.mesh | needed, or shape | file beside the definition: .obj, .ply or
 objects.NAME.size | | along x, y and z
 objects.NAME.length | | along z
 objects.NAME.tube | | radius of a torus's tube
-level_script.deadline | | for its answer; where nobody waits it has a minute
-observer.senses | force | what the virtual participant feels
-observer.in_stage | throughout the interval | stage in which it is felt
-observer.decides | largest | how what is felt becomes an answer
-observer.prototypes | | a percept for each choice, of which the nearest is answered
-observer.yes | the first choice | value of the choice that means yes
-observer.raise | the first choice | value of the choice that raises an adjusted level
-observer.lower | the second choice | value of the choice that lowers it
-observer.done | the third choice | value of the choice that ends the adjustment
-observer.wanted | 1 | percept that is adjusted to where the trial shows none before
-observer.reaction | 0.6 | median time from question to answer
-observer.actions.NAME.do | needed, or a table for each device | what the hand does in the stage NAME
-observer.actions.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
-observer.actions.NAME.at | | places at which presses begin, one after the other
-observer.actions.NAME.move | | how long the way to each place takes
-observer.actions.NAME.press | | how long each press takes
-observer.actions.NAME.rise | 0.5 | time over which it grows
-observer.actions.NAME.travel | 0.05 | after which it presses no further
-observer.actions.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
-observer.actions.NAME.half_length | | of a stroke
-observer.actions.NAME.frequency | | of strokes
-observer.actions.NAME.normal | down | direction in which a stroke presses
-observer.actions.NAME.duration | | of the reach
-observer.actions.NAME.towards | down | to the object that is followed
-observer.actions.NAME.around | 0, 0, 1 | axis of the first loop
-observer.actions.NAME.then_around | 1, 0, 0 | axis of the second loop
-observer.actions.NAME.turn_after | | when the second loop begins
-observer.actions.NAME.speed | | along the surface
-observer.actions.NAME.NAME.do | | what the hand at the device of the second name does
-observer.actions.NAME.NAME.force | 0 of a stroke, 1 of a contour, needed of a press | with which it presses
-observer.actions.NAME.NAME.at | | places at which presses begin, one after the other
-observer.actions.NAME.NAME.move | | how long the way to each place takes
-observer.actions.NAME.NAME.press | | how long each press takes
-observer.actions.NAME.NAME.rise | 0.5 | time over which it grows
-observer.actions.NAME.NAME.travel | 0.05 | after which it presses no further
-observer.actions.NAME.NAME.direction | down of a press, needed of a stroke | of pressing or stroking
-observer.actions.NAME.NAME.half_length | | of a stroke
-observer.actions.NAME.NAME.frequency | | of strokes
-observer.actions.NAME.NAME.normal | down | direction in which a stroke presses
-observer.actions.NAME.NAME.duration | | of the reach
-observer.actions.NAME.NAME.towards | down | to the object that is followed
-observer.actions.NAME.NAME.around | 0, 0, 1 | axis of the first loop
-observer.actions.NAME.NAME.then_around | 1, 0, 0 | axis of the second loop
-observer.actions.NAME.NAME.turn_after | | when the second loop begins
-observer.actions.NAME.NAME.speed | | along the surface
-observer.script.deadline | | for an answer
-observer.adaptation.stage | | of the reach that is learnt from
-observer.adaptation.fast.retention | | of the fast process from trial to trial; without the table 0.59
-observer.adaptation.fast.learning | | of the fast process from an error; without the table 0.21
-observer.adaptation.slow.retention | | of the slow process from trial to trial; without the table 0.992
-observer.adaptation.slow.learning | | of the slow process from an error; without the table 0.02
-observer.sight.noise | | noises of the picture, rising
-observer.sight.sd | | spread of a seen size at each of these noises
-observer.sight.spread | 0 | spread of it between people, as a logarithm
 trials:analysis.kind | as the procedure is | what is computed
 trials:analysis.by | all factors; of detection, identification and reaching none | factors whose levels are told apart
 trials:analysis.tests | none | planned: "a < b", "a > b" or "a != b" of levels

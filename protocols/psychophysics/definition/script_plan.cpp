@@ -2,18 +2,33 @@
 
 #include <fmt/format.h>
 
-#include "core/base/definition/table.h"
+#include <utility>
+
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 
 namespace haptrial::protocols {
 namespace {
 
-ScriptPlan read_script(Table& table, double deadline, double longest) {
-  ScriptPlan plan;
-  plan.file = table.text("file");
-  plan.deadline = table.number_or("deadline", deadline, {0.05, longest}, "s");
-  return plan;
+/// @param deadline  unless the definition states it; @param longest  that it may be [s]
+Schema<ScriptPlan> make_script_schema(double deadline, double longest, std::string file_words,
+                                      std::string deadline_words) {
+  using P = ScriptPlan;
+  return Schema<P>()
+      .derive([deadline](P& plan) { plan.deadline = deadline; })
+      .custom("file", std::move(file_words),
+              [](Table& table, const std::string& key, P& plan) { plan.file = table.text(key); })
+      .required()
+      .number("deadline", &P::deadline, {0.05, longest}, "s", std::move(deadline_words));
+}
+
+const Schema<ScriptPlan>& level_script_schema() {
+  static const auto schema = make_script_schema(
+      2.0, 10.0,
+      "Program or Python script (.py) beside the definition that chooses the levels between trials",
+      "Longest time for an answer of the script while a person waits; without one it has a minute");
+  return schema;
 }
 
 }  // namespace
@@ -27,15 +42,16 @@ std::optional<ScriptPlan> read_level_script(Table& root) {
     root.reject("level_script", "stands without a [procedure]",
                 "a procedure beside it, whose levels are presented where the script gives none");
   }
-  return read_script(table, 2.0, 10.0);
+  return level_script_schema().read(table);
 }
 
-std::optional<ScriptPlan> read_decision_script(Table& observer) {
-  if (!observer.has("script")) {
-    return std::nullopt;
-  }
-  Table table = observer.table("script");
-  return read_script(table, 60.0, 600.0);
+const Schema<ScriptPlan>& decision_script_schema() {
+  static const auto schema =
+      make_script_schema(60.0, 600.0,
+                         "Program or Python script (.py) beside the definition by which virtual "
+                         "participants answer",
+                         "Longest time for an answer of the script");
+  return schema;
 }
 
 void load_script(ScriptPlan& plan, const std::filesystem::path& folder) {

@@ -5,8 +5,10 @@
 #include <string>
 
 namespace haptrial {
+template <class T>
+class Schema;
 class Table;
-}
+}  // namespace haptrial
 
 namespace haptrial::protocols {
 
@@ -18,12 +20,11 @@ struct ScriptPlan {
 };
 
 /// Reads [level_script] of the definition, if there is one: the levels are chosen between trials.
-/// Keys: file, [deadline], which holds if a person waits. Problems are noted.
+/// Problems are noted.
 std::optional<ScriptPlan> read_level_script(Table& root);
 
-/// Reads [observer.script], if there is one: virtual participants answer by it. Keys: file,
-/// [deadline]. Problems are noted.
-std::optional<ScriptPlan> read_decision_script(Table& observer);
+/// The keys of [observer.script]: virtual participants answer by it.
+const Schema<ScriptPlan>& decision_script_schema();
 
 /// Finds the file beside the definition and keeps its text. @throws InputError if it cannot be read
 void load_script(ScriptPlan& plan, const std::filesystem::path& folder);
