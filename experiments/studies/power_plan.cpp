@@ -2,20 +2,14 @@
 
 #include <algorithm>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::experiments {
 namespace {
 
 constexpr long kMostReplications = 1'000'000;
 
-VariedKey read_vary(Table& table) {
-  VariedKey varied;
-  varied.key = table.text("key");
-  varied.values = table.numbers("values", {}, "");
-  if (table.has("none")) {
-    varied.none = table.number("none", {}, "");
-  }
+void check_vary(Table& table, VariedKey& varied) {
   if (varied.key.empty() || varied.key.front() == '.' || varied.key.back() == '.' ||
       varied.key.find('.') == std::string::npos) {
     table.reject("key", "'" + varied.key + "'", "a key with its table, such as observer.lapse");
@@ -25,44 +19,86 @@ VariedKey read_vary(Table& table) {
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
     table.reject("values", "a list with a value twice", "each value once");
   }
-  return varied;
+}
+
+const Schema<VariedKey>& vary_schema() {
+  using V = VariedKey;
+  static const auto schema =
+      Schema<V>()
+          .text("key", &V::key, "Key that is varied, with its tables: observer.lapse.median")
+          .required()
+          .numbers("values", &V::values, {}, "", "Values of the varied key, each once")
+          .required()
+          .number("none", &V::none, {}, "", "Value of the varied key without an effect")
+          .otherwise("it makes no effect")
+          .check(check_vary);
+  return schema;
+}
+
+const Schema<PowerPlan>& check_schema() {
+  using P = PowerPlan;
+  static const auto schema = Schema<P>()
+                                 .integer("cells", &P::checked_cells, 0, 1000,
+                                          "Cells whose responses are compared with full sessions")
+                                 .required()
+                                 .integer("replications", &P::checked_replications, 2, 100'000,
+                                          "Studies of each cell that are simulated in full");
+  return schema;
+}
+
+const Schema<PowerPlan>& power_schema() {
+  using P = PowerPlan;
+  static const auto schema =
+      Schema<P>()
+          .text("definition", &P::definition,
+                "File of the definition whose power a file with [power] alone asks about")
+          .otherwise("this file")
+          .text("watch", &P::watch, "Name of the test of the report whose power is asked for")
+          .required()
+          .number("alpha", &P::alpha, {1e-6, 0.5}, "",
+                  "Significance level: an effect counts as found if p is below it")
+          .number("target", &P::target, {0.01, 0.9999}, "",
+                  "Power for which the participants are counted")
+          .integer("replications", &P::replications, 1, kMostReplications,
+                   "Simulated studies of each cell")
+          .integer("null_replications", &P::null_replications, 1, kMostReplications,
+                   "Simulated studies of each cell without an effect")
+          .integer("block", &P::block, 1, kMostReplications,
+                   "Simulated studies of a part, after which the state is kept; of full sessions 1 "
+                   "if left out")
+          .integer("seed", &P::seed, 0, 2'000'000'000, "Seed of every random number of a run")
+          .choice("depth", &P::depth,
+                  {{"responses", PowerDepth::kResponses}, {"sessions", PowerDepth::kSessions}},
+                  "What is simulated of each participant: the responses alone, or full sessions")
+          .check([](Table& table, P& plan) {
+            if (plan.depth == PowerDepth::kSessions && !table.has("block")) {
+              plan.block = 1;  // full sessions take long
+            }
+          })
+          .custom("check", "Comparison of simulated responses with full sessions",
+                  [](Table& table, const std::string& key, P& plan) {
+                    Table check = table.table(key);
+                    check_schema().read(check, plan);
+                  })
+          .custom("responses",
+                  "Facts of the study that simulated responses need (docs/guide-power.md)",
+                  [](Table& table, const std::string& key, P&) { table.leave(key); })
+          .otherwise("nothing is known")
+          .custom("vary", "Keys of the definition that are varied",
+                  [](Table& table, const std::string& key, P& plan) {
+                    for (Table& each : table.tables(key)) {
+                      plan.vary.push_back(vary_schema().read(each));
+                    }
+                  })
+          .required();
+  return schema;
 }
 
 }  // namespace
 
 PowerPlan read_power_plan(Table& root) {
-  PowerPlan plan;
   Table table = root.table("power");
-  if (table.has("definition")) {
-    plan.definition = table.text("definition");
-  }
-  plan.watch = table.text("watch");
-  plan.alpha = table.number_or("alpha", plan.alpha, {1e-6, 0.5}, "");
-  plan.target = table.number_or("target", plan.target, {0.01, 0.9999}, "");
-  plan.replications = table.integer_or("replications", plan.replications, 1, kMostReplications);
-  plan.null_replications =
-      table.integer_or("null_replications", plan.null_replications, 1, kMostReplications);
-  plan.block = table.integer_or("block", plan.block, 1, kMostReplications);
-  plan.seed = static_cast<std::uint64_t>(table.integer_or("seed", 1, 0, 2'000'000'000));
-  if (table.has("depth")) {
-    plan.depth = table.choice("depth", {"responses", "sessions"}) == "sessions"
-                     ? PowerDepth::kSessions
-                     : PowerDepth::kResponses;
-  }
-  if (plan.depth == PowerDepth::kSessions && !table.has("block")) {
-    plan.block = 1;  // full sessions take long
-  }
-  if (table.has("check")) {
-    Table check = table.table("check");
-    plan.checked_cells = static_cast<int>(check.integer("cells", 0, 1000));
-    plan.checked_replications =
-        check.integer_or("replications", plan.checked_replications, 2, 100'000);
-  }
-  table.leave("responses");
-  for (Table& each : table.tables("vary")) {
-    plan.vary.push_back(read_vary(each));
-  }
-  return plan;
+  return power_schema().read(table);
 }
 
 }  // namespace haptrial::experiments

@@ -37,17 +37,7 @@ struct PowerPlan {
   std::vector<VariedKey> vary;
 };
 
-/// Reads the table [power]. Keys in brackets are optional.
-///
-///     [definition]    the definition's file; left out: the table is a part of it
-///     watch           name of a test of the report
-///     [alpha], [target], [replications], [null_replications], [block], [seed]
-///     [depth]         "responses" or "sessions"
-///     [check]         { cells, replications }: cells that are also simulated in full
-///     [responses]     the study's own: what responses need to know
-///     [[power.vary]]  key, values, [none]
-///
-/// Problems are noted.
+/// Reads the table [power]. Problems are noted.
 PowerPlan read_power_plan(Table& root);
 
 }  // namespace haptrial::experiments

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -16,7 +16,7 @@ bool lists(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::string one_of(Table& table, const char* key, const std::vector<std::string>& known) {
+std::string one_of(Table& table, const std::string& key, const std::vector<std::string>& known) {
   std::string name = table.text(key);
   name = name.starts_with('$') ? name.substr(1) : name;
   if (!known.empty() && !lists(known, name)) {
@@ -25,7 +25,7 @@ std::string one_of(Table& table, const char* key, const std::vector<std::string>
   return name;
 }
 
-std::string factor(Table& table, const char* key, const std::vector<std::string>& by) {
+std::string factor(Table& table, const std::string& key, const std::vector<std::string>& by) {
   const std::string name = table.text(key);
   if (!lists(by, name)) {
     table.reject(key, fmt::format("\"{}\"", name),
@@ -39,11 +39,13 @@ std::string level_word(Table& table, const std::string& key) {
   return table.has_text(key) ? table.text(key) : fmt::format("{}", table.number(key, {}, ""));
 }
 
-FactorLevels levels(Table& cues, const char* key, const CueNames& names,
-                    const std::vector<std::string>& by) {
+/// @param description  of each level
+FactorLevels levels(Table& cues, const std::string& key, const char* description,
+                    const CueNames& names, const std::vector<std::string>& by) {
   FactorLevels read;
   Table table = cues.table(key);
   for (const std::string& name : table.keys_as_written()) {
+    table.describe({name, description, "", true});
     const std::string level = level_word(table, name);
     read[name] = level;
     const auto known = names.levels.find(name);
@@ -94,6 +96,53 @@ void check_together(Table& analysis, Table& cues, const CuePlan& plan,
   }
 }
 
+/// Adds a table of levels by their factors.
+void add_levels(Schema<CuePlan>& schema, const char* name, FactorLevels CuePlan::*member,
+                const char* description, const CueNames& names,
+                const std::vector<std::string>& by) {
+  schema
+      .custom(name, description,
+              [=, &names, &by](Table& table, const std::string& key, CuePlan& plan) {
+                plan.*member = levels(table, key, description, names, by);
+              })
+      .required();
+}
+
+Schema<CuePlan> make_cue_schema(const CueNames& names, const std::vector<std::string>& by) {
+  using P = CuePlan;
+  const auto factor_key = [&by](std::string P::*member) {
+    return [&by, member](Table& table, const std::string& key, P& plan) {
+      plan.*member = factor(table, key, by);
+    };
+  };
+  const auto name_key = [](std::string P::*member, const std::vector<std::string>& known) {
+    return [&known, member](Table& table, const std::string& key, P& plan) {
+      plan.*member = one_of(table, key, known);
+    };
+  };
+  Schema<P> schema;
+  add_levels(schema, "first", &P::first,
+             "Level of the factor NAME in conditions with the first cue alone", names, by);
+  add_levels(schema, "second", &P::second,
+             "Level of the factor NAME in conditions with the second cue alone", names, by);
+  add_levels(schema, "both", &P::both, "Level of the factor NAME in conditions with both cues",
+             names, by);
+  schema.custom("at", "Factor that changes how reliable the first cue is", factor_key(&P::at))
+      .otherwise("none")
+      .custom("conflict", "Factor by which the cues of the standard disagree",
+              factor_key(&P::conflict))
+      .required()
+      .custom("standard", "Interval whose cues disagree", name_key(&P::standard, names.intervals))
+      .required()
+      .custom("first_shows", "Variable that the first cue shows in the interval of the standard",
+              name_key(&P::first_shows, names.variables))
+      .required()
+      .custom("second_shows", "Variable that the second cue shows in the interval of the standard",
+              name_key(&P::second_shows, names.variables))
+      .required();
+  return schema;
+}
+
 }  // namespace
 
 std::optional<CuePlan> read_cue_plan(Table& analysis, const CueNames& names,
@@ -102,15 +151,7 @@ std::optional<CuePlan> read_cue_plan(Table& analysis, const CueNames& names,
     return std::nullopt;
   }
   Table cues = analysis.table(kTable);
-  CuePlan plan;
-  plan.first = levels(cues, "first", names, by);
-  plan.second = levels(cues, "second", names, by);
-  plan.both = levels(cues, "both", names, by);
-  plan.at = cues.has("at") ? factor(cues, "at", by) : "";
-  plan.conflict = factor(cues, "conflict", by);
-  plan.standard = one_of(cues, "standard", names.intervals);
-  plan.first_shows = one_of(cues, "first_shows", names.variables);
-  plan.second_shows = one_of(cues, "second_shows", names.variables);
+  const CuePlan plan = make_cue_schema(names, by).read(cues);
   check_together(analysis, cues, plan, by);
   if (guess > 0.0) {
     analysis.reject(kTable,

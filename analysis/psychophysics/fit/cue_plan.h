@@ -34,13 +34,6 @@ struct CuePlan {
 };
 
 /// Reads [analysis.cue_combination] of the table [analysis], if it is there. Problems are noted.
-///
-///     first, second, both   { FACTOR = LEVEL }, one or several factors of `by`
-///     at                    a factor of `by`; left out: there is one reliability
-///     conflict              a factor of `by`
-///     standard              an interval
-///     first_shows, second_shows   variables
-///
 /// @param by     factors whose levels are told apart; each must be named by one of the keys
 /// @param guess  guess rate of the functions; above 0 they have no level of equality
 std::optional<CuePlan> read_cue_plan(Table& analysis, const CueNames& names,

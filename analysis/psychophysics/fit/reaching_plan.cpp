@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -19,12 +19,10 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// A name that the definition must have, stated or not.
-std::string named(Table& table, const char* key, const std::string& otherwise,
-                  const std::vector<std::string>& known, bool checked) {
-  std::string name = table.has(key) ? table.text(key) : otherwise;
-  const bool dollar = name.starts_with('$');
-  name = dollar ? name.substr(1) : name;
+/// Checks a name that the definition must have, stated or not, and takes away its "$".
+void check_name(Table& table, const char* key, std::string& name,
+                const std::vector<std::string>& known, bool checked) {
+  name = name.starts_with('$') ? name.substr(1) : name;
   if (checked && !holds(known, name)) {
     const std::string allowed = known.empty() ? std::string("none, the definition has none")
                                               : fmt::format("{}", fmt::join(known, ", "));
@@ -35,7 +33,6 @@ std::string named(Table& table, const char* key, const std::string& otherwise,
                    fmt::format("{} = one of: {}", key, allowed));
     }
   }
-  return name;
 }
 
 constexpr std::array<std::pair<const char*, ReachQuantity>, 6> kQuantities{
@@ -46,63 +43,69 @@ constexpr std::array<std::pair<const char*, ReachQuantity>, 6> kQuantities{
      {"area", ReachQuantity::kArea},
      {"force_compensation", ReachQuantity::kForceCompensation}}};
 
-void read_comparison(Table& table, ReachingPlan& plan) {
-  if (table.has("quantities")) {
-    plan.quantities.clear();
-    std::vector<std::string> known;
-    for (const auto& [name, quantity] : kQuantities) {
-      known.emplace_back(name);
-    }
-    for (const std::string& name : table.texts("quantities")) {
-      const auto at = std::find(known.begin(), known.end(), name);
-      if (at == known.end()) {
-        table.reject("quantities", fmt::format("a list with \"{}\"", name),
-                     fmt::format("{}", fmt::join(known, ", ")));
-        continue;
-      }
-      const ReachQuantity quantity =
-          kQuantities[static_cast<std::size_t>(at - known.begin())].second;
-      if (std::find(plan.quantities.begin(), plan.quantities.end(), quantity) ==
-          plan.quantities.end()) {
-        plan.quantities.push_back(quantity);
-      }
-    }
+void read_quantities(Table& table, const std::string& key, ReachingPlan& plan) {
+  plan.quantities.clear();
+  std::vector<std::string> known;
+  for (const auto& [name, quantity] : kQuantities) {
+    known.emplace_back(name);
   }
-  if (table.has("cycles")) {
-    const std::string word = table.choice("cycles", {"all", "first", "last"});
-    plan.cycles = word == "first"  ? ReachCycles::kFirst
-                  : word == "last" ? ReachCycles::kLast
-                                   : ReachCycles::kAll;
+  for (const std::string& name : table.texts(key)) {
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (at == known.end()) {
+      table.reject(key, fmt::format("a list with \"{}\"", name),
+                   fmt::format("{}", fmt::join(known, ", ")));
+      continue;
+    }
+    const ReachQuantity quantity = kQuantities[static_cast<std::size_t>(at - known.begin())].second;
+    if (std::find(plan.quantities.begin(), plan.quantities.end(), quantity) ==
+        plan.quantities.end()) {
+      plan.quantities.push_back(quantity);
+    }
   }
 }
 
 }  // namespace
 
 ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names) {
-  ReachingPlan plan;
+  using P = ReachingPlan;
   const bool checked = !names.stages.empty();  // else the definition could not be read
-  plan.stage = named(table, "stage", plan.stage, names.stages, checked);
-  plan.start = named(table, "start", plan.start, names.places, checked);
-  plan.target = named(table, "target", plan.target, names.places, checked);
-  if (table.has("field") || !names.fields.empty()) {
-    plan.field = named(table, "field", names.fields.empty() ? "" : names.fields.front(),
-                       names.fields, checked);
-  }
-  if (table.has("clamp")) {
-    plan.clamp = table.text("clamp");
-  }
-  plan.cycle = std::max<std::size_t>(1, names.combinations);
-  if (table.has("cycle")) {
-    plan.cycle = static_cast<std::size_t>(table.integer("cycle", 1, kMostCycle));
-  }
-  if (table.has("error")) {
-    plan.at_150_ms = table.choice("error", {"maximum", "at_150_ms"}) == "at_150_ms";
-  }
-  if (table.has("resamples")) {
-    plan.resamples = static_cast<std::size_t>(table.integer("resamples", 0, kMostResamples));
-  }
-  read_comparison(table, plan);
-  return plan;
+  return Schema<P>()
+      .text("stage", &P::stage, "Stage of the reach")
+      .text("start", &P::start, "Place at which reaches begin, with or without $ before its name")
+      .text("target", &P::target, "Place at which reaches end, with or without $ before its name")
+      .check([&](Table& t, P& plan) {
+        check_name(t, "stage", plan.stage, names.stages, checked);
+        check_name(t, "start", plan.start, names.places, checked);
+        check_name(t, "target", plan.target, names.places, checked);
+        plan.field = names.fields.empty() ? "" : names.fields.front();
+        plan.cycle = std::max<std::size_t>(1, names.combinations);
+      })
+      .text("field", &P::field, "Field of type matrix_viscous that is learnt")
+      .otherwise("the first field of type matrix_viscous")
+      .check([&](Table& t, P& plan) {
+        if (t.has("field") || !names.fields.empty()) {
+          check_name(t, "field", plan.field, names.fields, checked);
+        }
+      })
+      .text("clamp", &P::clamp, "Probe whose reaches are held in a channel")
+      .integer("cycle", &P::cycle, 1, kMostCycle,
+               "Trials of a cycle, over which reaches are averaged")
+      .otherwise("combinations of the factors")
+      .choice("error", &P::at_150_ms, {{"maximum", false}, {"at_150_ms", true}},
+              "Error of a reach that is learnt from: the largest distance from the straight line, "
+              "or the distance after 150 ms")
+      .integer("resamples", &P::resamples, 0, kMostResamples, "Resamples of the bootstrap")
+      .custom("quantities",
+              "Quantities of reaches that are compared between the conditions of `by`: error, "
+              "movement_time, peak_speed, direction, area, force_compensation",
+              read_quantities)
+      .otherwise("[\"error\"]")
+      .choice("cycles", &P::cycles,
+              {{"all", ReachCycles::kAll},
+               {"first", ReachCycles::kFirst},
+               {"last", ReachCycles::kLast}},
+              "Cycles of each block whose reaches are compared between conditions")
+      .read(table);
 }
 
 }  // namespace haptrial::analysis::trials

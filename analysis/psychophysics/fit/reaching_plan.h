@@ -47,22 +47,8 @@ struct ReachingPlan {
   std::uint64_t seed{1};
 };
 
-/// The keys of [analysis], all of which may be left out. Problems are noted.
-///
-///     stage          of the reach: "reach"
-///     start, target  places: "start", "target", with or without $ before them
-///     field          of type matrix_viscous, that is learnt: the first one
-///     clamp          probe whose reaches a channel holds: "clamp"; any channel that acts counts
-///     cycle          trials of a cycle: as many as the factors have combinations
-///     error          "maximum" (largest perpendicular error) or "at_150_ms"
-///     resamples      of the intervals of fits, 0 to 100,000
-///     quantities     compared between the conditions that TrialsPlan::by makes: "error" (as if
-///     left
-///                    out), "movement_time", "peak_speed", "direction", "area",
-///                    "force_compensation"
-///     cycles         of each block that such a comparison takes: "all" (as if left out), "first"
-///     or
-///                    "last"
+/// Reads the keys of [analysis] of kind "reaching", all of which may be left out. Problems are
+/// noted.
 ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names);
 
 }  // namespace haptrial::analysis::trials

@@ -4,12 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 
@@ -18,70 +17,45 @@ namespace {
 
 using psychometric::Scale;
 
-constexpr std::array<std::pair<AnalysisKind, const char*>, 7> kKinds{
-    {{AnalysisKind::kPsychometric, "psychometric"},
-     {AnalysisKind::kDetection, "detection"},
-     {AnalysisKind::kIdentification, "identification"},
-     {AnalysisKind::kMagnitude, "magnitude"},
-     {AnalysisKind::kAdjustment, "adjustment"},
-     {AnalysisKind::kReaching, "reaching"},
-     {AnalysisKind::kNone, "none"}}};
-constexpr std::array<std::pair<Scale, const char*>, 4> kScales{{{Scale::kLinear, "linear"},
-                                                                {Scale::kLog10, "log10"},
-                                                                {Scale::kNaturalLog, "ln"},
-                                                                {Scale::kDecibel, "decibel"}}};
+const std::vector<std::pair<std::string, AnalysisKind>>& kinds() {
+  static const std::vector<std::pair<std::string, AnalysisKind>> all{
+      {"psychometric", AnalysisKind::kPsychometric},
+      {"detection", AnalysisKind::kDetection},
+      {"identification", AnalysisKind::kIdentification},
+      {"magnitude", AnalysisKind::kMagnitude},
+      {"adjustment", AnalysisKind::kAdjustment},
+      {"reaching", AnalysisKind::kReaching},
+      {"none", AnalysisKind::kNone}};
+  return all;
+}
+
 constexpr double kMostGuess = 0.9, kMostLapse = 0.49;
 
-template <class Value, std::size_t N>
-Value chosen(Table& table, const char* key, const std::array<std::pair<Value, const char*>, N>& of,
-             Value otherwise) {
-  if (!table.has(key)) {
-    return otherwise;
-  }
-  std::vector<std::string> words;
-  for (const auto& each : of) {
-    words.emplace_back(each.second);
-  }
-  const std::string word = table.choice(key, words);
-  const auto at =
-      std::find_if(of.begin(), of.end(), [&](const auto& e) { return word == e.second; });
-  return at == of.end() ? otherwise : at->first;
+bool has_name(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
 }
 
-std::string text_or(Table& table, const char* key) {
-  return table.has(key) ? table.text(key) : std::string();
+/// Factors that are told apart if the definition does not say it: none if they may say where the
+/// signal is or make cycles.
+std::vector<std::string> usual_by(AnalysisKind kind, const PlanDefaults& defaults) {
+  const bool none = kind == AnalysisKind::kDetection || kind == AnalysisKind::kIdentification ||
+                    kind == AnalysisKind::kReaching;
+  return none ? std::vector<std::string>{} : defaults.factors;
 }
 
-void read_by(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  const bool stated = plan.kind == AnalysisKind::kDetection ||
-                      plan.kind == AnalysisKind::kIdentification ||
-                      plan.kind == AnalysisKind::kReaching;
-  plan.by = stated ? std::vector<std::string>{} : defaults.factors;
-  if (!table.has("by")) {
-    return;
-  }
-  plan.by = table.texts("by");
+void check_by(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan) {
   std::vector<std::string> known = defaults.factors;
   known.insert(known.end(), defaults.names.begin(), defaults.names.end());
   for (const std::string& name : plan.by) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (!has_name(known, name)) {
       table.reject("by", fmt::format("an array with \"{}\"", name),
                    fmt::format("{}", fmt::join(known, ", ")));
     }
   }
 }
 
-void read_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  plan.choices = defaults.choices;
-  plan.stimulus = defaults.factors.empty() ? "" : defaults.factors.front();
-  if (table.has("stimulus")) {
-    plan.stimulus = table.text("stimulus");
-  }
-  const bool known = std::find(defaults.factors.begin(), defaults.factors.end(), plan.stimulus) !=
-                         defaults.factors.end() ||
-                     std::find(defaults.names.begin(), defaults.names.end(), plan.stimulus) !=
-                         defaults.names.end();
-  if (!known) {
+void check_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
+  if (!has_name(defaults.factors, plan.stimulus) && !has_name(defaults.names, plan.stimulus)) {
     table.reject("stimulus", fmt::format("\"{}\"", plan.stimulus),
                  "the factor that says what was presented");
   }
@@ -132,9 +106,6 @@ void check_side(Table& table, const std::string& side, const std::vector<std::st
 }
 
 void read_tests(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  if (!table.has("tests")) {
-    return;
-  }
   constexpr std::string_view kWhere = "tests ";
   try {
     plan.plan = parse_analysis_plan(table.texts("tests"), "", "tests");
@@ -177,11 +148,7 @@ void match_direction(Table& table, bool falls, TrialsPlan& plan) {
   }
 }
 
-void read_function(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  plan.function.axis = defaults.axis;
-  if (table.has("function")) {
-    plan.function_name = table.text("function");
-  }
+void check_function(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   try {
     psychometric::set_sigmoid(plan.function, plan.function_name, Scale::kNaturalLog);
   } catch (const std::invalid_argument& error) {
@@ -190,78 +157,191 @@ void read_function(Table& table, const PlanDefaults& defaults, TrialsPlan& plan)
   if (defaults.falls && plan.yes.empty() && plan.question.empty()) {
     match_direction(table, *defaults.falls, plan);
   }
-  plan.function.axis.scale = chosen(table, "scale", kScales, plan.function.axis.scale);
-  if (table.has("origin")) {
-    plan.function.axis.origin = table.number("origin", {}, plan.function.axis.unit);
-  }
 }
 
-void read_guess(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  plan.guess_free = !defaults.guess.has_value();
-  plan.function.guess = defaults.guess.value_or(0.0);
-  if (table.has_text("guess")) {
-    const std::string word = table.choice("guess", {"free", "lapse"});
+const Schema<psychometric::Axis>& axis_schema() {
+  using A = psychometric::Axis;
+  static const auto schema =
+      Schema<A>()
+          .choice("scale", &A::scale,
+                  {{"linear", Scale::kLinear},
+                   {"log10", Scale::kLog10},
+                   {"ln", Scale::kNaturalLog},
+                   {"decibel", Scale::kDecibel}},
+                  "Scale of the axis of levels on which functions are fitted")
+          .otherwise("of the procedure")
+          .custom("origin", "Level from which the scale of the axis measures",
+                  [](Table& table, const std::string& key, A& axis) {
+                    axis.origin = table.number(key, {}, axis.unit);
+                  })
+          .otherwise("of the procedure");
+  return schema;
+}
+
+void read_guess(Table& table, const std::string& key, TrialsPlan& plan) {
+  if (table.has_text(key)) {
+    const std::string word = table.choice(key, {"free", "lapse"});
     plan.guess_is_lapse = word == "lapse";
     plan.guess_free = word == "free";
     plan.function.guess = 0.0;
-  } else if (table.has("guess")) {
-    plan.function.guess = table.number("guess", {0.0, kMostGuess}, "");
+  } else {
+    plan.function.guess = table.number(key, {0.0, kMostGuess}, "");
     plan.guess_free = false;
   }
 }
 
-void read_lapse(Table& table, TrialsPlan& plan) {
-  if (plan.guess_is_lapse) {
-    plan.lapse = {};  // it counts on both sides
+void read_lapse(Table& table, const std::string& key, TrialsPlan& plan) {
+  if (!table.is_table(key)) {
+    plan.lapse.low = plan.lapse.high = table.number(key, {0.0, kMostLapse}, "");
+    return;
   }
-  if (table.is_table("lapse")) {
-    Table lapse = table.table("lapse");
-    const bool free = !lapse.has("free") || lapse.boolean("free");
-    plan.lapse.high =
-        lapse.has("at_most") ? lapse.number("at_most", {0.0, kMostLapse}, "") : plan.lapse.high;
-    plan.lapse.low = free ? 0.0 : plan.lapse.high;
-  } else if (table.has("lapse")) {
-    plan.lapse.low = plan.lapse.high = table.number("lapse", {0.0, kMostLapse}, "");
+  Table lapse = table.table(key);
+  lapse.describe({"free", "Whether the lapse rate is fitted", "true", false});
+  const bool free = !lapse.has("free") || lapse.boolean("free");
+  lapse.describe({"at_most", "Highest lapse rate that a fit may give",
+                  "0.2; 0.06 if guess is \"lapse\"", false});
+  plan.lapse.high =
+      lapse.has("at_most") ? lapse.number("at_most", {0.0, kMostLapse}, "") : plan.lapse.high;
+  plan.lapse.low = free ? 0.0 : plan.lapse.high;
+}
+
+double guess_of(const TrialsPlan& plan) { return plan.guess_free ? 0.0 : plan.function.guess; }
+
+void read_threshold(Table& table, const std::string& key, TrialsPlan& plan) {
+  const double guess = guess_of(plan);
+  const double usual = plan.threshold_at;
+  plan.threshold_at = table.number(key, {0.0, 1.0}, "");
+  if (!(plan.threshold_at > guess && plan.threshold_at < 1.0)) {
+    table.reject(key, fmt::format("{}", plan.threshold_at),
+                 fmt::format("a number above {} and below 1", guess));
+    plan.threshold_at = usual;
   }
 }
 
-void read_threshold(Table& table, TrialsPlan& plan) {
-  const double guess = plan.guess_free ? 0.0 : plan.function.guess;
-  plan.threshold_at = 0.5 * (1.0 + guess);
-  if (table.has("threshold_at")) {
-    plan.threshold_at = table.number("threshold_at", {0.0, 1.0}, "");
-    if (!(plan.threshold_at > guess && plan.threshold_at < 1.0)) {
-      table.reject("threshold_at", fmt::format("{}", plan.threshold_at),
-                   fmt::format("a number above {} and below 1", guess));
-      plan.threshold_at = 0.5 * (1.0 + guess);
+/// The keys of functions of the level.
+Schema<TrialsPlan> make_function_schema(const PlanDefaults& defaults) {
+  using P = TrialsPlan;
+  return Schema<P>()
+      .text("function", &P::function_name,
+            "Sigmoid that is fitted; with neg_ before its name it falls")
+      .otherwise("norm; neg_norm with right_raises")
+      .check([&](Table& table, P& plan) {
+        plan.function.axis = defaults.axis;
+        check_function(table, defaults, plan);
+        axis_schema().read(table, plan.function.axis);
+        plan.guess_free = !defaults.guess.has_value();
+        plan.function.guess = defaults.guess.value_or(0.0);
+      })
+      .custom("guess",
+              "Guess rate of the functions, \"free\" (at most 0.2; with catch trials 0.5), or "
+              "\"lapse\", which is as large as the lapse rate",
+              read_guess)
+      .otherwise("1 / choices, else free")
+      .derive([](P& plan) {
+        if (plan.guess_is_lapse) {
+          plan.lapse = {};  // it counts on both sides
+        }
+      })
+      .custom("lapse", "Lapse rate of the functions, or how it is fitted", read_lapse)
+      .otherwise("{ free = true, at_most = 0.2 }")
+      .derive([](P& plan) { plan.threshold_at = 0.5 * (1.0 + guess_of(plan)); })
+      .custom("threshold_at", "Share of answers 1 at the threshold, lapses aside", read_threshold)
+      .otherwise("halfway from the guess rate to 1; 0.5 if that is free")
+      .derive([](P& plan) {
+        plan.function.share = (plan.threshold_at - guess_of(plan)) / (1.0 - guess_of(plan));
+      })
+      .custom("reference", "Level of the standard stimulus, to which Weber fractions relate",
+              [](Table& table, const std::string& key, P& plan) {
+                plan.reference = table.number(key, kPositive, plan.function.axis.unit);
+              })
+      .otherwise("no Weber fractions")
+      .flag("bayesian", &P::bayesian, "Whether a Bayesian fit of each function is added")
+      .integer("resamples", &P::resamples, 0, 100'000, "Resamples of the bootstrap")
+      .check([&](Table& table, P& plan) {
+        plan.cues = read_cue_plan(table, defaults.cues, plan.by, guess_of(plan));
+      });
+}
+
+bool reaches(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kReaching; }
+bool answers(const TrialsPlan& plan) { return !reaches(plan); }
+bool identifies(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kIdentification; }
+bool may_rate(const TrialsPlan& plan) {
+  return plan.kind == AnalysisKind::kDetection || identifies(plan);
+}
+
+/// The keys that say which answers are compared.
+void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
+  using P = TrialsPlan;
+  schema.text("question", &P::question, "Name of the question whose answers count")
+      .otherwise("the first")
+      .only_if(answers)
+      .text("yes", &P::yes, "Answer that counts 1; every other counts 0")
+      .otherwise("what the procedure learnt, else the right one")
+      .only_if(answers)
+      .text("level", &P::level, "Variable that is the level of a trial")
+      .otherwise("the one that the procedure set")
+      .only_if(answers)
+      .derive([&](P& plan) {
+        plan.rating = may_rate(plan) ? defaults.rating : "";
+        if (identifies(plan)) {
+          plan.choices = defaults.choices;
+          plan.stimulus = defaults.factors.empty() ? "" : defaults.factors.front();
+        }
+      })
+      .text("rating", &P::rating, "Question of how sure the participant was")
+      .otherwise("the second question")
+      .only_if(may_rate)
+      .text("stimulus", &P::stimulus, "Factor that says which stimulus was presented")
+      .otherwise("the first factor")
+      .only_if(identifies)
+      .check([&](Table& table, P& plan) {
+        if (identifies(plan)) {
+          check_stimulus(table, defaults, plan);
+        }
+      });
+}
+
+Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
+  using P = TrialsPlan;
+  Schema<P> schema;
+  schema.choice("kind", &P::kind, kinds(), "Kind of the analysis")
+      .otherwise("as the procedure is")
+      .check([&](Table& table, P& plan) {
+        if (reaches(plan)) {
+          plan.reaching = read_reaching_plan(table, defaults.reaching);
+        }
+        plan.by = usual_by(plan.kind, defaults);
+      })
+      .custom("by",
+              "Factors whose levels are told apart: each combination has a function, d' or "
+              "exponent of its own",
+              [&](Table& table, const std::string& key, P& plan) {
+                plan.by = table.texts(key);
+                check_by(table, defaults, plan);
+              })
+      .otherwise("all factors; of detection, identification and reaching none")
+      .custom(
+          "tests",
+          "Tests that were planned before the data: \"a < b\", \"a > b\" or \"a != b\" of levels "
+          "of the factors in `by`",
+          [&](Table& table, const std::string&, P& plan) { read_tests(table, defaults, plan); })
+      .otherwise("none");
+  add_answers(schema, defaults);
+  schema.check([&](Table& table, P& plan) {
+    plan.functions = plan.kind == AnalysisKind::kPsychometric ||
+                     (plan.kind == AnalysisKind::kDetection && table.has("function"));
+    if (plan.functions) {
+      make_function_schema(defaults).read(table, plan);
     }
-  }
-  plan.function.share = (plan.threshold_at - guess) / (1.0 - guess);
-  if (table.has("reference")) {
-    plan.reference = table.number("reference", kPositive, plan.function.axis.unit);
-  }
-}
-
-void read_psychometric(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  read_function(table, defaults, plan);
-  read_guess(table, defaults, plan);
-  read_lapse(table, plan);
-  read_threshold(table, plan);
-  if (table.has("bayesian")) {
-    plan.bayesian = table.boolean("bayesian");
-  }
-  if (table.has("resamples")) {
-    plan.resamples = static_cast<std::size_t>(table.integer("resamples", 0, 100'000));
-  }
-  plan.cues =
-      read_cue_plan(table, defaults.cues, plan.by, plan.guess_free ? 0.0 : plan.function.guess);
+  });
+  return schema;
 }
 
 }  // namespace
 
 const char* name_of(AnalysisKind kind) {
-  return std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& e) { return e.first == kind; })
-      ->second;
+  const auto found = std::ranges::find(kinds(), kind, [](const auto& each) { return each.second; });
+  return found->first.c_str();
 }
 
 PlannedTest with_short_numbers(PlannedTest test) {
@@ -285,31 +365,7 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
     return plan;
   }
   Table table = root.table("analysis");
-  plan.kind = chosen(table, "kind", kKinds, defaults.kind);
-  if (plan.kind == AnalysisKind::kReaching) {
-    plan.functions = false;
-    plan.reaching = read_reaching_plan(table, defaults.reaching);
-    read_by(table, defaults, plan);
-    read_tests(table, defaults, plan);
-    return plan;
-  }
-  read_by(table, defaults, plan);
-  read_tests(table, defaults, plan);
-  plan.question = text_or(table, "question");
-  plan.yes = text_or(table, "yes");
-  plan.level = text_or(table, "level");
-  plan.rating = "";
-  if (plan.kind == AnalysisKind::kDetection || plan.kind == AnalysisKind::kIdentification) {
-    plan.rating = table.has("rating") ? table.text("rating") : defaults.rating;
-  }
-  if (plan.kind == AnalysisKind::kIdentification) {
-    read_stimulus(table, defaults, plan);
-  }
-  plan.functions = plan.kind == AnalysisKind::kPsychometric ||
-                   (plan.kind == AnalysisKind::kDetection && table.has("function"));
-  if (plan.functions) {
-    read_psychometric(table, defaults, plan);
-  }
+  make_plan_schema(defaults).read(table, plan);
   return plan;
 }
 

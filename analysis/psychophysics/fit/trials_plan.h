@@ -88,32 +88,10 @@ struct TrialsPlan {
 
 /// Reads the table [analysis], all of whose keys may be left out. Problems are noted.
 ///
-///     kind          "psychometric", "detection", "identification", "magnitude", "adjustment",
-///                   "reaching" or "none"
-///     by            factors: each combination has a function, d' or exponent of its own; left out:
-///                   all of them; of detection and identification none, as they may say where the
-///                   signal is, and of reaching none, as they make cycles
-///     tests         planned: "a < b", "a > b" or "a != b" of levels of these factors, or of
-///                   combinations joined by ", "; a level that is not stated is a problem
-///     question, yes, level   as TrialsPlan
-///     function      a sigmoid by its name; "weibull", "log_normal" on a logarithmic axis; with
-///                   "neg_" before it, it falls. It must fall if the procedure's answers 1 do, and
-///                   does so if left out
-///     guess         0 to 0.9; "free" for "yes" or "no", at most 0.2, or 0.5 with catch trials;
-///                   "lapse", which is as large as the lapse rate, for "larger" or "smaller"
-///     lapse         { free = true, at_most = 0.2 }, or a number; at most 0.06 if guess is "lapse"
-///     scale, origin   of the axis: "linear", "log10", "ln" or "decibel"
-///     threshold_at  between guess and 1: 0.75 of two intervals, 0.5 if the guess rate is free
-///     reference     standard stimulus
-///     bayesian      whether the Bayesian fit is added
-///     resamples     of the bootstrap, 0 to 100,000
-///     cue_combination   as read_cue_plan()
-///     rating        question of how sure the participant was
-///     stimulus      of "identification": the factor that says what was presented; the first one if
-///                   left out
-///
-/// Keys from function to cue_combination are those of functions; detection fits them if it states
-/// one. Those of "reaching" are its own (read_reaching_plan).
+/// Tests that were planned compare levels of the factors of `by`, or combinations joined by ", "; a
+/// level that is not stated is a problem. A function must fall if the procedure's answers 1 get
+/// rarer as the level rises, and does so if it is left out. Detection fits functions if it states
+/// one.
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults);
 
 /// A test as tables name its sides: "0.30" is the level 0.3.

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 
@@ -98,35 +98,41 @@ std::string text_of(const PlannedTest& test) {
 }
 
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {
-  AnalysisPlan plan;
-  const auto check = [&](const char* key, const std::string& name) {
+  const auto check = [&](Table& table, const std::string& key, const std::string& name) {
     if (std::find(conditions.begin(), conditions.end(), name) == conditions.end()) {
       const std::string hint = did_you_mean(name, conditions);
-      analysis.reject(key,
-                      fmt::format("names '{}', which design.conditions lacks{} allowed: {}", name,
-                                  hint.empty() ? ";" : hint, fmt::join(conditions, ", ")));
+      table.reject(key, fmt::format("names '{}', which design.conditions lacks{} allowed: {}", name,
+                                    hint.empty() ? ";" : hint, fmt::join(conditions, ", ")));
     }
   };
-  if (analysis.has("planned")) {
-    for (const std::string& text : analysis.texts("planned")) {
-      const auto test = parsed(text);
-      if (!test) {
-        analysis.reject("planned", fmt::format("an array with \"{}\"", text), kForm);
-        continue;
-      }
-      check("planned", test->a);
-      check("planned", test->b);
-      plan.tests.push_back(*test);
-    }
-  }
-  if (const std::string problem = problem_with(plan.tests); !problem.empty()) {
-    analysis.reject("planned", problem);
-  }
-  if (analysis.has("reference")) {
-    plan.reference = analysis.text("reference");
-    check("reference", plan.reference);
-  }
-  return plan;
+  using P = AnalysisPlan;
+  return Schema<P>()
+      .custom("planned",
+              "Tests between conditions that were planned before the data: \"a < b\", \"a > b\" or "
+              "\"a != b\"",
+              [&](Table& table, const std::string& key, P& plan) {
+                for (const std::string& text : table.texts(key)) {
+                  const auto test = parsed(text);
+                  if (!test) {
+                    table.reject(key, fmt::format("an array with \"{}\"", text), kForm);
+                    continue;
+                  }
+                  check(table, key, test->a);
+                  check(table, key, test->b);
+                  plan.tests.push_back(*test);
+                }
+                if (const std::string problem = problem_with(plan.tests); !problem.empty()) {
+                  table.reject(key, problem);
+                }
+              })
+      .otherwise("none")
+      .custom("reference", "Condition with which the others are compared",
+              [&](Table& table, const std::string& key, P& plan) {
+                plan.reference = table.text(key);
+                check(table, key, plan.reference);
+              })
+      .otherwise("the first")
+      .read(analysis);
 }
 
 }  // namespace haptrial::analysis
