@@ -56,6 +56,8 @@ void read_groups(Table& root, BoneDefinition& d) {
   long all = 0;
   bool good = true;
   for (const std::string& name : table.keys()) {
+    table.describe(
+        {name, "Participants of the group NAME, in the order of their numbers", "", true});
     const long participants = table.integer(name, 1, kMost);
     good = good && participants > 0;
     all += participants;

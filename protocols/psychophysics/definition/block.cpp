@@ -23,11 +23,13 @@ std::string as_formula(const std::optional<double>& number, const std::string& t
   return text.find('$') != std::string::npos ? text : fmt::format("'{}'", text);
 }
 
-/// Every key but those that mean something else.
-std::vector<GivenValue> read_values(Table& table, const std::vector<std::string>& others) {
+/// Every key but those that mean something else. @param description  of each
+std::vector<GivenValue> read_values(Table& table, const std::vector<std::string>& others,
+                                    const char* description) {
   std::vector<GivenValue> values;
   for (const std::string& key : table.keys()) {
     if (std::find(others.begin(), others.end(), key) == others.end()) {
+      table.describe({key, description, "", true});
       values.push_back({key, formula_of_value(table, key)});
     }
   }
@@ -45,7 +47,9 @@ const Schema<Probe>& probe_schema() {
 
 Probe read_probe(Table& table) {
   Probe probe = probe_schema().read(table);
-  probe.values = read_values(table, {"name", "share"});
+  probe.values =
+      read_values(table, {"name", "share"},
+                  "Value of the name in the probes of the block: a number, formula or word");
   if (probe.values.empty()) {
     table.reject("share", "stands alone; say what a probe gives: field = \"null\"");
   }
@@ -77,7 +81,8 @@ constexpr const char* kBlockTrials = "Trials of the block; needed without a proc
 
 Block read_block(Table& table, bool procedures) {
   Block block = block_schema().read(table);
-  block.values = read_values(table, block_keys());
+  block.values =
+      read_values(table, block_keys(), "Value of the name in the block: a number, formula or word");
   table.describe({"trials", kBlockTrials, "until its procedures are finished", false});
   if (table.has("trials") || block.practice || !procedures) {
     block.trials = static_cast<int>(table.integer("trials", 1, kMostInBlock));
@@ -107,6 +112,8 @@ std::vector<Factor> read_factors(Table& root) {
   }
   Table table = root.table("factors");
   for (const std::string& name : table.keys()) {
+    table.describe(
+        {name, "Levels of the factor NAME: two or more numbers, words or formulas", "", true});
     const auto rows = table.rows(name, "two or more levels: [\"left\", \"right\"]");
     if (rows.size() != 1 || rows[0].size() < 2) {
       table.reject(name, "another list", "two or more levels: [\"left\", \"right\"]");
@@ -150,6 +157,10 @@ std::vector<std::size_t> read_session(Table& session, const std::vector<Block>& 
   for (const Block& block : blocks) {
     names.push_back(block.name);
   }
+  session.describe({"blocks",
+                    "Blocks of the session of this number; without [design.session] every session "
+                    "has all of them",
+                    "", true});
   std::vector<std::size_t> places;
   for (const std::string& name : session.texts("blocks")) {
     const auto at = std::find(names.begin(), names.end(), name);
@@ -233,7 +244,8 @@ TrialDesign read_trial_design(Table& root, bool procedures) {
     Block practice = practice_schema().read(table);
     practice.name = "practice";
     practice.practice = true;
-    practice.values = read_values(table, {"trials", "right_in_a_row"});
+    practice.values = read_values(table, {"trials", "right_in_a_row"},
+                                  "Value of the name during practice: a number, formula or word");
     d.blocks.push_back(std::move(practice));
   }
   if (root.has("blocks")) {

@@ -46,13 +46,19 @@ void Names::read(Table& root) {
 }
 
 void Names::read_variable(Table& table, const std::string& name) {
+  table.describe({name, "Value of the name: a number, formula or quoted word", "", true});
   std::string formula;
   if (table.is_table(name)) {  // by the word of another
     Table choice = table.table(name);
+    choice.describe(
+        {"from", "Name whose word chooses among the other keys of this table", "", true});
     const std::string from = choice.text("from");
     std::string tail = fmt::format("${}", from);  // a word without an entry: stays a word
     for (const std::string& word : choice.keys()) {
       if (word != "from") {
+        choice.describe({word,
+                         "Value of the first name if the name of `from` has the word of this key",
+                         "", true});
         tail = fmt::format("(${} == {}) ? ({}) : ({})", from, quoted_word(word),
                            formula_of(choice, word), tail);
       }
@@ -70,6 +76,8 @@ void Names::read_variable(Table& table, const std::string& name) {
 }
 
 void Names::read_place(Table& table, const std::string& name) {
+  table.describe(
+      {name, "Coordinates x, y and z of the place: three numbers or formulas", "", true});
   const auto rows = table.rows(name, "three numbers or formulas, x, y and z [m]");
   std::vector<Expression> place;
   if (rows.size() != 1 || rows[0].size() != 3) {

@@ -37,12 +37,12 @@ void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presen
   std::vector<scene::Field> objects;
   if (root.has("objects")) {
     Table table = root.table("objects");
-    devices = devices_of(table, d.hands);
+    devices = devices_of(table, d.hands, "Device whose tool feels the object", "every device");
     objects = read_felt_objects(table, d);
   }
   if (root.has("fields")) {
     Table table = root.table("fields");
-    devices.merge(devices_of(table, d.hands));
+    devices.merge(devices_of(table, d.hands, "Device that feels the field", "all devices"));
     presented.fields = scene::read_fields(table, d.rate, objects);
   }
   presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
@@ -55,7 +55,8 @@ void read_all_regions(Table& root, const TrialsDefinition& d, Presented& present
     return;
   }
   Table table = root.table("regions");
-  const DeviceOf devices = devices_of(table, d.hands);
+  const DeviceOf devices =
+      devices_of(table, d.hands, "Device whose tool must be in the region", "the first device");
   presented.regions = scene::read_regions(table);
   for (const scene::Region& region : presented.regions) {
     const auto own = devices.find(region.name);

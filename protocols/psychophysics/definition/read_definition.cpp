@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/definition/table.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/psychometric/definition/read_tracks.h"
 #include "core/sound/read_cues.h"
@@ -19,22 +19,89 @@
 namespace haptrial::protocols {
 namespace {
 
-void read_view(Table& root, TrialsDefinition& d) {
+const Schema<TwoEyes>& two_eyes_schema() {
+  using E = TwoEyes;
+  static const auto schema =
+      Schema<E>()
+          .number("eye_distance", &E::eye_distance, {0.02, 0.2}, "m",
+                  "Distance between the participant's eyes, for pictures of two eyes")
+          .number("viewing_distance", &E::viewing_distance, {0.1, 10.0}, "m",
+                  "Distance from the participant's eyes to the screen");
+  return schema;
+}
+
+const Schema<TrialsView>& view_schema() {
+  using V = TrialsView;
+  static const auto schema =
+      Schema<V>()
+          .choice("seen_from", &V::from_above, {{"above", true}, {"front", false}},
+                  "Direction from which the world is drawn: above, x to the right and z down the "
+                  "screen, or front, x to the right and y up")
+          .required()
+          .number("extent", &V::width, {0.01, 1.0}, "m",
+                  "Length of the part of the world that fills the width of the screen")
+          .required()
+          .number("hand_radius", &V::hand_radius, {0.0005, 0.05}, "m",
+                  "Radius of the dot that stands for the hand")
+          .required()
+          .flag("stereo", &V::stereo,
+                "Whether pictures for the left and the right eye are shown side by side")
+          .keys_of(&V::eyes, two_eyes_schema());
+  return schema;
+}
+
+/// Reader of a key that names a sound of the definition, which is kept as its number.
+auto cue_reader(int TrialsDefinition::*member) {
+  return [member](Table& table, const std::string& key, TrialsDefinition& d) {
+    const std::string name = table.text(key);
+    const auto found = std::ranges::find(d.cues.cues, name, &sound::Cue::name);
+    if (found == d.cues.cues.end()) {
+      table.reject(key, fmt::format("\"{}\"", name), "a sound of [sounds]");
+    }
+    d.*member = static_cast<int>(found - d.cues.cues.begin());
+  };
+}
+
+/// Reader of a key whose text participants read.
+auto shown_reader(std::string TrialsDefinition::*member) {
+  return [member](Table& table, const std::string& key, TrialsDefinition& d) {
+    d.*member = table.shown_text(key);
+  };
+}
+
+const Schema<TrialsDefinition>& feedback_schema() {
+  using D = TrialsDefinition;
+  static const auto schema =
+      Schema<D>()
+          .custom("feedback_right", "Text that is shown after a right answer",
+                  shown_reader(&D::feedback_right))
+          .required()
+          .custom("feedback_wrong", "Text that is shown after a wrong answer",
+                  shown_reader(&D::feedback_wrong))
+          .required()
+          .number("feedback_time", &D::feedback_time, {0.0, 10.0}, "s",
+                  "Time for which the feedback on an answer is shown")
+          .required()
+          .custom("sound_right", "Sound after a right answer, if feedback is given",
+                  cue_reader(&D::sound_right))
+          .otherwise("none")
+          .custom("sound_wrong", "Sound after a wrong answer, if feedback is given",
+                  cue_reader(&D::sound_wrong))
+          .otherwise("none");
+  return schema;
+}
+
+/// Reads [sounds] and, as feedback may name them, [display].
+void read_display(Table& root, TrialsDefinition& d) {
+  if (root.has("sounds")) {
+    Table table = root.table("sounds");
+    d.cues = sound::read_cues(table);
+    d.markers.used = true;
+  }
   Table table = root.table("display");
   d.display = render::trial_display_schema().read(table);
-  d.view.from_above = table.choice("seen_from", {"above", "front"}) == "above";
-  d.view.width = table.number("extent", {0.01, 1.0}, "m");
-  d.view.hand_radius = table.number("hand_radius", {0.0005, 0.05}, "m");
-  d.feedback_right = table.shown_text("feedback_right");
-  d.feedback_wrong = table.shown_text("feedback_wrong");
-  d.feedback_time = table.number("feedback_time", {0.0, 10.0}, "s");
-  d.view.stereo = table.has("stereo") && table.boolean("stereo");
-  if (table.has("eye_distance")) {
-    d.view.eyes.eye_distance = table.number("eye_distance", {0.02, 0.2}, "m");
-  }
-  if (table.has("viewing_distance")) {
-    d.view.eyes.viewing_distance = table.number("viewing_distance", {0.1, 10.0}, "m");
-  }
+  view_schema().read(table, d.view);
+  feedback_schema().read(table, d);
   if (root.has("looks") && !d.view.stereo) {
     table.reject("stereo",
                  "is not true, but a bar of random dots is seen with two eyes only; add stereo = "
@@ -42,36 +109,21 @@ void read_view(Table& root, TrialsDefinition& d) {
   }
 }
 
-/// The sounds, and those that go with the feedback.
-void read_sounds(Table& root, TrialsDefinition& d) {
-  if (root.has("sounds")) {
-    Table table = root.table("sounds");
-    d.cues = sound::read_cues(table);
-    d.markers.used = true;
-  }
-  Table display = root.table("display");
-  const auto read = [&](const char* key, int& into) {
-    if (!display.has(key)) {
-      return;
-    }
-    const std::string name = display.text(key);
-    const auto found = std::ranges::find(d.cues.cues, name, &sound::Cue::name);
-    if (found == d.cues.cues.end()) {
-      display.reject(key, fmt::format("\"{}\"", name), "a sound of [sounds]");
-    }
-    into = static_cast<int>(found - d.cues.cues.begin());
-  };
-  read("sound_right", d.sound_right);
-  read("sound_wrong", d.sound_wrong);
-}
-
 std::vector<GivenValue> interval_values(Table& table) {
   std::vector<GivenValue> values;
   for (const std::string& key : table.keys()) {
+    table.describe({key, "Value of the name in the interval: a number, formula or word", "", true});
     const auto text = table.whole_text(key);
     values.push_back({key, text ? *text : formula_of_value(table, key)});
   }
   return values;
+}
+
+const Schema<TrialsDefinition>& interval_order_schema() {
+  static const auto schema = Schema<TrialsDefinition>().choice(
+      "order", &TrialsDefinition::random_intervals, {{"as stated", false}, {"random", true}},
+      "Order of the intervals in a trial");
+  return schema;
 }
 
 void read_intervals(Table& root, TrialsDefinition& d) {
@@ -80,8 +132,7 @@ void read_intervals(Table& root, TrialsDefinition& d) {
     return;
   }
   Table table = root.table("intervals");
-  d.random_intervals =
-      table.has("order") && table.choice("order", {"as stated", "random"}) == "random";
+  interval_order_schema().read(table, d);
   for (const std::string& name : table.keys_as_written()) {
     if (name != "order") {
       Table interval = table.table(name);
@@ -185,6 +236,8 @@ void leave_to_others(Table& root) {
   if (root.has("power")) {
     root.leave("power");  // of who simulates it
   }
+  root.describe({"groups", "Participants of each group, in the order of their numbers: NAME = 8",
+                 "one group of everybody", false});
   root.leave("groups");
 }
 
@@ -229,9 +282,8 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   leave_to_others(root);
   read_common(root, file_name, d);
   d.protocol = kTrials;
-  read_view(root, d);
+  read_display(root, d);
   d.hands = read_devices(root);
-  read_sounds(root, d);
   d.groups = study_groups(root.source(), file_name);
   read_all_objects(root, d);
   d.questions = read_questions(root, d.keys);

@@ -4,15 +4,22 @@
 
 #include <algorithm>
 
-#include "core/base/definition/table.h"
-#include "core/base/definition/table_vector.h"
+#include "core/base/definition/schema.h"
 #include "core/scene/field.h"
 #include "protocols/interface/pass.h"
 
 namespace haptrial::protocols {
 namespace {
 
-constexpr Bounds kStart{-1.0, 1.0};  // [m]
+const Schema<TrialDevice>& device_schema() {
+  using D = TrialDevice;
+  static const auto schema =
+      Schema<D>()
+          .vector("start", &D::start, {-1.0, 1.0}, "m",
+                  "Place at which the hand of a virtual participant on this device begins")
+          .required();
+  return schema;
+}
 
 }  // namespace
 
@@ -24,7 +31,8 @@ std::vector<TrialDevice> read_devices(Table& root) {
   Table table = root.table("devices");
   for (const std::string& name : table.keys_as_written()) {
     Table device = table.table(name);
-    devices.push_back({name, read_vector(device, "start", kStart, "m")});
+    devices.push_back({name, {}});
+    device_schema().read(device, devices.back());
   }
   if (devices.empty() || devices.size() > kMostDevices) {
     root.reject("devices", fmt::format("{} of them", devices.size()),
@@ -34,7 +42,8 @@ std::vector<TrialDevice> read_devices(Table& root) {
   return devices;
 }
 
-DeviceOf devices_of(Table& tables, const std::vector<TrialDevice>& devices) {
+DeviceOf devices_of(Table& tables, const std::vector<TrialDevice>& devices, const char* description,
+                    const char* otherwise) {
   std::vector<std::string> known;
   for (const TrialDevice& each : devices) {
     known.push_back(each.name);
@@ -42,6 +51,7 @@ DeviceOf devices_of(Table& tables, const std::vector<TrialDevice>& devices) {
   DeviceOf result;
   for (const std::string& name : tables.keys()) {
     Table table = tables.table(name);
+    table.describe({"device", description, otherwise, false});
     if (!table.has("device")) {
       continue;
     }

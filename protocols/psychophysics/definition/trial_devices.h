@@ -31,8 +31,10 @@ std::vector<TrialDevice> read_devices(Table& root);
 /// there.
 using DeviceOf = std::map<std::string, std::size_t>;
 
-/// Reads the key `device` of the tables of fields or regions. Problems are noted.
-DeviceOf devices_of(Table& tables, const std::vector<TrialDevice>& devices);
+/// Reads the key `device` of the tables of fields, regions or objects. Problems are noted.
+/// @param description  of the key; @param otherwise  device of a table without it
+DeviceOf devices_of(Table& tables, const std::vector<TrialDevice>& devices, const char* description,
+                    const char* otherwise);
 
 /// Fields that act on each device, a bit each: those without a device act on all.
 std::vector<std::uint64_t> felt_by(const std::vector<scene::Field>& fields,

@@ -6,8 +6,7 @@
 #include <array>
 #include <memory>
 
-#include "core/base/definition/table.h"
-#include "core/base/definition/table_vector.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/fnv.h"
@@ -23,15 +22,31 @@ constexpr int kSphereFrequency = 32;     // 20,480 triangles: 3 µm off at a rad
 constexpr int kAround = 256;             // 2 µm off at a radius of 25 mm
 constexpr int kAcross = 96;              // of a torus's tube
 
-double side(Table& table, const char* key) { return table.number(key, kSide, "m"); }
+double read_side(Table& table, const char* key, const char* description) {
+  table.describe({key, description, "", true});
+  return table.number(key, kSide, "m");
+}
 
-Eigen::Vector3d sides(Table& table) {
+double read_radius(Table& table) {
+  return read_side(table, "radius",
+                   "Radius of the object's body; of a torus that of the circle in its middle");
+}
+
+Eigen::Vector3d read_size(Table& table) {
+  table.describe({"size", "Lengths of the object's body along x, y and z", "", true});
   return read_vector(table, "size", kSide, "m", Eigen::Vector3d::Constant(0.01));
+}
+
+geometry::Mesh read_frustum(Table& table, double share_at_top) {
+  const double radius = read_radius(table);
+  const double length =
+      read_side(table, "length", "Length of the object's body along z; a cone points to +z");
+  return geometry::make_frustum(radius, share_at_top * radius, length, kAround);
 }
 
 geometry::Mesh read_ellipsoid(Table& table) {
   geometry::Mesh mesh = geometry::make_sphere(0.5, kSphereFrequency);
-  const Eigen::Vector3d size = sides(table);
+  const Eigen::Vector3d size = read_size(table);
   for (Eigen::Vector3d& vertex : mesh.vertices) {
     vertex = vertex.cwiseProduct(size).eval();
   }
@@ -39,8 +54,8 @@ geometry::Mesh read_ellipsoid(Table& table) {
 }
 
 geometry::Mesh read_torus(Table& table) {
-  const double radius = side(table, "radius");
-  double tube = side(table, "tube");
+  const double radius = read_radius(table);
+  double tube = read_side(table, "tube", "Radius of the tube of a torus, which lies around z");
   if (tube >= radius) {
     table.reject("tube", fmt::format("{} m", tube),
                  fmt::format("a number below radius, {} m", radius));
@@ -55,19 +70,11 @@ struct KindOfShape {
 };
 
 constexpr KindOfShape kShapes[] = {
-    {"sphere", [](Table& t) { return geometry::make_sphere(side(t, "radius"), kSphereFrequency); }},
+    {"sphere", [](Table& t) { return geometry::make_sphere(read_radius(t), kSphereFrequency); }},
     {"ellipsoid", read_ellipsoid},
-    {"box", [](Table& t) { return geometry::make_box(sides(t)); }},
-    {"cylinder",
-     [](Table& t) {
-       const double radius = side(t, "radius");
-       return geometry::make_frustum(radius, radius, side(t, "length"), kAround);
-     }},
-    {"cone",
-     [](Table& t) {
-       const double radius = side(t, "radius");
-       return geometry::make_frustum(radius, 0.0, side(t, "length"), kAround);
-     }},
+    {"box", [](Table& t) { return geometry::make_box(read_size(t)); }},
+    {"cylinder", [](Table& t) { return read_frustum(t, 1.0); }},
+    {"cone", [](Table& t) { return read_frustum(t, 0.0); }},
     {"torus", read_torus},
 };
 
@@ -91,7 +98,7 @@ contact::SharedBody read_shape(Table& table) {
   return nullptr;
 }
 
-std::vector<deformable::BodySide> read_sides(Table& table, const char* key) {
+std::vector<deformable::BodySide> read_sides(Table& table, const std::string& key) {
   constexpr std::array kSides{deformable::BodySide::kLeft,   deformable::BodySide::kRight,
                               deformable::BodySide::kBottom, deformable::BodySide::kTop,
                               deformable::BodySide::kBack,   deformable::BodySide::kFront};
@@ -107,36 +114,63 @@ std::vector<deformable::BodySide> read_sides(Table& table, const char* key) {
   return sides;
 }
 
+using Sides = std::vector<deformable::BodySide> deformable::FeltSides::*;
+
+/// Reader of a key that lists sides of the body.
+auto sides_reader(Sides sides) {
+  return [sides](Table& table, const std::string& key, TrialObject& object) {
+    object.sides.*sides = read_sides(table, key);
+  };
+}
+
+/// The keys of a body that gives way, but those of its shape and those that read_deformable()
+/// describes.
+const Schema<TrialObject>& deformable_schema() {
+  using T = TrialObject;
+  using F = deformable::FeltSides;
+  static const auto schema =
+      Schema<T>()
+          .integer("cells", &T::cells, 2, deformable::kMostFeltCells,
+                   "Cells along the longest side of a body that gives way")
+          .custom("fixed",
+                  "Sides of a body that gives way which do not move: left, right, bottom, top, "
+                  "back, front (-x, +x, -y, +y, -z, +z)",
+                  sides_reader(&F::fixed))
+          .otherwise("bottom")
+          .custom("felt", "Sides of a body that gives way which can be touched",
+                  sides_reader(&F::felt))
+          .otherwise("all that are not fixed")
+          .custom("grasped",
+                  "Sides of a body of springs which the hand holds from the first tick on and "
+                  "moves, instead of pressing "
+                  "the body",
+                  [](Table& table, const std::string& key, T& object) {
+                    sides_reader (&F::grasped)(table, key, object);
+                    if (!object.moves) {
+                      table.reject(key, "stands without model = \"springs\", which it needs");
+                    }
+                  })
+          .otherwise("none")
+          .choice("seen", &T::seen_yielding, {{"yielding", true}, {"rest", false}},
+                  "Shape at which a body that gives way is seen: as the hand presses it, or at "
+                  "rest");
+  return schema;
+}
+
 /// The keys of a body that gives way; its block, unless it is a file.
 void read_deformable_shape(Table& table, TrialObject& object) {
-  object.yields = true;
   object.moves = table.has("model") && table.choice("model", {"elements", "springs"}) == "springs";
   object.own_rate = object.moves && table.has("rate");
   if (object.moves && table.has("calibrated")) {
     object.constants_file = table.text("calibrated");
   }
-  object.cells = table.integer_or("cells", object.cells, 2, deformable::kMostFeltCells);
-  if (table.has("fixed")) {
-    object.sides.fixed = read_sides(table, "fixed");
-  }
-  if (table.has("felt")) {
-    object.sides.felt = read_sides(table, "felt");
-  }
-  if (table.has("grasped")) {
-    object.sides.grasped = read_sides(table, "grasped");
-    if (!object.moves) {
-      table.reject("grasped", "stands without model = \"springs\", which it needs");
-    }
-  }
-  if (table.has("seen")) {
-    object.seen_yielding = table.choice("seen", {"yielding", "rest"}) != "rest";
-  }
+  deformable_schema().read(table, object);
   if (table.has("mesh")) {
     object.file = table.text("mesh");
     return;
   }
   table.choice("shape", {"box"});
-  const Eigen::Vector3d size = sides(table);
+  const Eigen::Vector3d size = read_size(table);
   try {
     object.felt = std::make_shared<const deformable::HapticMesh>(
         deformable::felt_block(size, object.cells, object.sides, "objects." + object.name));
@@ -144,6 +178,36 @@ void read_deformable_shape(Table& table, TrialObject& object) {
   } catch (const InputError& error) {
     table.reject("size", fmt::format("cannot be used: {}", error.what()));
   }
+}
+
+void read_body(Table& table, TrialObject& object) {
+  table.describe({"shape", "Shape of the object's body", "needed, or mesh", false});
+  table.describe({"mesh", "File of the object's mesh beside the definition: .obj, .ply or .stl",
+                  "needed, or shape", false});
+  if (object.yields) {
+    read_deformable_shape(table, object);
+  } else if (table.has("mesh") && table.has("shape")) {
+    table.reject("shape", "stands beside mesh; keep one of the two");
+    for (const char* key : {"shape", "mesh", "radius", "size", "length", "tube"}) {
+      table.leave(key);
+    }
+  } else if (table.has("mesh")) {
+    object.file = table.text("mesh");
+  } else {
+    object.body = read_shape(table);
+  }
+}
+
+const Schema<TrialObject>& object_schema() {
+  using T = TrialObject;
+  static const auto schema =
+      Schema<T>()
+          .choice("kind", &T::yields, {{"rigid", false}, {"deformable", true}},
+                  "Kind of the object: whether its body gives way to the hand")
+          .check(read_body)
+          .flag("record", &T::recorded,
+                "Whether every tick of contact with the object is a row of /contacts");
+  return schema;
 }
 
 }  // namespace
@@ -154,19 +218,7 @@ std::vector<TrialObject> read_objects(Table& objects) {
     Table table = objects.table(name);
     TrialObject object;
     object.name = name;
-    if (table.has("kind") && table.choice("kind", {"rigid", "deformable"}) == "deformable") {
-      read_deformable_shape(table, object);
-    } else if (table.has("mesh") && table.has("shape")) {
-      table.reject("shape", "stands beside mesh; keep one of the two");
-      for (const char* key : {"shape", "mesh", "radius", "size", "length", "tube"}) {
-        table.leave(key);
-      }
-    } else if (table.has("mesh")) {
-      object.file = table.text("mesh");
-    } else {
-      object.body = read_shape(table);
-    }
-    object.recorded = table.has("record") && table.boolean("record");
+    object_schema().read(table, object);
     found.push_back(std::move(object));
   }
   return found;

@@ -37,29 +37,6 @@ struct TrialObject {
 
 /// Reads the shapes of [objects], in the order of their names. Problems are noted.
 ///
-///     mesh            a file, .obj, .ply or .stl, beside the definition
-///     shape           "sphere"     radius
-///                     "ellipsoid"  size
-///                     "box"        size, [x, y, z]
-///                     "cylinder"   radius, length along z
-///                     "cone"       radius, length along z; it points to +z
-///                     "torus"      radius, tube: around z
-///
-///     [record]        true: every tick of contact is a row of /contacts
-///
-///     [kind]          "deformable": a body that gives way, of a mesh or the shape "box"; then
-///     [cells]         along its longest side, 16 if left out
-///     [fixed]         its sides that do not move, of "left", "right", "bottom", "top", "back",
-///                     "front" (-x, +x, -y, +y, -z, +z); the bottom if left out
-///     [felt]          its sides that can be touched; all that are not fixed if left out
-///     [model]         "elements" or "springs" (core/scene/read/read_deformable.h)
-///     [rate]          of springs: how often they move a second, less often than they are felt
-///     [grasped]       of springs: sides that the hand holds from the first tick on; then it does
-///                     not press the body
-///     [calibrated]    of springs: a file of constants by haptrial deform calibrate, for a body of
-///                     the same cells; beside the definition
-///     [seen]          "yielding", as the hand presses it, if left out; "rest": its resting outline
-///
 /// Lengths are in metres, numbers alone: what changes between trials is the object's scale, centre
 /// and turn, which read_rigid() or read_deformable() reads with all else.
 std::vector<TrialObject> read_objects(Table& objects);
