@@ -22,7 +22,7 @@ constexpr double kMostCorrection = 2.0;  // [N]
 
 const Schema<Population<PaceParameters>>& pace_schema() {
   using P = PaceParameters;
-  static const auto schema = population_schema<P>(
+  static const auto schema = make_population_schema<P>(
       "pace ", true,
       {{"pace",
         &P::pace,

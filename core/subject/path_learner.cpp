@@ -20,7 +20,7 @@ constexpr int kAxes[] = {0, 2};       // of W
 const Schema<Population<PathParameters>>& path_memory_schema() {
   using P = PathParameters;
   constexpr Bounds kNoise{0.0, 0.1};
-  static const auto schema = population_schema<P>(
+  static const auto schema = make_population_schema<P>(
       "path ", true,
       {{"visual_noise", &P::visual_noise, kNoise, "m",
         "Standard deviation of a remembered place of the path that was seen"},

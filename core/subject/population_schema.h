@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,12 +25,16 @@ struct PersonKey {
 /// The schema of a table of such keys, which are either all required or all optional.
 /// @param streams  prefix of the streams' names
 template <class Person>
-Schema<Population<Person>> population_schema(std::string_view streams, bool required,
-                                             const std::vector<PersonKey<Person>>& keys) {
+Schema<Population<Person>> make_population_schema(std::string_view streams, bool required,
+                                                  const std::vector<PersonKey<Person>>& keys) {
   Schema<Population<Person>> schema;
   for (const PersonKey<Person>& key : keys) {
-    const std::string stream =
-        key.stream != nullptr ? key.stream : fmt::format("{}{}", streams, key.name);
+    const std::string stream = key.stream != nullptr ? key.stream : std::string(streams) + key.name;
+    if (!required) {
+      schema.check([key](Table& table, Population<Person>&) {
+        table.otherwise(key.name, Person{}.*key.member);
+      });
+    }
     schema.custom(key.name, key.description,
                   [key, stream](Table& table, const std::string& name, Population<Person>& people) {
                     const Variation variation =
@@ -44,8 +46,6 @@ Schema<Population<Person>> population_schema(std::string_view streams, bool requ
                   });
     if (required) {
       schema.required();
-    } else {
-      schema.otherwise(fmt::format("{}", Person{}.*key.member));
     }
   }
   return schema;

@@ -15,7 +15,7 @@ constexpr Bounds kDelay{0.0, 0.5};  // the virtual subject's delay line holds th
 }  // namespace
 
 const Schema<Population<SubjectParameters>>& subject_schema() {
-  static const auto schema = population_schema<S>(
+  static const auto schema = make_population_schema<S>(
       "", true,
       {{"visual_weber", &S::visual_weber, kShare, "",
         "Standard deviation of a seen bar height, as a share of the height"},

@@ -37,12 +37,13 @@ const Schema<VariedKey>& vary_schema() {
 
 const Schema<PowerPlan>& check_schema() {
   using P = PowerPlan;
-  static const auto schema = Schema<P>()
-                                 .integer("cells", &P::checked_cells, 0, 1000,
-                                          "Cells whose responses are compared with full sessions")
-                                 .required()
-                                 .integer("replications", &P::checked_replications, 2, 100'000,
-                                          "Studies of each cell that are simulated in full");
+  static const auto schema =
+      Schema<P>()
+          .integer("cells", &P::checked_cells, 0, 1000,
+                   "Cells that are also simulated in full, as a check of the responses")
+          .required()
+          .integer("replications", &P::checked_replications, 2, 100'000,
+                   "Studies of each cell that are simulated in full");
   return schema;
 }
 
@@ -63,13 +64,14 @@ const Schema<PowerPlan>& power_schema() {
                    "Simulated studies of each cell")
           .integer("null_replications", &P::null_replications, 1, kMostReplications,
                    "Simulated studies of each cell without an effect")
-          .integer("block", &P::block, 1, kMostReplications,
-                   "Simulated studies of a part, after which the state is kept; of full sessions 1 "
-                   "if left out")
+          .integer(
+              "block", &P::block, 1, kMostReplications,
+              "Simulated studies of a part, the unit that is shared out; of full sessions 1 if "
+              "left out")
           .integer("seed", &P::seed, 0, 2'000'000'000, "Seed of every random number of a run")
           .choice("depth", &P::depth,
                   {{"responses", PowerDepth::kResponses}, {"sessions", PowerDepth::kSessions}},
-                  "What is simulated of each participant: the responses alone, or full sessions")
+                  "Depth of the simulation: responses alone, or full sessions of each participant")
           .check([](Table& table, P& plan) {
             if (plan.depth == PowerDepth::kSessions && !table.has("block")) {
               plan.block = 1;  // full sessions take long

@@ -15,7 +15,7 @@ using J = JudgementParameters;
 Schema<Population<J>> make_judgement_schema(bool logarithmic) {
   // The criterion of a linear scale can be anywhere.
   const Bounds criterion = logarithmic ? kPositive : Bounds{};
-  return population_schema<J>(
+  return make_population_schema<J>(
       kStreams, false,
       {{"decision_noise", &J::noise, kNonNegative, "",
         "Standard deviation of the evidence of each interval, beside the noise of the sense"},
@@ -43,7 +43,7 @@ Schema<Population<J>> make_judgement_schema(bool logarithmic) {
 }  // namespace
 
 const Schema<Population<SenseParameters>>& sense_schema() {
-  static const auto schema = population_schema<S>(
+  static const auto schema = make_population_schema<S>(
       kStreams, false,
       {{"force_weber", &S::force_weber, kSpread, "",
         "Standard deviation of a felt force, as a share of the force"},

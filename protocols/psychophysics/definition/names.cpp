@@ -46,18 +46,17 @@ void Names::read(Table& root) {
 }
 
 void Names::read_variable(Table& table, const std::string& name) {
-  table.describe({name, "Value of the name: a number, formula or quoted word", "", true});
+  table.describe({name, "Value of the variable NAME: a number, formula or quoted word", "", true});
   std::string formula;
   if (table.is_table(name)) {  // by the word of another
     Table choice = table.table(name);
-    choice.describe(
-        {"from", "Name whose word chooses among the other keys of this table", "", true});
+    choice.describe({"from", "Name whose word chooses the value of the variable", "", true});
     const std::string from = choice.text("from");
     std::string tail = fmt::format("${}", from);  // a word without an entry: stays a word
     for (const std::string& word : choice.keys()) {
       if (word != "from") {
         choice.describe({word,
-                         "Value of the first name if the name of `from` has the word of this key",
+                         "Value of the variable while the name of `from` stands for the word NAME",
                          "", true});
         tail = fmt::format("(${} == {}) ? ({}) : ({})", from, quoted_word(word),
                            formula_of(choice, word), tail);

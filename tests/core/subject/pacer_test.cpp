@@ -123,6 +123,11 @@ TEST(PaceSchemaTest, PeopleDifferAndAreReadWithTheirBounds) {
   }
   EXPECT_NEAR(sum, 0.0, 0.02);
   EXPECT_NEAR(std::sqrt(square), 0.2, 0.01);
+  EXPECT_EQ(people.draw(7).pace, draw({0.02, 0.2}, 7, "pace"));
+  Table varied = Table::parse(
+      "pace = 0.02\nvariability = { median = 0.1, spread = 0.4 }\ncorrelation = 1.0\n", "f.toml");
+  EXPECT_EQ(pace_schema().read(varied).draw(7).variability,
+            draw({0.1, 0.4}, 7, "pace variability"));
   Table bad = Table::parse("pace = { median = 0.0, spread = 0.2 }\n", "f.toml");
   pace_schema().read(bad);
   EXPECT_THROW(bad.finish(), InputError);

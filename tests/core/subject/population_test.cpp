@@ -47,6 +47,7 @@ TEST(PopulationTest, ANumberIsTheSameForEverybody) {
   EXPECT_EQ(people.draw(1).tremor, 0.02);
   EXPECT_EQ(people.draw(2).tremor, 0.02);
   EXPECT_NE(people.draw(1).haptic_weber, people.draw(2).haptic_weber);
+  EXPECT_EQ(people.draw(3).haptic_weber, draw({0.1, 0.3}, 3, "haptic_weber"));
 }
 
 TEST(PopulationTest, AShiftIsAddedAndCanBeNegative) {

@@ -37,6 +37,8 @@ TEST(PerceiverPopulationTest, PeopleVaryAsStated) {
   const PerceiverPopulation people = read(
       "force_weber = { median = 0.08, spread = 0.3 }\n"
       "bias_first = { median = -0.02, spread = 0.05 }\n");
+  EXPECT_TRUE(people.varies());
+  EXPECT_EQ(people.draw_senses(3).force_weber, draw({0.08, 0.3}, 3, "observer force_weber"));
   constexpr int kPeople = 10000;
   double logs = 0.0;
   double log_squares = 0.0;
