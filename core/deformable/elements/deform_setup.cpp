@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/base/definition/table_vector.h"
+#include "core/base/definition/schema.h"
 #include "core/base/error.h"
 
 namespace haptrial::deformable {
@@ -14,76 +14,87 @@ namespace {
 
 using Eigen::Vector3d;
 
-BodySource read_source(Table table) {
-  BodySource source;
-  if (table.has("block") + table.has("tetrahedra") + table.has("mesh") > 1) {
-    table.reject("block", "stands beside mesh or tetrahedra; keep one of the three");
-    table.leave("mesh");
-    table.leave("tetrahedra");
-  }
-  if (table.has("block")) {
-    source.block = read_vector(table, "block", kPositive, "m", Vector3d::Ones());
-  } else if (table.has("tetrahedra")) {
-    source.tetrahedra = table.text("tetrahedra");
-  } else {
-    source.mesh = table.text("mesh");
-  }
-  if (!source.block) {
-    source.scale = table.number_or("scale", 1.0, kPositive, "m");
-  }
-  if (table.has("shift")) {
-    source.shift = read_vector(table, "shift", {}, "m");
-  }
-  if (source.tetrahedra.empty()) {
-    source.resolution = table.integer_or("resolution", 20, 1, 1000);
-  }
-  return source;
+const Schema<BodySource>& source_schema() {
+  using B = BodySource;
+  static const auto schema =
+      Schema<B>()
+          .check([](Table& table, B&) {
+            if (table.has("block") + table.has("tetrahedra") + table.has("mesh") > 1) {
+              table.reject("block", "stands beside mesh or tetrahedra; keep one of the three");
+              table.leave("mesh");
+              table.leave("tetrahedra");
+            }
+          })
+          .custom("block", "Sides of a block, in place of a file",
+                  [](Table& table, const std::string& key, B& source) {
+                    source.block = read_vector(table, key, kPositive, "m", Vector3d::Ones());
+                  })
+          .check([](Table& table, B& source) {
+            table.describe({"tetrahedra", "File of the body's tetrahedra: TetGen's .node with .ele",
+                            "block or mesh", false});
+            table.describe({"mesh", "File of the body's surface, which is filled with tetrahedra",
+                            "block or tetrahedra", false});
+            if (!source.block && table.has("tetrahedra")) {
+              source.tetrahedra = table.text("tetrahedra");
+            } else if (!source.block) {
+              source.mesh = table.text("mesh");
+            }
+          })
+          .number("scale", &B::scale, kPositive, "m", "Length of the file's unit")
+          .only_if([](const B& source) { return !source.block; })
+          .vector("shift", &B::shift, {}, "m", "Displacement that is added to every vertex")
+          .integer("resolution", &B::resolution, 1, 1000, "Cubes along the body's longest side")
+          .only_if([](const B& source) { return source.tetrahedra.empty(); });
+  return schema;
 }
 
-Material read_material(Table& table) {
-  Material material;
-  material.young = table.number("young", kPositive, "Pa");
-  material.poisson = table.number("poisson", {}, "");
-  material.density = table.number_or("density", 1000.0, kPositive, "kg/m³");
-  if (!(material.poisson > -1.0 && material.poisson < 0.5)) {
-    table.reject("poisson", fmt::format("{}", material.poisson), "above -1 and below 0.5");
-  }
-  return material;
+const Schema<Material>& material_schema() {
+  using M = Material;
+  static const auto schema =
+      Schema<M>()
+          .number("young", &M::young, kPositive, "Pa", "Young's modulus of the material")
+          .required()
+          .number("poisson", &M::poisson, {}, "", "Poisson's ratio of the material")
+          .required()
+          .number("density", &M::density, kPositive, "kg/m³", "Density of the material")
+          .check([](Table& table, M& material) {
+            if (!(material.poisson > -1.0 && material.poisson < 0.5)) {
+              table.reject("poisson", fmt::format("{}", material.poisson),
+                           "above -1 and below 0.5");
+            }
+          });
+  return schema;
 }
 
-/// A name of a region that the file has.
-std::string read_region_name(Table& table, const char* key, const DeformSetup& setup) {
-  std::vector<std::string> allowed;
-  for (const auto& [name, region] : setup.regions) {
-    allowed.push_back(name);
-  }
-  return table.choice(key, allowed);
+/// Reader of a key that names a region of the file.
+template <class T>
+auto region_reader(std::string T::*member, const DeformSetup& setup) {
+  return [member, &setup](Table& table, const std::string& key, T& into) {
+    std::vector<std::string> allowed;
+    for (const auto& [name, region] : setup.regions) {
+      allowed.push_back(name);
+    }
+    into.*member = table.choice(key, allowed);
+  };
 }
 
 std::vector<NamedMaterial> read_materials(Table& root, const DeformSetup& setup) {
   Table base = root.table("material");
-  std::vector<NamedMaterial> materials{{"material", read_material(base), ""}};
+  std::vector<NamedMaterial> materials{{"material", material_schema().read(base), ""}};
   if (root.has("materials")) {
+    const auto schema = Schema<NamedMaterial>()
+                            .keys_of(&NamedMaterial::material, material_schema())
+                            .custom("region", "Region whose tetrahedra have the material",
+                                    region_reader(&NamedMaterial::region, setup))
+                            .required();
     Table more = root.table("materials");
     for (const std::string& name : more.keys_as_written()) {
       Table table = more.table(name);
-      NamedMaterial& material = materials.emplace_back();
-      material.name = name;
-      material.material = read_material(table);
-      material.region = read_region_name(table, "region", setup);
+      materials.push_back(schema.read(table));
+      materials.back().name = name;
     }
   }
   return materials;
-}
-
-void read_session(Table& table, SetupLoad& load) {
-  if (!table.has("session")) {
-    return;
-  }
-  load.session = table.text("session");
-  load.object = table.has("object") ? table.text("object") : "";
-  load.trial = table.integer_or("trial", 0, 1, 1000000);
-  load.touches = table.integer_or("touches", 5, 1, 1000);
 }
 
 /// Answers of a load are in files of its name.
@@ -93,58 +104,96 @@ bool names_files(const std::string& name) {
   });
 }
 
-SetupLoad read_load(Table table, const std::string& name, const DeformSetup& setup) {
-  SetupLoad load;
-  load.name = name;
-  for (const std::string& held : table.texts("held")) {
-    if (setup.regions.contains(held)) {
-      load.held.push_back(held);
-    } else {
-      table.reject("held", fmt::format("'{}'", held), "names of [regions]");
-    }
-  }
-  if (table.has("forces")) {
-    for (Table& one : table.tables("forces")) {
-      load.forces.push_back(
-          {read_region_name(one, "region", setup), read_vector(one, "force", {}, "N")});
-    }
-  }
-  if (table.has("pressures")) {
-    for (Table& one : table.tables("pressures")) {
-      load.pressures.push_back(
-          {read_region_name(one, "region", setup), one.number("pressure", {}, "Pa")});
-    }
-  }
-  if (table.has("moved")) {
-    for (Table& one : table.tables("moved")) {
-      load.moved.push_back(
-          {read_region_name(one, "region", setup), read_vector(one, "by", {}, "m")});
-    }
-  }
-  read_session(table, load);
-  load.reference = table.has("reference") ? table.text("reference") : "";
-  load.unseen = table.has("unseen") && table.boolean("unseen");
-  return load;
+/// The keys of a load that are recorded contacts.
+const Schema<SetupLoad>& session_schema() {
+  using L = SetupLoad;
+  static const auto schema =
+      Schema<L>()
+          .text("session", &L::session, "Session file whose recorded contacts act beside the rest")
+          .text("object", &L::object, "Object of the session whose contacts act")
+          .otherwise("the one that was touched")
+          .integer("trial", &L::trial, 1, 1000000, "Trial of the session whose contacts act")
+          .otherwise("the first in which the object was touched")
+          .integer("touches", &L::touches, 1, 1000,
+                   "Moments of the session, each of which is a load of its own");
+  return schema;
 }
 
-void read_elements(Table& root, DeformSetup& setup) {
-  if (!root.has("elements")) {
-    return;
-  }
-  Table table = root.table("elements");
-  if (table.has("law")) {
-    std::vector<std::string> names;
-    for (const Law law : {Law::kLinear, Law::kCorotational, Law::kNeoHookean}) {
-      names.emplace_back(name_of(law));
+/// Reader of a list of tables, whose keys `schema` describes.
+template <class Row>
+auto rows_reader(std::vector<Row> SetupLoad::*rows, const Schema<Row>& schema) {
+  return [rows, schema](Table& table, const std::string& key, SetupLoad& load) {
+    for (Table& one : table.tables(key)) {
+      (load.*rows).push_back(schema.read(one));
     }
-    const std::string law = table.choice("law", names);
-    setup.law = std::find(names.begin(), names.end(), law) == names.end() ? Law::kNeoHookean
-                                                                          : law_named(law);
+  };
+}
+
+Schema<SetupLoad> make_load_schema(const DeformSetup& setup) {
+  using L = SetupLoad;
+  const auto force = Schema<RegionForce>()
+                         .custom("region", "Region on which the force acts",
+                                 region_reader(&RegionForce::region, setup))
+                         .required()
+                         .vector("force", &RegionForce::force, {}, "N",
+                                 "Force on the region in sum, equal on its vertices")
+                         .required();
+  const auto pressure = Schema<RegionPressure>()
+                            .custom("region", "Region on which the pressure acts",
+                                    region_reader(&RegionPressure::region, setup))
+                            .required()
+                            .number("pressure", &RegionPressure::pressure, {}, "Pa",
+                                    "Pressure against the outer faces of the region, at rest")
+                            .required();
+  const auto move =
+      Schema<RegionMove>()
+          .custom("region", "Region that is moved", region_reader(&RegionMove::region, setup))
+          .required()
+          .vector("by", &RegionMove::by, {}, "m", "Displacement of the region")
+          .required();
+  return Schema<L>()
+      .custom("held", "Regions that do not move",
+              [&setup](Table& table, const std::string& key, L& load) {
+                for (const std::string& held : table.texts(key)) {
+                  if (setup.regions.contains(held)) {
+                    load.held.push_back(held);
+                  } else {
+                    table.reject(key, fmt::format("'{}'", held), "names of [regions]");
+                  }
+                }
+              })
+      .required()
+      .custom("forces", "Forces on regions", rows_reader(&L::forces, force))
+      .custom("pressures", "Pressures on regions", rows_reader(&L::pressures, pressure))
+      .custom("moved", "Regions that are moved", rows_reader(&L::moved, move))
+      .check([](Table& table, L& load) {
+        if (table.has("session")) {
+          session_schema().read(table, load);
+        }
+      })
+      .text("reference", &L::reference, "File of displacements by another program (.csv)")
+      .flag("unseen", &L::unseen, "Whether a calibration never sees the load and is judged by it");
+}
+
+std::vector<std::pair<std::string, Law>> law_words() {
+  std::vector<std::pair<std::string, Law>> words;
+  for (const Law law : {Law::kLinear, Law::kCorotational, Law::kNeoHookean}) {
+    words.emplace_back(name_of(law), law);
   }
-  if (table.has("volume") && table.choice("volume", {"patches", "tetrahedra"}) == "tetrahedra") {
-    setup.volume = VolumeForm::kTetrahedra;
-  }
-  setup.tolerance = table.number_or("tolerance", 1e-8, {1e-12, 1e-2, false}, "");
+  return words;
+}
+
+const Schema<DeformSetup>& elements_schema() {
+  using D = DeformSetup;
+  static const auto schema =
+      Schema<D>()
+          .choice("law", &D::law, law_words(), "Law of the material")
+          .choice("volume", &D::volume,
+                  {{"patches", VolumeForm::kPatches}, {"tetrahedra", VolumeForm::kTetrahedra}},
+                  "Parts of the body whose changes of volume are resisted")
+          .number("tolerance", &D::tolerance, {1e-12, 1e-2}, "",
+                  "Unbalanced forces at which the statics end, as a share of loads and reactions");
+  return schema;
 }
 
 /// Adds what is held and moved; what is moved is not held where it lies.
@@ -178,7 +227,8 @@ DeformSetup read_setup(const std::filesystem::path& file) {
   DeformSetup setup;
   setup.file = file;
   setup.text = root.source();
-  setup.source = read_source(root.table("body"));
+  Table body = root.table("body");
+  setup.source = source_schema().read(body);
   if (root.has("regions")) {
     Table regions = root.table("regions");
     for (const std::string& name : regions.keys_as_written()) {
@@ -187,14 +237,20 @@ DeformSetup read_setup(const std::filesystem::path& file) {
     }
   }
   setup.materials = read_materials(root, setup);
-  read_elements(root, setup);
+  if (root.has("elements")) {
+    Table elements = root.table("elements");
+    elements_schema().read(elements, setup);
+  }
   if (root.has("loads")) {
+    const Schema<SetupLoad> schema = make_load_schema(setup);
     Table loads = root.table("loads");
     for (const std::string& name : loads.keys_as_written()) {
       if (!names_files(name)) {
         loads.reject(name, fmt::format("\"{}\"", name), "letters, digits, -, _ and spaces");
       }
-      setup.loads.push_back(read_load(loads.table(name), name, setup));
+      Table load = loads.table(name);
+      setup.loads.push_back(schema.read(load));
+      setup.loads.back().name = name;
     }
   }
   root.finish();
