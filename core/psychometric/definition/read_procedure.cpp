@@ -48,8 +48,14 @@ void read_range_and_axis(const TrackKeys& keys, Track& track) {
 
 double read_start(const TrackKeys& keys, const Track& track) {
   Table& table = keys.of("start");
-  table.describe({"start", "First level of a staircase or of PEST", kProceduresOwn, true});
-  return table.number("start", {track.low, track.high}, track.unit);
+  table.describe(
+      {"start", "First level of a staircase or of PEST, within the range", kProceduresOwn, true});
+  const double start = table.number("start", {}, track.unit);
+  if (start < track.low || start > track.high) {
+    table.reject("start", fmt::format("{}", start),
+                 fmt::format("a number within the range, {} to {}", track.low, track.high));
+  }
+  return std::clamp(start, track.low, track.high);
 }
 
 /// Events at which a track stops; 0: not by these.

@@ -59,12 +59,11 @@ Json schema_of(const KeyForm& form, bool or_text) {
   return {{"type", form.type == "list" ? "array" : "object"}};
 }
 
-std::string description_of(const ListedKey& listed) {
-  const KnownKey& key = listed.key;
-  std::string words = listed.words;
+std::string description_of(const KnownKey& key) {
+  std::string words = key.words;
   words += key.unit.empty() ? "" : fmt::format(" [{}]", key.unit);
   words += key.allowed.empty() ? "" : fmt::format("\nAllowed: {}", key.allowed);
-  words += listed.otherwise.empty() ? "" : fmt::format("\nIf left out: {}", listed.otherwise);
+  words += key.otherwise.empty() ? "" : fmt::format("\nIf left out: {}", key.otherwise);
   words += key.when.empty() ? "" : fmt::format("\nOnly with {}", fmt::join(key.when, "; "));
   return words;
 }
@@ -118,8 +117,7 @@ Json alternatives(const Place& place) {
   return json;
 }
 
-void add_key(Place& root, const ListedKey& listed) {
-  const KnownKey& key = listed.key;
+void add_key(Place& root, const KnownKey& key) {
   const std::string dot = key.table.empty() ? "" : ".";
   Place& place = place_at(root, key.table + dot + key.key);
   const bool or_text = std::any_of(key.forms.begin(), key.forms.end(),
@@ -127,7 +125,7 @@ void add_key(Place& root, const ListedKey& listed) {
   for (const KeyForm& form : key.forms) {
     place.values.push_back(schema_of(form, or_text));
   }
-  place.description = description_of(listed);
+  place.description = description_of(key);
 }
 
 /// "procedures[]" with the keys of "procedure"
@@ -147,8 +145,8 @@ void add_shared(Place& root, const std::string& table, const std::string& keys) 
 std::string key_json_schema(const std::vector<KeySection>& sections, const std::string& protocol) {
   Place root;
   for (const KeySection& section : sections) {
-    for (const ListedKey& listed : section.keys) {
-      add_key(root, listed);
+    for (const KnownKey& key : section.keys) {
+      add_key(root, key);
     }
   }
   for (const auto& [table, keys] : shared_tables()) {

@@ -13,7 +13,6 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "experiments/command/start/key_words_internal.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
 
@@ -145,68 +144,13 @@ std::vector<KnownKey> without_tables(const std::vector<KnownKey>& keys) {
   return rest;
 }
 
-struct Words {
-  std::string otherwise;
-  std::string meaning;
-  bool used{false};
-};
-
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string_view::npos
-             ? ""
-             : std::string(text.substr(first, text.find_last_not_of(' ') - first + 1));
-}
-
-/// A key that has words already gets these behind them.
-void add_words(std::map<std::string, Words>& all, std::string_view rest) {
-  while (!rest.empty()) {
-    const std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    const std::size_t first = line.find('|');
-    const std::size_t second = line.find('|', first + 1);
-    if (second == std::string_view::npos) {
-      continue;
-    }
-    Words& words = all[trimmed(line.substr(0, first))];
-    const std::string otherwise = trimmed(line.substr(first + 1, second - first - 1));
-    words.otherwise = otherwise.empty() ? words.otherwise : otherwise;
-    words.meaning += (words.meaning.empty() ? "" : "; ") + trimmed(line.substr(second + 1));
-  }
-}
-
-std::map<std::string, Words> read_words() {
-  std::map<std::string, Words> all;
-  add_words(all, key_words());
-  return all;
-}
-
-/// The words of a protocol's key; null: none.
-Words* words_of(std::map<std::string, Words>& all, const std::string& protocol,
-                const std::string& path) {
-  const auto own = all.find(protocol + ":" + path);
-  const auto any = own != all.end() ? own : all.find(path);
-  return any != all.end() ? &any->second : nullptr;
-}
-
 /// The keys of each protocol, and first those that all of them have alike.
-std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
+std::vector<KeySection> sections_of_all() {
   std::vector<KeySection> sections(1);
   std::vector<std::vector<KnownKey>> keys;
   for (const Study* study : studies()) {
     keys.push_back(keys_of(*study));
   }
-  const auto listed = [&](const std::string& protocol, const KnownKey& key) {
-    Words* own = words_of(words, protocol, key.path());
-    if (own != nullptr) {
-      own->used = true;
-    }
-    if (!key.words.empty()) {
-      return ListedKey{key, key.words, key.otherwise};
-    }
-    return ListedKey{key, own != nullptr ? own->meaning : "",
-                     !key.otherwise.empty() || own == nullptr ? key.otherwise : own->otherwise};
-  };
   for (std::size_t i = 0; i < keys.size(); ++i) {
     sections.push_back({std::string(studies()[i]->protocol().name()), {}});
     for (const KnownKey& key : keys[i]) {
@@ -215,9 +159,9 @@ std::vector<KeySection> sections_of_all(std::map<std::string, Words>& words) {
                            [&](const KnownKey& other) { return same(key, other); });
       });
       if (!common) {
-        sections.back().keys.push_back(listed(std::string(studies()[i]->protocol().name()), key));
+        sections.back().keys.push_back(key);
       } else if (i == 0) {
-        sections.front().keys.push_back(listed("", key));
+        sections.front().keys.push_back(key);
       }
     }
   }
@@ -250,8 +194,7 @@ std::vector<KnownKey> keys_of(const Study& study) {
 }
 
 std::vector<KeySection> key_sections(const std::string& protocol) {
-  std::map<std::string, Words> words = read_words();
-  std::vector<KeySection> sections = sections_of_all(words);
+  std::vector<KeySection> sections = sections_of_all();
   std::erase_if(sections, [&](const KeySection& section) {
     return !protocol.empty() && !section.protocol.empty() && section.protocol != protocol;
   });
@@ -267,8 +210,8 @@ std::vector<KeySection> sections_with(const std::string& word) {
   const std::string wanted = lower_case(word);
   std::vector<KeySection> sections = key_sections("");
   for (KeySection& section : sections) {
-    std::erase_if(section.keys, [&](const ListedKey& listed) {
-      const std::string all = listed.key.path() + " " + listed.words;
+    std::erase_if(section.keys, [&](const KnownKey& key) {
+      const std::string all = key.path() + " " + key.words;
       return lower_case(all).find(wanted) == std::string::npos;
     });
   }
@@ -282,30 +225,16 @@ std::vector<KeySection> sections_with(const std::string& word) {
   return sections;
 }
 
-std::vector<std::string> mistakes_of_key_words() {
-  std::map<std::string, Words> words = read_words();
+std::vector<std::string> keys_without_words() {
   std::vector<std::string> mistakes;
-  for (const KeySection& section : sections_of_all(words)) {
-    for (const ListedKey& listed : section.keys) {
-      const Words* own = words_of(words, section.protocol, listed.key.path());
-      if (own == nullptr && listed.words.empty()) {
-        mistakes.push_back(fmt::format("{}:{} has no words", section.protocol, listed.key.path()));
-      } else if (own != nullptr && !listed.key.words.empty()) {
-        mistakes.push_back(fmt::format("{} has words in a schema already", listed.key.path()));
-      } else if (own != nullptr && !own->otherwise.empty() && !listed.key.otherwise.empty()) {
-        mistakes.push_back(
-            fmt::format("{} states a default, and so does the program", listed.key.path()));
-      } else if (listed.key.optional && listed.otherwise.empty()) {
-        mistakes.push_back(
-            fmt::format("{} may be left out, and nothing says what then", listed.key.path()));
-      } else if (own != nullptr && !listed.key.optional && !own->otherwise.empty()) {
-        mistakes.push_back(fmt::format("{} states a default, and is needed", listed.key.path()));
+  for (const KeySection& section : sections_of_all()) {
+    for (const KnownKey& key : section.keys) {
+      if (key.words.empty()) {
+        mistakes.push_back(fmt::format("{}:{} has no description", section.protocol, key.path()));
+      } else if (key.optional && key.otherwise.empty()) {
+        mistakes.push_back(fmt::format("{}:{} may be left out, and nothing says what then",
+                                       section.protocol, key.path()));
       }
-    }
-  }
-  for (const auto& [path, own] : words) {
-    if (!own.used) {
-      mistakes.push_back(fmt::format("{} is no key", path));
     }
   }
   return mistakes;

@@ -18,17 +18,10 @@ std::vector<KnownKey> keys_of(const Study& study);
 /// Tables that take the keys of another one, which alone are listed: "responses[]", "response".
 const std::map<std::string, std::string>& shared_tables();
 
-/// A key and whose it is.
-struct ListedKey {
-  KnownKey key;
-  std::string words;      // one line of what it is
-  std::string otherwise;  // what it is worth if it is left out: as the reader says, else in words
-};
-
 /// Keys that have one place on the page.
 struct KeySection {
   std::string protocol;  // empty: of every protocol
-  std::vector<ListedKey> keys;
+  std::vector<KnownKey> keys;
 };
 
 /// All keys of the program; those that every protocol has, with the same bounds and defaults, once.
@@ -46,8 +39,8 @@ std::string key_page(const std::vector<KeySection>& sections);
 /// of keys together are left to `haptrial validate`.
 std::string key_json_schema(const std::vector<KeySection>& sections, const std::string& protocol);
 
-/// Keys that have no line of words, and lines of words that no key has, with lines that state a
-/// default which the reader states itself: all of them mistakes of key_words.cpp.
-std::vector<std::string> mistakes_of_key_words();
+/// A sentence for each key without a description, or that may be left out without a word on what
+/// then holds: its reader has to say so.
+std::vector<std::string> keys_without_words();
 
 }  // namespace haptrial::experiments

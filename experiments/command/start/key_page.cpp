@@ -46,12 +46,11 @@ std::string bounds_of(const KnownKey& key) {
   return words;
 }
 
-std::string row_of(const ListedKey& listed) {
-  const KnownKey& key = listed.key;
-  const std::string otherwise = !listed.otherwise.empty() ? listed.otherwise
-                                : key.optional            ? "may be left out"
-                                                          : "needed";
-  std::string words = listed.words;
+std::string row_of(const KnownKey& key) {
+  const std::string otherwise = !key.otherwise.empty() ? key.otherwise
+                                : key.optional         ? "may be left out"
+                                                       : "needed";
+  std::string words = key.words;
   if (!key.when.empty()) {
     words += fmt::format("{}({})", words.empty() ? "" : " ", fmt::join(key.when, "; "));
   }
@@ -61,9 +60,9 @@ std::string row_of(const ListedKey& listed) {
 
 std::string section_of(const KeySection& section) {
   std::vector<std::string> tables;
-  for (const ListedKey& listed : section.keys) {
-    if (std::find(tables.begin(), tables.end(), listed.key.table) == tables.end()) {
-      tables.push_back(listed.key.table);
+  for (const KnownKey& key : section.keys) {
+    if (std::find(tables.begin(), tables.end(), key.table) == tables.end()) {
+      tables.push_back(key.table);
     }
   }
   std::sort(tables.begin(), tables.end());
@@ -75,8 +74,8 @@ std::string section_of(const KeySection& section) {
         "\n### {}\n\n| key | type | unit | if left out | allowed | what it is |\n"
         "| --- | --- | --- | --- | --- | --- |\n",
         table.empty() ? "outside of tables" : heading_of(table));
-    for (const ListedKey& listed : section.keys) {
-      text += listed.key.table == table ? row_of(listed) : "";
+    for (const KnownKey& key : section.keys) {
+      text += key.table == table ? row_of(key) : "";
     }
   }
   return text;
@@ -87,11 +86,10 @@ std::string section_of(const KeySection& section) {
 std::string found_keys(const std::vector<KeySection>& sections) {
   std::string text;
   for (const KeySection& section : sections) {
-    for (const ListedKey& listed : section.keys) {
-      const KnownKey& key = listed.key;
+    for (const KnownKey& key : section.keys) {
       text += fmt::format(
           "{}{}{}: {}; {}\n", section.protocol.empty() ? "" : section.protocol + ": ", key.path(),
-          key.unit.empty() ? "" : fmt::format(" [{}]", key.unit), listed.words, bounds_of(key));
+          key.unit.empty() ? "" : fmt::format(" [{}]", key.unit), key.words, bounds_of(key));
     }
   }
   return text;
