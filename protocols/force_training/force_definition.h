@@ -28,8 +28,8 @@ struct ForceDefinition : Definition {
   stimulus::ForcePatternParameters force_pattern;
   GuidanceParameters guidance;
   subject::Population<subject::SubjectParameters> population;
-  std::optional<subject::Population<subject::PaceParameters>> pace;   // if it is their own
-  std::optional<subject::Population<subject::PathParameters>> paths;  // if the test is free
+  std::optional<subject::Population<subject::PaceParameters>> pace;   // if it is not set
+  std::optional<subject::Population<subject::PathParameters>> paths;  // if the recall is free
   double stimulus_rate{1000.0};                                       // [Hz]
 
   /// Whether a condition of training has an expert.
