@@ -274,7 +274,11 @@ class Schema {
     for (const Key& key : keys_) {
       if (!key.applies || key.applies(into)) {
         const std::string& name = key.description.name;
-        key.read_from(name.empty() || own.has(name) ? own : shared, into);
+        const bool here = name.empty() || own.has(name);
+        if (here) {
+          shared.pass_over(name);
+        }
+        key.read_from(here ? own : shared, into);
       }
     }
   }

@@ -220,6 +220,8 @@ std::vector<Table> Table::tables(std::string_view key) {
   return tables;
 }
 
+void Table::pass_over(std::string_view key) { node_->read.emplace(key); }
+
 void Table::leave(std::string_view key) {
   node_->read.emplace(key);
   if (exploration() != nullptr) {

@@ -129,6 +129,8 @@ class Table {
   void name_entry(std::string_view name);
   /// A table of this one that another reader knows: its keys are not looked at here.
   void leave(std::string_view key);
+  /// A key that is known and has no effect, since another table states it, too.
+  void pass_over(std::string_view key);
   /// The keys of this table in the order of their names.
   std::vector<std::string> keys() const;
   /// The same in the order of the text.

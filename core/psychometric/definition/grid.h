@@ -17,7 +17,13 @@ struct TrackKeys {
   Table& procedure;
 
   bool has(std::string_view key) const { return track.has(key) || procedure.has(key); }
-  Table& of(std::string_view key) const { return track.has(key) ? track : procedure; }
+  Table& of(std::string_view key) const {
+    const bool here = track.has(key);
+    if (here) {
+      procedure.pass_over(key);
+    }
+    return here ? track : procedure;
+  }
 };
 
 /// Absence of a key that every track needs, in words for lists of keys.

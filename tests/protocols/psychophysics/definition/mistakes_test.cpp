@@ -39,6 +39,14 @@ TEST(TrialMistakesTest, UnknownVariable) {
       Contains(HasSubstr("no variable lvl")));
 }
 
+TEST(TrialMistakesTest, AStartIsComparedWithARangeThatIsOne) {
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "range = [310.0, 600.0]", "range = [610.0, 900.0]")),
+      ElementsAre(HasSubstr("start is 500; allowed: a number within the range, 610 to 900")));
+  EXPECT_THAT(problems_of_trials(with(kSmall, "range = [310.0, 600.0]", "range = [600.0, 310.0]")),
+              ElementsAre(HasSubstr("range is another list; allowed: [lowest, highest]")));
+}
+
 TEST(TrialMistakesTest, MistakesOfFormulas) {
   EXPECT_THAT(problems_of_trials(with(kSmall, "\"$stiffness\"", "\"$stiffness * (2\"")),
               Contains(HasSubstr("fields.floor.stiffness is \"$stiffness * (2\"")));
