@@ -50,6 +50,8 @@ constexpr std::array kSessionInGerman{
     GermanText{"Type your answer, then press Enter",
                "Geben Sie Ihre Antwort ein, dann die Eingabetaste"},
     GermanText{"Press Backspace to go back", "Zurück mit der Rücktaste"},
+    GermanText{"Noted: your last answer was a mistake",
+               "Vermerkt: Ihre letzte Antwort war ein Versehen"},
     GermanText{"Thank you\nThese were all questions for now.",
                "Vielen Dank\nDas waren vorerst alle Fragen."},
     GermanText{"Thank you\nThe session ends here.", "Vielen Dank\nDie Sitzung endet hier."},

@@ -106,6 +106,15 @@ class Driver:
         time.sleep(0.3)
         file.write_bytes(base64.b64decode(self.call("GET", "/screenshot")))
 
+    def drawn(self, canvas, opacity=0):
+        """Pixels of a canvas above this opacity, of 255; read from a copy, since Chromium complains
+        of a canvas that is read again and again."""
+        return self.run(
+            f"const c = document.getElementById('{canvas}'), d = document.createElement('canvas');"
+            "d.width = c.width; d.height = c.height; const g = d.getContext('2d');"
+            "g.drawImage(c, 0, 0); const p = g.getImageData(0, 0, d.width, d.height).data;"
+            f"let n = 0; for (let i = 3; i < p.length; i += 4) n += p[i] > {opacity}; return n")
+
     def complaints(self):
         """Errors in the browser's console: scripts that fail, things that the policy blocks."""
         log = self.call("POST", "/se/log", {"type": "browser"})

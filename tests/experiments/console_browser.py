@@ -43,10 +43,7 @@ def click_through(page, url, folder):
     assert page.text("what") == "visuohaptic \u00b7 training \u00b7 trial runs", page.text("what")
     forces = set()
     wait("a force that moves", lambda: forces.add(page.text("applied")) or len(forces) > 5)
-    drawn = "const c = document.getElementById('canvas'); const d = c.getContext('2d')" \
-            ".getImageData(0, 0, c.width, c.height).data; let n = 0; " \
-            "for (let i = 3; i < d.length; i += 4) n += d[i] > 128; return n"
-    wait("a plot", lambda: page.run(drawn) > 2000)
+    wait("a plot", lambda: page.drawn("canvas", 128) > 2000)
     for name in ("start", "clear"):
         assert page.run(f"return document.getElementById('{name}').disabled"), name
 

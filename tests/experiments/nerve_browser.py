@@ -13,15 +13,6 @@ from browser import Driver, wait
 CONTROL, ENTER = "\ue009", "\ue007"
 
 
-def drawn(page, channel):
-    """Pixels of a trace that are not empty."""
-    return page.run(
-        f"const c = document.getElementById('trace_{channel}');"
-        "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
-        "let n = 0; for (let i = 3; i < d.length; i += 4) n += d[i] > 0 ? 1 : 0; return n"
-    )
-
-
 def log(page):
     return page.run(
         "return [...document.getElementById('log').rows]"
@@ -41,7 +32,7 @@ def look(page, url, folder):
     assert page.text("heard") == "heard by the participant"
     names = page.run("return [...document.querySelectorAll('.name')].map((e) => e.textContent)")
     assert names == ["oculi", "oris", "drawn <b>"], names
-    wait("traces", lambda: all(drawn(page, channel) > 500 for channel in range(3)))
+    wait("traces", lambda: all(page.drawn(f"trace_{channel}") > 500 for channel in range(3)))
     wait("an event in the log", lambda: len(log(page)) >= 2)
     kinds = {row[2] for row in log(page)}
     assert kinds <= {"burst", "train", "artefact", "response"}, kinds

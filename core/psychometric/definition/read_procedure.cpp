@@ -25,6 +25,7 @@ void read_range(Table& table, const std::string& key, Track& track) {
   if (range.size() != 2 || !(range[0] < range[1])) {
     table.reject(key, "another list", "[lowest, highest]");
     track.high = 1.0;
+    track.range_known = false;
     return;
   }
   track.low = range[0];
@@ -51,7 +52,7 @@ double read_start(const TrackKeys& keys, const Track& track) {
   table.describe(
       {"start", "First level of a staircase or of PEST, within the range", kProceduresOwn, true});
   const double start = table.number("start", {}, track.unit);
-  if (start < track.low || start > track.high) {
+  if (track.range_known && (start < track.low || start > track.high)) {
     table.reject("start", fmt::format("{}", start),
                  fmt::format("a number within the range, {} to {}", track.low, track.high));
   }

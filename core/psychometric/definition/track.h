@@ -31,6 +31,7 @@ struct Track {
   std::vector<std::string> by;  // factors: each combination has a track of its own
   std::string counts;  // formula of what it learns; empty: whether the first answer was right
   double low{0.0}, high{0.0};           // the level is kept between them [unit]
+  bool range_known{true};               // else a mistake in the range is noted
   double resolution{0.0};               // the level is rounded to a multiple of it; 0: not [unit]
   std::vector<TrackDimension> further;  // of a level with several dimensions
   int most_trials{0};                   // of one track

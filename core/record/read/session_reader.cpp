@@ -163,8 +163,8 @@ struct SessionReader::Impl {
     return result;
   }
 
-  /// Whether each chunk has the rows that the table says: no row is all zeros, so that an older
-  /// copy of a chunk, which has fewer, shows.
+  /// Whether each chunk has the rows that the table says. An older copy of a chunk shows by the
+  /// zeros at its end; a chunk that was written has a row, even if that is all zeros.
   TableState state_of(const OpenTable& table) const {
     TableState state{table.name, table.rows, ""};
     BytePlanes planes(table.row_bytes, table.chunk_rows);
@@ -176,7 +176,7 @@ struct SessionReader::Impl {
         const std::vector<std::uint8_t> bytes = h5::read_chunk(table.dataset, row);
         if (!inflater.decompress(bytes, {planes.data(), planes.bytes().size()})) {
           state.fault = from + "are damaged";
-        } else if (planes.rows_in_use() < rows) {
+        } else if (std::max<std::size_t>(1, planes.rows_in_use()) < rows) {
           state.fault = from + "are missing";
         }
       } catch (const h5::Error&) {

@@ -33,8 +33,9 @@ bool RecoveredTable::take_if_ours(std::uint64_t offset, std::span<const std::uin
       continue;
     }
     const BytePlanes planes = planes_of(raw, schema.row_bytes());
-    const std::size_t rows = planes.rows_in_use();
     const bool older = version != table_->versions().front();
+    const bool own_size = !older && !each_tick();  // so that even zeros are a row of this table
+    const std::size_t rows = std::max<std::size_t>(own_size ? 1 : 0, planes.rows_in_use());
     if (older && !table_->fits(planes, rows, version)) {
       continue;  // another table's: sizes of older layouts are not unique
     }
@@ -43,7 +44,7 @@ bool RecoveredTable::take_if_ours(std::uint64_t offset, std::span<const std::uin
     }
     std::vector<std::uint8_t> packed = table_->packed(planes, rows, version);
     const std::size_t bytes = table_->schema().row_bytes();
-    if (each_tick() && !ticks_rise(packed)) {
+    if (each_tick() && !are_ticks(packed)) {
       continue;
     }
     const std::string first_row(reinterpret_cast<const char*>(packed.data()), bytes);
@@ -65,19 +66,22 @@ bool RecoveredTable::take_if_ours(std::uint64_t offset, std::span<const std::uin
   return false;
 }
 
-/// Whether the ticks of the rows rise; else they are rows of another table whose chunks may be as
-/// long.
-bool RecoveredTable::ticks_rise(const std::vector<std::uint8_t>& packed) const {
+/// Whether the rows are those of ticks, of which nearly all follow each other; else they are rows
+/// of another table whose chunks may be as long.
+bool RecoveredTable::are_ticks(const std::vector<std::uint8_t>& packed) const {
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;  // 30 years at 1 kHz
   const std::size_t bytes = table_->schema().row_bytes();
   std::int64_t last = -1;
+  std::size_t jumps = 0;
   for (std::size_t at = 0; at < packed.size(); at += bytes) {
     const std::int64_t tick = table_->integer(packed.data() + at, "sequence");
-    if (tick <= last) {
+    if (tick <= last || tick > kMost) {
       return false;
     }
+    jumps += at > 0 && tick != last + 1 ? 1 : 0;
     last = tick;
   }
-  return true;
+  return 4 * jumps <= packed.size() / bytes + 2;  // a short chunk may have one
 }
 
 void RecoveredTable::finish() {

@@ -56,7 +56,7 @@ class RecoveredTable {
     std::vector<std::uint8_t> packed{};  // but of a table with a row for each tick
   };
   bool each_tick() const { return table_->of() == RowsOf::kEachTick; }
-  bool ticks_rise(const std::vector<std::uint8_t>& packed) const;
+  bool are_ticks(const std::vector<std::uint8_t>& packed) const;
   void join();
 
   const TableDescription* table_;

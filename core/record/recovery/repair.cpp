@@ -287,6 +287,24 @@ std::optional<std::string> wrong_between_rows(const SessionReader& reader,
   return std::nullopt;
 }
 
+/// The tables without those of each tick that the structure of the file does not name: a chunk of
+/// another table may look like one of theirs, and then no tick would have all of its rows.
+TableList without_unknown(const SessionReader& reader, TableList tables) {
+  std::erase_if(tables, [&](const TableDescription* table) {
+    return table->of() == RowsOf::kEachTick && !reader.has(*table);
+  });
+  return tables;
+}
+
+/// The same; all tables if the structure cannot be read.
+TableList without_unknown(const fs::path& partial, const TableList& tables) {
+  try {
+    return without_unknown(SessionReader(partial), tables);
+  } catch (const InputError&) {
+    return tables;
+  }
+}
+
 }  // namespace
 
 std::optional<std::string> what_is_wrong(const fs::path& partial, const TableList& tables) {
@@ -296,7 +314,7 @@ std::optional<std::string> what_is_wrong(const fs::path& partial, const TableLis
     if (reader.version() != kSchemaVersion) {
       return fmt::format("it is of schema version {}", reader.version());
     }
-    const RecoveredRows rows = rows_in(partial, bytes, tables);
+    const RecoveredRows rows = rows_in(partial, bytes, without_unknown(reader, tables));
     for (const TableState& table : reader.tables()) {
       if (!table.fault.empty()) {
         return fmt::format("/{}: {}", table.name, table.fault);
@@ -316,7 +334,7 @@ std::optional<std::string> what_is_wrong(const fs::path& partial, const TableLis
 Repair repair_session(const fs::path& partial, const std::string& wrong, const TableList& tables,
                       const TableList& needed) {
   const std::vector<std::uint8_t> bytes = contents_of(partial);
-  const RecoveredRows rows = rows_in(partial, bytes, tables);
+  const RecoveredRows rows = rows_in(partial, bytes, without_unknown(partial, tables));
   const std::optional<SessionInfo> info = find_info(partial, rows);
   if (!info) {
     throw InputError(partial.string() + ": " + wrong +

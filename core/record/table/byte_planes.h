@@ -31,7 +31,8 @@ class BytePlanes {
   template <typename T>
   void get_column(std::size_t offset, std::size_t row, std::span<T> values) const;
 
-  /// How many rows there are without the zeros behind them. No row of any table is all zeros.
+  /// How many rows there are without the zeros behind them. Rows differ in their keys, so that only
+  /// the first one of a table may be all zeros: /field of a first pass without blood or heat.
   std::size_t rows_in_use() const;
 
   /// Zeroes the rows from `row` on, so that the padding of a chunk is always the same.

@@ -18,7 +18,7 @@ int keys(const KeysOptions& options) {
                       options.word.empty() ? "no word" : fmt::format("'{}'", options.word),
                       fmt::join(protocol_words(), ", ")));
     }
-    fmt::print("{}\n", key_json_schema(key_sections(protocol), protocol));
+    fmt::print("{}\n", key_json_schema(keys_of(*study), protocol));
     return 0;
   }
   const bool all = options.word.empty() || study != nullptr;

@@ -129,30 +129,23 @@ void add_key(Place& root, const KnownKey& key) {
 }
 
 /// "procedures[]" with the keys of "procedure"
-void add_shared(Place& root, const std::string& table, const std::string& keys) {
-  std::string pointer = "#/properties";
-  std::istringstream parts(keys);
-  for (std::string part; std::getline(parts, part, '.');) {
-    pointer += "/" + part;
-  }
-  const Json reference{{"$ref", pointer}};
+void add_shared(Place& root, const std::string& table, const std::string& own) {
+  const Json reference{{"$ref", "#/properties/" + own}};
   const bool array = table.ends_with("[]");
   place_at(root, table).values.push_back(array ? list_of(reference) : reference);
 }
 
 }  // namespace
 
-std::string key_json_schema(const std::vector<KeySection>& sections, const std::string& protocol) {
+std::string key_json_schema(const std::vector<KnownKey>& keys, std::string_view protocol) {
   Place root;
-  for (const KeySection& section : sections) {
-    for (const KnownKey& key : section.keys) {
-      add_key(root, key);
-    }
+  for (const KnownKey& key : keys) {
+    add_key(root, key);
   }
-  for (const auto& [table, keys] : shared_tables()) {
+  for (const auto& [table, own] : shared_tables()) {
     const bool within_another = table.find("[].") != std::string::npos;  // which refers already
-    if (root.members.contains(keys) && !within_another) {
-      add_shared(root, table, keys);
+    if (root.members.contains(own) && !within_another) {
+      add_shared(root, table, own);
     }
   }
   Json json{{"$schema", "http://json-schema.org/draft-07/schema#"},

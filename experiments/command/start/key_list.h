@@ -37,7 +37,7 @@ std::string found_keys(const std::vector<KeySection>& sections);
 std::string key_page(const std::vector<KeySection>& sections);
 /// A JSON Schema (draft 7) by which editors complete and check definitions of one protocol. Checks
 /// of keys together are left to `haptrial validate`.
-std::string key_json_schema(const std::vector<KeySection>& sections, const std::string& protocol);
+std::string key_json_schema(const std::vector<KnownKey>& keys, std::string_view protocol);
 
 /// A sentence for each key without a description, or that may be left out without a word on what
 /// then holds: its reader has to say so.

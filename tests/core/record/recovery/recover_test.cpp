@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/bone/record/second_hand_row.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
@@ -293,6 +294,31 @@ TEST(RecoverTest, TablesOfEachTickAreToldByTheirTicks) {
     ASSERT_EQ(long_rows[tick].sequence, tick);
     ASSERT_EQ(long_rows[tick].b, longs[tick].b);
   }
+}
+
+// A chunk of /timing is as long as 512 rows of /tool_contact. Bins of very late ticks are read as
+// tick numbers that rise.
+TEST(RecoverTest, HistogramsOfLateTicksAreNoTicks) {
+  const TableList own{&table_of<ToolContactRow>()};
+  SessionInfo info = test::example_info();
+  info.clock = "real";
+  const TemporaryFolder folder;
+  std::vector<TimingRow> bins;
+  for (std::int64_t i = 0; i < 256 + 6; ++i) {
+    const std::int64_t low = i < 256 ? i : 65536 * (i - 255);
+    bins.push_back({low, i < 256 ? low + 1 : low + 65536, 1, 0, 0});
+  }
+  SessionWriter writer(folder / "a.h5", info);
+  writer.append(test::hand_motion(4000, 5));
+  writer.set_timing(bins, {4000, 0, 0});
+  writer.close();
+  std::string damaged = file_text(folder / "a.h5");
+  damaged.replace(0, 512, 512, '\0');
+  std::ofstream(folder / "damaged.h5", std::ios::binary) << damaged;
+  ASSERT_TRUE(recover_session(folder / "damaged.h5", folder / "out.h5", own).anything());
+  const SessionReader reader(folder / "out.h5");
+  EXPECT_EQ(reader.rows<ToolContactRow>().size(), 0u);
+  EXPECT_EQ(reader.timing().size(), bins.size());
 }
 
 TEST(RecoverTest, NothingIsWrittenWhereNothingIsLeftAndNothingIsOverwritten) {

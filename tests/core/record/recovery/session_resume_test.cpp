@@ -8,9 +8,12 @@
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/bone/record/field_row.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/recovery/recover.h"
+#include "core/record/rows/common_tables.h"
 #include "core/record/rows/response.h"
 #include "core/record/table/schema.h"
 #include "tests/core/record/session_fixture.h"
@@ -209,6 +212,29 @@ TEST(SessionResumeTest, AnswersOfAPassThatLeftNoSamplesAreDropped) {
   }
   EXPECT_GE(found.responses.size(), 1u);
   EXPECT_TRUE(fs::exists(folder / "a.h5.partial.damaged"));
+}
+
+// What the first pass of a drilling without blood and heat leaves in /field.
+TEST(SessionResumeTest, AFirstRowOfZerosIsARow) {
+  const TemporaryFolder folder;
+  const TableList tables = with_tables({&table_of<FieldRow>()}, common_tables());
+  {
+    SessionWriter writer(folder / "a.h5", live_info(), tables);
+    writer.append(ticks(0, 4300));
+    writer.add_pass(pass_row(0));
+    writer.add(std::span<const FieldRow>(std::vector<FieldRow>(1)));
+  }
+  const std::string damaged = "cut\n" + file_text(folder / "a.h5.partial").substr(512);
+  Resumed found;
+  SessionWriter::resume(folder / "a.h5", found, tables).close();
+  EXPECT_EQ(found.repaired, "");
+  EXPECT_EQ(found.rows, 4300u);
+  EXPECT_THAT(found.passes, testing::SizeIs(1));
+  EXPECT_THAT(SessionReader(folder / "a.h5").rows<FieldRow>(), testing::SizeIs(1));
+
+  std::ofstream(folder / "damaged.h5", std::ios::binary) << damaged;
+  ASSERT_TRUE(recover_session(folder / "damaged.h5", folder / "out.h5", tables).anything());
+  EXPECT_THAT(SessionReader(folder / "out.h5").rows<FieldRow>(), testing::SizeIs(1));
 }
 
 TEST(SessionResumeTest, ASessionWhoseLoopHadEndedNeedsOnlyToBeClosed) {
