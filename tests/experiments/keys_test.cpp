@@ -138,7 +138,7 @@ TEST(KeysTest, EveryKeyOfTheShippedDefinitionsIsListed) {
   EXPECT_GT(checked, 500);
 }
 
-/// What Debian's python3-jsonschema says of a definition; empty: it keeps the schema.
+/// Errors that Debian's python3-jsonschema finds in a definition; empty: it keeps the schema.
 std::string schema_errors(const test::TemporaryFolder& folder, const std::string& definition) {
   const std::string protocol =
       toml::parse(definition)["experiment"]["protocol"].value_or(std::string("force_training"));

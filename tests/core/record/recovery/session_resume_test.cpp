@@ -214,7 +214,7 @@ TEST(SessionResumeTest, AnswersOfAPassThatLeftNoSamplesAreDropped) {
   EXPECT_TRUE(fs::exists(folder / "a.h5.partial.damaged"));
 }
 
-// What the first pass of a drilling without blood and heat leaves in /field.
+// The first pass of a drilling without blood and heat leaves such a row in /field.
 TEST(SessionResumeTest, AFirstRowOfZerosIsARow) {
   const TemporaryFolder folder;
   const TableList tables = with_tables({&table_of<FieldRow>()}, common_tables());
