@@ -38,7 +38,7 @@ struct KeyDescription {
 
   /// Whether its value is to be read; an optional key may be absent.
   bool stands_in(const Table& table) const;
-  /// Likewise for a key with a default, which lists of keys show.
+  /// Whether a key with a default is to be read; lists of keys show the default.
   bool stands_in(const Table& table, double usual) const;
   bool stands_in(const Table& table, std::string_view usual) const;
 };

@@ -296,7 +296,7 @@ TableList without_unknown(const SessionReader& reader, TableList tables) {
   return tables;
 }
 
-/// The same; all tables if the structure cannot be read.
+/// Reads the structure for this; without one that can be read, all tables stay.
 TableList without_unknown(const fs::path& partial, const TableList& tables) {
   try {
     return without_unknown(SessionReader(partial), tables);

@@ -3,10 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <sstream>
 
 #include "experiments/command/start/key_list.h"
@@ -32,7 +30,6 @@ Json list_of(Json entry) { return {{"type", "array"}, {"items", std::move(entry)
 /// Texts stand for numbers also within lists.
 Json schema_of(const KeyForm& form, bool or_text) {
   const Json text{{"type", "string"}, {"minLength", 1}};
-  const Json truth{{"type", "boolean"}};
   if (form.type == "number") {
     return number("number", form.bounds);
   }
@@ -40,7 +37,7 @@ Json schema_of(const KeyForm& form, bool or_text) {
     return number("integer", form.bounds);
   }
   if (form.type == "true or false") {
-    return truth;
+    return {{"type", "boolean"}};
   }
   if (form.type == "text") {
     return text;
@@ -118,8 +115,7 @@ Json alternatives(const Place& place) {
 }
 
 void add_key(Place& root, const KnownKey& key) {
-  const std::string dot = key.table.empty() ? "" : ".";
-  Place& place = place_at(root, key.table + dot + key.key);
+  Place& place = place_at(root, key.path());
   const bool or_text = std::any_of(key.forms.begin(), key.forms.end(),
                                    [](const KeyForm& form) { return form.type == "text"; });
   for (const KeyForm& form : key.forms) {
