@@ -50,7 +50,8 @@ target_sources(bench_servo PRIVATE ${CMAKE_SOURCE_DIR}/tests/experiments/timed_s
                                    ${CMAKE_SOURCE_DIR}/tests/experiments/shipped.cpp
                                    ${CMAKE_SOURCE_DIR}/tests/support/temporary_folder.cpp)
 target_sources(bench_procedure_coverage
-               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/procedure_study.cpp
+               PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/coverage_grid.cpp
+                       ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/procedure_study.cpp
                        ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/fit/surface_counts.cpp)
 target_link_libraries(bench_procedure_coverage PRIVATE haptrial_psychometric_fit PkgConfig::gsl)
 target_sources(bench_null_reports PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/force_training/study/null_reports.cpp)
