@@ -107,8 +107,9 @@ std::vector<QuestionCell> cells_of(const PowerPlan& plan) {
 /// Throws InputError where a cell cannot be simulated.
 void check_cell(const PowerQuestion& question, const QuestionCell& cell) {
   const std::vector<NamedText> parts = question.parts_of(cell);
-  static_cast<void>(parse_experiment(parts));
-  const auto study_simulation = question.study->study_simulation(parts, question.plan.watch);
+  const Experiment experiment = parse_experiment(parts);
+  const auto study_simulation = question.study->study_simulation(
+      *experiment.definition, parts.back().file_name, question.plan.watch);
   if (!study_simulation->people_differ()) {
     throw InputError(fmt::format(
         "{}: virtual participants do not differ from each other, so a test over participants says "
@@ -209,7 +210,7 @@ PowerQuestion parse_question(const std::vector<NamedText>& parts, const fs::path
   question.file_name = parts.back().file_name;
   question.folder = folder;
   const Experiment experiment = parse_experiment(parts);
-  Table root = Table::parse(parts);
+  Table root = experiment.definition->root();
   question.plan = read_power_plan(root);
   question.study = experiment.study;
   question.title = experiment.definition->name;

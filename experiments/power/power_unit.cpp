@@ -40,28 +40,32 @@ class SessionsFolder {
 
 /// A cell's definition, and what simulates it.
 struct ReadyCell {
-  Experiment experiment;
+  std::unique_ptr<protocols::Definition> definition;
   std::unique_ptr<StudySimulation> study_simulation;
 };
 
 ReadyCell ready(const PowerQuestion& question, const PowerUnit& unit) {
   const std::vector<NamedText> parts = question.parts_of(question.cells[unit.cell]);
   ReadyCell cell;
-  cell.study_simulation = question.study->study_simulation(parts, question.plan.watch);
+  const protocols::Protocol& protocol = question.study->protocol();
+  Table root = Table::parse(parts);
+  cell.definition = protocol.read(root, parts.front().file_name, nullptr);
+  root.check();
+  cell.study_simulation = question.study->study_simulation(*cell.definition, parts.back().file_name,
+                                                           question.plan.watch);
   if (unit.sessions) {
-    cell.experiment = parse_experiment(parts);
-    question.study->protocol().load(*cell.experiment.definition, question.folder);
+    protocol.load(*cell.definition, question.folder);
   }
   return cell;
 }
 
-SimulatedStudy in_full(const ReadyCell& cell, std::uint64_t seed) {
+SimulatedStudy in_full(const PowerQuestion& question, const ReadyCell& cell, std::uint64_t seed) {
   const SessionsFolder folder;
   DryRun dry;
-  dry.participants = cell.experiment.definition->design.participants;
+  dry.participants = cell.definition->design.participants;
   dry.seed = seed;
   dry.folder = folder.sessions();
-  run_dry(cell.experiment.study->protocol(), *cell.experiment.definition, dry);
+  run_dry(question.study->protocol(), *cell.definition, dry);
   return cell.study_simulation->sessions(session_files(dry.folder));
 }
 
@@ -99,7 +103,8 @@ std::vector<SimulatedStudy> simulated(const PowerQuestion& question, const Power
     }
     const std::uint64_t own = derived_seed(seed, fmt::format("replication {}", i));
     try {
-      all.push_back(unit.sessions ? in_full(cell, own) : cell.study_simulation->responses(own));
+      all.push_back(unit.sessions ? in_full(question, cell, own)
+                                  : cell.study_simulation->responses(own));
     } catch (const InputError& error) {
       all.emplace_back().failures.push_back(error.what());
     } catch (const RunError& error) {

@@ -75,6 +75,27 @@ void ServoThread::end() {
   throw DeviceHangs();
 }
 
+SessionServo::SessionServo(realtime::ServoLoop& loop, const protocols::SessionTask::Parts& parts,
+                           bool real, const protocols::Origin& origin)
+    : task(parts,
+           real ? protocols::SessionTask::Leave::kNever
+                : protocols::SessionTask::Leave::kAfterPassOrSlice,
+           origin),
+      thread(loop, task, longest_fade(parts.devices.front().limits)),
+      stop(task, thread, *parts.devices.front().device),
+      arms_(parts.devices) {
+  if (real) {
+    watched.emplace(stop);
+  }
+}
+
+void SessionServo::end() {
+  thread.end();
+  for (const protocols::DeviceSet::Arm& arm : arms_) {
+    arm.device->write(Eigen::Vector3d::Zero());
+  }
+}
+
 double longest_fade(const device::EnvelopeLimits& limits) {
   return limits.ramp_out + limits.max_force / limits.max_force_rate;
 }

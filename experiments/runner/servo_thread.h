@@ -5,7 +5,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <thread>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/realtime/servo_loop.h"
@@ -83,6 +85,26 @@ class SessionStop final : public FatalStopHandler {
   protocols::SessionTask& task_;
   const ServoThread& servo_;
   device::Device& device_;
+};
+
+/// The servo side of a session: its task, the thread that runs it and the stop that takes its force
+/// away, in the order in which they may go.
+struct SessionServo {
+  /// @param parts  outlive this, as the loop does
+  SessionServo(realtime::ServoLoop& loop, const protocols::SessionTask::Parts& parts, bool real,
+               const protocols::Origin& origin);
+  /// Ends the thread once the force has faded, or a fault has cut it, and leaves none to any
+  /// device.
+  /// @throws DeviceHangs
+  void end();
+
+  protocols::SessionTask task;
+  ServoThread thread;  // on a real clock
+  SessionStop stop;
+  std::optional<WatchedStop> watched;  // likewise
+
+ private:
+  std::vector<protocols::DeviceSet::Arm> arms_;
 };
 
 /// How long a force takes to go at most. [s]

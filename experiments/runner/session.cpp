@@ -18,12 +18,11 @@
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/next_trial.h"
-#include "experiments/runner/reported_mistakes.h"
+#include "experiments/runner/participant_input.h"
 #include "experiments/runner/servo_thread.h"
 #include "experiments/runner/session_notices.h"
 #include "experiments/runner/session_opening.h"
 #include "experiments/runner/session_pages.h"
-#include "experiments/runner/session_pedal.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/screen/screen_mirror.h"
 #include "protocols/definition/handle_loop.h"
@@ -40,12 +39,27 @@ using protocols::PlannedTrial;
 using protocols::TrialEnd;
 using realtime::ClockKind;
 
+/// How long trials take: those to come as long, in the mean, as those of this run.
+class TimedTrials {
+ public:
+  void add(double seconds) {
+    sum_ += seconds;
+    ++count_;
+  }
+  /// Of at least one. [s]
+  double mean() const { return sum_ / count_; }
+
+ private:
+  double sum_{0.0};
+  int count_{0};
+};
+
 class Session {
  public:
   explicit Session(const SessionRequest& request);
   ~Session();
   SessionSummary run();
-  bool hangs() const { return servo_.hangs(); }
+  bool hangs() const { return servo_.thread.hangs(); }
 
  private:
   std::vector<stimulus::Observer*> observers();
@@ -67,7 +81,6 @@ class Session {
 
   void finish();
   void give_up() noexcept;
-  void end_servo();
 
   const SessionRequest& request_;
   const protocols::Definition& d_;
@@ -75,36 +88,27 @@ class Session {
   std::unique_ptr<Progress> progress_;  // of what takes seconds
   SessionSummary summary_;
   std::vector<record::ResponseRow> responses_;  // of the present attempt
-  double trial_seconds_{0.0};                   // all trials that were timed
-  int trials_timed_{0};
+  TimedTrials timed_;
   bool left_{false};  // trials that an abort kept from being presented to their end
   realtime::ServoLoop loop_;
   markers::OnsetLog onsets_;  // before the screen and the record, whose threads look at it
-  // This member stands before the task: the servo thread may be using its pass when an error leaves
-  // a function.
+  // The trials stand before the servo: its thread may be using a pass when an error leaves a
+  // function.
   protocols::SessionPlace place_;
   std::unique_ptr<protocols::Trials> trials_;
   std::unique_ptr<protocols::Rig> rig_;
-  SessionPedal pedal_;
-  InputLosses pad_losses_{"gamepad", "game controller", "is at rest"};
-  std::atomic<std::uint32_t> held_keys_{0};  // functions, from the screen's thread
-  std::atomic<bool> begin_pressed_{false};   // likewise, without an experimenter
-  PageKeys page_keys_;                       // likewise
-  ReportedMistakes mistakes_;                // likewise
+  ParticipantInput input_;  // before the screen, whose thread writes to it
   std::unique_ptr<Screen> screen_;
   std::optional<ScreenMirror> mirror_;  // of a screen
   std::unique_ptr<record::LiveFigures> live_;
   SessionRecord record_;  // opened when everything else is there
   SessionController controller_;
-  protocols::SessionTask task_;
+  SessionServo servo_;
   LoopPacing pacing_;
   SessionPages pages_;
   NextTrial next_;
   SessionNotices notices_;
   AbortedPass aborted_;
-  ServoThread servo_;  // on a real clock
-  SessionStop stop_;
-  std::optional<WatchedStop> watched_;  // on a real clock
 };
 
 std::unique_ptr<protocols::Trials> trials_of(const SessionRequest& request,
@@ -140,7 +144,7 @@ protocols::SessionPlace Session::place() {
     pacing_.show_progress(share);
     progress_->update(share, "", 0.0);
   };
-  place.stop = [this] { task_.emergency_stop(); };
+  place.stop = [this] { servo_.task.emergency_stop(); };
   return place;
 }
 
@@ -152,31 +156,29 @@ Session::Session(const SessionRequest& request)
       place_(place()),
       trials_(trials_of(request, place_)),
       rig_(make_rig(choices_of(request), d_, [this] { return trials_->virtual_rig(); })),
-      pedal_(choices_of(request).front(), d_, real_),
-      mistakes_([this](const std::string& trial) {
-        record_.event("participant_error", trial);
-        notices_.note(
-            fmt::format("the participant says that the answer of {} is a mistake", trial));
-      }),
-      screen_(open_screen(request, *rig_, &held_keys_, &begin_pressed_, &page_keys_,
-                          [this] { mistakes_.press(loop_.elapsed_ns()); })),
+      input_(choices_of(request).front(), d_, real_,
+             [this](const std::string& trial) {
+               record_.event("participant_error", trial);
+               notices_.note(
+                   fmt::format("the participant says that the answer of {} is a mistake", trial));
+             }),
+      screen_(open_screen(request, *rig_, input_, [this] { return loop_.elapsed_ns(); })),
       live_(open_live(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
       controller_(request.control, controller_actions()),
-      task_({.devices = rig_->arms(d_.envelope),
-             .loop = protocols::handle_loop(d_),
-             .log = record_.log(),
-             .device_log = &record_.device_log(),
-             .tick_log = trials_->tick_log(),
-             .observers = observers(),
-             .keys = &held_keys_,
-             .pedal = pedal_.pedal(),
-             .onsets = d_.markers.used ? &onsets_ : nullptr},
-            real_ ? protocols::SessionTask::Leave::kNever
-                  : protocols::SessionTask::Leave::kAfterPassOrSlice,
-            record_.origin()),
-      pacing_({request, loop_, record_, controller_, task_, rig_->felt(), screen_.get(),
-               &begin_pressed_, live_.get(),
+      servo_(loop_,
+             {.devices = rig_->arms(d_.envelope),
+              .loop = protocols::handle_loop(d_),
+              .log = record_.log(),
+              .device_log = &record_.device_log(),
+              .tick_log = trials_->tick_log(),
+              .observers = observers(),
+              .keys = &input_.held_keys,
+              .pedal = input_.pedal.pedal(),
+              .onsets = d_.markers.used ? &onsets_ : nullptr},
+             real_, record_.origin()),
+      pacing_({request, loop_, record_, controller_, servo_.task, rig_->felt(), screen_.get(),
+               &input_.begin_pressed, live_.get(),
                [this] {
                  hear_inputs();
                  note_warnings();
@@ -186,13 +188,11 @@ Session::Session(const SessionRequest& request)
                  }
                },
                rig_.get()}),
-      pages_(
-          {request, record_, controller_, pacing_, page_keys_, screen_.get(), place_.session_seed}),
+      pages_({request, record_, controller_, pacing_, input_.page_keys, screen_.get(),
+              place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
       notices_({request, loop_, record_, controller_, summary_}),
-      aborted_({d_, *trials_, record_, controller_, pacing_, notices_, real_}),
-      servo_(loop_, task_, longest_fade(d_.envelope)),
-      stop_(task_, servo_, rig_->device()) {
+      aborted_({d_, *trials_, record_, controller_, pacing_, notices_, real_}) {
   SessionStatus& status = controller_.status();
   status.subject = request.subject;
   status.device = request.device.name;
@@ -202,12 +202,9 @@ Session::Session(const SessionRequest& request)
   status.rate = d_.rate;
   status.force_limit = std::min(d_.envelope.max_force, rig_->device().info().max_force);
   status.has_target = d_.has_target();
-  if (real_) {
-    watched_.emplace(stop_);
-  }
   watch_flashes();
   if (request.control != nullptr) {
-    request.control->on_emergency([this] { task_.emergency_stop(); });
+    request.control->on_emergency([this] { servo_.task.emergency_stop(); });
     if (screen_) {
       mirror_.emplace(*screen_);
       request.control->on_mirror([this] { return mirror_->picture(); });
@@ -230,17 +227,12 @@ void Session::watch_flashes() {
 }
 
 void Session::hear_inputs() {
-  std::vector<InputNews> all = pedal_.take_news();
-  if (device::Gamepad* pad = rig_->gamepad()) {
-    const std::vector<InputNews> more = pad_losses_.take(pad->input(), pad->take_changes());
-    all.insert(all.end(), more.begin(), more.end());
-  }
-  for (const InputNews& news : all) {
+  for (const InputNews& news : input_.take_news(rig_->gamepad())) {
     record_.event(news.event, news.text);
     notices_.note(news.notice);
   }
   if (!record_.in_pass()) {  // else its end shows whether it was answered before
-    mistakes_.see_to(record_.pass());
+    input_.mistakes.see_to(record_.pass());
   }
 }
 
@@ -251,7 +243,7 @@ void Session::note_warnings() {
 }
 
 Session::~Session() {
-  watched_.reset();
+  servo_.watched.reset();
   if (request_.control != nullptr) {
     request_.control->on_emergency(nullptr);
     request_.control->on_mirror(nullptr);
@@ -259,7 +251,7 @@ Session::~Session() {
 }
 
 SessionController::Actions Session::controller_actions() {
-  return {[this] { task_.break_off(); }, [this] { task_.clear_fault(); },
+  return {[this] { servo_.task.break_off(); }, [this] { servo_.task.clear_fault(); },
           [this](const std::string& kind, const std::string& text) { record_.event(kind, text); },
           request_.link ? [this](bool take) { trials_->take_lead(take); }
                         : std::function<void(bool)>()};
@@ -285,14 +277,14 @@ SessionSummary Session::run() {
     record_.set_planned(extent.trials);
     record_.open(planned_of(extent, trials_->extent(0).trials));
     if (real_) {
-      servo_.start();
+      servo_.thread.start();
     }
     notices_.note(record_.notice());
     if (screen_) {
       notices_.note(screen_->summary().notice);
     }
     notices_.note(record_.markers().notice());
-    notices_.note(pedal_.notice());
+    notices_.note(input_.pedal.notice());
     for (const std::string& notice : trials_->notices()) {
       notices_.note(notice);
     }
@@ -417,14 +409,12 @@ Outcome Session::present(const PlannedTrial& trial) {
   return outcome;
 }
 
-/// About: trials to come take as long as those of this run did, and breaks their time.
 void Session::note_time_left(double trial_seconds) {
-  trial_seconds_ += trial_seconds;
-  ++trials_timed_;
+  timed_.add(trial_seconds);
   SessionStatus& status = controller_.status();
   const int trials = std::max(0, status.trials - status.trial);
   const int breaks = d_.design.break_after > 0 ? trials / d_.design.break_after : 0;
-  status.left = trials * trial_seconds_ / trials_timed_ + breaks * d_.design.break_duration;
+  status.left = trials * timed_.mean() + breaks * d_.design.break_duration;
 }
 
 /// Whether a break follows, after every `break_after` trials.
@@ -461,11 +451,11 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   PlannedTrial row = trial;
   protocols::Pass& pass = trials_->make_pass(row, phase);
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
-  task_.start(pass, number);
+  servo_.task.start(pass, number);
   ++summary_.passes;
   pacing_.drive_until_idle();
   notices_.note_overruns(pacing_.watch());
-  const protocols::PassResult& result = task_.result();
+  const protocols::PassResult& result = servo_.task.result();
   const bool aborted = result.state == protocols::PassState::kAborted;
   trials_->close_pass(record_, number);
   keep_responses();
@@ -487,7 +477,7 @@ void Session::keep_responses() {
   if (!rows.empty()) {
     answered = record_.time_of(rows.front().sequence) - record_.session_time(0);
   }
-  mistakes_.close_pass(record_.pass(), answered);
+  input_.mistakes.close_pass(record_.pass(), answered);
   if (!rows.empty()) {
     responses_.insert(responses_.end(), rows.begin(), rows.end());
     record_.keep_responses(std::move(rows));
@@ -495,14 +485,13 @@ void Session::keep_responses() {
 }
 
 void Session::finish() {
-  end_servo();
+  servo_.end();
   if (screen_) {
     record_.keep_frames(screen_->take_frames());
   }
   hear_inputs();
-  notices_.note(pedal_.losses());
-  if (device::Gamepad* pad = rig_->gamepad()) {
-    notices_.note(pad_losses_.sentence(pad->input()));
+  for (const std::string& lost : input_.losses(rig_->gamepad())) {
+    notices_.note(lost);
   }
   notices_.note_troubles(live_.get(), screen_.get());
   for (const std::string& notice : trials_->notices()) {  // what came up meanwhile
@@ -537,24 +526,16 @@ void Session::finish() {
 
 void Session::give_up() noexcept {
   try {
-    task_.break_off();
-    end_servo();
+    servo_.task.break_off();
+    servo_.end();
   } catch (const std::exception&) {
     // The thread is left behind; what it recorded is kept all the same.
   }
   try {
-    record_.give_up(task_);
+    record_.give_up(servo_.task);
   } catch (const std::exception&) {
     // The error to report is the one that stopped the session; the writer keeps the rows that it
     // could.
-  }
-}
-
-/// The force fades when nothing is wrong with the device; a fault has cut it already.
-void Session::end_servo() {
-  servo_.end();
-  for (const protocols::DeviceSet::Arm& arm : rig_->arms(d_.envelope)) {
-    arm.device->write(Eigen::Vector3d::Zero());
   }
 }
 

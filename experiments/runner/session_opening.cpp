@@ -198,19 +198,18 @@ static SessionMark mark_of(const SessionRequest& request, protocols::Rig& rig) {
 }
 
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
-                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
-                                    PageKeys* pages, std::function<void()> mistake) {
+                                    ParticipantInput& input, std::function<std::int64_t()> now) {
   if (!request.window) {
     return nullptr;
   }
   // Both are called on the screen's thread.
   constexpr std::int64_t kNotedFor = 1'500'000'000;  // [ns]
   const auto noted_until = std::make_shared<std::int64_t>(0);
-  const auto says_mistake = [key = request.definition->screen.mistake_key, noted_until,
-                             mistake = std::move(mistake)](const render::KeyPress& press) {
+  const auto says_mistake = [key = request.definition->screen.mistake_key, noted_until, &input,
+                             now = std::move(now)](const render::KeyPress& press) {
     const bool says = key != 0 && press.key == key;
     if (says) {
-      mistake();
+      input.mistakes.press(now());
       *noted_until = screen_ns() + kNotedFor;
     }
     return says;
@@ -222,13 +221,13 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
   SessionControl* control = request.control;
   if (control != nullptr) {
     const bool steers = request.definition->screen.participant_steers;
-    callbacks.key = [control, steers, begin, pages, says_mistake,
+    callbacks.key = [control, steers, &input, says_mistake,
                      &request](const render::KeyPress& press) {
-      if (pages->take(press) || press.character != 0 || says_mistake(press)) {
+      if (input.page_keys.take(press) || press.character != 0 || says_mistake(press)) {
         return;
       }
       if (begins(press)) {  // heard in a break that the participant ends
-        begin->store(true);
+        input.begin_pressed = true;
       }
       const auto asked = request_of(press);
       const bool of_trial = request.definition->bits_of({press.key}) != 0;
@@ -241,14 +240,14 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
       control->ask(steers ? Request::kAbort : Request::kEmergencyStop, RequestSource::kWindow);
     };
   } else {  // nobody is there who could clear a stop or say that it goes on
-    callbacks.key = [begin, pages, says_mistake](const render::KeyPress& press) {
-      if (pages->take(press) || says_mistake(press)) {
+    callbacks.key = [&input, says_mistake](const render::KeyPress& press) {
+      if (input.page_keys.take(press) || says_mistake(press)) {
         return;
       }
       if (press.key == render::KeyPress::kEscape) {
         interrupt();
       } else if (begins(press)) {
-        begin->store(true);
+        input.begin_pressed = true;
       }
     };
     callbacks.closed = [] { interrupt(); };
@@ -266,8 +265,8 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
       mouse->move(pointer.x, pointer.z);
     };
   }
-  callbacks.held = [held, &request](const std::vector<int>& keys) {
-    held->store(request.definition->bits_of(keys), std::memory_order_relaxed);
+  callbacks.held = [&input, &request](const std::vector<int>& keys) {
+    input.held_keys.store(request.definition->bits_of(keys), std::memory_order_relaxed);
   };
   const protocols::Definition& setup = *request.definition;
   return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks),

@@ -13,7 +13,7 @@
 #include "core/record/recovery/session_resume.h"
 #include "core/record/rows/live_figures.h"
 #include "core/stream/lsl_outlet.h"
-#include "experiments/runner/page_keys.h"
+#include "experiments/runner/participant_input.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "protocols/interface/trials.h"
@@ -58,13 +58,10 @@ std::filesystem::path resumed_file(const SessionRequest& request);
 /// The participant's screen, where one was asked for; else null. Its Escape stops the session, its
 /// other keys steer it where the definition says so; its pointer moves the mouse device.
 /// @param rig  outlives the screen; only a mouse, or a game controller, takes the pointer
-/// @param held   receives the functions that keys of the window hold; outlives the screen
-/// @param begin  set by Enter and space where nobody attends; outlives the screen
-/// @param pages  take the keys while a page is open; outlive the screen
-/// @param mistake  called on the screen's thread when the key for mistakes is pressed
+/// @param input  receives what keys of the window say; outlives the screen
+/// @param now    ServoLoop::elapsed_ns(); called on the screen's thread
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
-                                    std::atomic<std::uint32_t>* held, std::atomic<bool>* begin,
-                                    PageKeys* pages, std::function<void()> mistake);
+                                    ParticipantInput& input, std::function<std::int64_t()> now);
 
 /// The streams, where they were asked for; null where they were not, and, with a sentence in
 /// `notice`, where they cannot be had and the session may do without them.

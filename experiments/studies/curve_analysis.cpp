@@ -5,6 +5,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "protocols/definition/definition.h"
 #include "protocols/force_training/training_pass.h"
 
 namespace haptrial::experiments {
@@ -40,6 +41,13 @@ std::vector<std::string> conditions_of(Table& root) {
   return design.has("conditions") ? design.texts("conditions") : std::vector<std::string>{};
 }
 
+/// @throws InputError with problems in it
+CurveAnalysis read_whole(Table root, bool fresh) {
+  CurveAnalysis found = read_curve_analysis(root, fresh);
+  root.check();
+  return found;
+}
+
 }  // namespace
 
 CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
@@ -52,18 +60,16 @@ CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
   return found;
 }
 
+CurveAnalysis curve_analysis_of(const protocols::Definition& definition) {
+  return read_whole(definition.root(), false);
+}
+
 CurveAnalysis parse_curve_analysis(std::string_view text, std::string_view file_name) {
-  Table root = Table::parse(text, file_name);
-  CurveAnalysis found = read_curve_analysis(root, false);
-  root.check();
-  return found;
+  return read_whole(Table::parse(text, file_name), false);
 }
 
 CurveAnalysis load_curve_analysis(const std::filesystem::path& file) {
-  Table root = Table::load(file);
-  CurveAnalysis found = read_curve_analysis(root, true);
-  root.check();
-  return found;
+  return read_whole(Table::load(file), true);
 }
 
 analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,

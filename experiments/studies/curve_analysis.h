@@ -12,6 +12,10 @@ namespace haptrial {
 class Table;
 }
 
+namespace haptrial::protocols {
+struct Definition;
+}
+
 namespace haptrial::experiments {
 
 /// Analysis of curves of force in a definition: its table [analysis].
@@ -22,6 +26,8 @@ struct CurveAnalysis {
 
 /// @param fresh  about to be used: a score that cannot depend on the forces is a problem
 CurveAnalysis read_curve_analysis(Table& root, bool fresh);
+/// The same of a definition that has been read. @throws InputError with problems in it
+CurveAnalysis curve_analysis_of(const protocols::Definition& definition);
 /// @throws InputError for a text without it, or with problems in it
 CurveAnalysis parse_curve_analysis(std::string_view text, std::string_view file_name);
 /// The same of a file; nothing but [analysis] is looked at.

@@ -20,13 +20,15 @@ std::vector<const Study*>& all() {
 
 }  // namespace
 
-std::unique_ptr<StudySimulation> Study::study_simulation(const std::vector<NamedText>& definition,
+std::unique_ptr<StudySimulation> Study::study_simulation(const protocols::Definition& definition,
+                                                         const std::string& asked_in,
                                                          const std::string& watched) const {
+  static_cast<void>(asked_in);
   static_cast<void>(watched);
   throw InputError(fmt::format(
       "{}: power by simulation does not know the report of protocol '{}'; see haptrial power t, "
       "anova and repeated",
-      definition.front().file_name, protocol().name()));
+      definition.file_name, protocol().name()));
 }
 
 const std::vector<const Study*>& studies() { return all(); }

@@ -66,11 +66,13 @@ class Study {
   /// Computes, and writes report, tables and figures. @returns lines for the terminal
   virtual std::vector<std::string> analyze(const AnalysisRequest& request) const = 0;
   /// The study's report for simulated participants, for the simulation of power.
-  /// @param definition  its text; [power] may stand in a part, and so a file, of its own
+  /// @param definition  outlives what comes back
+  /// @param asked_in    file with [power]
   /// @param watched     name of the test whose power is asked for
   /// @throws InputError by default: it cannot be had
-  virtual std::unique_ptr<StudySimulation> study_simulation(
-      const std::vector<NamedText>& definition, const std::string& watched) const;
+  virtual std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
+                                                            const std::string& asked_in,
+                                                            const std::string& watched) const;
   /// Command that goes on with the sessions of a dry run: "haptrial analyze DIR".
   virtual std::string next_step(const std::filesystem::path& folder) const {
     return "haptrial analyze " + folder.string();

@@ -73,6 +73,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
     lab_schema().read(lab, definition);
   }
   definition.text = root.source();
+  definition.document = std::make_shared<Table>(root.unread());
   definition.file_name = std::filesystem::path(file_name).filename().string();
   experiment_schema().read(experiment, definition);
   definition.envelope = device::envelope_schema().read(envelope);
@@ -100,6 +101,8 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
     definition.markers.used = true;
   }
 }
+
+Table Definition::root() const { return document->unread(); }
 
 void check_common(Table& root, const Definition& definition) {
   Table envelope = root.table("envelope");

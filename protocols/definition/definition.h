@@ -45,7 +45,8 @@ struct Definition {
   std::string protocol;   // its name, as in [experiment]
   std::string text;       // the file, unchanged, with its lab file's behind it (lab_file.h)
   std::string file_name;  // without folders
-  std::string lab;        // as [lab] names it; empty: none
+  std::shared_ptr<const Table> document;  // of the text, with the tables that it need not state
+  std::string lab;                        // as [lab] names it; empty: none
   std::string name;
   double rate{1000.0};  // of the servo loop [Hz]
   Design design;
@@ -69,6 +70,8 @@ struct Definition {
   markers::MarkerOptions markers{};
   TutoringOptions tutoring{};
 
+  /// The document, of which nothing has been read. Any thread.
+  Table root() const;
   /// How many sessions each participant comes to, on days of their own; at least 1.
   virtual int sessions() const { return 1; }
   /// How many devices a session drives, 1 to kMostDevices.

@@ -73,7 +73,7 @@ void warn_of_limit(const ForceDefinition& d, const char* key, double limit, Warn
 
 /// Devices that the definition has a table for.
 void warn_of_devices(const ForceDefinition& d, double reach, Warnings& warnings) {
-  Table root = Table::parse(d.text, d.file_name);
+  Table root = d.root();
   const auto check = [&](const std::string& table, double max_force, double workspace) {
     if (!root.has(table)) {
       return;

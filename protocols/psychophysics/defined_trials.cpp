@@ -71,7 +71,7 @@ std::vector<std::string> blocks_of(const TrialsDefinition& definition, const Ses
 DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place)
     : d_(definition),
       place_(place),
-      root_(parsed_trials(definition)),
+      root_(definition.root()),
       names_(read_names(root_, definition)),
       sequence_(definition, identity_of(definition, place)),
       object_files_(object_files(definition.objects)),

@@ -169,7 +169,7 @@ ResponseSession::ResponseSession(const StudiedDefinition& definition, std::strin
     : d_(definition), met_(std::move(met)), wanted_(std::move(wanted)) {
   check_hands(d_);
   press_ = press_of(d_.observer, press_);
-  Table root = parsed_trials(d_);
+  Table root = d_.root();
   names_ = std::make_unique<NamesPool>(std::move(*read_names(root, d_)));
   root.check();
 }

@@ -18,6 +18,7 @@ import json
 import math
 import multiprocessing
 import os
+import random
 import re
 import subprocess
 import sys
@@ -212,7 +213,8 @@ def cells_of(options):
     for name, definition in sorted(definitions.items(), key=lambda item: is_drilling(item[1])):
         loops, hands = loops_and_hands(definition, options.quick)
         cells += [Cell(name, definition, *loop, each) for loop in loops for each in hands]
-    return [c for c in cells if re.search(options.only, f"{c.name} {c.rate} {c.delay} {c.hand}")]
+    cells = [c for c in cells if re.search(options.only, f"{c.name} {c.rate} {c.delay} {c.hand}")]
+    return random.Random(1).sample(cells, min(options.sample, len(cells))) if options.sample else cells
 
 
 # --- the table ---
@@ -294,6 +296,7 @@ def read_options():
     parser.add_argument("before", nargs="?", help="an older haptrial, or the CSV file of its run")
     parser.add_argument("--quick", action="store_true",
                         help="two loops and four hands, no drillings: three minutes on two cores")
+    parser.add_argument("--sample", type=int, help="so many cells by chance; only the last line says something then")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", default="", help="regular expression of 'NAME RATE DELAY HAND'")
     parser.add_argument("--csv", help="new file with every figure")

@@ -18,6 +18,14 @@ namespace haptrial {
 
 namespace {
 
+bool lacks(const toml::table& table, const toml::table& defaults) {
+  return std::any_of(defaults.begin(), defaults.end(), [&](const auto& each) {
+    const toml::node* there = table.get(each.first.str());
+    return there == nullptr || (there->is_table() && each.second.is_table() &&
+                                lacks(*there->as_table(), *each.second.as_table()));
+  });
+}
+
 /// Copies have no place in a file: sentences about them name no line.
 void fill_in_table(toml::table& table, const toml::table& defaults) {
   for (const auto& [key, value] : defaults) {
@@ -50,14 +58,26 @@ Table Table::parse(const std::vector<NamedText>& parts) {
     document->source += part.text;
   }
   const std::string& file_name = parts.front().file_name;
-  document->root = parse_toml(document->source, file_name);
-  if (document->root.empty()) {
+  document->root = std::make_shared<toml::table>(parse_toml(document->source, file_name));
+  if (document->root->empty()) {
     throw InputError(
         fmt::format("{}: the definition is empty; write at least one KEY = VALUE", file_name));
   }
-  auto root = std::make_shared<Node>(Node{&document->root, "", {}, {}, ""});
+  return root_of(std::move(document));
+}
+
+Table Table::root_of(std::shared_ptr<Document> document) {
+  auto root = std::make_shared<Node>(Node{document->root.get(), "", {}, {}, ""});
   document->nodes.push_back(root);
-  return Table(document, root);
+  return {std::move(document), std::move(root)};
+}
+
+Table Table::unread() const {
+  auto document = std::make_shared<Document>();
+  document->parts = document_->parts;
+  document->source = document_->source;
+  document->root = document_->root;
+  return root_of(std::move(document));
 }
 
 Table Table::load(const std::filesystem::path& file) {
@@ -81,7 +101,16 @@ Table Table::load(const std::filesystem::path& file) {
 }
 
 void Table::fill_in(std::string_view defaults) {
-  fill_in_table(document_->root, parse_toml(defaults, "defaults"));
+  const toml::table all = parse_toml(defaults, "defaults");
+  if (!lacks(*document_->root, all)) {
+    return;
+  }
+  if (document_->root.use_count() > 1) {  // others read it as it is; a copy would have no lines
+    document_->root = std::make_shared<toml::table>(
+        parse_toml(document_->source, document_->parts.front().file_name));
+    node_->table = document_->root.get();
+  }
+  fill_in_table(*document_->root, all);
 }
 
 const std::string& Table::source() const { return document_->source; }

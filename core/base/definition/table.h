@@ -65,6 +65,10 @@ class Table {
   /// @throws InputError when the file is absent, a directory, unreadable, empty or not TOML.
   static Table load(const std::filesystem::path& file);
 
+  /// The same document, of which nothing has been read: no text is parsed again. Any thread may ask
+  /// a table that nobody reads meanwhile.
+  Table unread() const;
+
   /// Required values. Where a problem is noted the smallest allowed finite value comes back.
   /// @param unit  as written in the message, "m/s"; empty for a pure number.
   double number(std::string_view key, const Bounds& bounds, std::string_view unit);
@@ -118,7 +122,9 @@ class Table {
   bool is_nested(std::string_view key) const;  // an array of arrays
   bool is_table(std::string_view key) const;   // likewise
   /// Gives the whole document what it lacks of another TOML text: missing tables, and missing keys
-  /// within tables; what it states stays. source() does not change.
+  /// within tables; what it states stays. source() does not change. A
+  /// document that was unread() and still lacks something takes them before any table within it is
+  /// asked for, and has no others.
   void fill_in(std::string_view defaults);
   /// From now on shown_text() gives texts in another language. source() does not change.
   void translate(const Translations& translations);
@@ -165,6 +171,7 @@ class Table {
   struct Node;
   Table(std::shared_ptr<Document> document, std::shared_ptr<Node> node,
         const NumberSource* numbers = nullptr);
+  static Table root_of(std::shared_ptr<Document> document);
   void note(unsigned line, std::string_view problem);
   void refuse(std::string_view key, std::string_view found, std::string_view allowed);
   void note_unknown_keys() const;

@@ -33,7 +33,7 @@ struct Table::Document {
   KeyExploration* exploration{nullptr};  // off but for lists of keys
   std::vector<Part> parts;               // in order; at least one
   std::string source;
-  toml::table root;
+  std::shared_ptr<toml::table> root;        // shared by those who read the same document
   std::multimap<unsigned, std::string> problems;  // of one value each, by line
   std::multimap<unsigned, std::string> together;  // of values taken together, by line
 

@@ -39,7 +39,7 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
   const record::SessionInfo& first = found.first;
   const auto definition =
       protocols::parse_force_definition(first.definition, first.definition_name);
-  const CurveAnalysis curves = parse_curve_analysis(first.definition, first.definition_name);
+  const CurveAnalysis curves = curve_analysis_of(definition);
   std::vector<std::string> remarks;
   const analysis::AnalysisPlan plan =
       plan_for(request.planned, request.reference, curves.plan, remarks);
@@ -66,7 +66,7 @@ class ForceStudy final : public Study {
   const protocols::Protocol& protocol() const override { return protocols::force_training(); }
   void read_analysis(Table& root, bool fresh) const override { read_curve_analysis(root, fresh); }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override {
-    return warnings_of(parse_curve_analysis(d.text, d.file_name).scoring);
+    return warnings_of(curve_analysis_of(d).scoring);
   }
   std::optional<CurveAnalysis> curves(const record::SessionInfo& session) const override {
     return parse_curve_analysis(session.definition, session.definition_name);
@@ -79,12 +79,13 @@ class ForceStudy final : public Study {
     lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
     return lines;
   }
-  std::unique_ptr<StudySimulation> study_simulation(const std::vector<NamedText>& definition,
+  std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
+                                                    const std::string& asked_in,
                                                     const std::string& watched) const override {
     static_cast<void>(watched);  // all of its tests are quick
-    const CurveAnalysis curves =
-        parse_curve_analysis(Table::parse(definition).source(), definition.front().file_name);
-    return force_study_simulation(definition, curves.scoring, curves.plan);
+    const CurveAnalysis curves = curve_analysis_of(definition);
+    return force_study_simulation(dynamic_cast<const protocols::ForceDefinition&>(definition),
+                                  asked_in, curves.scoring, curves.plan);
   }
 };
 

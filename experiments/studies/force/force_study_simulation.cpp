@@ -29,9 +29,9 @@ struct ScoreParts {
   std::map<std::string, double> effects;                              // by condition
 };
 
-std::optional<ScoreParts> read_parts(const std::vector<NamedText>& definition,
-                                     const std::vector<std::string>& conditions) {
-  Table root = Table::parse(definition);
+std::optional<ScoreParts> read_parts(const protocols::ForceDefinition& d) {
+  const std::vector<std::string>& conditions = d.design.conditions;
+  Table root = d.root();
   if (!root.has("power") || !root.table("power").has("responses")) {
     return std::nullopt;
   }
@@ -113,14 +113,13 @@ SimulatedStudy of_statistics(const StudyStatistics& study, std::size_t trials) {
 
 class ForceStudySimulation final : public StudySimulation {
  public:
-  ForceStudySimulation(const std::vector<NamedText>& definition, analysis::ScoreParameters scoring,
-                       analysis::AnalysisPlan plan)
-      : d_(protocols::parse_force_definition(Table::parse(definition).source(),
-                                             definition.front().file_name)),
-        asked_in_(definition.back().file_name),
+  ForceStudySimulation(const protocols::ForceDefinition& definition, std::string asked_in,
+                       analysis::ScoreParameters scoring, analysis::AnalysisPlan plan)
+      : d_(definition),
+        asked_in_(std::move(asked_in)),
         scoring_(std::move(scoring)),
         plan_(std::move(plan)),
-        parts_(read_parts(definition, d_.design.conditions)) {
+        parts_(read_parts(definition)) {
     hours_of_trial_ = d_.longest(d_.design.trials) / d_.design.trials / 3600.0;
   }
 
@@ -197,7 +196,7 @@ class ForceStudySimulation final : public StudySimulation {
     }
   }
 
-  protocols::ForceDefinition d_;
+  const protocols::ForceDefinition& d_;
   std::string asked_in_;  // file with [power]
   analysis::ScoreParameters scoring_;
   analysis::AnalysisPlan plan_;
@@ -207,10 +206,10 @@ class ForceStudySimulation final : public StudySimulation {
 
 }  // namespace
 
-std::unique_ptr<StudySimulation> force_study_simulation(const std::vector<NamedText>& definition,
-                                                        const analysis::ScoreParameters& scoring,
-                                                        const analysis::AnalysisPlan& plan) {
-  return std::make_unique<ForceStudySimulation>(definition, scoring, plan);
+std::unique_ptr<StudySimulation> force_study_simulation(
+    const protocols::ForceDefinition& definition, const std::string& asked_in,
+    const analysis::ScoreParameters& scoring, const analysis::AnalysisPlan& plan) {
+  return std::make_unique<ForceStudySimulation>(definition, asked_in, scoring, plan);
 }
 
 }  // namespace haptrial::experiments

@@ -23,9 +23,11 @@ namespace haptrial::experiments {
 ///     participant, interaction, block, trial   standard deviations of the parts
 ///     [effects]                 CONDITION = number, as the difference from the mean
 ///
+/// @param definition  outlives what comes back
+/// @param asked_in    file with [power]
 /// @throws InputError for keys that are missing or no conditions of the definition
-std::unique_ptr<StudySimulation> force_study_simulation(const std::vector<NamedText>& definition,
-                                                        const analysis::ScoreParameters& scoring,
-                                                        const analysis::AnalysisPlan& plan);
+std::unique_ptr<StudySimulation> force_study_simulation(
+    const protocols::ForceDefinition& definition, const std::string& asked_in,
+    const analysis::ScoreParameters& scoring, const analysis::AnalysisPlan& plan);
 
 }  // namespace haptrial::experiments

@@ -7,7 +7,6 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "protocols/psychophysics/definition/defaults.h"
 #include "protocols/psychophysics/definition/presented.h"
 #include "protocols/psychophysics/definition/read_definition.h"
 #include "protocols/psychophysics/definition/trial_values.h"
@@ -29,10 +28,8 @@ class ReachRoutes {
   ReachRoutes(const protocols::TrialsDefinition& definition, const ReachingPlan& plan)
       : definition_(definition),
         plan_(plan),
-        root_(Table::parse(definition.text, definition.file_name)) {
-    root_.fill_in(protocols::trials_defaults());
-    names_ = protocols::read_names(root_, definition);
-  }
+        root_(definition.root()),
+        names_(protocols::read_names(root_, definition)) {}
 
   ReachRoute of(const TrialsData& data, const StudyTrial& trial) {
     const std::string group =
@@ -131,7 +128,7 @@ analysis::trials::ReachingNames reaching_names(const protocols::TrialsDefinition
   for (const protocols::Factor& factor : definition.order.factors) {
     names.combinations *= factor.levels.size();
   }
-  Table root = Table::parse(definition.text, definition.file_name);
+  Table root = definition.root();
   if (root.has("places")) {
     names.places = root.table("places").keys_as_written();
   }

@@ -44,7 +44,7 @@ void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
       defaults.names.push_back(value.name);
     }
   }
-  Table root = Table::parse(d.text, d.file_name);
+  Table root = d.root();
   if (root.has("variables")) {
     std::ranges::copy(root.table("variables").keys_as_written(),
                       std::back_inserter(defaults.names));
@@ -100,7 +100,7 @@ std::map<std::string, std::vector<std::string>> stated_levels(const protocols::T
 
 /// Names that the comparison of cues may use.
 analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
-  Table root = Table::parse(d.text, d.file_name);
+  Table root = d.root();
   analysis::trials::CueNames names;
   names.levels = stated_levels(d, root);
   const auto add = [&](const std::string& name) {
@@ -165,7 +165,7 @@ analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
   bool scripted = false;
   try {
     // A document of its own: what is wrong with it was noted by who read the definition.
-    Table copy = Table::parse(root.source(), "");
+    Table copy = root.unread();
     const auto definition = protocols::trials_protocol().read(copy, "", nullptr);
     scripted = dynamic_cast<const protocols::TrialsDefinition&>(*definition).script.has_value();
     defaults = plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition));

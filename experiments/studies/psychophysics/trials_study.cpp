@@ -41,8 +41,8 @@ std::unique_ptr<protocols::Definition> definition_of(const record::SessionInfo& 
   return definition;
 }
 
-trials::TrialsPlan plan_of_text(const std::string& text, const std::string& file_name) {
-  Table root = Table::parse(text, file_name);
+trials::TrialsPlan plan_of(const protocols::Definition& definition) {
+  Table root = definition.root();
   trials::TrialsPlan plan = read_trials_analysis(root);
   root.check();
   return plan;
@@ -128,20 +128,16 @@ class TrialsStudy final : public Study {
   void read_analysis(Table& root, bool) const override { read_trials_analysis(root); }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override;
   std::vector<std::string> analyze(const AnalysisRequest& request) const override;
-  std::unique_ptr<StudySimulation> study_simulation(const std::vector<NamedText>& definition,
+  std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
+                                                    const std::string& asked_in,
                                                     const std::string& watched) const override {
-    const std::string& file_name = definition.front().file_name;
-    Table root = Table::parse(definition);
-    auto read = protocols::trials_protocol().read(root, file_name, nullptr);
-    root.check();
-    auto* studied = dynamic_cast<protocols::StudiedDefinition*>(read.release());
-    return trials_study_simulation(std::unique_ptr<const protocols::StudiedDefinition>(studied),
-                                   plan_of_text(root.source(), file_name), definition, watched);
+    return trials_study_simulation(dynamic_cast<const protocols::StudiedDefinition&>(definition),
+                                   plan_of(definition), asked_in, watched);
   }
 };
 
 std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {
-  const trials::TrialsPlan plan = plan_of_text(d.text, d.file_name);
+  const trials::TrialsPlan plan = plan_of(d);
   std::vector<std::string> warnings;
   for (const protocols::Track& track : trials_of(d).tracks) {
     const bool outside = plan.function.axis.scale != psychometric::Scale::kLinear &&
@@ -160,7 +156,7 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   const record::SessionInfo& first = request.files.first;
   const auto owned = definition_of(first);
   const TrialsDefinition& definition = trials_of(*owned);
-  trials::TrialsPlan plan = plan_of_text(first.definition, first.definition_name);
+  trials::TrialsPlan plan = plan_of(definition);
   std::vector<std::string> remarks = request.files.remarks;
   take_planned(request, plan, remarks);
   const auto group_of = [&](const std::string& subject) {

@@ -116,10 +116,9 @@ SimulatedStudy simulated_study_of(const trials::TrialsResult& result) {
 
 class TrialsStudySimulation final : public StudySimulation {
  public:
-  TrialsStudySimulation(std::unique_ptr<const StudiedDefinition> definition,
-                        trials::TrialsPlan plan, const std::vector<NamedText>& text,
-                        const std::string& watched)
-      : d_(std::move(definition)), plan_(std::move(plan)), asked_in_(text.back().file_name) {
+  TrialsStudySimulation(const StudiedDefinition& definition, trials::TrialsPlan plan,
+                        std::string asked_in, const std::string& watched)
+      : d_(definition), plan_(std::move(plan)), asked_in_(std::move(asked_in)) {
     plan_.resamples = 0;
     plan_.bayesian = false;
     plan_.track_intervals = false;
@@ -131,20 +130,20 @@ class TrialsStudySimulation final : public StudySimulation {
       throw InputError(fmt::format(
           "{}: power by simulation does not know analyses of movements or of two cues; watch a "
           "psychometric, detection, identification, magnitude or adjustment analysis",
-          d_->file_name));
+          d_.file_name));
     }
-    const int most = std::max(1, d_->most_trials());
-    hours_of_trial_ = d_->longest(most) / most / 3600.0;
-    read_responses(text);
+    const int most = std::max(1, d_.most_trials());
+    hours_of_trial_ = d_.longest(most) / most / 3600.0;
+    read_responses();
   }
 
   bool people_differ() const override {
-    const auto& people = d_->observer.people;
+    const auto& people = d_.observer.people;
     return people && people->varies();
   }
 
   SimulatedStudy responses(std::uint64_t seed) const override {
-    if (d_->script) {
+    if (d_.script) {
       throw InputError(fmt::format(
           "{}: level_script chooses the levels, which responses alone do not run; give power.depth "
           "= \"sessions\"",
@@ -157,8 +156,8 @@ class TrialsStudySimulation final : public StudySimulation {
                       asked_in_));
     }
     trials::TrialsData data;
-    for (int p = 0; p < d_->design.participants; ++p) {
-      for (int session = 1; session <= d_->sessions(); ++session) {
+    for (int p = 0; p < d_.design.participants; ++p) {
+      for (int session = 1; session <= d_.sessions(); ++session) {
         add_session(p, session, seed, data);
       }
     }
@@ -171,15 +170,15 @@ class TrialsStudySimulation final : public StudySimulation {
   }
 
  private:
-  void read_responses(const std::vector<NamedText>& text) {
-    Table root = Table::parse(text);
+  void read_responses() {
+    Table root = d_.root();
     if (!root.has("power") || !root.table("power").has("responses")) {
       return;
     }
     Table responses = root.table("power").table("responses");
     const std::string met = responses.text("met");
     root.check();
-    session_.emplace(*d_, met, variables_of(plan_));
+    session_.emplace(d_, met, variables_of(plan_));
     try {
       session_->check_met();
     } catch (const InputError& error) {
@@ -189,7 +188,7 @@ class TrialsStudySimulation final : public StudySimulation {
   }
 
   std::string group_of(const std::string& subject) const {
-    return d_->groups.size() > 1 ? protocols::group_of(d_->groups, subject) : std::string();
+    return d_.groups.size() > 1 ? protocols::group_of(d_.groups, subject) : std::string();
   }
 
   void add_session(int participant, int session, std::uint64_t seed,
@@ -223,14 +222,14 @@ class TrialsStudySimulation final : public StudySimulation {
   /// theirs.
   trials::ProcedureOf procedures() const {
     const bool needed = plan_.serial || plan_.kind == trials::AnalysisKind::kAdjustment ||
-                        std::ranges::any_of(d_->tracks, [](const protocols::Track& track) {
+                        std::ranges::any_of(d_.tracks, [](const protocols::Track& track) {
                           return !track.further.empty();
                         });
     if (!needed) {
       return {};
     }
     return [this](const std::string& name) -> std::unique_ptr<psychometric::Procedure> {
-      for (const protocols::Track& track : d_->tracks) {
+      for (const protocols::Track& track : d_.tracks) {
         const bool own = name == track.name || name.starts_with(track.name + ", ");
         if (own && !track.listed && track.begin) {
           return track.begin(1, name);
@@ -240,7 +239,7 @@ class TrialsStudySimulation final : public StudySimulation {
     };
   }
 
-  std::unique_ptr<const StudiedDefinition> d_;
+  const StudiedDefinition& d_;
   trials::TrialsPlan plan_;
   std::string asked_in_;  // file with [power]
   double hours_of_trial_{0.0};
@@ -249,11 +248,11 @@ class TrialsStudySimulation final : public StudySimulation {
 
 }  // namespace
 
-std::unique_ptr<StudySimulation> trials_study_simulation(
-    std::unique_ptr<const StudiedDefinition> definition, trials::TrialsPlan plan,
-    const std::vector<NamedText>& text, const std::string& watched) {
-  return std::make_unique<TrialsStudySimulation>(std::move(definition), std::move(plan), text,
-                                                 watched);
+std::unique_ptr<StudySimulation> trials_study_simulation(const StudiedDefinition& definition,
+                                                         trials::TrialsPlan plan,
+                                                         const std::string& asked_in,
+                                                         const std::string& watched) {
+  return std::make_unique<TrialsStudySimulation>(definition, std::move(plan), asked_in, watched);
 }
 
 }  // namespace haptrial::experiments

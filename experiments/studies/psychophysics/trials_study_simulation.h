@@ -20,12 +20,12 @@ namespace haptrial::experiments {
 /// Bootstrap, Bayesian fits, intervals of tracks, a mixed model that has no conditions to test and,
 /// unless the watched test is one, permutation tests and those of drift and repetition are left
 /// out: none of them changes a p value of another test.
-/// @param text     of the definition, for [power.responses] and sentences on it
-/// @param watched  name of the test
+/// @param definition  outlives what comes back
+/// @param asked_in    file with [power]
+/// @param watched     name of the test
 /// @throws InputError for analyses that it cannot make, such as of movements
 std::unique_ptr<StudySimulation> trials_study_simulation(
-    std::unique_ptr<const protocols::StudiedDefinition> definition,
-    analysis::trials::TrialsPlan plan, const std::vector<NamedText>& text,
-    const std::string& watched);
+    const protocols::StudiedDefinition& definition, analysis::trials::TrialsPlan plan,
+    const std::string& asked_in, const std::string& watched);
 
 }  // namespace haptrial::experiments

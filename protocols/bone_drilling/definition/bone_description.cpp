@@ -46,7 +46,7 @@ void warn_of_vibration(const BoneDefinition& d, std::vector<std::string>& warnin
 }
 
 void warn_of_devices(const BoneDefinition& d, std::vector<std::string>& warnings) {
-  Table root = Table::parse(d.text, d.file_name);
+  Table root = d.root();
   const auto check = [&](const char* table, double max_force) {
     if (root.has(table) && max_force < d.drilling.force_limit) {
       warnings.push_back(

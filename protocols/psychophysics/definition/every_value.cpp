@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/scene/scene.h"
-#include "protocols/psychophysics/definition/defaults.h"
 #include "protocols/psychophysics/definition/lead_words.h"
 #include "protocols/psychophysics/definition/picture_words.h"
 #include "protocols/psychophysics/definition/presented.h"
@@ -149,8 +148,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
                                       bool with_bodies, HandleReport& handle,
                                       PictureReport& picture, LeadReport& lead) {
   std::vector<std::string> bodies;
-  Table root = Table::parse(d.text, d.file_name);
-  root.fill_in(trials_defaults());
+  Table root = d.root();
   const std::unique_ptr<Names> names = read_names(root, d);
   try {
     for (std::size_t place = 0; place < d.intervals.size(); ++place) {

@@ -180,6 +180,8 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
   names->check(root);
   std::vector<NamedStage> stages;
   if (d.order.blocks.empty()) {
+    static_cast<void>(root.misspelled("blocks"));
+    root.check();  // of stages and fields nothing was read, so that nothing of them would be known
     return;
   }
   for (std::size_t place = 0; place < d.intervals.size(); ++place) {
@@ -198,12 +200,6 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
 }
 
 }  // namespace
-
-Table parsed_trials(const Definition& d) {
-  Table root = Table::parse(d.text, d.file_name);
-  root.fill_in(trials_defaults());
-  return root;
-}
 
 std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
   auto names = std::make_unique<Names>();

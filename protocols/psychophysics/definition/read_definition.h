@@ -12,9 +12,6 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// The document of a definition again, with what it need not state.
-Table parsed_trials(const Definition& definition);
-
 /// The names of a definition, ready to be given values.
 std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& definition);
 

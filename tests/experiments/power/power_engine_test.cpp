@@ -30,10 +30,19 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 
 constexpr const char* kText = R"(
+[experiment]
+protocol = "trials"
+name = "normal"
 [design]
 participants = 8
-[people]
+[[blocks]]
+name = "main"
+trials = 1
+[variables]
 effect = 0.0
+[[stages]]
+name = "rest"
+until = { time = 0.1 }
 [power]
 watch = "paired t"
 )";
@@ -42,11 +51,10 @@ watch = "paired t"
 /// first two and an analysis of variance of all.
 class NormalStudySimulation final : public StudySimulation {
  public:
-  explicit NormalStudySimulation(const std::string& text) {
-    Table root = Table::parse(text, "normal.toml");
-    participants_ = root.table("design").integer("participants", 2, 1000);
-    Table people = root.table("people");
-    effect_ = people.number("effect", {}, "");
+  explicit NormalStudySimulation(const protocols::Definition& definition) {
+    Table root = definition.root();
+    participants_ = definition.design.participants;
+    effect_ = root.table("variables").number("effect", {}, "");
   }
   bool people_differ() const override { return true; }
   SimulatedStudy responses(std::uint64_t seed) const override {
@@ -76,9 +84,10 @@ class NormalStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::trials_protocol(); }
   std::vector<std::string> analyze(const AnalysisRequest&) const override { return {}; }
-  std::unique_ptr<StudySimulation> study_simulation(const std::vector<NamedText>& text,
+  std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
+                                                    const std::string&,
                                                     const std::string&) const override {
-    return std::make_unique<NormalStudySimulation>(text.front().text);
+    return std::make_unique<NormalStudySimulation>(definition);
   }
 };
 
@@ -96,7 +105,7 @@ PowerQuestion question_of(int replications, const std::vector<double>& participa
   q.plan.replications = q.plan.null_replications = replications;
   q.plan.block = 50;
   q.plan.vary = {{"design.participants", participants, std::nullopt},
-                 {"people.effect", effects, 0.0}};
+                 {"variables.effect", effects, 0.0}};
   for (const double n : participants) {
     q.cells.push_back({{n, 0.0}, true, false, "n " + std::to_string(n)});
   }

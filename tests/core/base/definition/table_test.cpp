@@ -500,6 +500,33 @@ TEST_F(TableFileTest, AFileReadsAsItsText) {
   EXPECT_THROW(t.finish(), InputError);
 }
 
+TEST(TableTest, ADocumentIsReadAgainWithoutWhatWasNotedBefore) {
+  Table first = Table::parse("a = 1\n[b]\nc = 20\n", "f.toml");
+  first.fill_in("[b]\nd = 4\n");
+  EXPECT_THROW(first.finish(), InputError);
+  EXPECT_EQ(first.table("b").integer("c", 0, 9), 0);
+  EXPECT_THROW(first.check(), InputError);
+
+  Table more = first.unread();
+  more.fill_in("[b]\nd = 4\ne = 6\n");
+  EXPECT_EQ(more.table("b").integer("d", 0, 9), 4);
+  EXPECT_EQ(more.table("b").integer("e", 0, 9), 6);
+
+  Table again = first.unread();
+  EXPECT_FALSE(again.table("b").has("e"));
+  EXPECT_EQ(again.integer("a", 0, 9), 1);
+  EXPECT_NO_THROW(again.check());
+  Table b = again.table("b");
+  EXPECT_EQ(b.integer("d", 0, 9), 4);
+  b.integer("c", 0, 9);
+  try {
+    again.finish();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "f.toml:3: b.c is 20; allowed: a whole number from 0 to 9");
+  }
+}
+
 TEST_F(TableFileTest, WhatCannotBeADefinitionIsRefusedByName) {
   const std::string absent = (folder_ / "absent.toml").string();
   EXPECT_EQ(refusal(absent), absent + ": no such file; give the name of a definition (.toml)");

@@ -47,6 +47,17 @@ TEST(TrialMistakesTest, AStartIsComparedWithARangeThatIsOne) {
               ElementsAre(HasSubstr("range is another list; allowed: [lowest, highest]")));
 }
 
+TEST(TrialMistakesTest, WithoutBlocksNoStageIsCalledUnknown) {
+  const std::string stages = "[[stages]]\nname = \"rest\"\nuntil = { time = 0.1 }\n";
+  const std::string head =
+      "[experiment]\nprotocol = \"trials\"\nname = \"t\"\n[design]\nparticipants = 2\n";
+  EXPECT_THAT(problems_of_trials(head + "[[block]]\nname = \"main\"\ntrials = 1\n" + stages),
+              ElementsAre(HasSubstr("block is not a known key; did you mean blocks?")));
+  EXPECT_THAT(problems_of_trials(head + stages),
+              ElementsAre(HasSubstr("design has nothing to present; add a [procedure] or "
+                                    "[[blocks]]")));
+}
+
 TEST(TrialMistakesTest, MistakesOfFormulas) {
   EXPECT_THAT(problems_of_trials(with(kSmall, "\"$stiffness\"", "\"$stiffness * (2\"")),
               Contains(HasSubstr("fields.floor.stiffness is \"$stiffness * (2\"")));
