@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/tutoring/side_parameters.h"
-#include "core/tutoring/simulated_channel.h"
+#include "core/tutoring/channel_conditions.h"
 #include "core/tutoring/tutoring_law.h"
 
 namespace haptrial {
