@@ -8,51 +8,17 @@
 #include "core/base/definition/schema.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/function/response_observer.h"
-#include "core/psychometric/procedure/staircase_chain.h"
 
 namespace haptrial::psychometric {
 namespace {
 
-/// The share of right answers that a track seeks; nothing if no one number says it.
-std::optional<double> sought(const Track& track) {
-  if (track.staircase && track.staircase->up == 1) {
-    return balance_of(track.staircase->down, track.staircase->steps.back());
-  }
-  return std::nullopt;
-}
-
-std::string sentence(const Track& track, double level, double low, double high, double trials) {
-  return fmt::format(
-      "{}: for a participant as expected, the estimate is {:.4g} {} on average (standard deviation "
-      "from {:.4g} to {:.4g}) after {:.0f} trials",
-      track.name, level, track.unit, low, high, trials);
-}
-
-std::optional<std::string> by_chain(const Track& track, const PsychometricFunction& function) {
-  const StaircaseParameters& p = *track.staircase;
-  const double share = sought(track).value_or(0.5);
-  const double target = function.level_for(share);
-  const auto found = predict_staircase(
-      p, [&](double level) { return function(level); }, target);
-  std::string text =
-      sentence(track, p.axis.level(found.mean), p.axis.level(found.mean - found.deviation),
-               p.axis.level(found.mean + found.deviation), found.trials);
-  if (sought(track)) {
-    text += fmt::format("; the level with {:.1f} % correct is {:.4g}, so that the bias is {:+.2g}",
-                        100.0 * share, target, p.axis.level(found.mean) - target);
-  }
-  return text;
-}
-
-std::optional<std::string> by_simulation(const Track& track,
-                                         const PsychometricParameters& function) {
+std::optional<TrackPrediction> simulated(const Track& track) {
   constexpr int kTracks = 500;
-  const Axis& axis = function.axis;
   double sum = 0.0, square = 0.0, trials = 0.0;
   int count = 0;
   for (int i = 0; i < kTracks; ++i) {
     const std::string name = fmt::format("expected {}", i);
-    ResponseObserver observer({function}, 1, name);
+    ResponseObserver observer({*track.expected}, 1, name);
     const auto procedure = track.begin(1, name);
     while (!procedure->finished()) {
       const double level = track.applied(procedure->next().front());
@@ -61,7 +27,7 @@ std::optional<std::string> by_simulation(const Track& track,
     }
     const auto estimates = procedure->estimates();
     if (!estimates.empty()) {
-      const double x = axis.at(estimates.front().value);
+      const double x = track.axis.at(estimates.front().value);
       sum += x;
       square += x * x;
       ++count;
@@ -71,10 +37,25 @@ std::optional<std::string> by_simulation(const Track& track,
     return std::nullopt;
   }
   const double mean = sum / count;
-  const double deviation = std::sqrt(std::max(0.0, square / count - mean * mean));
-  return sentence(track, axis.level(mean), axis.level(mean - deviation),
-                  axis.level(mean + deviation), trials / kTracks) +
-         " (simulated)";
+  return TrackPrediction{mean, std::sqrt(std::max(0.0, square / count - mean * mean)),
+                         trials / kTracks};
+}
+
+/// @throws std::invalid_argument if the function has no level at which the track is in balance
+std::string sentence(const Track& track, const PsychometricFunction& people,
+                     const TrackPrediction& found) {
+  const Axis& axis = track.axis;
+  std::string text = fmt::format(
+      "{}: for a participant as expected, the estimate is {:.4g} {} on average (standard deviation "
+      "from {:.4g} to {:.4g}) after {:.0f} trials{}",
+      track.name, axis.level(found.mean), track.unit, axis.level(found.mean - found.deviation),
+      axis.level(found.mean + found.deviation), found.trials, track.predict ? "" : " (simulated)");
+  if (track.balance) {
+    const double target = people.level_for(*track.balance);
+    text += fmt::format("; the level with {:.1f} % correct is {:.4g}, so that the bias is {:+.2g}",
+                        100.0 * *track.balance, target, axis.level(found.mean) - target);
+  }
+  return text;
 }
 
 /// @throws std::invalid_argument naming the sigmoids, from its read(), if there is none of the name
@@ -124,8 +105,9 @@ std::optional<std::string> predicted(const Track& track) {
     return std::nullopt;
   }
   try {
-    return track.staircase ? by_chain(track, PsychometricFunction(*track.expected))
-                           : by_simulation(track, *track.expected);
+    const PsychometricFunction people(*track.expected);
+    const auto found = track.predict ? std::optional(track.predict(people)) : simulated(track);
+    return found ? std::optional(sentence(track, people, *found)) : std::nullopt;
   } catch (const std::invalid_argument&) {  // more states than can be followed, no such level
     return std::nullopt;
   }

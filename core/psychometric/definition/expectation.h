@@ -23,8 +23,9 @@ struct Track;
 std::optional<PsychometricParameters> read_expectation(Table& procedure, const Axis& axis);
 
 /// Sentence about the result to expect of the track if people are as expected: estimate with bias
-/// and standard deviation, and trials. It is exact for a staircase, by its Markov chain; PEST and
-/// psi take 500 simulated tracks; listed levels give nothing, for there is no estimate but a fit.
+/// and standard deviation, and trials. It is exact if the track's predict() is, as that of a
+/// staircase; others take 500 simulated tracks; listed levels give nothing, for there is no
+/// estimate but a fit.
 /// @returns nothing without an expectation, or if it cannot be said
 std::optional<std::string> predicted(const Track& track);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/definition/schema.h"
-#include "core/psychometric/definition/track.h"
+#include "core/psychometric/definition/track_keys.h"
 
 namespace haptrial::psychometric {
 namespace {
@@ -43,29 +43,6 @@ const Schema<std::vector<double>>& levels_schema() {
   return schema;
 }
 
-const Schema<Track>& axis_schema() {
-  static const auto schema =
-      Schema<Track>()
-          .custom("scale",
-                  "Scale of the axis on which steps and the psychometric function are stated: the "
-                  "level's difference to the origin, or a logarithm of it",
-                  [](Table& table, const std::string& key, Track& track) {
-                    const std::string scale = table.choice(key, {"linear", "log10", "decibel"});
-                    track.axis.scale = scale == "log10"     ? Scale::kLog10
-                                       : scale == "decibel" ? Scale::kDecibel
-                                                            : Scale::kLinear;
-                  })
-          .otherwise("linear")
-          .custom("origin",
-                  "Level from which the axis of steps and of the psychometric function counts, "
-                  "such as that of the reference",
-                  [](Table& table, const std::string& key, Track& track) {
-                    track.axis.origin = table.number(key, {}, track.unit);
-                  })
-          .otherwise("0");
-  return schema;
-}
-
 }  // namespace
 
 std::vector<double> read_grid(Table& table, const std::string& key) {
@@ -97,16 +74,6 @@ std::vector<double> read_levels(const TrackKeys& keys) {
   std::vector<double> levels;
   levels_schema().read(keys.track, keys.procedure, levels);
   return levels;
-}
-
-const Axis& read_axis(const TrackKeys& keys, Track& track) {
-  axis_schema().read(keys.track, keys.procedure, track);
-  Axis& axis = track.axis;
-  if (axis.scale != Scale::kLinear && track.low <= axis.origin) {
-    keys.of("scale").reject("scale", "logarithmic", "\"linear\", or a range above the origin");
-    axis.scale = Scale::kLinear;
-  }
-  return axis;
 }
 
 }  // namespace haptrial::psychometric

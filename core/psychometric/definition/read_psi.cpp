@@ -11,6 +11,7 @@
 #include "core/psychometric/definition/grid.h"
 #include "core/psychometric/definition/read_quest.h"
 #include "core/psychometric/definition/track.h"
+#include "core/psychometric/definition/track_keys.h"
 #include "core/psychometric/procedure/psi_definition.h"
 
 namespace haptrial::psychometric {
@@ -107,7 +108,8 @@ const Schema<PsiParameters>& psi_schema() {
 
 }  // namespace
 
-void read_psi(const TrackKeys& keys, const QuestStop& stop, Track& track) {
+void read_psi(const TrackKeys& keys, Track& track) {
+  const QuestStop stop = read_quest_stop(keys, track);
   PsiParameters p = read_psi_function(keys, track);
   set_default_grids(track, p);
   psi_schema().read(keys.track, keys.procedure, p);

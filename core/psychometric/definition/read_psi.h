@@ -1,7 +1,5 @@
 #pragma once
 
-#include "core/psychometric/procedure/quest_plus.h"
-
 namespace haptrial::psychometric {
 
 struct Track;
@@ -13,8 +11,9 @@ struct TrackKeys;
 ///     [scale], [origin], [function], [guess]   of the psychometric function
 ///     [threshold], [width], [lapse]            grids: what is considered
 ///     [marginal]   whether levels tell of the threshold alone
+///     stop         { trials, [entropy] }
 ///
 /// Problems are noted.
-void read_psi(const TrackKeys& keys, const QuestStop& stop, Track& track);
+void read_psi(const TrackKeys& keys, Track& track);
 
 }  // namespace haptrial::psychometric

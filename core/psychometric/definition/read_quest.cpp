@@ -17,7 +17,9 @@
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/psychometric/definition/grid.h"
+#include "core/psychometric/definition/quest_warnings.h"
 #include "core/psychometric/definition/track.h"
+#include "core/psychometric/definition/track_keys.h"
 #include "core/psychometric/function/sigmoid_names.h"
 #include "core/psychometric/procedure/psi_definition.h"
 
@@ -329,6 +331,11 @@ void check_size(const QuestDefinition& quest) {
 
 }  // namespace
 
+QuestStop read_quest_stop(const TrackKeys& keys, Track& track) {
+  const TrackStop stop = read_stop(keys, track);
+  return {stop.trials, stop.entropy};
+}
+
 void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>& tables,
                 const QuestStop& stop, Track& track) {
   const QuestPlus begun(tables, stop);
@@ -342,9 +349,11 @@ void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>&
   track.begin = [tables, stop](std::uint64_t, const std::string&) {
     return std::make_unique<QuestPlus>(tables, stop);
   };
+  track.warnings = [tables](const Track& named) { return quest_warnings(named, *tables); };
 }
 
-void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track) {
+void read_quest(const TrackKeys& keys, Track& track) {
+  const QuestStop stop = read_quest_stop(keys, track);
   QuestDefinition quest;
   read_stimulus(keys, quest, track);
   read_parameters(keys, quest);

@@ -13,6 +13,9 @@ struct TrackKeys;
 inline constexpr const char* kFunctionText = "Sigmoid of the psychometric function, by its name";
 inline constexpr const char* kFunctionAbsent = "logistic, or of quest_plus a probability";
 
+/// Reads `stop` of psi or QUEST+.
+QuestStop read_quest_stop(const TrackKeys& keys, Track& track);
+
 /// Begins a track with these tables, its own or those of psi. An entropy of `stop` that ends it
 /// before its first trial is noted.
 void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>& tables,
@@ -28,8 +31,9 @@ void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>&
 ///                  answer 0 has what is left
 ///     or function  a sigmoid of one stimulus with the parameters threshold, width, [guess = 0.5],
 ///                  [lapse = 0], as psi has them, with [scale] and [origin]
+///     stop         { trials, [entropy] }
 ///
 /// Problems are noted.
-void read_quest(const TrackKeys& keys, const QuestStop& stop, Track& track);
+void read_quest(const TrackKeys& keys, Track& track);
 
 }  // namespace haptrial::psychometric

@@ -2,18 +2,30 @@
 
 #include <fmt/format.h>
 
+#include <set>
+#include <span>
 #include <stdexcept>
 
 #include "core/base/definition/schema.h"
-#include "core/psychometric/definition/grid.h"
-#include "core/psychometric/definition/read_procedure.h"
+#include "core/psychometric/definition/expectation.h"
+#include "core/psychometric/definition/procedure_kinds.h"
 
 namespace haptrial::psychometric {
 namespace {
 
 constexpr std::size_t kMostTracks = 64;
 
-bool names_one_variable(const Track& track) { return track.kind != "quest_plus"; }
+bool sets_one_variable(const Track& track) {
+  return kind_of_procedure(track.kind).sets_one_variable();
+}
+
+void read_kind(Table& table, const std::string& key, Track& track) {
+  std::vector<std::string> words;
+  for (const ProcedureKind& kind : kinds_of_procedure()) {
+    words.push_back(kind.word);
+  }
+  track.kind = table.choice(key, words);
+}
 
 /// Keys of a track, and of the procedure that it belongs to.
 const Schema<Track>& track_schema() {
@@ -21,15 +33,13 @@ const Schema<Track>& track_schema() {
   static const auto schema =
       Schema<T>()
           .custom("kind", "Kind of the procedure: the rule by which levels follow from outcomes",
-                  [](Table& table, const std::string& key, T& track) {
-                    track.kind = table.choice(key, procedure_kinds());
-                  })
+                  read_kind)
           .required()
           .otherwise(kProceduresOwn)
           .text("variable", &T::variable, "Name of the variable whose levels the procedure sets")
           .required()
           .otherwise(kProceduresOwn)
-          .only_if(names_one_variable)
+          .only_if(sets_one_variable)
           .text("unit", &T::unit, "Unit of the levels, as reports show it")
           .otherwise("none")
           .texts("by", &T::by, "Factors whose every combination of levels has a track of its own")
@@ -41,7 +51,7 @@ const Schema<Track>& track_schema() {
                     track.resolution = table.number(key, kPositive, track.unit);
                   })
           .otherwise("not rounded")
-          .only_if(names_one_variable);
+          .only_if(sets_one_variable);
   return schema;
 }
 
@@ -60,7 +70,12 @@ Track read_track(Table& procedure, Table& own, std::size_t number) {
   track_name_schema().read(own, track);
   track_schema().read(own, procedure, track);
   const TrackKeys keys{own, procedure};
-  read_procedure(keys, track);
+  const ProcedureKind& kind = kind_of_procedure(track.kind);
+  track.learns_from = kind.learns;
+  kind.read(keys, track);
+  if (kind.sets_one_variable() && keys.has("expect")) {
+    track.expected = read_expectation(keys.of("expect"), track.axis);
+  }
   if (track.begin) {  // a mistake in it is seen now and not in the first session
     try {
       track.begin(0, track.name);
@@ -81,6 +96,22 @@ void read_all(Table& procedure, std::vector<Track>& tracks) {
   }
 }
 
+/// Each [[procedures]] sets variables of its own. @param taken  those of the ones before
+void check_own_variables(Table& procedure, std::span<const Track> tracks,
+                         std::set<std::string>& taken) {
+  std::set<std::string> own;
+  for (const Track& track : tracks) {
+    for (const std::string& variable : track.variables()) {
+      if (own.insert(variable).second && taken.contains(variable)) {
+        procedure.reject(kind_of_procedure(track.kind).variables, fmt::format("\"{}\"", variable),
+                         "a variable that no other procedure sets; tracks of one procedure are its "
+                         "[[procedures.tracks]]");
+      }
+    }
+  }
+  taken.merge(own);
+}
+
 }  // namespace
 
 std::vector<Track> read_tracks(Table& root) {
@@ -90,8 +121,11 @@ std::vector<Track> read_tracks(Table& root) {
     read_all(table, tracks);
   }
   if (root.has("procedures")) {
+    std::set<std::string> taken;
     for (Table& table : root.tables("procedures")) {
+      const std::size_t before = tracks.size();
       read_all(table, tracks);
+      check_own_variables(table, std::span(tracks).subspan(before), taken);
     }
   }
   if (tracks.size() > kMostTracks) {

@@ -23,22 +23,28 @@ double rounded_within(double asked, double low, double high, double resolution) 
 }  // namespace
 
 std::string Track::lesson() const {
-  if (kind == "magnitude") {
-    return "a number above 0";
-  }
-  if (kind == "adjustment") {
-    return "1, -1 or 0";
+  switch (learns_from) {
+    case OutcomeForm::kMagnitude:
+      return "a number above 0";
+    case OutcomeForm::kAdjustment:
+      return "1, -1 or 0";
+    case OutcomeForm::kAnswer:
+      break;
   }
   return outcomes == 2 ? "0 or 1" : fmt::format("a whole number from 0 to {}", outcomes - 1);
 }
 
 bool Track::learns(double outcome) const noexcept {
-  if (kind == "magnitude") {
-    return std::isfinite(outcome) && outcome > 0.0;
-  }
   const bool whole = outcome == std::floor(outcome);
-  return kind == "adjustment" ? whole && std::abs(outcome) <= 1.0
-                              : whole && outcome >= 0.0 && outcome < static_cast<double>(outcomes);
+  switch (learns_from) {
+    case OutcomeForm::kMagnitude:
+      return std::isfinite(outcome) && outcome > 0.0;
+    case OutcomeForm::kAdjustment:
+      return whole && std::abs(outcome) <= 1.0;
+    case OutcomeForm::kAnswer:
+      break;
+  }
+  return whole && outcome >= 0.0 && outcome < static_cast<double>(outcomes);
 }
 
 double Track::applied(double asked) const noexcept {

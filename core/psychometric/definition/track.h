@@ -9,7 +9,6 @@
 
 #include "core/psychometric/function/psychometric_function.h"
 #include "core/psychometric/procedure/procedure.h"
-#include "core/psychometric/procedure/staircase_rule.h"
 
 namespace haptrial::psychometric {
 
@@ -20,12 +19,25 @@ struct TrackDimension {
   double resolution{0.0};  // 0: not rounded
 };
 
+/// Form of the outcomes that a track learns from.
+enum class OutcomeForm {
+  kAnswer,      // 0, 1, ...: which answer it was; of two, 1 is "correct" or "yes"
+  kMagnitude,   // a number above 0
+  kAdjustment,  // 1, -1 or 0: the level is to rise, to fall, or is left as it is
+};
+
+/// Result to expect of a track.
+struct TrackPrediction {
+  double mean{0.0};       // of the estimate, on the axis of the track
+  double deviation{0.0};  // standard deviation of the estimate, likewise
+  double trials{0.0};     // expected number
+};
+
 /// One track of a procedure: it sets a variable of the definition, trial by trial, and learns from
 /// what came of it.
 struct Track {
   std::string name;
-  std::string kind;             // "staircase", "pest", "psi", "quest_plus", "constant",
-                                // "adjustment", "magnitude"
+  std::string kind;             // word of its kind (procedure_kinds.h)
   std::string variable;         // that it sets
   std::string unit;             // of the variable, as a text
   std::vector<std::string> by;  // factors: each combination has a track of its own
@@ -36,12 +48,18 @@ struct Track {
   std::vector<TrackDimension> further;  // of a level with several dimensions
   int most_trials{0};                   // of one track
   bool listed{false};                   // its trials are known from the beginning
-  std::size_t outcomes{2};              // that a track of answers tells apart
-  std::optional<bool> falls;  // whether answers 1 get rarer as the level rises; none: not known
-  Axis axis;                  // of its steps
-  std::optional<StaircaseParameters> staircase;    // of a staircase
+  OutcomeForm learns_from{OutcomeForm::kAnswer};
+  std::size_t outcomes{2};        // that a track of answers tells apart
+  std::optional<bool> falls;      // whether answers 1 get rarer as the level rises; none: not known
+  Axis axis;                      // of its steps
+  std::optional<double> balance;  // share of answers 1 about which its levels settle, if known
   std::optional<PsychometricParameters> expected;  // that the study counts on
   std::function<std::unique_ptr<Procedure>(std::uint64_t seed, const std::string& name)> begin;
+  /// Computes the result to expect of people with this function; without it tracks are simulated.
+  /// @throws std::invalid_argument if it cannot be said
+  std::function<TrackPrediction(const PsychometricFunction& people)> predict;
+  /// Sentences on a track that can be presented and yet tells nothing; without it there are none.
+  std::function<std::vector<std::string>(const Track& track)> warnings;
 
   /// Names the outcomes that it can learn: "a number above 0", or "0 or 1".
   std::string lesson() const;

@@ -148,9 +148,10 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
     return defaults;
   }
   const protocols::Track& track = d.tracks.front();
-  defaults.kind = track.kind == "magnitude"    ? AnalysisKind::kMagnitude
-                  : track.kind == "adjustment" ? AnalysisKind::kAdjustment
-                                               : AnalysisKind::kPsychometric;
+  using psychometric::OutcomeForm;
+  defaults.kind = track.learns_from == OutcomeForm::kMagnitude    ? AnalysisKind::kMagnitude
+                  : track.learns_from == OutcomeForm::kAdjustment ? AnalysisKind::kAdjustment
+                                                                  : AnalysisKind::kPsychometric;
   defaults.guess = guess_of(d);
   defaults.axis = track.axis;
   if (std::ranges::all_of(d.tracks, [&](const auto& each) { return each.falls == track.falls; })) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -68,20 +69,15 @@ void check_tracks(Table& root, const TrialsDefinition& d) {
   }
 }
 
-/// A staircase that rests where guessing leads would go nowhere.
+/// A track that settles where guessing leads would go nowhere.
 void check_balance(Table& root, const Track& track, const Question& question) {
-  if (!track.staircase || track.staircase->up != 1) {
-    return;
-  }
-  const double balance =
-      psychometric::balance_of(track.staircase->down, track.staircase->steps.back());
   const double guess = 1.0 / static_cast<double>(question.choices.size());
-  if (balance <= guess) {
+  if (track.balance && *track.balance <= guess) {
     root.reject(table_of_tracks(root),
                 fmt::format("is in balance at {:.3g} % right answers (\"{}\"), which guessing "
                             "gives; let more right answers make a step down, or steps up be "
                             "larger",
-                            100.0 * balance, track.name));
+                            100.0 * *track.balance, track.name));
   }
 }
 
@@ -90,7 +86,7 @@ void check_learning(Table& root, const TrialsDefinition& d, const Track& track) 
   if (!track.counts.empty()) {
     return;
   }
-  if (track.kind == "adjustment") {
+  if (track.learns_from == psychometric::OutcomeForm::kAdjustment) {
     root.reject(table_of_tracks(root),
                 fmt::format("does not say which answer raises the level (\"{}\"); add "
                             "`counts`, a formula that is 1, -1 or 0: \"$answer == 1 ? 1 "
@@ -107,30 +103,15 @@ void check_learning(Table& root, const TrialsDefinition& d, const Track& track) 
   }
 }
 
-/// Each [[procedures]] sets variables of its own.
-std::set<std::string> variables_of_procedures(Table& root) {
-  std::set<std::string> variables;
-  for (Table& table : root.tables("procedures")) {
-    const bool several = table.has("stimulus");  // of quest_plus
-    const char* key = several ? "stimulus" : "variable";
-    for (const std::string& variable :
-         several ? table.table(key).keys_as_written() : std::vector{table.text(key)}) {
-      if (!variables.insert(variable).second) {
-        table.reject(key, fmt::format("\"{}\"", variable),
-                     "a variable that no other procedure sets; tracks of one procedure are its "
-                     "[[procedures.tracks]]");
-      }
-    }
-  }
-  return variables;
-}
-
 /// In the trials of one procedure the variables of the others have what [variables] says.
-void check_variables(Table& root) {
+void check_variables(Table& root, const TrialsDefinition& d) {
   if (!root.has("procedures")) {
     return;
   }
-  const std::set<std::string> variables = variables_of_procedures(root);
+  std::set<std::string> variables;
+  for (const Track& track : d.tracks) {
+    std::ranges::copy(track.variables(), std::inserter(variables, variables.end()));
+  }
   Table stated = root.has("variables") ? root.table("variables") : root;
   for (const std::string& variable : variables) {
     if (variables.size() > 1 && (!root.has("variables") || !stated.has(variable))) {
@@ -187,7 +168,7 @@ void check_procedures(Table& root, const TrialsDefinition& d) {
   for (const Track& track : d.tracks) {
     check_learning(root, d, track);
   }
-  check_variables(root);
+  check_variables(root, d);
 }
 
 void check_stages(Table& root, const TrialsDefinition& d, const std::vector<NamedStage>& stages) {

@@ -8,7 +8,6 @@
 
 #include "core/base/counted.h"
 #include "core/psychometric/definition/expectation.h"
-#include "core/psychometric/definition/procedure_warnings.h"
 #include "protocols/psychophysics/definition/unmatched_literals.h"
 
 namespace haptrial::protocols {
@@ -162,7 +161,9 @@ std::vector<std::string> TrialsDefinition::warnings() const {
   std::vector<std::string> all = unmatched_literals(text);
   all.insert(all.end(), underdamped.begin(), underdamped.end());
   for (const Track& track : tracks) {
-    std::ranges::move(psychometric::procedure_warnings(track), std::back_inserter(all));
+    if (track.warnings) {
+      std::ranges::move(track.warnings(track), std::back_inserter(all));
+    }
   }
   if (script) {
     all.push_back(fmt::format(
