@@ -7,7 +7,6 @@
 #include <map>
 
 #include "core/base/short_numbers.h"
-#include "core/psychometric/procedure/staircase.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -39,9 +38,7 @@ void LiveTrials::begin(const NextTrial& next, const std::vector<RunningTrack>& r
   track_ = track.name;
   variable_ = track.track->variables().front();
   unit_ = track.track->unit;
-  if (const auto* stairs = dynamic_cast<const psychometric::Staircase*>(track.procedure.get())) {
-    reversals_ = static_cast<int>(stairs->reversals().size());
-  }
+  reversals_ = track.procedure->counted_reversals().value_or(-1);
 }
 
 void LiveTrials::conclude(const Outcome& outcome) {

@@ -10,8 +10,6 @@
 #include "analysis/statistics/base/distributions.h"
 #include "core/base/parallel.h"
 #include "core/base/random.h"
-#include "core/psychometric/procedure/pest.h"
-#include "core/psychometric/procedure/staircase.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -29,12 +27,6 @@ void mark_reversals(std::vector<TrackStep>& steps) {
     steps[i].reversal = direction != 0 && now != direction;
     direction = now;
   }
-}
-
-/// Other procedures jump to and fro without turning.
-bool has_reversals(const psychometric::Procedure* procedure) {
-  return dynamic_cast<const psychometric::Staircase*>(procedure) != nullptr ||
-         dynamic_cast<const psychometric::Pest*>(procedure) != nullptr;
 }
 
 /// Counts steps at an end of the range; a track that begins there has not come to it.
@@ -56,16 +48,15 @@ std::size_t steps_at_end(const TrackEstimate& track) {
 
 void replay(TrackEstimate& track, const std::vector<psychometric::Level>& levels,
             psychometric::Procedure& procedure) {
-  const auto* staircase = dynamic_cast<const psychometric::Staircase*>(&procedure);
   try {
     for (std::size_t i = 0; i < track.steps.size() && !procedure.finished(); ++i) {
       if (!std::isfinite(track.steps[i].outcome)) {
         continue;
       }
-      const int before = staircase != nullptr ? staircase->state().reversals : 0;
+      const auto before = procedure.counted_reversals();
       procedure.report(track.steps[i].outcome, levels[i]);
-      if (staircase != nullptr) {  // its own count, which knows of bounds and of the last trial
-        track.steps[i].reversal = staircase->state().reversals > before;
+      if (before) {  // its own count, which knows of bounds and of the last trial
+        track.steps[i].reversal = procedure.counted_reversals() > before;
       }
     }
     track.finished = procedure.finished();
@@ -206,7 +197,7 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     tracks[i].steps.shrink_to_fit();
     const auto procedure = procedure_of ? procedure_of(tracks[i].track) : nullptr;
-    if (has_reversals(procedure.get())) {
+    if (procedure && procedure->has_reversals()) {
       mark_reversals(tracks[i].steps);
     }
     if (procedure) {

@@ -44,7 +44,8 @@ struct TrackEstimate {
 using ProcedureOf = std::function<std::unique_ptr<psychometric::Procedure>(const std::string&)>;
 
 /// Replays each track through its procedure. Trials of practice do not take part. Without a
-/// procedure the track has steps, but no estimate; only staircases and PEST have reversals.
+/// procedure the track has steps, but no estimate; only a procedure that goes by steps has
+/// reversals.
 std::vector<TrackEstimate> track_estimates(const TrialsData& data, const ProcedureOf& procedure_of);
 
 /// 95 % intervals of the estimates: what the procedure states itself unless a function is fitted

@@ -42,6 +42,7 @@ class Pest final : public Procedure {
   std::optional<LevelRange> range() const override {
     return LevelRange{parameters_.low, parameters_.high};
   }
+  bool has_reversals() const override { return true; }
 
  private:
   void step(int way);

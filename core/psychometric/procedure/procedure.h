@@ -63,6 +63,10 @@ class Procedure {
   virtual std::optional<double> target() const { return std::nullopt; }
   /// The range of its (first) dimension, if answers move the level within one.
   virtual std::optional<LevelRange> range() const { return std::nullopt; }
+  /// Whether levels go up and down by steps, so that a step against the last one is a reversal.
+  virtual bool has_reversals() const { return false; }
+  /// Reversals so far, if the procedure counts them itself.
+  virtual std::optional<int> counted_reversals() const { return std::nullopt; }
 };
 
 /// Reports each outcome. @throws as report() does

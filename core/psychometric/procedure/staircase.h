@@ -26,6 +26,8 @@ class Staircase final : public Procedure {
   std::optional<LevelRange> range() const override {
     return LevelRange{parameters_.low, parameters_.high};
   }
+  bool has_reversals() const override { return true; }
+  std::optional<int> counted_reversals() const override { return state_.reversals; }
 
   const StaircaseState& state() const noexcept { return state_; }
   /// Levels of the reversals so far.

@@ -184,6 +184,7 @@ TEST(StaircaseTest, DeviationFromMiddlesOfPairs) {
     staircase.report(answer, staircase.next());
   }
   EXPECT_EQ(staircase.reversals(), (Levels{4, 5, 3, 4}));
+  EXPECT_EQ(staircase.counted_reversals(), 4);
   EXPECT_NEAR(staircase.estimates()[0].deviation.value(), 0.5, 1e-12);
 }
 
