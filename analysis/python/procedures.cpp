@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -6,6 +7,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/psychometric/definition/expectation.h"
+#include "core/psychometric/definition/procedure_kinds.h"
 #include "core/psychometric/definition/read_tracks.h"
 #include "core/psychometric/definition/track.h"
 
@@ -90,6 +92,13 @@ std::vector<std::unique_ptr<Procedure>> procedures(const std::string& text, cons
   return all;
 }
 
+/// Whether `variable` names what a kind of procedure sets; also for a word that is no kind.
+bool sets_one_variable(const std::string& word) {
+  return std::ranges::none_of(psychometric::kinds_of_procedure(), [&](const auto& kind) {
+    return kind.word == word && !kind.sets_one_variable();
+  });
+}
+
 void bind_state(py::class_<Procedure>& procedure) {
   procedure
       .def_property_readonly(
@@ -146,6 +155,7 @@ void bind_procedures(py::module_& module) {
       .def("postpone", &Procedure::postpone,
            "The present level comes again later, if levels are known before the first trial.");
   bind_state(procedure);
+  module.def("sets_one_variable", &sets_one_variable, py::arg("word"));
   module.def("procedures", &procedures, py::arg("text"), py::arg("name"), py::arg("whole"),
              py::arg("seed"));
 }

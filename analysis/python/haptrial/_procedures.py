@@ -35,5 +35,5 @@ def procedures(keys: dict | str, seed: int = 1) -> dict[str, Procedure]:
 
 
 def _text(keys: dict) -> str:
-    own = {} if keys.get("kind") == "quest_plus" else {"variable": "level"}
+    own = {"variable": "level"} if _haptrial.sets_one_variable(str(keys.get("kind"))) else {}
     return _toml.table("procedure", {**own, **keys})
