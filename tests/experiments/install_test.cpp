@@ -74,7 +74,8 @@ TEST_F(InstallTest, AProgramWithAProtocolOfItsOwnRunsStudies) {
   EXPECT_EQ(ran.status, 0) << "it has the others' as well: " << ran.errors;
 }
 
-/// Programs with a device, a field or a score of their own, with nothing of the source tree.
+/// Programs with a device, a field, a procedure or a score of their own, with nothing of the source
+/// tree.
 TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
   const test::CommandResult built = build("own");
   ASSERT_EQ(built.status, 0) << built.output << built.errors;
@@ -116,6 +117,11 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
                           "' && haptrial run valley.toml --subject S01 --out sessions --resume");
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.errors.find("fields.valley.type is 'valley'; allowed: "), std::string::npos)
+      << ran.errors;
+
+  ran = test::run_command(folder + "robbins_monro keys trials");
+  EXPECT_NE(ran.output.find("Share of answers 1 that the levels come to (kind: robbins_monro) |"),
+            std::string::npos)
       << ran.errors;
 
   ran = test::run_command("cd '" + root_ +
