@@ -32,12 +32,16 @@ constexpr const char* kPsi =
     "levels = { from = 305.0, to = 600.0, count = 30 }\nstop = { trials = 40 }\n";
 
 TEST(TrialsAxisTest, AReportFitsOnTheScaleOfAnyProcedure) {
-  for (const char* table : {"[procedure]\n", "[[procedures]]\nname = \"only\"\n"}) {
-    for (const char* keys : {kPest, kPsi}) {
-      const psychometric::Axis axis = axis_with(std::string(table) + keys);
-      EXPECT_EQ(axis.scale, psychometric::Scale::kLog10) << table << keys;
-      EXPECT_EQ(axis.origin, 300.0) << table << keys;
-      EXPECT_EQ(axis.unit, "N/m") << table << keys;
+  const std::string tracks = "[[procedure.tracks]]\nname = \"one\"\n";
+  for (const char* keys : {kPest, kPsi}) {
+    for (const std::string& text :
+         {std::string("[procedure]\n") + keys,
+          std::string("[[procedures]]\nname = \"only\"\n") + keys,
+          std::string("[procedure]\n") + keys + tracks, "[procedure]\n" + tracks + keys}) {
+      const psychometric::Axis axis = axis_with(text);
+      EXPECT_EQ(axis.scale, psychometric::Scale::kLog10) << text;
+      EXPECT_EQ(axis.origin, 300.0) << text;
+      EXPECT_EQ(axis.unit, "N/m") << text;
     }
   }
 }

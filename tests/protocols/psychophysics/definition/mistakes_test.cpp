@@ -346,6 +346,16 @@ TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
                                  "other procedure sets")));
 }
 
+TEST(TrialMistakesTest, TracksOfSeveralProceduresMayEachNameTheirVariable) {
+  std::string tracks = with(kSmallStaircase, "[procedure]", "[[procedures]]");
+  tracks = with(tracks, "variable = \"level\"\n", "");
+  const std::string named = "[[procedures.tracks]]\nvariable = \"level\"\n";
+  EXPECT_THAT(problems_of_trials(small_trials(tracks + named)), IsEmpty());
+  EXPECT_THAT(problems_of_trials(small_trials(tracks + named + tracks + named)),
+              Contains(HasSubstr("procedures[2].variable is \"level\"; allowed: a variable that no "
+                                 "other procedure sets")));
+}
+
 TEST(TrialMistakesTest, TargetsThatGuessingReaches) {
   EXPECT_THAT(
       problems_of_trials(small_trials(std::string(kSmallStaircase) + "down = 1\n")),
