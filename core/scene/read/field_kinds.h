@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,10 @@ struct FieldSetting {
 /// One kind of [fields]: what its `type` says, and how its keys are read.
 struct KindOfField {
   std::string word;
-  FieldKind (*read)(Table& table, const FieldSetting& setting);  // problems are noted in the table
-  double fade{0.05};  // fade_in and fade_out if none are given >= 0 [s]
+  /// Problems are noted in the table.
+  std::function<FieldKind(Table& table, const FieldSetting& setting)> read;
+  double fade{0.05};     // fade_in and fade_out if none are given >= 0 [s]
+  bool has_limit{true};  // false: it gives no force of its own
 };
 
 /// Every kind that read_field() knows. Call before threads are started.

@@ -37,7 +37,7 @@ Field read_field(Table& table, std::string name, double rate) {
   if (kind == nullptr) {
     return field;
   }
-  if (kind->word != "grating" && kind->word != "texture") {
+  if (kind->has_limit) {
     field_limit_schema().read(table, field);
   }
   field.fade_in = field.fade_out = kind->fade;

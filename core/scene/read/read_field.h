@@ -11,8 +11,8 @@ class Table;
 
 namespace haptrial::scene {
 
-/// Reads one table [fields.NAME]: `type`, the keys of its kind (field_kinds.cpp; core/scene
-/// has their laws), and for every kind but reliefs limit, fade_in and fade_out. Problems are noted
+/// Reads one table [fields.NAME]: `type`, the keys of its kind (field_kinds.h), and for
+/// every kind limit (but for reliefs), fade_in and fade_out. Problems are noted
 /// in the table; a field comes back all the same.
 /// @param rate  of the servo loop [Hz]: vibrations stay below half of it
 Field read_field(Table& table, std::string name, double rate);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/scene/field.h"
-#include "core/scene/read/read_shape.h"
+#include "core/scene/read/read_region.h"
 #include "protocols/psychophysics/definition/names.h"
 #include "protocols/psychophysics/definition/read_stages.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
