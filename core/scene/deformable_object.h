@@ -12,8 +12,11 @@
 
 namespace haptrial::scene {
 
+class DeformableObject;
+
 /// An object that gives way to the hand.
 struct DeformableObjectParameters {
+  using Law = DeformableObject;
   deformable::SharedHapticMesh mesh;                // null: nothing is felt
   deformable::Tissue tissue;                        // of elements that rest on every tick
   std::optional<deformable::SpringTissue> springs;  // of springs that move, instead
@@ -26,6 +29,8 @@ struct DeformableObjectParameters {
   deformable::TwoRates rates;                      // of it
   std::shared_ptr<deformable::MovingShape> shape;  // where its vertices are; null: no pictures
 
+  StiffnessBound bound() const;
+  FieldTraits traits() const { return {.object = true, .yields = true}; }
   bool prepared() const { return body != nullptr || moving != nullptr; }
 };
 

@@ -43,19 +43,8 @@ struct Field {
 /// The surface that a field lies on; empty if it has none.
 const std::string& surface_of(const Field& field) noexcept;
 
-inline bool is_surface(const Field& field) noexcept {
-  return std::holds_alternative<SurfaceParameters>(field.kind) ||
-         std::holds_alternative<RigidObjectParameters>(field.kind);
-}
-/// One of [objects], not of [fields].
-inline bool is_object(const Field& field) noexcept {
-  return std::holds_alternative<RigidObjectParameters>(field.kind) ||
-         std::holds_alternative<DeformableObjectParameters>(field.kind);
-}
-/// A relief shapes the force of the surface that it lies on and has none of its own.
-inline bool is_relief(const Field& field) noexcept {
-  return std::holds_alternative<GratingParameters>(field.kind) ||
-         std::holds_alternative<TextureParameters>(field.kind);
+inline FieldTraits traits_of(const Field& field) {
+  return std::visit([](const auto& p) { return p.traits(); }, field.kind);
 }
 
 }  // namespace haptrial::scene

@@ -4,6 +4,7 @@
 
 #include "core/base/point_state.h"
 #include "core/control/gain_shares.h"
+#include "core/scene/field_traits.h"
 
 namespace haptrial::scene {
 

@@ -7,13 +7,19 @@
 
 namespace haptrial::scene {
 
+class Friction;
+
 struct FrictionParameters {
+  using Law = Friction;
   enum class Model { kBristle, kDahl };
   std::string on;                // a surface field; empty in free space
   double static_level{0.5};      // coefficient on a surface, else force [N]; >= dynamic_level
   double dynamic_level{0.4};     // the same once it slides >= 0
   double stiffness{1000.0};      // of the bristle, sigma > 0 [N/m]
   Model model{Model::kBristle};  // Dahl: static and dynamic level are the same
+
+  StiffnessBound bound() const { return {true, stiffness, 0.0}; }
+  FieldTraits traits() const { return {.yields = true}; }
 };
 
 /// Dry friction by a bristle between the hand and a place of adhesion, with deflection z:

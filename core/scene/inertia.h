@@ -7,9 +7,15 @@
 
 namespace haptrial::scene {
 
+class Inertia;
+
 struct InertiaParameters {
+  using Law = Inertia;
   double mass{0.2};                  // m_v >= 0 [kg]
   double acceleration_filter{20.0};  // cut-off f_c > 0 [Hz]
+
+  StiffnessBound bound() const { return {}; }
+  FieldTraits traits() const { return {.mass = mass, .mass_cutoff = acceleration_filter}; }
 };
 
 /// A virtual mass: f = -m_v a_f, with a_f the change of the velocity in a tick behind a first-order

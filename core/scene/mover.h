@@ -8,10 +8,16 @@
 
 namespace haptrial::scene {
 
+class Mover;
+
 struct MoverParameters {
+  using Law = Mover;
   Eigen::Vector3d to{Eigen::Vector3d::Zero()};  // [m]
   double duration{0.8};                         // of the move > 0 [s]
   control::PdGains gains{300.0, 20.0};          // k >= 0 [N/m], b >= 0 [N·s/m]
+
+  StiffnessBound bound() const { return {false, gains.stiffness, gains.damping}; }
+  FieldTraits traits() const { return {.leads_to = to}; }
 };
 
 /// Leads the hand from where it is when the field is switched on: a spring and damper to a point

@@ -7,13 +7,6 @@
 
 namespace haptrial::scene {
 
-/// How steeply a field's force may change, and whether it takes energy from every hand.
-struct StiffnessBound {
-  bool passive{false};    // in continuous time, once it is faded in
-  double stiffness{0.0};  // K: bound of how fast the force over the place turns against it [N/m]
-  double damping{0.0};    // B: bound of the force over the velocity [N·s/m]
-};
-
 /// Bound on the field at `which` in a scene; reliefs steepen the surface that they lie on and are
 /// counted there. For a field that is not passive K and B hold for its forces from place and
 /// velocity; the energy that it gives over time is its purpose.

@@ -9,11 +9,17 @@
 
 namespace haptrial::scene {
 
+class PathGuide;
+
 struct PathParameters {
+  using Law = PathGuide;
   std::vector<Eigen::Vector3d> points{Eigen::Vector3d::Zero(),
                                       Eigen::Vector3d::UnitX()};  // (N x 3), N >= 2 [m]
   double duration{5.0};                                           // from end to end > 0 [s]
   control::PdGains gains{900.0, 100.0};                           // k >= 0 [N/m], b >= 0 [N·s/m]
+
+  StiffnessBound bound() const { return {false, gains.stiffness, gains.damping}; }
+  FieldTraits traits() const { return {.leads_to = points.back()}; }
 };
 
 /// Guides the hand along a path: a spring and damper to a point that travels the lines between

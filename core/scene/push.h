@@ -1,13 +1,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "core/scene/field_state.h"
 
 namespace haptrial::scene {
 
+class Constant;
+class Ramp;
+class Pulse;
+
 struct ConstantParameters {
+  using Law = Constant;
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // f_W [N]
+
+  StiffnessBound bound() const { return {true, 0.0, 0.0}; }
+  FieldTraits traits() const { return {.asked_force = force.norm()}; }
 };
 
 /// f(t) = f. Conservative: its energy is -f · p.
@@ -24,9 +33,13 @@ class Constant {
 };
 
 struct RampParameters {
+  using Law = Ramp;
   Eigen::Vector3d from{Eigen::Vector3d::Zero()};  // f_0 [N]
   Eigen::Vector3d to{Eigen::Vector3d::Zero()};    // f_1 [N]
   double rise{1.0};                               // R > 0 [s]
+
+  StiffnessBound bound() const { return {}; }
+  FieldTraits traits() const { return {.asked_force = std::max(from.norm(), to.norm())}; }
 };
 
 /// f(t) = f_0 + (f_1 - f_0) min(t / R, 1), with t from the moment it is switched on. Active.
@@ -40,10 +53,14 @@ class Ramp {
 };
 
 struct PulseParameters {
+  using Law = Pulse;
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // f [N]
   double delay{0.0};                               // from switching on to the first force >= 0 [s]
   double duration{0.1};                            // D from first to last force > 0 [s]
   double rise{0.0};                                // of each edge R, 0 to D / 2 [s]
+
+  StiffnessBound bound() const { return {}; }
+  FieldTraits traits() const { return {.asked_force = force.norm()}; }
 };
 
 /// f(t) = f g(t - delay), where g rises as (1 - cos(pi t / R)) / 2, stays at 1 and falls in the

@@ -4,6 +4,13 @@
 
 namespace haptrial::scene {
 
+/// Nothing lies on such a field, and it lies on nothing.
+FieldTraits RegisteredParameters::traits() const {
+  FieldTraits traits = numbers->traits();
+  traits.surface = traits.relief = traits.object = false;
+  return traits;
+}
+
 RegisteredField::RegisteredField(const RegisteredParameters& parameters, const Setting& setting)
     : type_(parameters.type) {
   require(parameters.numbers != nullptr, "has no numbers");

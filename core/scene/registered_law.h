@@ -8,6 +8,8 @@
 
 namespace haptrial::scene {
 
+class RegisteredField;
+
 /// A law of force that is made outside of the program. Made before a trial, on any thread; all of
 /// its functions belong to the servo thread: no allocation, lock, I/O or throw, and done in a few
 /// microseconds, since nothing interrupts them and a late force is felt.
@@ -31,14 +33,22 @@ class RegisteredNumbers {
   virtual ~RegisteredNumbers() = default;
   /// @throws std::invalid_argument naming the number that breaks its bound
   virtual std::unique_ptr<RegisteredLaw> law(const Setting& setting) const = 0;
+  /// How steep the force is, for checks of light hands; by default nothing is known of it.
+  virtual StiffnessBound bound() const { return {}; }
+  /// By default a field whose force works on the hand.
+  virtual FieldTraits traits() const { return {}; }
 };
 
 struct RegisteredParameters {
+  using Law = RegisteredField;
   std::string type;                                  // the word of the definition
   std::shared_ptr<const RegisteredNumbers> numbers;  // not null
+
+  StiffnessBound bound() const { return numbers->bound(); }
+  FieldTraits traits() const;
 };
 
-/// Such a law among those of a scene. Nothing is known of its steepness: it counts as active.
+/// Such a law among those of a scene.
 class RegisteredField {
  public:
   RegisteredField(const RegisteredParameters& parameters, const Setting& setting);

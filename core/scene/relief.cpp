@@ -30,6 +30,16 @@ void lay_height_on(double height, const Vector3d& slope, double weight, const Bo
 
 }  // namespace
 
+ReliefBound GratingParameters::relief_bound() const {
+  const Grating law(*this, {});
+  return {law.steepest(), law.most_curved()};
+}
+
+ReliefBound TextureParameters::relief_bound() const {
+  const Texture law(*this, {});
+  return {law.steepest(), law.most_curved()};
+}
+
 Grating::Grating(const GratingParameters& p, const Setting&)
     : amplitude_(p.amplitude),
       phase_(kTwoPi * p.phase),

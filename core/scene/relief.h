@@ -10,8 +10,12 @@
 
 namespace haptrial::scene {
 
+class Grating;
+class Texture;
+
 /// Ridges across a direction u: h(p) = A profile(u · p / period + phase), each from -1 to 1.
 struct GratingParameters {
+  using Law = Grating;
   enum class Profile { kSine, kRounded };  // sin, or flat ridges and grooves with soft edges
   std::string on;                          // the surface field that it changes
   Eigen::Vector3d direction{Eigen::Vector3d::UnitX()};  // any length above 0
@@ -19,6 +23,10 @@ struct GratingParameters {
   double period{0.003};                                 // > 0 [m]
   double phase{0.0};                                    // in periods
   Profile profile{Profile::kSine};
+
+  StiffnessBound bound() const { return {true, 0.0, 0.0}; }
+  FieldTraits traits() const { return {.relief = true, .yields = true}; }
+  ReliefBound relief_bound() const;
 };
 
 /// kRounded is tanh(s sin x) / tanh(s).
@@ -44,12 +52,17 @@ class Grating {
 /// Roughness: a sum of kWaves sines of equal height whose spatial frequencies fill the band evenly
 /// and whose directions and phases are drawn. Exactly band-limited; the same for the same seed.
 struct TextureParameters {
+  using Law = Texture;
   std::string on;                                    // the surface field that it changes
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // waves run across it; any length above 0
   double roughness{0.0001};                          // root mean square of h >= 0 [m]
   double lowest{100.0};                              // spatial frequency > 0 [1/m]
   double highest{1000.0};                            // above lowest [1/m]
   std::uint64_t seed{1};
+
+  StiffnessBound bound() const { return {true, 0.0, 0.0}; }
+  FieldTraits traits() const { return {.relief = true, .yields = true}; }
+  ReliefBound relief_bound() const;
 };
 
 class Texture {

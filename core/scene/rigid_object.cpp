@@ -29,6 +29,15 @@ contact::RendererOptions options_of(const RigidObjectParameters& p) {
 
 }  // namespace
 
+/// The proxy moves only to come nearer to the tool: the spring between them gives back at most what
+/// it was given, and turns against the hand by k at most, also where friction holds the proxy.
+/// Shading turns the force away from that way, and renderers without a proxy jump: of them nothing
+/// is proven.
+StiffnessBound RigidObjectParameters::bound() const {
+  const bool passive = renderer == contact::RendererKind::kProxy && crease_angle < 0.0;
+  return {passive, gains.stiffness, gains.damping};
+}
+
 RigidObject::RigidObject(const RigidObjectParameters& parameters, const Setting& setting)
     : parameters_(parameters), period_(1.0 / setting.rate), limit_(setting.limit) {
   require(std::isfinite(parameters.scale) && parameters.scale > 0.0,

@@ -12,8 +12,11 @@
 
 namespace haptrial::scene {
 
+class RigidObject;
+
 /// An object that is felt by its triangles.
 struct RigidObjectParameters {
+  using Law = RigidObject;
   contact::SharedBody body;            // null: nothing is felt
   contact::ObjectPose pose;            // of the body's frame in W
   double scale{1.0};                   // lengths of W over those of the body > 0
@@ -23,6 +26,11 @@ struct RigidObjectParameters {
   double crease_angle{-1.0};  // of force shading, 0 to pi / 2; negative: none [rad]
   contact::RendererKind renderer{contact::RendererKind::kProxy};
   int resolution{64};  // of voxel and distance field: cells along the longest side
+
+  StiffnessBound bound() const;
+  FieldTraits traits() const {
+    return {.surface = true, .closes_in = true, .object = true, .yields = true};
+  }
 };
 
 /// A mesh rendered by its proxy (core/contact), in W:

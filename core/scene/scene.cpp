@@ -19,39 +19,6 @@ using Law = std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture,
                          Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover,
                          PathGuide, RigidObject, DeformableObject, RegisteredField>;
 
-template <class Parameters>
-struct LawOf;
-#define HAPTRIAL_LAW(parameters, law) \
-  template <>                         \
-  struct LawOf<parameters> {          \
-    using type = law;                 \
-  }
-HAPTRIAL_LAW(ConstantParameters, Constant);
-HAPTRIAL_LAW(RampParameters, Ramp);
-HAPTRIAL_LAW(PulseParameters, Pulse);
-HAPTRIAL_LAW(SpringParameters, Hold);
-HAPTRIAL_LAW(LineChannelParameters, Hold);
-HAPTRIAL_LAW(AxisChannelParameters, Hold);
-HAPTRIAL_LAW(PlaneParameters, Hold);
-HAPTRIAL_LAW(SurfaceParameters, Surface);
-HAPTRIAL_LAW(GratingParameters, Grating);
-HAPTRIAL_LAW(TextureParameters, Texture);
-HAPTRIAL_LAW(ViscousParameters, Viscous);
-HAPTRIAL_LAW(MatrixViscousParameters, Viscous);
-HAPTRIAL_LAW(InertiaParameters, Inertia);
-HAPTRIAL_LAW(FrictionParameters, Friction);
-HAPTRIAL_LAW(SineVibrationParameters, SineVibration);
-HAPTRIAL_LAW(NoiseVibrationParameters, NoiseVibration);
-HAPTRIAL_LAW(TapParameters, Tap);
-HAPTRIAL_LAW(DetentParameters, Detent);
-HAPTRIAL_LAW(ClickParameters, Click);
-HAPTRIAL_LAW(MoverParameters, Mover);
-HAPTRIAL_LAW(PathParameters, PathGuide);
-HAPTRIAL_LAW(RigidObjectParameters, RigidObject);
-HAPTRIAL_LAW(DeformableObjectParameters, DeformableObject);
-HAPTRIAL_LAW(RegisteredParameters, RegisteredField);
-#undef HAPTRIAL_LAW
-
 template <class Each>
 concept SurfaceLaw = requires(Each& law) {
   law.lay(ReliefHere{});
@@ -83,7 +50,7 @@ SurfaceTouch touch_of(const Law& law) noexcept {
 Law law_of(const Field& field, const Setting& setting) {
   return std::visit(
       [&](const auto& parameters) -> Law {
-        return typename LawOf<std::decay_t<decltype(parameters)>>::type(parameters, setting);
+        return typename std::decay_t<decltype(parameters)>::Law(parameters, setting);
       },
       field.kind);
 }
@@ -94,13 +61,13 @@ constexpr std::size_t kFreeSpace = Scene::kMostFields;
 std::size_t index_of_surface(const std::vector<Field>& fields, const Field& field) {
   const std::string& name = surface_of(field);
   if (name.empty()) {
-    if (is_relief(field)) {
+    if (traits_of(field).relief) {
       throw std::invalid_argument("Scene: " + field.name + " must lie on a surface");
     }
     return kFreeSpace;
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (fields[i].name == name && is_surface(fields[i])) {
+    if (fields[i].name == name && traits_of(fields[i]).surface) {
       return i;
     }
   }
@@ -113,6 +80,7 @@ std::size_t index_of_surface(const std::vector<Field>& fields, const Field& fiel
 struct Scene::Part {
   Law law;
   std::size_t kind;  // index in FieldKind
+  bool surface;      // others may lie on it
   double limit;
   double fade_in;
   double fade_out;
@@ -153,23 +121,16 @@ Scene::Scene(const std::vector<Field>& fields, double rate) : period_(1.0 / rate
               "fade_in must be finite and at least 0");
       require(std::isfinite(field.fade_out) && field.fade_out >= 0.0,
               "fade_out must be finite and at least 0");
-      parts_.push_back({law_of(field, {field.limit, rate}), field.kind.index(), field.limit,
-                        field.fade_in, field.fade_out, index_of_surface(fields, field)});
+      parts_.push_back({law_of(field, {field.limit, rate}), field.kind.index(),
+                        traits_of(field).surface, field.limit, field.fade_in, field.fade_out,
+                        index_of_surface(fields, field)});
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("field " + field.name + ": " + error.what());
     }
-    if (is_relief(field)) {
-      reliefs_.push_back(i);
-    } else if (is_surface(field)) {
-      surfaces_.push_back(i);
-    }
+    const FieldTraits traits = traits_of(field);
+    (traits.relief ? reliefs_ : traits.surface ? surfaces_ : forces_).push_back(i);
   }
-  forces_ = surfaces_;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (!is_relief(fields[i]) && !is_surface(fields[i])) {
-      forces_.push_back(i);
-    }
-  }
+  forces_.insert(forces_.begin(), surfaces_.begin(), surfaces_.end());
 }
 
 Scene::~Scene() = default;
@@ -262,8 +223,7 @@ void Scene::feel(Part& part, const PointState& hand, const control::GainShares& 
       part.law);
   const double size = force.norm();
   state.limited = state.limited || size > part.limit;
-  if (!std::holds_alternative<Surface>(part.law) &&
-      !std::holds_alternative<RigidObject>(part.law)) {
+  if (!part.surface) {
     state.contact = size > 0.0;
   }
   const double passed = part.fade.weight() * (size > part.limit ? part.limit / size : 1.0);

@@ -6,21 +6,43 @@
 
 namespace haptrial::scene {
 
+/// How far a point is from a shape's surface.
+struct SurfaceDistance {
+  double distance{0.0};                              // negative inside [m]
+  Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // its gradient, a unit vector out of the shape
+};
+
+/// A ball that stands for a shape in pictures.
+struct ShapeBall {
+  Eigen::Vector3d centre{Eigen::Vector3d::Zero()};  // [m]
+  double radius{0.0};                               // 0: a point [m]
+};
+
 /// The half of space behind a plane: its inside is where normal · (p - point) < 0.
 struct HalfSpace {
   Eigen::Vector3d point{Eigen::Vector3d::Zero()};    // on the plane [m]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // away from the inside; any length above 0
+
+  ShapeBall ball() const { return {point, 0.0}; }
+  /// A place to aim at, inside [m]; so of every shape.
+  Eigen::Vector3d inside() const { return point - 0.01 * normal.normalized(); }
 };
 
 struct Sphere {
   Eigen::Vector3d centre{Eigen::Vector3d::Zero()};  // [m]
   double radius{0.02};                              // > 0 [m]
+
+  ShapeBall ball() const { return {centre, radius}; }
+  Eigen::Vector3d inside() const { return centre; }
 };
 
 struct Box {
   Eigen::Vector3d centre{Eigen::Vector3d::Zero()};        // [m]
   Eigen::Vector3d size{Eigen::Vector3d::Constant(0.04)};  // whole edges > 0 [m]
   Eigen::Vector3d turn{Eigen::Vector3d::Zero()};  // about its own direction by its length [rad]
+
+  ShapeBall ball() const { return {centre, 0.5 * size.maxCoeff()}; }
+  Eigen::Vector3d inside() const { return centre; }
 };
 
 /// A round bar with flat ends; endless if length is infinite.
@@ -29,20 +51,25 @@ struct Cylinder {
   Eigen::Vector3d axis{Eigen::Vector3d::UnitY()};          // any length above 0
   double radius{0.02};                                     // > 0 [m]
   double length{std::numeric_limits<double>::infinity()};  // along the axis > 0 [m]
+
+  ShapeBall ball() const { return {centre, radius}; }
+  Eigen::Vector3d inside() const { return centre; }
 };
 
 using Shape = std::variant<HalfSpace, Sphere, Box, Cylinder>;
 
-/// How far a point is from a shape's surface.
-struct SurfaceDistance {
-  double distance{0.0};                              // negative inside [m]
-  Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // its gradient, a unit vector out of the shape
-};
+inline ShapeBall ball_of(const Shape& shape) {
+  return std::visit([](const auto& each) { return each.ball(); }, shape);
+}
+inline Eigen::Vector3d place_inside(const Shape& shape) {
+  return std::visit([](const auto& each) -> Eigen::Vector3d { return each.inside(); }, shape);
+}
 
 /// A shape of the world W, ready to be asked on every tick; serves fields and regions.
 ///
-/// The distance is exact (not a bound) on either side. Its gradient jumps where two parts of the
-/// surface are equally near: inside a box or a capped cylinder, at a sphere's centre, on an axis.
+/// The distance is exact (not a bound) on either side. Its gradient jumps where
+/// two parts of the surface are equally near: inside a box or a capped cylinder, at a sphere's
+/// centre, on an axis.
 class PlacedShape {
  public:
   /// @throws std::invalid_argument naming the parameter that breaks its bound.

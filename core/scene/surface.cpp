@@ -15,6 +15,20 @@ constexpr double kCore = 2e-3;  // over which the force fades towards the middle
 
 }  // namespace
 
+StiffnessBound SurfaceParameters::bound() const {
+  return {true, gains.stiffness, gains.damping};
+}
+
+FieldTraits SurfaceParameters::traits() const {
+  const bool closes_in = felt_from_inside && !std::holds_alternative<HalfSpace>(shape);
+  return {.surface = true, .closes_in = closes_in, .yields = true};
+}
+
+double SurfaceParameters::stretch_at(const Vector3d& p) const {
+  const double outside = PlacedShape(shape).distance(p).distance;
+  return std::max(0.0, felt_from_inside ? outside : -outside);
+}
+
 Surface::Surface(const SurfaceParameters& parameters, const Setting& setting)
     : shape_(parameters.shape),
       inside_(parameters.felt_from_inside),

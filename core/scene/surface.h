@@ -8,10 +8,18 @@
 
 namespace haptrial::scene {
 
+class Surface;
+
 struct SurfaceParameters {
+  using Law = Surface;
   Shape shape;
   bool felt_from_inside{false};        // then the hand is kept in the shape, else out of it
   control::PdGains gains{800.0, 2.0};  // k >= 0 [N/m], b >= 0 [N·s/m]
+
+  StiffnessBound bound() const;
+  FieldTraits traits() const;
+  /// How deep a hand at p is behind the surface [m].
+  double stretch_at(const Eigen::Vector3d& p) const;
 };
 
 /// The sum of the reliefs on a surface at a place.

@@ -9,11 +9,19 @@
 
 namespace haptrial::scene {
 
+class SineVibration;
+class NoiseVibration;
+class Tap;
+
 struct SineVibrationParameters {
+  using Law = SineVibration;
   Eigen::Vector3d direction{Eigen::Vector3d::UnitY()};  // u, any length above 0
   double amplitude{0.5};                                // A >= 0 [N]
   double frequency{100.0};                              // above 0, below half the loop's rate [Hz]
   double phase{0.0};                                    // when it is switched on [rad]
+
+  StiffnessBound bound() const { return {}; }
+  FieldTraits traits() const { return {}; }
 };
 
 /// f(t) = A sin(2 pi frequency t + phase) u. Active, as all vibrations.
@@ -29,11 +37,15 @@ class SineVibration {
 };
 
 struct NoiseVibrationParameters {
+  using Law = NoiseVibration;
   Eigen::Vector3d direction{Eigen::Vector3d::UnitY()};  // u, any length above 0
   double rms{0.3};                                      // root mean square >= 0 [N]
   double lowest{50.0};                                  // of the band > 0 [Hz]
   double highest{150.0};                                // above lowest, below half the rate [Hz]
   std::uint64_t seed{1};
+
+  StiffnessBound bound() const { return {}; }
+  FieldTraits traits() const { return {}; }
 };
 
 /// f(t) = rms sqrt(2 / kTones) sum of sin(2 pi f_i t + phi_i) u: one tone drawn from each of kTones
@@ -59,11 +71,15 @@ class NoiseVibration {
 };
 
 struct TapParameters {
+  using Law = Tap;
   std::string on;  // a surface field whose contact sets it off; empty: switching on does
   Eigen::Vector3d direction{Eigen::Vector3d::UnitY()};  // u in free space; on a surface its normal
   double amplitude{1.0};    // A >= 0, in free space [N], on a surface per impact speed [N·s/m]
   double frequency{200.0};  // above 0, below half the loop's rate [Hz]
   double decay{0.01};       // time constant > 0 [s]
+
+  StiffnessBound bound() const { return {}; }
+  FieldTraits traits() const { return {}; }
 };
 
 /// f(t) = A exp(-t / decay) sin(2 pi frequency t) u, t from the tap on. On a surface A grows with

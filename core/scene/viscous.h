@@ -8,14 +8,24 @@
 
 namespace haptrial::scene {
 
+class Viscous;
+
 struct ViscousParameters {
+  using Law = Viscous;
   double damping{5.0};                                              // b >= 0 [N·s/m]
   double velocity_filter{std::numeric_limits<double>::infinity()};  // cut-off f_c > 0 [Hz]
+
+  StiffnessBound bound() const { return {true, 0.0, damping}; }
+  FieldTraits traits() const { return {.yields = true}; }
 };
 
 struct MatrixViscousParameters {
+  using Law = Viscous;
   Eigen::Matrix3d matrix{Eigen::Matrix3d::Zero()};  // B, f = B v in W [N·s/m]
   double velocity_filter{30.0};                     // cut-off f_c > 0 [Hz], infinite for none
+
+  StiffnessBound bound() const;
+  FieldTraits traits() const { return {}; }
 };
 
 /// f = B v_f, with v_f the velocity behind a first-order low-pass (low_pass.h). A damper is B = -b.

@@ -32,12 +32,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 std::uint64_t active_fields(const std::vector<scene::Field>& fields) {
   std::uint64_t mask = 0;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto& kind = fields[i].kind;
-    const bool yields = scene::is_surface(fields[i]) || scene::is_relief(fields[i]) ||
-                        scene::is_object(fields[i]) ||
-                        std::holds_alternative<scene::ViscousParameters>(kind) ||
-                        std::holds_alternative<scene::FrictionParameters>(kind);
-    mask |= yields ? 0 : std::uint64_t{1} << i;
+    mask |= scene::traits_of(fields[i]).yields ? 0 : std::uint64_t{1} << i;
   }
   return mask;
 }

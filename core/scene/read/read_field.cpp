@@ -56,7 +56,7 @@ std::vector<Field> read_fields(Table& fields, double rate, const std::vector<Fie
   std::vector<std::string> surfaces;
   for (const std::vector<Field>* some : {&std::as_const(found), &objects}) {
     for (const Field& field : *some) {
-      if (is_surface(field)) {
+      if (traits_of(field).surface) {
         surfaces.push_back(field.name);
       }
     }

@@ -33,22 +33,10 @@ std::string words_of(const TrialsDefinition& d, const TrialValues& values) {
   return words;
 }
 
-/// The force that a field asks for, whatever the hand does [N].
-double asked_force(const scene::FieldKind& kind) {
-  if (const auto* constant = std::get_if<scene::ConstantParameters>(&kind)) {
-    return constant->force.norm();
-  }
-  if (const auto* ramp = std::get_if<scene::RampParameters>(&kind)) {
-    return std::max(ramp->from.norm(), ramp->to.norm());
-  }
-  const auto* pulse = std::get_if<scene::PulseParameters>(&kind);
-  return pulse != nullptr ? pulse->force.norm() : 0.0;
-}
-
 /// A force that is cut off is not the level that is recorded.
 void check_forces(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
   for (const scene::Field& field : fields) {
-    const double force = asked_force(field.kind);
+    const double force = scene::traits_of(field).asked_force;
     const double most = std::min(field.limit, d.envelope.max_force);
     if (force > most) {
       throw InputError(fmt::format(

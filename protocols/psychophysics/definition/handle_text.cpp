@@ -25,7 +25,7 @@ bool acts(std::uint64_t mask, std::size_t field) { return (mask >> field & 1U) !
 std::vector<scene::Field> without_reliefs(const std::vector<scene::Field>& fields) {
   std::vector<scene::Field> rest;
   std::copy_if(fields.begin(), fields.end(), std::back_inserter(rest),
-               [](const scene::Field& field) { return !scene::is_relief(field); });
+               [](const scene::Field& field) { return !scene::traits_of(field).relief; });
   return rest;
 }
 
@@ -39,21 +39,15 @@ bool is_weak_friction(const scene::Field& field) {
 
 /// How hard a field may push a hand that is at p when it begins [N].
 double push_at(const scene::Field& field, const Vector3d& p) {
-  const auto spring = [&](const control::PdGains& gains, double stretch) {
-    return std::min(field.limit, gains.stiffness * stretch);
-  };
-  if (const auto* surface = std::get_if<scene::SurfaceParameters>(&field.kind)) {
-    const double outside = scene::PlacedShape(surface->shape).distance(p).distance;
-    const double depth = surface->felt_from_inside ? outside : -outside;
-    return spring(surface->gains, std::max(0.0, depth));
-  }
-  if (const auto* to = std::get_if<scene::SpringParameters>(&field.kind)) {
-    return spring(to->gains, (p - to->to).norm());
-  }
-  if (const auto* plane = std::get_if<scene::PlaneParameters>(&field.kind)) {
-    return spring(plane->gains, std::abs(plane->normal.normalized().dot(p - plane->through)));
-  }
-  return 0.0;
+  return std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.stretch_at(p); }) {
+          return std::min(field.limit, kind.gains.stiffness * kind.stretch_at(p));
+        } else {
+          return 0.0;
+        }
+      },
+      field.kind);
 }
 
 /// Places of a hand when a stage begins: in the regions that the stage before waits for, or
@@ -110,7 +104,7 @@ std::vector<std::string> words_of_beginnings(const Presented& presented, double 
         words.push_back(fmt::format(
             "stage {}: {}.{} may begin where the hand is, and then pushes it with up to {:.1f} N, "
             "which come within {:g} s",
-            presented.stages[stage].name, scene::is_object(field) ? "objects" : "fields",
+            presented.stages[stage].name, scene::traits_of(field).object ? "objects" : "fields",
             field.name, push, std::max(field.fade_in, 0.05)));
       }
     }
@@ -128,7 +122,7 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
   load.stage = named.name;
   std::size_t at = 0;
   for (std::size_t i = 0; i < presented.fields.size(); ++i) {
-    if (scene::is_relief(presented.fields[i])) {
+    if (scene::traits_of(presented.fields[i]).relief) {
       continue;
     }
     const scene::Field& field = fields[at];
@@ -136,10 +130,9 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
       const scene::StiffnessBound bound = scene::stiffness_bound(fields, at);
       load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
       load.damping += bound.damping;
-      if (const auto* inertia = std::get_if<scene::InertiaParameters>(&field.kind)) {
-        load.mass += inertia->mass;
-        load.cutoff = std::max(load.cutoff, inertia->acceleration_filter);
-      }
+      const scene::FieldTraits traits = scene::traits_of(field);
+      load.mass += traits.mass;
+      load.cutoff = std::max(load.cutoff, traits.mass_cutoff);
     }
     ++at;
   }

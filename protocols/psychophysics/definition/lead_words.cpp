@@ -7,24 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <variant>
 
 #include "protocols/psychophysics/definition/presented.h"
 
 namespace haptrial::protocols {
 namespace {
-
-/// Place to which a field brings a hand that does nothing; none: it leads nowhere.
-std::optional<Eigen::Vector3d> end_of(const scene::FieldKind& kind) {
-  if (const auto* spring = std::get_if<scene::SpringParameters>(&kind)) {
-    return spring->to;
-  }
-  if (const auto* mover = std::get_if<scene::MoverParameters>(&kind)) {
-    return mover->to;
-  }
-  const auto* path = std::get_if<scene::PathParameters>(&kind);
-  return path != nullptr ? std::optional(path->points.back()) : std::nullopt;
-}
 
 bool has(std::uint64_t bits, std::size_t i) { return (bits >> i & 1U) != 0; }
 
@@ -43,7 +30,8 @@ void LeadReport::add(const Presented& presented) {
       std::string leading;
       double nearest = INFINITY;
       for (std::size_t f = 0; f < presented.fields.size(); ++f) {
-        const auto end = has(acting, f) ? end_of(presented.fields[f].kind) : std::nullopt;
+        const auto end =
+            has(acting, f) ? scene::traits_of(presented.fields[f]).leads_to : std::nullopt;
         if (end) {
           const double away = shape.distance(*end).distance;
           leading = away < nearest ? presented.fields[f].name : leading;

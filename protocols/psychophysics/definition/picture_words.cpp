@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "protocols/psychophysics/definition/presented.h"
 
@@ -14,19 +13,8 @@ namespace {
 
 /// The farthest place of a region that is drawn, from the middle of W along each axis [m].
 Eigen::Vector3d reach_of(const scene::Shape& shape) {
-  const auto around = [](const Eigen::Vector3d& centre, double radius) {
-    return Eigen::Vector3d(centre.cwiseAbs() + Eigen::Vector3d::Constant(radius));
-  };
-  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) {
-    return around(sphere->centre, sphere->radius);
-  }
-  if (const auto* box = std::get_if<scene::Box>(&shape)) {
-    return around(box->centre, 0.5 * box->size.maxCoeff());
-  }
-  if (const auto* cylinder = std::get_if<scene::Cylinder>(&shape)) {
-    return around(cylinder->centre, cylinder->radius);
-  }
-  return around(std::get<scene::HalfSpace>(shape).point, 0.0);
+  const scene::ShapeBall ball = scene::ball_of(shape);
+  return ball.centre.cwiseAbs() + Eigen::Vector3d::Constant(ball.radius);
 }
 
 }  // namespace

@@ -15,16 +15,8 @@ Mark mark_at(const Eigen::Vector3d& p, double radius) {
 
 /// Place and size of a region.
 Mark mark_of(const scene::Shape& shape) {
-  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) {
-    return mark_at(sphere->centre, sphere->radius);
-  }
-  if (const auto* box = std::get_if<scene::Box>(&shape)) {
-    return mark_at(box->centre, 0.5 * box->size.maxCoeff());
-  }
-  if (const auto* cylinder = std::get_if<scene::Cylinder>(&shape)) {
-    return mark_at(cylinder->centre, cylinder->radius);
-  }
-  return mark_at(std::get<scene::HalfSpace>(shape).point, 0.0);
+  const scene::ShapeBall ball = scene::ball_of(shape);
+  return mark_at(ball.centre, ball.radius);
 }
 
 SeenObject seen_object(const contact::ObjectPose& pose, double scale, std::size_t object) {
@@ -48,18 +40,14 @@ void show_object(const Presented& presented, const std::string& name, StageSight
         body != nullptr && field.name == name) {
       sight.objects.push_back(seen_object(body->pose, 1.0, object));
     }
-    object += scene::is_object(field) ? 1 : 0;
+    object += scene::traits_of(field).object ? 1 : 0;
   }
 }
 
 }  // namespace
 
 Mark mark_to_touch(const scene::Shape& shape, std::size_t device) {
-  constexpr double kBehind = 0.01;  // a plane [m]
-  Mark mark = mark_of(shape);
-  if (const auto* half = std::get_if<scene::HalfSpace>(&shape)) {
-    mark = mark_at(half->point - kBehind * half->normal.normalized(), 0.0);
-  }
+  Mark mark = mark_at(scene::place_inside(shape), scene::ball_of(shape).radius);
   mark.device = static_cast<std::uint8_t>(device);
   return mark;
 }

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
 #include <stdexcept>
+
+#include "core/scene/needed_damping.h"
 
 namespace haptrial::scene {
 namespace {
@@ -59,6 +62,28 @@ TEST(RegisteredLawTest, GoesOnOnlyWhereALawOfTheSameTypeStood) {
   RegisteredField other = counting("another");
   other.adopt(before);
   EXPECT_EQ(other.force({}, state).x(), 1.0);
+}
+
+/// Numbers that state how steep their force is, and claim that other fields may lie on it.
+class Steep final : public RegisteredNumbers {
+ public:
+  std::unique_ptr<RegisteredLaw> law(const Setting&) const override { return nullptr; }
+  StiffnessBound bound() const override { return {true, 700.0, 3.0}; }
+  FieldTraits traits() const override { return {.surface = true, .yields = true}; }
+};
+
+TEST(RegisteredLawTest, StatesItsSteepnessButIsNoSurface) {
+  Field own;
+  own.kind = RegisteredParameters{"steep", std::make_shared<Steep>()};
+  const StiffnessBound bound = stiffness_bound({own}, 0);
+  EXPECT_TRUE(bound.passive);
+  EXPECT_EQ(bound.stiffness, 700.0);
+  EXPECT_EQ(bound.damping, 3.0);
+  EXPECT_TRUE(traits_of(own).yields);
+  EXPECT_FALSE(traits_of(own).surface);
+  own.kind = RegisteredParameters{"count", std::make_shared<CountingNumbers>()};
+  EXPECT_FALSE(stiffness_bound({own}, 0).passive) << "nothing is known of it";
+  EXPECT_FALSE(traits_of(own).yields);
 }
 
 TEST(RegisteredLawTest, WithoutNumbersOrALawIsRefused) {
