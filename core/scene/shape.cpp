@@ -53,6 +53,12 @@ SurfaceDistance of_cylinder(const Vector3d& p, const Vector3d& axis, double radi
   return round > flat ? SurfaceDistance{round, outward} : SurfaceDistance{flat, endward};
 }
 
+SurfaceDistance finite_or_far(const SurfaceDistance& found) noexcept {
+  return std::isfinite(found.distance) && found.normal.allFinite()
+             ? found
+             : SurfaceDistance{std::numeric_limits<double>::quiet_NaN(), Vector3d::UnitY()};
+}
+
 }  // namespace
 
 PlacedShape::PlacedShape(const Shape& shape) {
@@ -90,6 +96,11 @@ PlacedShape::PlacedShape(const Shape& shape) {
     require(bar->axis.allFinite() && bar->axis.norm() > 0.0,
             "Cylinder: axis must be finite and not zero");
     axis_ = bar->axis.normalized();
+  } else if (const auto* registered = std::get_if<RegisteredShape>(&shape)) {
+    kind_ = Kind::kRegistered;
+    law_ = registered->law;
+    require(law_ != nullptr, "Shape: has no law");
+    require(is_positive(law_->deepest()), "Shape: its deepest point must be above 0");
   }
   require(origin_.allFinite(), "Shape: point or centre must be finite");
 }
@@ -108,6 +119,8 @@ SurfaceDistance PlacedShape::distance(const Vector3d& p) const noexcept {
     }
     case Kind::kCylinder:
       return of_cylinder(from, axis_, radius_, half_length_);
+    case Kind::kRegistered:
+      return finite_or_far(law_->distance(p));
   }
   return {};
 }
@@ -122,6 +135,8 @@ double PlacedShape::deepest() const noexcept {
       return half_.minCoeff();
     case Kind::kCylinder:
       return std::min(radius_, half_length_);
+    case Kind::kRegistered:
+      return law_->deepest();
   }
   return std::numeric_limits<double>::infinity();
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <memory>
 #include <variant>
 
 namespace haptrial::scene {
@@ -56,7 +57,29 @@ struct Cylinder {
   Eigen::Vector3d inside() const { return centre; }
 };
 
-using Shape = std::variant<HalfSpace, Sphere, Box, Cylinder>;
+/// A shape that is made outside of the program: its numbers are in W [m], it does not change, and
+/// several servo threads may ask it at once.
+class ShapeLaw {
+ public:
+  virtual ~ShapeLaw() = default;
+  /// Distance and normal as PlacedShape has them. One that is not finite counts as far outside.
+  /// Servo thread: no allocation, lock, I/O or throw, and done in a few microseconds.
+  virtual SurfaceDistance distance(const Eigen::Vector3d& p) const noexcept = 0;
+  /// How far the point that lies deepest is from the surface > 0 [m]. Over the last 2 mm before
+  /// it a surface's force fades.
+  virtual double deepest() const noexcept = 0;
+  virtual ShapeBall ball() const = 0;
+  virtual Eigen::Vector3d inside() const = 0;
+};
+
+struct RegisteredShape {
+  std::shared_ptr<const ShapeLaw> law;  // not null
+
+  ShapeBall ball() const { return law->ball(); }
+  Eigen::Vector3d inside() const { return law->inside(); }
+};
+
+using Shape = std::variant<HalfSpace, Sphere, Box, Cylinder, RegisteredShape>;
 
 inline ShapeBall ball_of(const Shape& shape) {
   return std::visit([](const auto& each) { return each.ball(); }, shape);
@@ -67,7 +90,7 @@ inline Eigen::Vector3d place_inside(const Shape& shape) {
 
 /// A shape of the world W, ready to be asked on every tick; serves fields and regions.
 ///
-/// The distance is exact (not a bound) on either side. Its gradient jumps where
+/// The distance of a shipped shape is exact (not a bound) on either side. Its gradient jumps where
 /// two parts of the surface are equally near: inside a box or a capped cylinder, at a sphere's
 /// centre, on an axis.
 class PlacedShape {
@@ -85,7 +108,7 @@ class PlacedShape {
   bool contains(const Eigen::Vector3d& p) const noexcept { return distance(p).distance <= 0.0; }
 
  private:
-  enum class Kind { kHalfSpace, kSphere, kBox, kCylinder };
+  enum class Kind { kHalfSpace, kSphere, kBox, kCylinder, kRegistered };
 
   Kind kind_{Kind::kHalfSpace};
   Eigen::Vector3d origin_{Eigen::Vector3d::Zero()};
@@ -94,6 +117,7 @@ class PlacedShape {
   Eigen::Matrix3d rotation_{Eigen::Matrix3d::Identity()};  // R_WB of the box
   double radius_{0.0};
   double half_length_{0.0};
+  std::shared_ptr<const ShapeLaw> law_;
 };
 
 }  // namespace haptrial::scene

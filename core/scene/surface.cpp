@@ -15,12 +15,14 @@ constexpr double kCore = 2e-3;  // over which the force fades towards the middle
 
 }  // namespace
 
+/// Nothing is proven of a shape whose distances another program computes.
 StiffnessBound SurfaceParameters::bound() const {
-  return {true, gains.stiffness, gains.damping};
+  return {!std::holds_alternative<RegisteredShape>(shape), gains.stiffness, gains.damping};
 }
 
 FieldTraits SurfaceParameters::traits() const {
-  const bool closes_in = felt_from_inside && !std::holds_alternative<HalfSpace>(shape);
+  const bool closes_in = std::holds_alternative<RegisteredShape>(shape) ||
+                         (felt_from_inside && !std::holds_alternative<HalfSpace>(shape));
   return {.surface = true, .closes_in = closes_in, .yields = true};
 }
 
@@ -66,7 +68,7 @@ Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
   const Vector3d lean = here.share * here.normal - relief_.slope;  // g
   state.normal = here.normal;
   state.contact = depth > 0.0;
-  state.depth = std::max(depth, 0.0);
+  state.depth = std::max(0.0, depth);
   touch_ = {here.normal, 0.0, -here.normal.dot(felt.hand.velocity)};
   if (relief_.highest > 0.0) {
     state.stimulus = -flat_force(here, felt);

@@ -15,7 +15,7 @@ namespace haptrial::scene {
 /// of a surface (stiffness, damping, felt_from) beside those of the shape.
 struct KindOfShape {
   std::string word;             // `type` of a region
-  Shape (*read)(Table& table);  // its keys but `type`; problems are noted in the table
+  Shape (*read)(Table& table);  // keys but `type`; problems are noted in the table
   std::string surface{};        // `type` of the field; empty: the same word
 
   const std::string& field_word() const { return surface.empty() ? word : surface; }

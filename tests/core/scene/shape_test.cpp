@@ -5,10 +5,15 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/scene/needed_damping.h"
+#include "core/scene/scene.h"
+#include "tests/core/scene/every_scene.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/message_of.h"
 
@@ -183,6 +188,52 @@ TEST(ShapeTest, BadShapesAreNamed) {
   EXPECT_THAT(told(Box{kOrigin, {0.1, 0.1, 0.1}, {INFINITY, 0.0, 0.0}}), HasSubstr("turn"));
   EXPECT_THAT(told(Cylinder{kOrigin, {0.0, 0.0, 0.0}}), HasSubstr("axis"));
   EXPECT_THAT(told(Cylinder{kOrigin, {0.0, 1.0, 0.0}, 0.1, 0.0}), HasSubstr("length"));
+}
+
+/// The space below y = 0 as another program has it; beside x = 1 it answers with no number.
+class Below final : public ShapeLaw {
+ public:
+  explicit Below(double deepest) : deepest_(deepest) {}
+  SurfaceDistance distance(const Vector3d& p) const noexcept override {
+    return {p.x() < 1.0 ? p.y() : NAN, Vector3d::UnitY()};
+  }
+  double deepest() const noexcept override { return deepest_; }
+  ShapeBall ball() const override { return {Vector3d::UnitX(), 0.5}; }
+  Vector3d inside() const override { return -Vector3d::UnitY(); }
+
+ private:
+  double deepest_;
+};
+
+TEST(ShapeTest, AnAddedShapeIsFeltAsAWallOfTheSamePlace) {
+  const Shape added = RegisteredShape{std::make_shared<Below>(INFINITY)};
+  EXPECT_EQ(ball_of(added).radius, 0.5);
+  EXPECT_EQ(place_inside(added), -Vector3d::UnitY());
+  const Field wall = test::surface(HalfSpace{});
+  const Field same = test::surface(added);
+  EXPECT_TRUE(stiffness_bound({wall}, 0).passive);
+  EXPECT_FALSE(stiffness_bound({same}, 0).passive) << "nothing is proven of it";
+  EXPECT_EQ(stiffness_bound({same}, 0).stiffness, stiffness_bound({wall}, 0).stiffness);
+  Scene a({wall}, 1000.0);
+  Scene b({same}, 1000.0);
+  a.switch_to(1);
+  b.switch_to(1);
+  for (int i = 0; i < 100; ++i) {
+    const PointState hand{{0.0, -1e-4 * i, 0.0}, {0.0, -0.1, 0.0}};
+    const Vector3d force = a.force(hand);
+    const test::AllocationGuard guard;
+    ASSERT_EQ(b.force(hand), force) << i;
+    ASSERT_EQ(guard.count(), 0u);
+  }
+  EXPECT_GT(b.state(0).depth, 0.009);
+  EXPECT_EQ(b.force({{2.0, -0.01, 0.0}, Vector3d::Zero()}), Vector3d::Zero()) << "no number";
+  EXPECT_EQ(b.state(0).depth, 0.0);
+  EXPECT_FALSE(PlacedShape(added).contains({2.0, -0.01, 0.0}));
+}
+
+TEST(ShapeTest, AnAddedShapeNeedsALawAndADepth) {
+  EXPECT_THROW(PlacedShape(RegisteredShape{}), std::invalid_argument);
+  EXPECT_THROW(PlacedShape(RegisteredShape{std::make_shared<Below>(0.0)}), std::invalid_argument);
 }
 
 TEST(ShapeTest, DistanceDoesNotAllocate) {
