@@ -3,13 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "core/contact/proxy.h"
 
 namespace haptrial::contact {
 
-/// How contact is rendered.
+/// How contact is rendered: the place of a kind among kinds_of_renderer(), of which these are the
+/// shipped ones.
 enum class RendererKind : std::uint8_t {
   kProxy,          // "proxy": god object or sphere that never passes a surface
   kRuspini,        // "ruspini": sphere proxy as published by Ruspini et al. 1997
@@ -20,9 +20,6 @@ enum class RendererKind : std::uint8_t {
 inline constexpr std::array kRendererKinds{RendererKind::kProxy, RendererKind::kRuspini,
                                            RendererKind::kPenalty, RendererKind::kVoxel,
                                            RendererKind::kDistanceField};
-std::string_view name_of(RendererKind kind);
-/// @throws std::invalid_argument naming the word and what is allowed.
-RendererKind renderer_kind(std::string_view name);
 
 struct RendererOptions {
   double stiffness{500.0};    // k > 0 [N/m]

@@ -34,7 +34,7 @@ contact::RendererOptions options_of(const RigidObjectParameters& p) {
 /// Shading turns the force away from that way, and renderers without a proxy jump: of them nothing
 /// is proven.
 StiffnessBound RigidObjectParameters::bound() const {
-  const bool passive = renderer == contact::RendererKind::kProxy && crease_angle < 0.0;
+  const bool passive = contact::kind_of(renderer).passive && crease_angle < 0.0;
   return {passive, gains.stiffness, gains.damping};
 }
 
@@ -118,7 +118,7 @@ Vector3d RigidObject::force(const Felt& felt, FieldState& state) noexcept {
   proxy_ = parameters_.pose.orientation * (parameters_.scale * contact.proxy) +
            parameters_.pose.position;
   state.proxy = proxy_;
-  if (!(contact.depth > 0.0)) {
+  if (!(contact.depth > 0.0) || !contact.force.allFinite()) {
     return Vector3d::Zero();
   }
   state.contact = true;

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/contact/renderer_kinds.h"
+
 namespace haptrial::evaluation {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "analysis/contact/evaluation/check_body.h"
+#include "core/contact/renderer_kinds.h"
 
 namespace haptrial::evaluation {
 namespace {
@@ -14,19 +15,19 @@ using contact::RendererKind;
 
 constexpr double kSmallSphere = 0.01;  // of the body's size, where the probe has no radius
 
-bool has_friction(RendererKind kind) {
-  return kind == RendererKind::kProxy || kind == RendererKind::kRuspini;
-}
-
-contact::RendererOptions options_for(RendererKind kind, const contact::FeltBody& body,
+contact::RendererOptions options_for(RendererKind renderer, const contact::FeltBody& body,
                                      const EvaluationOptions& o) {
+  using Tool = contact::KindOfRenderer::Tool;
+  const contact::KindOfRenderer& kind = contact::kind_of(renderer);
   contact::RendererOptions options;
   options.resolution = o.resolution;
-  if (has_friction(kind)) {
+  if (kind.friction) {
     options.crease_angle = o.crease_angle;
+  }
+  if (kind.tool != Tool::kPoint) {
     options.radius = o.prepare.radius;
   }
-  if (kind == RendererKind::kRuspini && options.radius == 0.0) {
+  if (kind.tool == Tool::kBall && options.radius == 0.0) {
     options.radius = kSmallSphere * body.size;
   }
   return options;
@@ -113,7 +114,7 @@ Evaluation evaluate_rendering(const ContactRecording& recording, const contact::
   }
   double friction = options.friction.value_or(0.0);
   for (const RendererKind kind : options.renderers) {
-    if (!has_friction(kind)) {
+    if (!contact::kind_of(kind).friction) {
       continue;
     }
     contact::RendererOptions with = options_for(kind, body, options);

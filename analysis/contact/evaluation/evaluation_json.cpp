@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/contact/evaluation/evaluation_report.h"
+#include "core/contact/renderer_kinds.h"
 
 namespace haptrial::evaluation {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "analysis/contact/evaluation/evaluation_report.h"
 #include "analysis/contact/evaluation/evaluation_tables.h"
+#include "core/contact/renderer_kinds.h"
 
 namespace haptrial::evaluation {
 namespace {

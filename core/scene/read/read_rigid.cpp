@@ -1,21 +1,30 @@
 #include "core/scene/read/read_rigid.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <numbers>
 #include <utility>
 
+#include "core/contact/renderer_kinds.h"
 #include "core/scene/read/object_keys_internal.h"
 
 namespace haptrial::scene {
 namespace {
 
-std::vector<std::pair<std::string, contact::RendererKind>> renderers() {
-  std::vector<std::pair<std::string, contact::RendererKind>> words;
-  for (const contact::RendererKind kind : contact::kRendererKinds) {
-    words.emplace_back(contact::name_of(kind), kind);
+/// The words of the kinds, or of those that an open mesh allows.
+std::vector<std::string> renderers(bool open_mesh) {
+  std::vector<std::string> words;
+  for (const contact::KindOfRenderer& kind : contact::kinds_of_renderer()) {
+    if (kind.open_meshes || !open_mesh) {
+      words.push_back(kind.word);
+    }
   }
   return words;
+}
+
+void read_renderer(Table& table, const std::string& key, RigidObjectParameters& p) {
+  p.renderer = contact::renderer_kind(table.choice(key, renderers(false)));
 }
 
 const Schema<control::PdGains>& object_gains_schema() {
@@ -44,7 +53,8 @@ const Schema<RigidObjectParameters>& rigid_schema() {
           .number("shading", &P::crease_angle, {0.0, 0.5 * std::numbers::pi}, "rad",
                   "Angle below which edges of a rigid object feel round")
           .otherwise("none")
-          .choice("renderer", &P::renderer, renderers(), "Method that renders the contact")
+          .custom("renderer", "Method that renders the contact", read_renderer)
+          .otherwise(std::string(contact::name_of(P{}.renderer)))
           .integer("resolution", &P::resolution, 4, 512,
                    "Cells along the longest side, of the renderers voxel and distance field");
   return schema;
@@ -52,48 +62,44 @@ const Schema<RigidObjectParameters>& rigid_schema() {
 
 /// A kind that has no tool radius or needs one.
 void check_radius(Table& table, RigidObjectParameters& p) {
-  using contact::RendererKind;
-  if (p.renderer == RendererKind::kRuspini && !(p.tool_radius > 0.0)) {
-    table.reject("renderer", "is \"ruspini\", a sphere's; add tool_radius");
+  using Tool = contact::KindOfRenderer::Tool;
+  const contact::KindOfRenderer& kind = contact::kind_of(p.renderer);
+  if (kind.tool == Tool::kBall && !(p.tool_radius > 0.0)) {
+    table.reject("renderer", fmt::format("is \"{}\", a sphere's; add tool_radius", kind.word));
     p.tool_radius = 0.001;
-  } else if (p.renderer != RendererKind::kRuspini && p.renderer != RendererKind::kProxy &&
-             p.tool_radius > 0.0) {
+  } else if (kind.tool == Tool::kPoint && p.tool_radius > 0.0) {
     table.reject("tool_radius", fmt::format("stands beside the renderer \"{}\", whose tool is "
                                             "a point; leave it out",
-                                            contact::name_of(p.renderer)));
+                                            kind.word));
     p.tool_radius = 0.0;
   }
 }
 
 /// Keys of other renderers.
 void check_others(Table& table, RigidObjectParameters& p) {
-  using contact::RendererKind;
-  const bool cells =
-      p.renderer == RendererKind::kVoxel || p.renderer == RendererKind::kDistanceField;
-  if (!cells && table.has("resolution")) {
+  const contact::KindOfRenderer& kind = contact::kind_of(p.renderer);
+  if (!kind.cells && table.has("resolution")) {
     table.reject("resolution", fmt::format("stands beside the renderer \"{}\", which has no "
                                            "cells; leave it out",
-                                           contact::name_of(p.renderer)));
+                                           kind.word));
   }
-  const bool proxy = p.renderer == RendererKind::kProxy || p.renderer == RendererKind::kRuspini;
-  if (!proxy && p.friction.static_friction > 0.0) {
+  if (!kind.friction && p.friction.static_friction > 0.0) {
     table.reject("friction", fmt::format("stands beside the renderer \"{}\", which has none; "
                                          "leave it out",
-                                         contact::name_of(p.renderer)));
+                                         kind.word));
     p.friction = {};
   }
 }
 
 /// Renderers without a proxy ask a mesh how deep the tool is inside.
 void check_inside(Table& table, RigidObjectParameters& p) {
-  using contact::RendererKind;
-  if (p.renderer != RendererKind::kProxy && p.renderer != RendererKind::kRuspini && p.body &&
-      !p.body->closed) {
+  const contact::KindOfRenderer& kind = contact::kind_of(p.renderer);
+  if (!kind.open_meshes && p.body && !p.body->closed) {
     table.reject("renderer",
                  fmt::format("is \"{}\", which needs a closed mesh, and this one is open; "
-                             "allowed: proxy, ruspini",
-                             contact::name_of(p.renderer)));
-    p.renderer = RendererKind::kProxy;
+                             "allowed: {}",
+                             kind.word, fmt::join(renderers(true), ", ")));
+    p.renderer = contact::RendererKind::kProxy;
   }
 }
 

@@ -14,6 +14,7 @@
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/analysis/contact_commands.h"
 #include "experiments/command/arguments.h"
@@ -38,21 +39,16 @@ double unit_of(const std::string& name) {
   throw InputError(not_allowed("--units", fmt::format("'{}'", name), {"m", "cm", "mm"}));
 }
 
-/// One word on a command line.
-std::string word_of(RendererKind kind) {
-  std::string word(contact::name_of(kind));
-  std::replace(word.begin(), word.end(), ' ', '-');
-  return word;
-}
-
 std::vector<RendererKind> renderers_of(const std::vector<std::string>& words) {
   std::vector<RendererKind> kinds;
   std::vector<std::string> allowed;
-  for (const RendererKind kind : contact::kRendererKinds) {
-    allowed.push_back(word_of(kind));
-    if (words.empty() || std::find(words.begin(), words.end(), word_of(kind)) != words.end()) {
-      kinds.push_back(kind);
+  for (const contact::KindOfRenderer& kind : contact::kinds_of_renderer()) {
+    std::string word = kind.word;  // one word on a command line
+    std::replace(word.begin(), word.end(), ' ', '-');
+    if (words.empty() || std::find(words.begin(), words.end(), word) != words.end()) {
+      kinds.push_back(contact::renderer_kind(kind.word));
     }
+    allowed.push_back(word);
   }
   for (const std::string& word : words) {
     if (std::find(allowed.begin(), allowed.end(), word) == allowed.end()) {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/contact/renderer.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/scene/needed_damping.h"
 
 namespace haptrial::protocols {
@@ -10,7 +10,7 @@ namespace {
 
 /// Why of a solid nothing is proven.
 std::string doubt(const scene::RigidObjectParameters& p) {
-  return p.renderer == contact::RendererKind::kProxy
+  return contact::kind_of(p.renderer).passive
              ? "shading turns its force away from its spring"
              : fmt::format("its renderer is \"{}\"", contact::name_of(p.renderer));
 }
