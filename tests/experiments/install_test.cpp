@@ -74,8 +74,8 @@ TEST_F(InstallTest, AProgramWithAProtocolOfItsOwnRunsStudies) {
   EXPECT_EQ(ran.status, 0) << "it has the others' as well: " << ran.errors;
 }
 
-/// Programs with a device, a field, a procedure or a score of their own, with nothing of the source
-/// tree.
+/// Programs with a device, a field, a shape, a renderer, a procedure or a score of their own, with
+/// nothing of the source tree.
 TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
   const test::CommandResult built = build("own");
   ASSERT_EQ(built.status, 0) << built.output << built.errors;
@@ -112,6 +112,26 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
         << ran.errors;
     EXPECT_EQ(ran.errors.find('\n'), ran.errors.size() - 1) << ran.errors;
   }
+
+  const std::string ring = "cd '" + root_ + "' && " + folder + "ring ";
+  ran = test::run_command(
+      "cd '" + root_ +
+      "' && cp " HAPTRIAL_SOURCE_DIR
+      "/experiments/first_experiment.toml ring.toml && sed -i 's/fields = .*/fields = [\"pull\", "
+      "\"ring\", \"block\"]/' ring.toml && printf '"
+      "\n[fields.ring]\ntype = \"ring\"\ncentre = [0, 0, 0]\nradius = 0.03\ntube = 0.01\n"
+      "stiffness = 100\ndamping = 0\n[objects.block]\nshape = \"box\"\nsize = [0.02, 0.02, 0.02]\n"
+      "renderer = \"lossy\"\nstiffness = 100\ndamping = 0\n' >> ring.toml");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(ring + "dry-run ring.toml --subjects 1 --trials 2 --out rings");
+  ASSERT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(ring + "analyze rings");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  ran = test::run_command(ring + "keys trials");
+  EXPECT_NE(ran.output.find("Radius of a ring's tube (type: ring)"), std::string::npos);
+  ran = test::run_command("cd '" + root_ + "' && haptrial validate ring.toml");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.errors.find("fields.ring.type is 'ring'"), std::string::npos) << ran.errors;
 
   ran = test::run_command("cd '" + root_ +
                           "' && haptrial run valley.toml --subject S01 --out sessions --resume");

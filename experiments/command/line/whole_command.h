@@ -6,7 +6,8 @@ namespace haptrial::experiments {
 
 /// The command haptrial, with every shipped study, and with what a program of one's own adds.
 /// @param add_own  adds it once, before the line is read: add_study() (experiments/studies),
-///                 register_device() (core/device), add_kind_of_field() (core/scene/read),
+///                 register_device() (core/device), add_kind_of_field() and
+///                 add_kind_of_shape() (core/scene/read), add_kind_of_renderer() (core/contact),
 ///                 add_kind_of_procedure() (core/psychometric/definition) and add_score()
 ///                 (analysis/exchange).
 ///                 A name that is taken ends the program with a sentence and status 1

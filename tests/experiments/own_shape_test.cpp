@@ -1,0 +1,354 @@
+// A shape and a renderer that no file of the product knows: stated in a definition, felt, recorded,
+// resumed and analysed.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <map>
+#include <stdexcept>
+#include <thread>
+#include <tuple>
+
+#include "core/base/definition/schema.h"
+#include "core/contact/felt_body.h"
+#include "core/contact/field_renderers.h"
+#include "core/contact/renderer_kinds.h"
+#include "core/geometry/mesh/procedural.h"
+#include "core/record/read/integrity.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/contact_row.h"
+#include "core/record/rows/trial_rows.h"
+#include "core/scene/read/field_bounds.h"
+#include "core/scene/read/field_kinds.h"
+#include "core/scene/read/shape_kinds.h"
+#include "experiments/runner/session.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/registry.h"
+#include "experiments/study/study_files.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/message_of.h"
+#include "tests/support/sanitizer.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments::own_shape_test {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+constexpr double kStiffness = 150.0;  // of ring and block [N/m]
+constexpr double kTop = 0.004;        // of the block, along y [m]
+constexpr double kGivenBack = 0.5;    // share of the force when the hand leaves the block
+constexpr int kTrials = 4;
+
+/// A ring around z: its tube has the radius `tube` about a circle of the radius `radius`.
+struct Ring {
+  Vector3d centre{Vector3d::Zero()};  // [m]
+  double radius{0.03};                // > tube [m]
+  double tube{0.01};                  // > 0 [m]
+};
+
+class RingLaw final : public scene::ShapeLaw {
+ public:
+  explicit RingLaw(const Ring& ring) : ring_(ring) {}
+  scene::SurfaceDistance distance(const Vector3d& p) const noexcept override {
+    const Vector3d from = p - ring_.centre;
+    const double aside = std::hypot(from.x(), from.y());
+    const Vector3d outward =
+        aside > 0.0 ? Vector3d(from.x() / aside, from.y() / aside, 0.0) : Vector3d::UnitX();
+    const Vector3d off = from - ring_.radius * outward;
+    const double size = off.norm();
+    return {size - ring_.tube, size > 0.0 ? Vector3d(off / size) : Vector3d::UnitZ()};
+  }
+  double deepest() const noexcept override { return ring_.tube; }
+  scene::ShapeBall ball() const override { return {ring_.centre, ring_.radius + ring_.tube}; }
+  Vector3d inside() const override { return ring_.centre + ring_.radius * Vector3d::UnitX(); }
+
+ private:
+  Ring ring_;
+};
+
+scene::Shape read_ring(Table& table) {
+  static const auto schema =
+      Schema<Ring>()
+          .vector("centre", &Ring::centre, scene::kPlaceBounds, "m", "Centre of the shape")
+          .required()
+          .number("radius", &Ring::radius, scene::kLengthBounds, "m", "Radius of the shape")
+          .required()
+          .number("tube", &Ring::tube, scene::kLengthBounds, "m", "Radius of a ring's tube")
+          .required();
+  return scene::RegisteredShape{std::make_shared<RingLaw>(schema.read(table))};
+}
+
+/// A spring to the nearest triangle that gives back only a share of its force.
+class LossyRenderer final : public contact::Renderer {
+ public:
+  LossyRenderer(const geometry::Mesh& mesh, const contact::ContactSurface& surface,
+                const contact::RendererOptions& options)
+      : spring_(mesh, surface, options) {}
+  void start(const Vector3d& tool) noexcept override {
+    spring_.start(tool);
+    before_ = 0.0;
+  }
+  const contact::Contact& tick(const Vector3d& tool, double period) noexcept override {
+    contact_ = spring_.tick(tool, period);
+    if (contact_.depth < before_) {
+      contact_.force *= kGivenBack;
+    }
+    before_ = contact_.depth;
+    return contact_;
+  }
+  const contact::Operations& operations() const noexcept override { return spring_.operations(); }
+
+ private:
+  contact::PenaltyRenderer spring_;
+  contact::Contact contact_;
+  double before_{0.0};  // depth a tick ago [m]
+};
+
+std::unique_ptr<contact::Renderer> make_lossy(const geometry::Mesh& mesh,
+                                              const contact::ContactSurface& surface,
+                                              const contact::RendererOptions& options) {
+  return std::make_unique<LossyRenderer>(mesh, surface, options);
+}
+
+/// Adds both, once in this program.
+void add_own_kinds() {
+  static const bool added = [] {
+    scene::add_kind_of_shape({"ring", read_ring});
+    contact::add_kind_of_renderer({.word = "lossy", .make = make_lossy});
+    return true;
+  }();
+  static_cast<void>(added);
+}
+
+constexpr const char* kDefinition = R"([experiment]
+protocol = "trials"
+name = "ring_and_block"
+[design]
+participants = 1
+[fields.guide]
+type = "spring"
+to = [0.03, 0.015, 0.0]
+stiffness = 150.0
+damping = 8.0
+limit = 3.0
+[fields.ring]
+type = "ring"
+centre = [0.0, 0.0, 0.0]
+radius = 0.03
+tube = 0.01
+stiffness = "$level"
+damping = 0.0
+fade_in = 0.0
+[objects.block]
+shape = "box"
+size = [0.04, 0.04, 0.04]
+centre = [0.03, -0.016, 0.0]
+renderer = "lossy"
+stiffness = 150.0
+damping = 0.0
+fade_in = 0.0
+record = true
+[regions.start]
+type = "ring"
+centre = [0.0, 0.015, 0.0]
+radius = 0.03
+tube = 0.006
+[[stages]]
+name = "approach"
+fields = ["guide"]
+show = ["hand", "start"]
+until = { inside = "start", for = 0.05 }
+timeout = { after = 3.0, then = "abort" }
+[[stages]]
+name = "ring"
+fields = ["ring"]
+until = { time = 0.5 }
+[[stages]]
+name = "block"
+fields = ["block"]
+until = { time = 0.5 }
+[response]
+question = "Was the ring hard?"
+choices = [{ value = "yes" }, { value = "no" }]
+[procedure]
+kind = "constant"
+variable = "level"
+unit = "N/m"
+levels = [100.0, 150.0]
+repetitions = 2
+counts = "$answer == 1"
+[observer]
+decides = "yes"
+in_stage = "ring"
+criterion = 0.5
+[observer.actions]
+ring = { do = "stroke", direction = [0.0, 1.0, 0.0], half_length = 0.015, frequency = 2.0, normal = [1.0, 0.0, 0.0] }
+block = { do = "stroke", direction = [0.0, 1.0, 0.0], half_length = 0.02, frequency = 2.0, normal = [1.0, 0.0, 0.0] }
+)";
+
+class OwnShapeTest : public testing::Test {
+ protected:
+  OwnShapeTest() {
+    add_own_kinds();
+    test::write_text(folder_ / "own.toml", kDefinition);
+    experiment_ = load_experiment(folder_ / "own.toml");
+  }
+  SessionRequest request(const std::filesystem::path& file) const {
+    SessionRequest request;
+    request.protocol = &experiment_.study->protocol();
+    request.definition = experiment_.definition.get();
+    request.subject = "S01";
+    request.seed = 7;
+    request.file = file;
+    return request;
+  }
+  /// Runs a session on the real clock in a process of its own, which is killed at a tick.
+  void run_and_kill(const std::filesystem::path& file, std::uint64_t at_tick) const {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      std::atomic<std::uint64_t> ticks{0};
+      std::thread([&] {
+        while (ticks.load() < at_tick) {
+          std::this_thread::sleep_for(std::chrono::microseconds(200));
+        }
+        ::kill(::getpid(), SIGKILL);
+      }).detach();
+      SessionRequest own = request(file);
+      own.clock = realtime::ClockKind::kReal;
+      own.ticks = &ticks;
+      run_session(own);
+      ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "it came to its end before it was killed";
+  }
+  /// Trial, level and answer of every completed pass.
+  static std::vector<std::tuple<int, double, double>> answers_of(
+      const record::SessionReader& file) {
+    const auto passes = file.passes();
+    std::map<int, double> levels;
+    for (const record::LevelRow& row : file.rows<record::LevelRow>()) {
+      levels[row.pass] = row.asked;
+    }
+    std::vector<std::tuple<int, double, double>> answers;
+    for (const record::ResponseRow& answer : file.responses()) {
+      if (passes.at(static_cast<std::size_t>(answer.pass)).status ==
+          record::PassStatus::kCompleted) {
+        answers.emplace_back(answer.trial, levels.at(answer.pass), answer.value);
+      }
+    }
+    return answers;
+  }
+
+  test::TemporaryFolder folder_;
+  Experiment experiment_;
+};
+
+/// The distance is compared with that to a mesh of the same ring, which is 3 µm off.
+TEST_F(OwnShapeTest, ItsForceIsThatOfASpringToItsMesh) {
+  run_session(request(folder_ / "S01.h5"));
+  const record::SessionReader file(folder_ / "S01.h5");
+  EXPECT_TRUE(record::check_session(file, known_tables()).ok);
+  const contact::FeltBody mesh(geometry::make_torus(0.03, 0.01, 512, 192));
+  std::map<int, double> levels;
+  for (const record::LevelRow& row : file.rows<record::LevelRow>()) {
+    levels[row.pass] = row.asked;
+  }
+  int compared = 0;
+  for (const record::StageRow& stage : file.rows<record::StageRow>()) {
+    if (stage.stage != "ring") {
+      continue;
+    }
+    for (const record::Sample& sample :
+         file.samples(stage.first_sample + 1, stage.last_sample - stage.first_sample)) {
+      const double depth = -mesh.distance(sample.position).distance;
+      if (depth > 0.001 && depth < 0.0075) {  // the force fades over the last 2 mm
+        ASSERT_NEAR(sample.force.norm(), levels.at(stage.pass) * depth, 0.003);
+        ++compared;
+      }
+    }
+  }
+  EXPECT_GT(compared, 20 * kTrials);
+}
+
+/// Depths are those below the block's upper face, along y.
+TEST_F(OwnShapeTest, ItsRendererGivesBackAShareOfTheForce) {
+  run_session(request(folder_ / "S01.h5"));
+  const record::SessionReader file(folder_ / "S01.h5");
+  int pressed = 0;
+  int left = 0;
+  for (const record::ContactRow& row : file.rows<record::ContactRow>()) {
+    const auto ticks = file.samples(row.sequence - 1, 2);
+    const double before = std::max(0.0, kTop - ticks.at(0).position.y());
+    const double depth = kTop - ticks.at(1).position.y();
+    if (depth > 0.02 || before == 0.0 || std::abs(depth - before) < 1e-6) {
+      continue;  // another face is nearer, or nobody can tell which way it goes
+    }
+    const double share = depth > before ? 1.0 : kGivenBack;
+    ASSERT_NEAR(row.force.y(), share * kStiffness * depth, 0.003) << row.sequence;
+    (depth > before ? pressed : left) += 1;
+  }
+  EXPECT_GT(pressed, 20 * kTrials);
+  EXPECT_GT(left, 20 * kTrials);
+}
+
+TEST_F(OwnShapeTest, ASessionWithThemIsResumedAndAnalysed) {
+  if (test::kThreadSanitizer) {
+    GTEST_SKIP() << "a thread sanitizer does not follow a fork of threads";
+  }
+  const test::TemporaryFolder sessions;
+  run_session(request(folder_ / "whole.h5"));
+  const auto whole = answers_of(record::SessionReader(folder_ / "whole.h5"));
+  ASSERT_EQ(whole.size(), static_cast<std::size_t>(kTrials));
+  run_and_kill(sessions / "S01.h5", 2500);
+  SessionRequest again = request(sessions / "S01.h5");
+  again.clock = realtime::ClockKind::kReal;
+  again.resume = true;
+  run_session(again);
+  const record::SessionReader resumed(sessions / "S01.h5");
+  EXPECT_TRUE(record::check_session(resumed, known_tables()).ok);
+  EXPECT_EQ(answers_of(resumed), whole);
+
+  AnalysisRequest analysis;
+  analysis.folder = analysis.out = sessions.path();
+  analysis.files = study_files(sessions.path(), Pilots::kLeftOut, protocol_of);
+  EXPECT_FALSE(experiment_.study->analyze(analysis).empty());
+  EXPECT_THAT(test::read_text(sessions / "report.md"), HasSubstr("SIMULATED"));
+}
+
+TEST_F(OwnShapeTest, MistakesInItsKeysGetTheirSentences) {
+  const auto told = [&](const std::string& from, const std::string& to) {
+    std::string text = kDefinition;
+    text.replace(text.find(from), from.size(), to);
+    test::write_text(folder_ / "wrong.toml", text);
+    return test::message_of([&] { load_experiment(folder_ / "wrong.toml"); });
+  };
+  EXPECT_THAT(told("tube = 0.01", "tube = 0.0"), HasSubstr("fields.ring.tube is 0"));
+  EXPECT_THAT(told("tube = 0.006", "tubes = 0.006"), HasSubstr("regions.start.tube"));
+  EXPECT_THAT(told("\"lossy\"", "\"lossless\""), HasSubstr("objects.block.renderer is 'lossless'"));
+  EXPECT_THAT(told("record = true", "resolution = 32"),
+              HasSubstr("resolution stands beside the renderer \"lossy\", which has no cells"));
+}
+
+TEST_F(OwnShapeTest, WordsThatAreTakenAreRefused) {
+  EXPECT_THROW(scene::add_kind_of_shape({"ring", read_ring}), std::invalid_argument);
+  EXPECT_THROW(scene::add_kind_of_shape({"grating", read_ring}), std::invalid_argument)
+      << "a field has it";
+  EXPECT_EQ(std::ranges::count(scene::kinds_of_shape(), "grating", &scene::KindOfShape::word), 0);
+  EXPECT_THROW(contact::add_kind_of_renderer({.word = "voxel", .make = make_lossy}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace haptrial::experiments::own_shape_test
