@@ -15,6 +15,8 @@ using contact::RendererKind;
 
 constexpr double kSmallSphere = 0.01;  // of the body's size, where the probe has no radius
 
+bool has_friction(RendererKind kind) { return contact::kind_of(kind).friction; }
+
 contact::RendererOptions options_for(RendererKind renderer, const contact::FeltBody& body,
                                      const EvaluationOptions& o) {
   using Tool = contact::KindOfRenderer::Tool;
@@ -114,7 +116,7 @@ Evaluation evaluate_rendering(const ContactRecording& recording, const contact::
   }
   double friction = options.friction.value_or(0.0);
   for (const RendererKind kind : options.renderers) {
-    if (!contact::kind_of(kind).friction) {
+    if (!has_friction(kind)) {
       continue;
     }
     contact::RendererOptions with = options_for(kind, body, options);
