@@ -44,7 +44,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 
 constexpr double kStiffness = 150.0;  // of ring and block [N/m]
-constexpr double kTop = 0.004;        // of the block, along y [m]
+constexpr double kTop = 0.004;        // of the block, along z [m]
 constexpr double kGivenBack = 0.5;    // share of the force when the hand leaves the block
 constexpr int kTrials = 4;
 
@@ -136,10 +136,11 @@ name = "ring_and_block"
 participants = 1
 [fields.guide]
 type = "spring"
-to = [0.03, 0.015, 0.0]
+to = [0.03, 0.0, 0.02]
 stiffness = 150.0
 damping = 8.0
 limit = 3.0
+fade_out = 0.0
 [fields.ring]
 type = "ring"
 centre = [0.0, 0.0, 0.0]
@@ -151,7 +152,7 @@ fade_in = 0.0
 [objects.block]
 shape = "box"
 size = [0.04, 0.04, 0.04]
-centre = [0.03, -0.016, 0.0]
+centre = [0.03, 0.0, -0.016]
 renderer = "lossy"
 stiffness = 150.0
 damping = 0.0
@@ -159,7 +160,7 @@ fade_in = 0.0
 record = true
 [regions.start]
 type = "ring"
-centre = [0.0, 0.015, 0.0]
+centre = [0.0, 0.0, 0.02]
 radius = 0.03
 tube = 0.006
 [[stages]]
@@ -191,8 +192,8 @@ decides = "yes"
 in_stage = "ring"
 criterion = 0.5
 [observer.actions]
-ring = { do = "stroke", direction = [0.0, 1.0, 0.0], half_length = 0.015, frequency = 2.0, normal = [1.0, 0.0, 0.0] }
-block = { do = "stroke", direction = [0.0, 1.0, 0.0], half_length = 0.02, frequency = 2.0, normal = [1.0, 0.0, 0.0] }
+ring = { do = "stroke", direction = [0.0, 0.0, 1.0], half_length = 0.018, frequency = 2.0, normal = [1.0, 0.0, 0.0] }
+block = { do = "stroke", direction = [0.0, 0.0, 1.0], half_length = 0.02, frequency = 2.0, normal = [1.0, 0.0, 0.0] }
 )";
 
 class OwnShapeTest : public testing::Test {
@@ -274,7 +275,8 @@ TEST_F(OwnShapeTest, ItsForceIsThatOfASpringToItsMesh) {
          file.samples(stage.first_sample + 1, stage.last_sample - stage.first_sample)) {
       const double depth = -mesh.distance(sample.position).distance;
       if (depth > 0.001 && depth < 0.0075) {  // the force fades over the last 2 mm
-        ASSERT_NEAR(sample.force.norm(), levels.at(stage.pass) * depth, 0.003);
+        ASSERT_NEAR(sample.force.norm(), levels.at(stage.pass) * depth, 0.003)
+            << sample.position.transpose();
         ++compared;
       }
     }
@@ -282,7 +284,7 @@ TEST_F(OwnShapeTest, ItsForceIsThatOfASpringToItsMesh) {
   EXPECT_GT(compared, 20 * kTrials);
 }
 
-/// Depths are those below the block's upper face, along y.
+/// Depths are those below the block's upper face, along z.
 TEST_F(OwnShapeTest, ItsRendererGivesBackAShareOfTheForce) {
   run_session(request(folder_ / "S01.h5"));
   const record::SessionReader file(folder_ / "S01.h5");
@@ -290,13 +292,13 @@ TEST_F(OwnShapeTest, ItsRendererGivesBackAShareOfTheForce) {
   int left = 0;
   for (const record::ContactRow& row : file.rows<record::ContactRow>()) {
     const auto ticks = file.samples(row.sequence - 1, 2);
-    const double before = std::max(0.0, kTop - ticks.at(0).position.y());
-    const double depth = kTop - ticks.at(1).position.y();
+    const double before = std::max(0.0, kTop - ticks.at(0).position.z());
+    const double depth = kTop - ticks.at(1).position.z();
     if (depth > 0.02 || before == 0.0 || std::abs(depth - before) < 1e-6) {
       continue;  // another face is nearer, or nobody can tell which way it goes
     }
     const double share = depth > before ? 1.0 : kGivenBack;
-    ASSERT_NEAR(row.force.y(), share * kStiffness * depth, 0.003) << row.sequence;
+    ASSERT_NEAR(row.force.z(), share * kStiffness * depth, 0.003) << row.sequence;
     (depth > before ? pressed : left) += 1;
   }
   EXPECT_GT(pressed, 20 * kTrials);
