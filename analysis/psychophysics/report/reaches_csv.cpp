@@ -1,7 +1,5 @@
 #include "analysis/psychophysics/report/reaches_csv.h"
 
-#include <array>
-
 #include "analysis/files/delimited.h"
 
 namespace haptrial::analysis::trials {
@@ -9,45 +7,14 @@ namespace {
 
 using exchange::RowText;
 
-constexpr std::array<const char*, 39> kColumns{"participant",
-                                               "group",
-                                               "session",
-                                               "file",
-                                               "trial",
-                                               "order",
-                                               "block",
-                                               "probe",
-                                               "kind",
-                                               "start_x_m",
-                                               "start_y_m",
-                                               "start_z_m",
-                                               "target_x_m",
-                                               "target_y_m",
-                                               "target_z_m",
-                                               "field_active",
-                                               "perturbation",
-                                               "push",
-                                               "recorded",
-                                               "arrived",
-                                               "onset_s",
-                                               "movement_time_s",
-                                               "peak_speed_m_per_s",
-                                               "path_length_m",
-                                               "maximum_perpendicular_error_m",
-                                               "perpendicular_error_at_150_ms_m",
-                                               "direction_error_at_150_ms_rad",
-                                               "signed_area_m2",
-                                               "endpoint_error_m",
-                                               "mean_lateral_force_N",
-                                               "peak_lateral_force_N",
-                                               "force_compensation",
-                                               "force_compensation_se",
-                                               "saturated",
-                                               "no_onset",
-                                               "moving_at_start",
-                                               "anticipated",
-                                               "never_slowed",
-                                               "missed_target"};
+constexpr const char* kHeading =
+    "participant,group,session,file,trial,order,block,probe,kind,start_x_m,start_y_m,"
+    "start_z_m,target_x_m,target_y_m,target_z_m,field_active,perturbation,push,recorded,"
+    "arrived,onset_s,movement_time_s,peak_speed_m_per_s,path_length_m,"
+    "maximum_perpendicular_error_m,perpendicular_error_at_150_ms_m,"
+    "direction_error_at_150_ms_rad,signed_area_m2,endpoint_error_m,mean_lateral_force_N,"
+    "peak_lateral_force_N,force_compensation,force_compensation_se,saturated,no_onset,"
+    "moving_at_start,anticipated,never_slowed,missed_target\n";
 
 const char* word_of(ReachKind kind) {
   return kind == ReachKind::kClamp ? "clamp" : kind == ReachKind::kCatch ? "catch" : "plain";
@@ -86,15 +53,11 @@ void add_metrics(RowText& row, const StudyReach& reach) {
 }  // namespace
 
 std::string reaches_csv(const TrialsResult& result) {
-  std::string text;
   if (!result.reaching) {
-    return text;
+    return {};
   }
+  std::string text = kHeading;
   RowText row(text, exchange::Delimited::kCsv);
-  for (const char* name : kColumns) {
-    row.add(name);
-  }
-  row.end();
   for (const StudyReach& reach : result.reaching->reaches) {
     const StudyTrial& trial = result.data.trials[reach.trial];
     const StudySession& session = result.data.session_of(trial);

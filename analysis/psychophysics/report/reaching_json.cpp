@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_json.h"
 #include "analysis/statistics/design/result_json_internal.h"
 
@@ -76,23 +77,6 @@ Json blocks_json(const ReachingResult& reaching) {
   return blocks;
 }
 
-Json contrasts_json(const ReachingResult& reaching) {
-  Json all = Json::array();
-  for (const ReachContrast& each : reaching.contrasts) {
-    Json one{{"name", each.name}, {"unit", each.unit}};
-    if (each.contrast) {
-      one["participants"] = each.contrast->participants;
-      one["left_out"] = each.contrast->left_out;
-      one["test"] = analysis::to_json(each.contrast->test);
-      one["p_holm"] = *each.holm;
-    } else {
-      one["not_defined"] = each.contrast.because();
-    }
-    all.push_back(std::move(one));
-  }
-  return all;
-}
-
 Json two_rate_json(const ReachingResult& reaching) {
   if (!reaching.two_rate) {
     return {{"not_defined", reaching.two_rate.because()}};
@@ -107,22 +91,6 @@ Json two_rate_json(const ReachingResult& reaching) {
           {"measured", t.fit.count}};
 }
 
-Json quality_json(const ReachingResult& reaching) {
-  Json all = Json::array();
-  for (const ReachQuality& q : reaching.quality) {
-    all.push_back({{"participant", q.participant},
-                   {"reaches", q.reaches},
-                   {"not_recorded", q.not_recorded},
-                   {"no_onset", q.no_onset},
-                   {"anticipated", q.anticipated},
-                   {"never_slowed", q.never_slowed},
-                   {"not_arrived", q.not_arrived},
-                   {"missed_target", q.missed_target},
-                   {"saturated", q.saturated}});
-  }
-  return all;
-}
-
 }  // namespace
 
 std::string reaching_json(const ReachingResult& reaching) {
@@ -135,9 +103,9 @@ std::string reaching_json(const ReachingResult& reaching) {
                   {"learning_curve", curve_json(reaching.plain)},
                   {"catch_trials", curve_json(reaching.catches)},
                   {"force_compensation", curve_json(reaching.clamps)},
-                  {"contrasts", contrasts_json(reaching)},
+                  {"contrasts", json_of(contrast_findings(reaching).rows)},
                   {"two_rate", two_rate_json(reaching)},
-                  {"quality", quality_json(reaching)}};
+                  {"quality", json_of(reach_quality_findings(reaching).rows)}};
   return root.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

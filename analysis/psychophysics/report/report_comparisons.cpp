@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/design_blocks.h"
@@ -13,8 +14,6 @@
 
 namespace haptrial::analysis::trials {
 namespace {
-
-using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kMostTracks = 1;
 
@@ -64,25 +63,7 @@ void add_tracks(Document& document, const TrialsResult& result,
     }
   }
   add_pictures(document, drawings, "tracks-", kMostTracks);
-  Rows rows;
-  for (const TrackEstimate& track : result.tracks) {
-    if (!track.adaptive) {
-      continue;
-    }
-    std::vector<std::string> estimates;
-    for (const auto& e : track.estimates) {
-      estimates.push_back(fmt::format("{} {}{}{}", e.name, estimate_word(estimated(e)),
-                                      e.remark.empty() ? "" : ", ", e.remark));
-    }
-    const auto reversals = std::count_if(track.steps.begin(), track.steps.end(),
-                                         [](const TrackStep& step) { return step.reversal; });
-    rows.push_back({track.participant, track.track, std::to_string(track.steps.size()),
-                    std::to_string(reversals),
-                    estimates.empty() ? "none: " + track.because
-                                      : fmt::format("{}", fmt::join(estimates, "; "))});
-  }
-  document.table({"participant", "track", "trials", "turns", "estimate of the procedure [95 %]"},
-                 rows, "Every track");
+  add_table(document, track_findings(result), true);
   add_interval_words(document, result);
 }
 
@@ -112,27 +93,11 @@ std::string on_ranks(const std::vector<SerialEffects>& serial,
              : "";
 }
 
-/// "0.31 [-0.20, 0.82]" of one participant, by the normal distribution.
-std::string with_error(const Defined<double>& value, double error) {
-  constexpr double kNormal = 1.959964;
-  return value ? estimate_word({*value, *value - kNormal * error, *value + kNormal * error}) : "–";
-}
-
 void add_serial(Document& document, const TrialsResult& result) {
   if (result.serial.empty()) {
     return;
   }
-  Rows rows;
-  for (const SerialEffects& s : result.serial) {
-    rows.push_back({s.participant, fmt::format("{} of {}", s.easy_wrong, s.easy),
-                    with_error(s.effects.drift, s.effects.drift_error),
-                    with_error(s.effects.repetition, s.effects.repetition_error),
-                    std::to_string(s.limited)});
-  }
-  document.table({"participant", "answers 0 where the function is above 99 %",
-                  "drift (log odds, first to last trial) [95 %]", "repetition (log odds) [95 %]",
-                  "trials with another level than asked for"},
-                 rows);
+  add_table(document, serial_findings(result), false);
   document.paragraph(fmt::format(
       "Drift: how the log odds of an answer 1 change over the session beside the function. "
       "Repetition: how much the answer before moves the log odds of giving it again. Over "

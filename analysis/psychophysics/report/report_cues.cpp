@@ -5,6 +5,7 @@
 
 #include "analysis/document/palette.h"
 #include "analysis/psychophysics/report/trials_figures.h"
+#include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/wording.h"
@@ -86,22 +87,14 @@ void add_deviations(Document& document, const TrialsResult& result, const std::s
                  tests);
 }
 
-void add_people(Document& document, const TrialsResult& result, const std::string& at) {
-  const CuePlan& cues = *result.plan.cues;
-  Rows rows;
+void add_people(Document& document, const TrialsResult& result) {
+  FindingTable all;
   for (const CueLevel& level : result.cues->levels) {
-    for (const CuePerson& p : level.people) {
-      rows.push_back({p.participant, level_word(level), estimate_word(p.weight),
-                      estimate_word(p.predicted_weight), estimate_word(p.first_sd),
-                      estimate_word(p.second_sd), estimate_word(p.both_sd),
-                      estimate_word(p.predicted_sd), number(p.bias), std::to_string(p.conflicts)});
-    }
+    FindingTable table = cue_findings(result, level);
+    all.title = table.title;
+    std::ranges::move(table.rows, std::back_inserter(all.rows));
   }
-  document.table({"participant", at, "weight, observed [95 %]", "predicted [95 %]",
-                  unit_heading(result, "σ of " + name_of_cue(cues.first) + " [95 %]"),
-                  "σ of " + name_of_cue(cues.second), "σ of " + name_of_cue(cues.both), "predicted",
-                  unit_heading(result, "bias"), "conflicts"},
-                 rows, "Every participant's weights and standard deviations");
+  add_table(document, all, true);
 }
 
 Figure cue_figure(const TrialsResult& result, const char* name, const std::string& title,
@@ -184,7 +177,7 @@ void add_cues(Document& document, const TrialsResult& result,
           level.level.empty() ? "" : fmt::format(" at {} {}", cues.at, level.level), who));
     }
   }
-  add_people(document, result, at);
+  add_people(document, result);
 }
 
 std::vector<Figure> cue_figures(const TrialsResult& result) {

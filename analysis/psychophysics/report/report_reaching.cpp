@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/wording.h"
@@ -38,29 +39,6 @@ void add_block_means(Document& document, const ReachingResult& reaching) {
   document.paragraph(
       "Means over participants [95 %] of the reaches without a probe; force compensation is that "
       "of reaches in a channel. Signs are turned so that the participant's field pushes to +.");
-}
-
-std::string scaled_difference(const ReachContrast& each) {
-  const TTest& test = each.contrast->test;
-  const double scale = each.unit.empty() ? 1.0 : kMillimetres;
-  return estimate_word({scale * test.difference, scale * test.low, scale * test.high}) +
-         (each.unit.empty() ? "" : " mm");
-}
-
-void add_contrasts(Document& document, const ReachingResult& reaching) {
-  Rows rows;
-  for (const ReachContrast& each : reaching.contrasts) {
-    if (!each.contrast) {
-      rows.push_back({each.name, "–", "–", "not defined, because " + each.contrast.because(), "–"});
-      continue;
-    }
-    rows.push_back({each.name, std::to_string(each.contrast->participants), scaled_difference(each),
-                    t_result(each.contrast->test), p_result(each.holm)});
-  }
-  document.subheading("Adaptation and aftereffect");
-  document.table({"comparison", "participants", "difference [95 %]", "paired t-test, not adjusted",
-                  "p after Holm"},
-                 rows);
 }
 
 /// Estimates of a table with their intervals over resampled participants, and what the sentences
@@ -162,7 +140,8 @@ void add_reaching(Document& document, const TrialsResult& result,
   add_section(document, result, "Reaches");
   add_pictures(document, drawings, "learning-curve", 1);
   add_block_means(document, reaching);
-  add_contrasts(document, reaching);
+  document.subheading("Adaptation and aftereffect");
+  add_table(document, contrast_findings(reaching), false);
   document.subheading("Learning curves");
   add_exponentials(document, reaching);
   add_pictures(document, drawings, "force-compensation", 1);
@@ -176,17 +155,7 @@ void add_reach_quality(Document& document, const TrialsResult& result) {
   if (!result.reaching) {
     return;
   }
-  Rows rows;
-  for (const ReachQuality& q : result.reaching->quality) {
-    rows.push_back({q.participant, std::to_string(q.reaches), std::to_string(q.not_recorded),
-                    std::to_string(q.no_onset), std::to_string(q.anticipated),
-                    std::to_string(q.never_slowed), std::to_string(q.not_arrived),
-                    std::to_string(q.missed_target), std::to_string(q.saturated)});
-  }
-  document.table({"participant", "reaches", "not recorded", "no onset, or moving at the start",
-                  "before the go signal", "never slowed", "not arrived in time", "ended off target",
-                  "at the force limit"},
-                 rows);
+  add_table(document, reach_quality_findings(*result.reaching), false);
   document.paragraph(
       "Reaches without an onset have no metrics and take part in nothing; all others take part.");
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "analysis/psychophysics/report/report_surfaces.h"
+#include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/base/p_adjust.h"
@@ -33,33 +34,6 @@ void add_means(Document& document, const TrialsResult& result) {
   if (!rows.empty()) {
     document.table({"quantity", "condition", "participants", "mean over participants"}, rows);
   }
-}
-
-std::vector<std::string> row_of(const FunctionFit& fit, const char* how,
-                                const Defined<FunctionReadings>& readings, bool weber, bool guess) {
-  std::vector<std::string> row{series_name(fit.participant, fit.condition), how,
-                               std::to_string(fit.trials)};
-  if (!readings) {
-    row.push_back("not defined, because " + readings.because());
-    row.resize(7U + weber + guess, "–");
-    return row;
-  }
-  row.push_back(estimate_word(readings->threshold));
-  row.push_back(estimate_word(readings->width));
-  if (weber) {
-    row.push_back(estimate_word(readings->weber));
-  }
-  const bool bayesian = how[0] == 'B';
-  row.push_back(bayesian || fit.lapse_told ? estimate_word(readings->lapse)
-                                           : "not told by the answers");
-  if (guess) {
-    row.push_back(estimate_word(readings->guess));
-  }
-  row.push_back(bayesian ? fmt::format("η {:.2f}", fit.overdispersion)
-                : fit.deviance_p == fit.deviance_p
-                    ? fmt::format("{:.1f}, {}", fit.deviance, p_value(fit.deviance_p))
-                    : fmt::format("{:.1f}", fit.deviance));
-  return row;
 }
 
 /// Says whose answers scatter, which of the rows to report, and what a deviance cannot show.
@@ -97,27 +71,7 @@ void add_fit_words(Document& document, const TrialsResult& result) {
 }
 
 void add_fit_table(Document& document, const TrialsResult& result) {
-  const psychometric::Axis& axis = result.plan.function.axis;
-  const bool weber = result.plan.reference.has_value(), guess = result.plan.guess_free;
-  std::vector<std::string> heading{"participant", "fit", "trials",
-                                   with_unit("threshold [95 %]", axis.unit),
-                                   with_unit("width [95 %]", axis.x_unit())};
-  if (weber) {
-    heading.emplace_back("Weber fraction [95 %]");
-  }
-  heading.emplace_back("lapse rate");
-  if (guess) {
-    heading.emplace_back("guess rate");
-  }
-  heading.emplace_back("deviance, or overdispersion");
-  Rows rows;
-  for (const FunctionFit& fit : result.fits) {
-    rows.push_back(row_of(fit, method_of(fit), fit.stated, weber, guess));
-    if (result.plan.bayesian) {
-      rows.push_back(row_of(fit, "Bayesian", fit.bayesian, weber, guess));
-    }
-  }
-  document.table(heading, rows, "Every participant's function");
+  add_table(document, function_findings(result), true);
   add_fit_words(document, result);
   std::vector<std::string> warnings;
   for (const FunctionFit& fit : result.fits) {
@@ -195,21 +149,7 @@ void add_detections(Document& document, const TrialsResult& result,
   add_means(document, result);
   add_pictures(document, drawings, "by-condition-", kMostPictures);
   add_pictures(document, drawings, "roc", 1);
-  Rows rows;
-  for (const DetectedCondition& one : result.detected) {
-    const auto& d = one.detection;
-    rows.push_back(
-        {series_name(one.participant, one.condition),
-         fmt::format("{:g} of {:g}", one.counts.hits, one.counts.hits + one.counts.misses),
-         fmt::format("{:g} of {:g}", one.counts.false_alarms,
-                     one.counts.false_alarms + one.counts.correct_rejections),
-         d ? estimate_word({d->d_prime, d->low, d->high}) : "not defined, because " + d.because(),
-         d ? number(d->criterion) : "–", one.roc ? fmt::format("{:.3f}", one.roc->area) : "–",
-         one.binormal ? fmt::format("{:.3f}", one.binormal->area) : "–"});
-  }
-  document.table({"participant", "hits", "false alarms", "d' [95 %]", "criterion c",
-                  "ROC area, trapezoids", "ROC area, binormal"},
-                 rows, "Every participant's detection");
+  add_table(document, detection_findings(result), true);
 }
 
 /// The share of each answer to each stimulus, over all participants.
@@ -241,22 +181,7 @@ void add_identification(Document& document, const TrialsResult& result,
   add_means(document, result);
   add_pictures(document, drawings, "by-condition-", kMostPictures);
   add_confusions(document, result);
-  const auto mean = [](const Defined<double>& x) {
-    return x ? fmt::format("{:.2f}", *x) : std::string("–");
-  };
-  Rows rows;
-  for (const IdentifiedCondition& one : result.identified) {
-    rows.push_back({series_name(one.participant, one.condition),
-                    fmt::format("{} of {}", one.right, one.trials),
-                    estimate_word({one.share, one.low, one.high}),
-                    one.d_prime ? estimate_word({*one.d_prime, one.d_low, one.d_high})
-                                : "not defined, because " + one.d_prime.because(),
-                    mean(one.sure_right), mean(one.sure_wrong),
-                    one.sureness ? fmt::format("{:.3f}", one.sureness->area) : "–"});
-  }
-  document.table({"participant", "right", "share [95 %]", "d' [95 %]", "rating where right",
-                  "rating where wrong", "ROC area of ratings"},
-                 rows, "Every participant's identification");
+  add_table(document, identification_findings(result), true);
   document.paragraph(
       fmt::format("d' is that of an observer without bias to whom {} alternatives are equally "
                   "alike; the shares above show where this does not hold. Chance is {:.3f}.",
@@ -270,32 +195,8 @@ void add_laws(Document& document, const TrialsResult& result,
   add_means(document, result);
   add_pictures(document, drawings, "magnitudes", 1);
   add_pictures(document, drawings, "by-condition-", kMostPictures);
-  Rows rows, people;
-  for (const MagnitudeCondition& one : result.magnitudes) {
-    const std::string condition = one.condition.empty() ? "all" : one.condition;
-    if (!one.law) {
-      rows.push_back({condition, "not defined, because " + one.law.because(), "–", "–"});
-      continue;
-    }
-    const PowerLaw& law = *one.law;
-    rows.push_back({condition,
-                    estimate_word({law.exponent, law.low ? *law.low : kNotKnown,
-                                   law.high ? *law.high : kNotKnown}),
-                    number(law.constant), fmt::format("{:.3f}", law.r_squared)});
-    for (std::size_t i = 0; i < law.participants.size(); ++i) {
-      people.push_back({series_name(one.participants[law.participants[i]], one.condition),
-                        estimate_word({law.exponents[i], law.lines[i].low, law.lines[i].high}),
-                        number(law.moduli[i]), fmt::format("{:.3f}", law.lines[i].r_squared),
-                        number(law.lines[i].deviation)});
-    }
-    if (one.not_positive > 0) {
-      document.paragraph(fmt::format("{}: {} of 0 or below left out.", condition,
-                                     counted(one.not_positive, "answer")));
-    }
-  }
-  document.table({"condition", "exponent [95 %]", "constant", "R² of the levels' means"}, rows);
-  document.table({"participant", "exponent [95 %]", "modulus", "R²", "SD of the residuals (ln)"},
-                 people, "Every participant's exponent");
+  add_table(document, law_findings(result), false);
+  add_table(document, exponent_findings(result), true);
 }
 
 void add_settings(Document& document, const TrialsResult& result,
@@ -303,16 +204,7 @@ void add_settings(Document& document, const TrialsResult& result,
   add_section(document, result, "Settings");
   add_means(document, result);
   add_pictures(document, drawings, "by-condition-", kMostPictures);
-  Rows rows;
-  for (const TrackEstimate& track : result.tracks) {
-    const bool known = !track.estimates.empty();
-    rows.push_back({series_name(track.participant, track.track), std::to_string(track.steps.size()),
-                    known ? track.estimates.front().name : "not defined, because " + track.because,
-                    known ? estimate_word(estimated(track.estimates.front())) : "–"});
-  }
-  document.table({"participant", "presentations", "estimate",
-                  with_unit("level [95 %]", result.plan.function.axis.unit)},
-                 rows, "Every participant's settings");
+  add_table(document, track_findings(result), true);
 }
 
 }  // namespace

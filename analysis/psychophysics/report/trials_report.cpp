@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "analysis/psychophysics/report/trials_figures.h"
+#include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/wording.h"
 
@@ -16,23 +17,7 @@ using Rows = std::vector<std::vector<std::string>>;
 
 void add_design(Document& document, const TrialsResult& result) {
   add_section(document, result, "Participants and trials");
-  Rows rows;
-  std::vector<std::string> heading{
-      "participant",     "group",    "sessions",       "trials",
-      "planned at most", "practice", "aborted passes", "median reaction time"};
-  for (const ParticipantTrials& p : result.participants) {
-    rows.push_back({p.participant, p.group.empty() ? "–" : p.group, std::to_string(p.sessions),
-                    std::to_string(p.counted), p.planned > 0 ? std::to_string(p.planned) : "–",
-                    std::to_string(p.practice), std::to_string(p.aborted),
-                    quantity(p.reaction_time, 1.0, "s")});
-  }
-  if (result.reaching) {  // nothing is asked there
-    heading.pop_back();
-    for (auto& row : rows) {
-      row.pop_back();
-    }
-  }
-  document.table(heading, rows);
+  add_table(document, participant_findings(result), false);
   if (!result.plan.by.empty()) {
     document.paragraph(
         fmt::format("Conditions are the levels of {}.", fmt::join(result.plan.by, ", ")));

@@ -174,14 +174,7 @@ void add_cue_lines(const CuePlan& plan, const std::string& unit, const CueStudy&
 }  // namespace
 
 std::string estimate_word(const Estimated& e) {
-  if (!e.known()) {
-    return kMissing;
-  }
-  const auto end = [](double x) { return std::isinf(x) ? std::string("open") : number(x); };
-  const bool interval = !std::isnan(e.low) && !std::isnan(e.high);
-  return interval ? fmt::format("{} [{}, {}]", number_within(e.value, e.low, e.high), end(e.low),
-                                end(e.high))
-                  : number(e.value);
+  return number_with_interval(e.value, e.low, e.high);
 }
 
 namespace {

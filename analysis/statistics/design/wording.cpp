@@ -19,18 +19,6 @@ std::string degrees(double df) {
 
 }  // namespace
 
-std::string number(double value) {
-  const double size = std::abs(value);
-  return size >= 1e3 && size < 1e7 ? fmt::format("{:.0f}", value) : fmt::format("{:#.4g}", value);
-}
-
-std::string number_within(double value, double low, double high) {
-  constexpr double kRounding = 1e-12;
-  const double extent = std::abs(high - low);
-  const bool rounding = std::isfinite(extent) && std::abs(value) < kRounding * extent;
-  return rounding ? "0" : number(value);
-}
-
 std::string p_value(double p) {
   if (p < 0.001) {
     return "p < 0.001";

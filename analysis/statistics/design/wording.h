@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "analysis/document/number.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/design/design_tests.h"
 #include "analysis/statistics/tests/shapiro_wilk.h"
@@ -16,13 +17,6 @@ namespace haptrial::analysis {
 /// Results in words, the same in the command's summary and in the report. What is not defined
 /// becomes "not defined, because ...".
 
-/// Keeps a number and its unit on one line.
-inline const std::string kNoBreak = "\u00a0";
-
-/// Four significant digits, "0.1230".
-std::string number(double value);
-/// Text of a value beside the ends of its interval, as number() but "0" for mere rounding of them.
-std::string number_within(double value, double low, double high);
 /// "p = 0.0123", "p < 0.001".
 std::string p_value(double p);
 /// "1.234, 95 % CI 1.1 to 1.3".

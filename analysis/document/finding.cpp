@@ -1,0 +1,264 @@
+#include "analysis/document/finding.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "analysis/document/number.h"
+#include "analysis/files/delimited.h"
+#include "analysis/files/staging.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The value as a report shows it, without its unit.
+std::string word_of(const Finding& f) {
+  if (!f.why_not.empty()) {
+    return "not defined, because " + f.why_not;
+  }
+  if (f.value.is_number_float()) {
+    return number_with_interval(f.value.get<double>(), f.low, f.high);
+  }
+  return f.value.is_string() ? f.value.get<std::string>()
+         : f.value.is_null() ? "–"
+                             : f.value.dump();
+}
+
+Json described(const Finding& f) {
+  Json made{{"title", f.title}, {"estimate", f.value}};
+  if (!std::isnan(f.low) && !std::isnan(f.high)) {
+    made["low_95"] = f.low;
+    made["high_95"] = f.high;
+  }
+  if (!f.unit.empty()) {
+    made["unit"] = f.unit;
+  }
+  if (f.n > 0) {
+    made["n"] = f.n;
+  }
+  return made;
+}
+
+/// "threshold [95 %] (N/m)".
+std::string heading_of(const Finding& f, bool interval) {
+  return f.title + (interval ? " [95 %]" : "") + (f.unit.empty() ? "" : " (" + f.unit + ")");
+}
+
+/// Columns of a report's table, filled cell by cell.
+class TableText {
+ public:
+  void add(const FindingRow& row) {
+    begin_line(0);
+    for (const Finding& f : row) {
+      if (f.title.empty()) {
+        continue;
+      }
+      const std::size_t column = column_of(f);
+      if (!lines_.back()[column].empty()) {
+        begin_line(column);
+      }
+      lines_.back()[column] = word_of(f);
+    }
+  }
+  void write(Document& document, const std::string& folded_under) {
+    std::vector<std::string> heading;
+    std::vector<std::vector<std::string>> rows(lines_.size());
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      if (std::ranges::all_of(
+              lines_, [&](const auto& line) { return line.size() <= c || line[c].empty(); })) {
+        continue;
+      }
+      heading.push_back(heading_of(columns_[c], intervals_[c]));
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        const bool there = c < lines_[r].size() && !lines_[r][c].empty();
+        rows[r].push_back(there ? lines_[r][c] : "–");
+      }
+    }
+    document.table(heading, rows, folded_under);
+  }
+
+ private:
+  /// @param kept  columns that the new line has in common with the one before
+  void begin_line(std::size_t kept) {
+    std::vector<std::string> line(kept);
+    std::copy_n(lines_.empty() ? line.begin() : lines_.back().begin(), kept, line.begin());
+    line.resize(columns_.size());
+    lines_.push_back(std::move(line));
+  }
+  std::size_t column_of(const Finding& f) {
+    const auto found = std::ranges::find(columns_, f.title, &Finding::title);
+    const auto column = static_cast<std::size_t>(found - columns_.begin());
+    if (found == columns_.end()) {
+      columns_.push_back(f);
+      intervals_.push_back(false);
+    }
+    lines_.back().resize(columns_.size());
+    intervals_[column] = intervals_[column] || (!std::isnan(f.low) && !std::isnan(f.high));
+    return column;
+  }
+
+  std::vector<Finding> columns_;  // the first finding of each
+  std::vector<bool> intervals_;
+  std::vector<std::vector<std::string>> lines_;
+};
+
+}  // namespace
+
+std::string line_of(const Finding& f) {
+  return fmt::format("{}: {}{}{}", f.title, word_of(f),
+                     f.unit.empty() || !f.is_number() ? "" : " " + f.unit,
+                     f.n > 0 ? fmt::format(" (n = {})", f.n) : "");
+}
+
+std::vector<std::string> lines_of(const FindingList& list) {
+  std::vector<std::string> lines;
+  for (const Finding& f : list.findings) {
+    lines.push_back(line_of(f));
+  }
+  for (const FindingTable& table : list.tables) {
+    lines.push_back(fmt::format("{}: {} rows", table.title, table.rows.size()));
+  }
+  return lines;
+}
+
+nlohmann::ordered_json json_of(const FindingRow& row) {
+  Json made = Json::object();
+  for (const Finding& f : row) {
+    if (f.form == JsonForm::kAbsent) {
+      continue;
+    }
+    const std::string place = "/" + f.name;
+    Json& at = made[Json::json_pointer(place)];
+    if (!f.why_not.empty()) {
+      at = {{"not_defined", f.why_not}};
+    } else if (f.form == JsonForm::kDescribed && f.value.is_number()) {
+      at = described(f);
+    } else if (f.form == JsonForm::kEstimate) {
+      at = {{"estimate", f.value}, {"low_95", f.low}, {"high_95", f.high}};
+    } else {
+      at = f.value;
+    }
+    if (f.form == JsonForm::kBeside) {
+      made[Json::json_pointer(place + "_low_95")] = f.low;
+      made[Json::json_pointer(place + "_high_95")] = f.high;
+    }
+  }
+  return made;
+}
+
+nlohmann::ordered_json json_of(const std::vector<FindingRow>& rows) {
+  Json made = Json::array();
+  for (const FindingRow& row : rows) {
+    made.push_back(json_of(row));
+  }
+  return made;
+}
+
+nlohmann::ordered_json json_of(const std::vector<FindingList>& lists) {
+  Json all = Json::object();
+  for (const FindingList& list : lists) {
+    Json& made = all[list.name];
+    made = {{"heading", list.heading}, {"findings", json_of(list.findings)}};
+    for (const FindingTable& table : list.tables) {
+      made["tables"][table.name] = json_of(table.rows);
+    }
+    for (const Figure& figure : list.figures) {
+      made["figures"].push_back(figure.name);
+    }
+  }
+  return all;
+}
+
+void add_table(Document& document, const FindingTable& table, bool folded) {
+  TableText text;
+  for (const FindingRow& row : table.rows) {
+    text.add(row);
+  }
+  text.write(document, folded ? table.title : "");
+}
+
+void add_findings(Document& document, const std::vector<FindingList>& lists,
+                  const std::vector<Drawing>& drawings) {
+  Document part;
+  for (const FindingList& list : lists) {
+    part.heading(list.heading);
+    std::vector<std::string> lines;
+    std::ranges::transform(list.findings, std::back_inserter(lines), line_of);
+    if (!lines.empty()) {
+      part.points(lines);
+    }
+    for (const FindingTable& table : list.tables) {
+      part.subheading(table.title);
+      add_table(part, table, false);
+    }
+    for (const Figure& figure : list.figures) {
+      const auto named = [&](const Drawing& d) { return d.figure.name == figure.name; };
+      part.picture(*std::ranges::find_if(drawings, named));
+    }
+  }
+  const auto methods = std::ranges::find_if(document.blocks, [](const Document::Block& block) {
+    const auto* heading = std::get_if<Document::Heading>(&block);
+    return heading != nullptr && heading->level == 2 && heading->text.starts_with("Methods");
+  });
+  document.blocks.insert(methods, part.blocks.begin(), part.blocks.end());
+}
+
+std::string findings_csv(const std::vector<FindingTable>& tables,
+                         const std::vector<CsvLabel>& labels) {
+  std::string text;
+  exchange::RowText row(text, exchange::Delimited::kCsv);
+  for (const CsvLabel& label : labels) {
+    row.add(label.first);
+  }
+  row.add("name").add("estimate").add("low").add("high").add("unit").end();
+  const auto add = [&](const FindingRow& findings) {
+    std::map<std::string, std::string> words;
+    for (const Finding& f : findings) {
+      if (f.value.is_string()) {
+        words[f.name] = f.value.get<std::string>();
+      }
+      if (f.csv.empty() || !f.is_number() || !std::isfinite(f.value.get<double>())) {
+        continue;
+      }
+      for (const CsvLabel& label : labels) {
+        row.add(words[label.second]);
+      }
+      row.add(f.csv).add(f.value.get<double>()).add(f.low).add(f.high).add(f.unit).end();
+    }
+  };
+  for (const FindingTable& table : tables) {
+    std::ranges::for_each(table.rows, add);
+  }
+  return text;
+}
+
+void write_findings(const std::vector<FindingList>& lists, const Staging& staging,
+                    std::vector<Figure>& figures) {
+  std::vector<FindingTable> tables;
+  std::vector<CsvLabel> labels;
+  const auto add = [&](const FindingTable& table) {
+    tables.push_back(table);
+    for (const FindingRow& row : table.rows) {
+      for (const Finding& f : row) {
+        if (f.value.is_string() &&
+            std::ranges::find(labels, f.name, &CsvLabel::first) == labels.end()) {
+          labels.emplace_back(f.name, f.name);
+        }
+      }
+    }
+  };
+  for (const FindingList& list : lists) {
+    add({list.name, "", {list.findings}});
+    std::ranges::for_each(list.tables, add);
+    figures.insert(figures.end(), list.figures.begin(), list.figures.end());
+  }
+  if (!lists.empty()) {
+    staging.write("own_findings.csv", findings_csv(tables, labels));
+  }
+}
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/document/document.h"
+
+namespace haptrial::analysis {
+
+class Staging;
+
+/// How a finding stands in JSON under its name.
+enum class JsonForm {
+  kDescribed,  // {"title": …, "estimate": …, "low_95": …, "high_95": …, "unit": …, "n": …}
+  kAbsent,     // nowhere
+  kPlain,      // "area": 0.8
+  kEstimate,  // "width": {"estimate": 1.2, "low_95": 0.9, "high_95": 1.5}
+  kBeside,    // "d_prime": 1.2, "d_prime_low_95": 0.9, "d_prime_high_95": 1.5
+};
+
+/// One result of an analysis, or a word that says whose result it is. Reports, JSON, CSV and the
+/// terminal print findings; an analysis states each once.
+struct Finding {
+  using Value = nlohmann::ordered_json;
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  std::string name;                // JSON pointer without its first '/': "detection/d_prime"
+  std::string title{};             // column of a report; empty: not in one
+  Value value{};                   // number, word, or what JSON alone shows
+  double low{kNone}, high{kNone};  // 95 %; NaN: not known; infinite: open
+  std::string unit{};              // empty: a pure number
+  std::size_t n{0};                // participants or trials behind it; 0: not stated
+  std::string why_not{};           // completes "not defined, because"; empty: there is a value
+  std::string csv{};               // its name in a table of estimates; empty: not there
+  JsonForm form{JsonForm::kDescribed};
+
+  bool is_number() const { return why_not.empty() && value.is_number(); }
+};
+
+/// Findings that belong together, as those of a participant under a condition.
+using FindingRow = std::vector<Finding>;
+
+/// A table of a report, a list of objects in JSON. A title that comes again in a row begins another
+/// line of the report's table, on which the columns before it are repeated.
+struct FindingTable {
+  std::string name;
+  std::string title;
+  std::vector<FindingRow> rows{};
+};
+
+/// Findings under a heading: a line each, then tables and figures.
+struct FindingList {
+  std::string name;  // its key in JSON
+  std::string heading;
+  FindingRow findings{};
+  std::vector<FindingTable> tables{};
+  std::vector<Figure> figures{};
+};
+
+/// "Way of the hand: 0.3120 [0.2900, 0.3340] m (n = 12)".
+std::string line_of(const Finding& finding);
+/// A sentence for each finding, and how long each table is.
+std::vector<std::string> lines_of(const FindingList& list);
+
+/// @throws nlohmann::json::exception for a name that is a value and a group at once
+nlohmann::ordered_json json_of(const FindingRow& row);
+nlohmann::ordered_json json_of(const std::vector<FindingRow>& rows);
+nlohmann::ordered_json json_of(const std::vector<FindingList>& lists);  // by name
+
+/// The table of those findings that have a title. Columns that are empty in every row are left out.
+/// @param folded  under the table's title
+void add_table(Document& document, const FindingTable& table, bool folded);
+/// Heading, lines, tables, and pictures of the figures of lists, before the document's methods.
+/// @param drawings  those of the figures are among them, by name; they outlive the document
+void add_findings(Document& document, const std::vector<FindingList>& lists,
+                  const std::vector<Drawing>& drawings);
+
+/// A column of a CSV file that says whose estimate a row is, and the finding that it shows.
+using CsvLabel = std::pair<std::string, std::string>;
+
+/// Estimates as CSV: a row for each finite number with a name there, with the labels that stand
+/// before it in its row of findings. Columns are the labels, then name, estimate, low, high (95 %)
+/// and unit.
+std::string findings_csv(const std::vector<FindingTable>& tables,
+                         const std::vector<CsvLabel>& labels);
+
+/// Writes own_findings.csv if there are lists, and adds their figures to those to be drawn.
+void write_findings(const std::vector<FindingList>& lists, const Staging& staging,
+                    std::vector<Figure>& figures);
+
+}  // namespace haptrial::analysis
