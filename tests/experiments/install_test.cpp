@@ -154,6 +154,9 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
   const test::CommandResult table = test::run_command("cat " + root_ + "/first/own_scores.csv");
   EXPECT_NE(table.output.find("S01,1,1,2,"), std::string::npos) << table.output;
   EXPECT_NE(table.output.find(",way,0."), std::string::npos) << table.output;
+  EXPECT_NE(ran.output.find("Mean way of the hand in a pass: 0."), std::string::npos) << ran.output;
+  const test::CommandResult report = test::run_command("cat " + root_ + "/first/report.md");
+  EXPECT_NE(report.output.find("## Way of the hand (simulated)"), std::string::npos);
 }
 
 TEST_F(InstallTest, AnotherProjectFindsLinksAndRunsTheLibraries) {

@@ -261,13 +261,16 @@ std::string validity_json(const Validity& v, std::span<const ProcedureSummary> p
   return text_of(findings_of(v, procedures));
 }
 
-std::string validity_json(const ValidityResult& result) {
+std::string validity_json(const ValidityResult& result, const std::vector<FindingList>& own) {
   Json root = findings_of(result.validity, result.procedures);
   if (!result.structure.empty()) {
     root["near_structure"] = near_of(result);
   }
   if (!result.hints.empty()) {
     root["hints"] = hints_of(result);
+  }
+  if (!own.empty()) {
+    root["own_findings"] = json_of(own);
   }
   return text_of(root);
 }

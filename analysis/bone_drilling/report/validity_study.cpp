@@ -111,10 +111,11 @@ ValidityResult analyze(const ValidityStudy& study) {
   return result;
 }
 
-void write_validity(const ValidityResult& result, const fs::path& folder, int paper) {
+void write_validity(const ValidityResult& result, const fs::path& folder, int paper,
+                    const std::vector<FindingList>& own) {
   const Staging staging(folder);
   staging.write("metrics.csv", metrics_csv(result.procedures));
-  staging.write("statistics.json", validity_json(result));
+  staging.write("statistics.json", validity_json(result, own));
   if (!result.nerves.empty()) {
     staging.write("nerves.csv", nerves_csv(result.nerves));
   }
@@ -124,7 +125,8 @@ void write_validity(const ValidityResult& result, const fs::path& folder, int pa
   if (!result.hints.empty()) {
     staging.write("hints.csv", hints_csv(result.hints));
   }
-  const std::vector<Figure> figures = validity_figures(result);
+  std::vector<Figure> figures = validity_figures(result);
+  write_findings(own, staging, figures);
   draw_figures(figures, staging.path(), paper);
   std::vector<Drawing> drawings;
   for (const StudyPicture& picture : result.pictures) {
@@ -134,7 +136,8 @@ void write_validity(const ValidityResult& result, const fs::path& folder, int pa
   for (const Figure& figure : figures) {
     drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});
   }
-  const Document report = validity_report(result, drawings);
+  Document report = validity_report(result, drawings);
+  add_findings(report, own, drawings);
   staging.write("report.html", to_html(report));
   staging.write("report.md", to_markdown(report));
   staging.publish();

@@ -8,6 +8,7 @@
 #include "analysis/bone_drilling/metrics/metrics.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/report/validity_result.h"
+#include "analysis/document/finding.h"
 
 namespace haptrial::record {
 class SessionReader;
@@ -37,8 +38,10 @@ struct ValidityStudy {
 ValidityResult analyze(const ValidityStudy& study);
 
 /// report.html, report.md, statistics.json, metrics.csv and figures (SVG and PNG) into a folder,
-/// all or none. @throws InputError, RunError as Staging and draw_figures() do.
+/// all or none; own_findings.csv if there are any.
+/// @param own  findings of a program of one's own. @throws InputError, RunError as Staging and
+/// draw_figures() do.
 void write_validity(const ValidityResult& result, const std::filesystem::path& folder,
-                    int paper = 0);
+                    int paper = 0, const std::vector<FindingList>& own = {});
 
 }  // namespace haptrial::analysis::drilling

@@ -299,7 +299,7 @@ void add_session_json(Json& root, const StudyResult& study) {
 
 }  // namespace
 
-std::string statistics_json(const StudyResult& study) {
+std::string statistics_json(const StudyResult& study, const std::vector<FindingList>& own) {
   const auto& s = study.statistics;
   Json root;
   root["simulated"] = study.simulated();
@@ -332,6 +332,9 @@ std::string statistics_json(const StudyResult& study) {
   }
   for (const auto& [name, value] : study.parameters) {
     root["parameters"][name] = value;
+  }
+  if (!own.empty()) {
+    root["own_findings"] = json_of(own);
   }
   // Bytes that are not UTF-8 came from a file: shown as the replacement character.
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

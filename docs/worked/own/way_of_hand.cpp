@@ -1,4 +1,5 @@
-// haptrial with one score more: how far the hand went in each pass.
+// haptrial with one score and one finding more: how far the hand went in each pass, and on average.
+#include "analysis/exchange/own_findings.h"
 #include "analysis/exchange/score.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/line/whole_command.h"
@@ -27,9 +28,43 @@ class WayOfHand final : public analysis::Score {
   }
 };
 
+const WayOfHand kWay;
+
+/// The mean over all passes, and a table with the mean of each session.
+analysis::FindingList mean_way(const std::vector<std::filesystem::path>& sessions) {
+  analysis::FindingList list;
+  list.heading = "Way of the hand";
+  analysis::FindingTable table{"sessions", "Way of each session"};
+  double sum = 0.0;
+  std::size_t passes = 0;
+  for (const std::filesystem::path& file : sessions) {
+    const record::SessionReader session(file);
+    double own = 0.0;
+    const auto values = kWay.values(session);
+    for (const analysis::ScoreValue& each : values) {
+      own += each.value;
+    }
+    sum += own;
+    passes += values.size();
+    const auto count = static_cast<double>(values.size());
+    table.rows.push_back(
+        {{.name = "participant", .title = "participant", .value = session.info().subject},
+         {.name = "way", .title = "mean way", .value = own / count, .unit = "m"}});
+  }
+  list.findings.push_back({.name = "way",
+                           .title = "Mean way of the hand in a pass",
+                           .value = sum / static_cast<double>(passes),
+                           .unit = "m",
+                           .n = passes});
+  list.tables.push_back(table);
+  return list;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  static const WayOfHand way;
-  return experiments::whole_command(argc, argv, [] { analysis::add_score(way); });
+  return experiments::whole_command(argc, argv, [] {
+    analysis::add_score(kWay);
+    analysis::add_finding_source({"way", mean_way});
+  });
 }

@@ -4,11 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <system_error>
 
 #include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/bone_drilling/report/visibility_picture.h"
+#include "analysis/exchange/own_findings.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "core/render/mesh/scene.h"
@@ -117,8 +119,12 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
   result.remarks = request.files.remarks;
   const PictureFolder pictures(request.out);
   result.pictures = visibility_pictures(result.procedures, definition, pictures.path());
-  drilling::write_validity(result, request.out, request.paper);
+  const auto own = analysis::own_findings(request.files.files);
+  drilling::write_validity(result, request.out, request.paper, own);
   std::vector<std::string> lines = drilling::summary_lines(result);
+  for (const analysis::FindingList& list : own) {
+    std::ranges::move(analysis::lines_of(list), std::back_inserter(lines));
+  }
   lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
   return lines;
 }

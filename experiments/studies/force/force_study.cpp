@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
+#include "analysis/exchange/own_findings.h"
 #include "analysis/force_training/report/write_analysis.h"
 #include "analysis/force_training/study/study.h"
 #include "analysis/force_training/study/study_summary.h"
@@ -73,8 +76,12 @@ class ForceStudy final : public Study {
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
     const analysis::StudyResult study = analyzed(request);
-    analysis::write_analysis(study, request.out, request.paper);
+    const auto own = analysis::own_findings(request.files.files);
+    analysis::write_analysis(study, request.out, request.paper, own);
     std::vector<std::string> lines = analysis::summary_lines(study);
+    for (const analysis::FindingList& list : own) {
+      std::ranges::move(analysis::lines_of(list), std::back_inserter(lines));
+    }
     lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
     lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
     return lines;

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "analysis/exchange/own_findings.h"
 #include "analysis/psychophysics/data/felt_meshes.h"
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/report/trials_words.h"
@@ -183,8 +184,12 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   result.remarks = std::move(remarks);
   result.definition = first.definition;
   result.definition_name = first.definition_name;
-  trials::write_trials(result, request.out, request.paper);
+  const auto own = analysis::own_findings(request.files.files);
+  trials::write_trials(result, request.out, request.paper, own);
   std::vector<std::string> lines = trials::summary_lines(result);
+  for (const analysis::FindingList& list : own) {
+    std::ranges::move(analysis::lines_of(list), std::back_inserter(lines));
+  }
   lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
   return lines;
 }
