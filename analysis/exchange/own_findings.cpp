@@ -56,9 +56,8 @@ FindingList found_by(const FindingSource& source,
 }  // namespace
 
 void add_finding_source(FindingSource source) {
-  const bool plain = std::ranges::all_of(source.name, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_';
-  });
+  const bool plain = std::ranges::all_of(
+      source.name, [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
   if (source.name.empty() || !plain) {
     throw std::invalid_argument(
         fmt::format("add_finding_source: the name is '{}'; allowed: letters, digits, '-' and '_'",

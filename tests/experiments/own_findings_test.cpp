@@ -1,9 +1,12 @@
-// Findings of a program of one's own, through its command: no file of the product knows them.
+// Findings of a program of one's own, through the analysis of each protocol: no file of the product
+// knows them.
 #include "analysis/exchange/own_findings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -11,7 +14,8 @@
 
 #include "core/base/file_text.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/line/whole_command.h"
+#include "experiments/command/analysis_commands.h"
+#include "tests/experiments/command.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
 
@@ -50,19 +54,19 @@ FindingList count_passes(const Files& sessions) {
   return list;
 }
 
-int run(std::vector<std::string> words) {
-  words.insert(words.begin(), "haptrial");
-  std::vector<char*> line;
-  for (std::string& word : words) {
-    line.push_back(word.data());
-  }
-  return whole_command(static_cast<int>(line.size()), line.data(), [] {
-    static const bool once = [] {
-      analysis::add_finding_source({"counts", count_passes});
-      return true;
-    }();
-    static_cast<void>(once);
-  });
+/// Analyses a study in a program that adds the source, a child of this one.
+void analyze_with_source(const std::string& study, const std::string& terminal) {
+  const auto child = [&] {
+    if (std::freopen(terminal.c_str(), "w", stdout) == nullptr) {
+      return 3;
+    }
+    analysis::add_finding_source({"counts", count_passes});
+    AnalyzeOptions options;
+    options.folder = study;
+    const int status = analyze(options);
+    return std::fclose(stdout) == 0 ? status : 4;
+  };
+  EXPECT_EXIT(std::_Exit(child()), testing::ExitedWithCode(0), "");
 }
 
 struct StudyCase {
@@ -76,16 +80,16 @@ class OwnFindings : public testing::TestWithParam<StudyCase> {};
 TEST_P(OwnFindings, StandInReportJsonTableAndTerminal) {
   const test::TemporaryFolder folder;
   const std::string out = (folder / "study").string();
-  testing::internal::CaptureStdout();
   const std::string shipped = GetParam().definition;
   const std::string definition = shipped.empty()
                                      ? test::write_small_drilling(folder.path(), 2.0).string()
                                      : HAPTRIAL_SOURCE_DIR "/experiments/" + shipped;
-  ASSERT_EQ(
-      run({"dry-run", definition, "--subjects", "2", "--trials", GetParam().trials, "--out", out}),
-      0);
-  ASSERT_EQ(run({"analyze", out}), 0);
-  const std::string terminal = testing::internal::GetCapturedStdout();
+  const test::CommandResult dry =
+      test::run_command("haptrial dry-run '" + definition + "' --subjects 2 --trials " +
+                        GetParam().trials + " --out '" + out + "'");
+  ASSERT_EQ(dry.status, 0) << dry.errors;
+  analyze_with_source(out, (folder / "terminal").string());
+  const std::string terminal = file_text(folder / "terminal");
 
   const std::size_t first = record::SessionReader(folder / "study/S01.h5").passes().size();
   const std::size_t second = record::SessionReader(folder / "study/S02.h5").passes().size();
