@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <limits>
 
 #include "core/base/error.h"
@@ -35,6 +36,21 @@ std::uint64_t checked_seed(const std::string& text) {
                                  std::numeric_limits<std::uint64_t>::max()));
   }
   return seed;
+}
+
+void check_new(const std::string& file, bool overwrite) {
+  if (!file.empty() && !overwrite && std::filesystem::exists(file)) {
+    throw InputError(
+        fmt::format("{}: exists already; choose another name or add --overwrite", file));
+  }
+}
+
+void check_new_figure(const std::string& file, bool overwrite) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (!file.empty() && ending != ".png" && ending != ".svg") {
+    throw InputError(fmt::format("{}: ends in '{}'; allowed: .png, .svg", file, ending));
+  }
+  check_new(file, overwrite);
 }
 
 int checked_jobs(std::optional<int> jobs) {

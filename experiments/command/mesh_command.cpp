@@ -12,6 +12,7 @@
 #include "core/base/nearest.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/render/gl/image.h"
+#include "experiments/command/arguments.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 
@@ -127,10 +128,7 @@ VoxelizedMesh voxelize_mesh(const geometry::Mesh& mesh, const VoxelizeOptions& o
 
 void write_picture(const std::string& file, std::span<const render::SceneTriangle> scene,
                    const render::SceneView& view, bool overwrite) {
-  if (!overwrite && fs::exists(file)) {
-    throw InputError(
-        fmt::format("{}: exists already; choose another name or add --overwrite", file));
-  }
+  check_new(file, overwrite);
   if (scene.empty()) {
     throw InputError(fmt::format("{}: there is nothing to draw", file));
   }
@@ -144,13 +142,6 @@ render::SceneView view_with_up(const std::string& up) {
   }
   view.up = Eigen::Vector3d::Unit(up[0] - 'x');
   return view;
-}
-
-void check_new(const std::string& file, bool overwrite) {
-  if (!file.empty() && !overwrite && std::filesystem::exists(file)) {
-    throw InputError(
-        fmt::format("{}: exists already; choose another name or add --overwrite", file));
-  }
 }
 
 }  // namespace haptrial::experiments

@@ -31,6 +31,10 @@ class MemoryBudget {
   bool asked_;
 };
 
+/// Help of --max-memory.
+inline constexpr const char* kMemoryHelp =
+    "Limit of memory [GB]; a larger input is refused (default: the free memory)";
+
 /// A report that shows a line of progress and lets SIGINT and SIGTERM cancel the work.
 class ShownWork {
  public:
@@ -63,8 +67,6 @@ const char* name_of(geometry::InsideRule rule);
 /// Draws a scene into a new .png. @throws InputError
 void write_picture(const std::string& file, std::span<const render::SceneTriangle> scene,
                    const render::SceneView& view, bool overwrite);
-/// @throws InputError where `file` exists and may not be overwritten; no file is always new.
-void check_new(const std::string& file, bool overwrite);
 /// The view that "--up" asks for: x, y or z. @throws InputError
 render::SceneView view_with_up(const std::string& up);
 

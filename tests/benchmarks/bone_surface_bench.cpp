@@ -12,7 +12,7 @@
 #include "core/geometry/volume/mesh_check.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/gl/offscreen.h"
-#include "experiments/command/tools/bone_carving.h"
+#include "experiments/command/bone/bone_carving.h"
 #include "tests/core/bone/surface/surface_checks.h"
 #include "tests/support/references/neighbour_surface.h"
 

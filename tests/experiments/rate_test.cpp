@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,8 +15,6 @@
 #include "analysis/bone_drilling/report/ratings.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
-#include "experiments/command/analysis_commands.h"
-#include "experiments/command/drilling/drilling_commands.h"
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/rating_pictures.h"
 #include "experiments/study/study_run.h"
@@ -77,15 +76,16 @@ class RateTest : public testing::Test {
     }
     return other;
   }
+  /// Runs a subcommand of haptrial rate.
+  static test::CommandResult rate(const std::string& words) {
+    return test::run_command("haptrial rate " + words);
+  }
   static void prepare(const fs::path& sessions, const fs::path& out, bool sheets = true) {
     fs::remove(sessions / "ratings.key");
-    RatePrepareOptions options;
-    options.folder = sessions.string();
-    options.out = out.string();
-    options.sheets = sheets;
-    options.frames = 4;
-    options.speed = 2.0;
-    EXPECT_EQ(rate_prepare(options), 0);
+    const test::CommandResult made =
+        rate(fmt::format("prepare '{}' --out '{}' --frames 4 --speed 2{}", sessions.string(),
+                         out.string(), sheets ? " --sheets" : ""));
+    EXPECT_EQ(made.status, 0) << made.errors;
   }
 
   /// Folder with the films, made once.
@@ -190,38 +190,40 @@ TEST_F(RateTest, ScoresComeBackUnderTheirSession) {
     sheet.replace(at, 3, "," + std::to_string(score++) + ",\n");
   }
   std::ofstream(*folder_ / "li.csv") << sheet;
-  RateImportOptions options;
-  options.folder = study().string();
-  options.sheets = {(*folder_ / "li.csv").string()};
+  const std::string words =
+      fmt::format("import '{}' --study '{}'", (*folder_ / "li.csv").string(), study().string());
   fs::remove(study() / kRatingsFile);
-  EXPECT_EQ(rate_import(options), 0);
+  const test::CommandResult read = rate(words);
+  EXPECT_EQ(read.status, 0) << read.errors;
   const auto ratings = analysis::drilling::load_ratings(study() / kRatingsFile);
   ASSERT_EQ(ratings.size(), 2u);
   EXPECT_NE(ratings[0].session, ratings[1].session);
   EXPECT_EQ(ratings[0].score + ratings[1].score, 5.0);
-  EXPECT_THAT(message_of([&] { rate_import(options); }), HasSubstr("exists already"));
-  options.overwrite = true;
-  options.sheets.push_back(options.sheets.front());
-  EXPECT_THAT(message_of([&] { rate_import(options); }), HasSubstr("has another sheet"));
+  const test::CommandResult again = rate(words);
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.errors, HasSubstr("exists already"));
+  const test::CommandResult twice =
+      rate(fmt::format("import --overwrite '{0}' '{0}' --study '{1}'",
+                       (*folder_ / "li.csv").string(), study().string()));
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_THAT(twice.errors, HasSubstr("has another sheet"));
   fs::remove(study() / kRatingsFile);
 }
 
 TEST_F(RateTest, NothingIsOverwritten) {
   prepare(study(), *folder_ / "d");
-  RatePrepareOptions options;
-  options.folder = study().string();
-  options.out = (*folder_ / "d").string();
-  EXPECT_THAT(message_of([&] { rate_prepare(options); }), HasSubstr("a new folder"));
-  options.out = (*folder_ / "e").string();
-  EXPECT_THAT(message_of([&] { rate_prepare(options); }),
-              HasSubstr("remove it to prepare the study again"));
+  const std::string words = fmt::format("prepare '{}' --out ", study().string());
+  const test::CommandResult full = rate(words + "'" + (*folder_ / "d").string() + "'");
+  EXPECT_EQ(full.status, 2);
+  EXPECT_THAT(full.errors, HasSubstr("a new folder"));
+  const test::CommandResult again = rate(words + "'" + (*folder_ / "e").string() + "'");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.errors, HasSubstr("remove it to prepare the study again"));
   EXPECT_FALSE(fs::exists(*folder_ / "e"));
 }
 
 TEST_F(RateTest, AStudyOfDrillingsIsAnalysed) {
-  AnalyzeOptions options;
-  options.folder = study().string();
-  EXPECT_EQ(analyze(options), 0);
+  EXPECT_EQ(test::run_command("haptrial analyze '" + study().string() + "'").status, 0);
   const std::string report = file_text(study() / "report.md");
   EXPECT_THAT(report, HasSubstr("proves nothing about people"));
   EXPECT_THAT(report, HasSubstr("Nothing is rated yet"));

@@ -1,9 +1,8 @@
-#include "experiments/command/analysis_commands.h"
-
 #include <malloc.h>
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 
@@ -12,6 +11,7 @@
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
@@ -19,6 +19,13 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+struct AnalyzeOptions : CurveOptions {
+  std::string folder;
+  bool pilots{false};
+  std::optional<int> paper;
+  std::optional<int> jobs;
+};
 
 /// Folder for the report of a folder of sessions: that of its pilots must not replace the study's.
 fs::path report_folder(const fs::path& folder, Pilots pilots) {
@@ -117,8 +124,6 @@ void check_source(const AnalyzeOptions& options) {
   }
 }
 
-}  // namespace
-
 int analyze(const AnalyzeOptions& options) {
   const int threads = checked_jobs(options.jobs);
   const int paper = paper_width(options);
@@ -128,8 +133,46 @@ int analyze(const AnalyzeOptions& options) {
   if (!import) {
     return analyze_sessions(options, pilots, threads, paper);
   }
-  print_report(analyze_curves(options, threads), options.out);
+  print_report(analyze_curves(options, paper, threads), options.out);
   return 0;
+}
+
+}  // namespace
+
+void add_analyze(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(
+      app, "analyze", "Score and test the sessions of a folder and write the report",
+      "haptrial analyze out/force_training-001",
+      {"scores.csv, statistics.json, figures and report.html in DIR", "guide-analyst.md"});
+  auto& o = options_of<AnalyzeOptions>(*sub, status, analyze);
+  sub->add_option("DIR", o.folder, "Folder of session files (.h5)");
+  sub->add_flag("--pilots", o.pilots,
+                "Analyse only the pilot sessions of DIR; the report goes into DIR/pilots");
+  sub->add_option("--curves", o.curves,
+                  "Folder of curves from another system (.csv), in place of DIR");
+  sub->add_option("--conditions", o.conditions,
+                  "Table of the trials of --curves and their conditions (.csv)");
+  sub->add_option("--table", o.table,
+                  "Table of all samples from another system (.csv), in place of DIR");
+  sub->add_option("--out", o.out, "Folder for the report of --curves or --table");
+  sub->add_option("--definition", o.definition,
+                  "Definition by which --curves or --table are scored (default: as shipped)");
+  sub->add_option("--column", o.columns,
+                  "Name of a column of --curves or --table, as in subject=Participant; may be "
+                  "repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--factor", o.factors,
+                  "Column of a factor, in place of condition; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--planned", o.planned,
+                  "Planned test in place of the definition's, 'A < B', 'A > B' or 'A != B'; may be "
+                  "repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--reference", o.reference, "Reference condition in place of the definition's");
+  sub->add_option("--paper", o.paper,
+                  "Width [mm] of figures for a paper, such as 85: PDF in 8 pt, without titles "
+                  "(default: none are written)");
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
 }
 
 }  // namespace haptrial::experiments

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -16,12 +18,41 @@
 #include "core/base/nearest.h"
 #include "core/contact/renderer_kinds.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/analysis/contact_commands.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/mesh_command.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct EvaluateOptions {
+  bool duck{false};
+  std::string seed{"1"};
+  std::vector<std::string> recording;
+  std::optional<std::string> object;
+  std::optional<int> trial;
+  std::vector<std::string> tested_on;
+  std::string mesh;
+  std::string units{"m"};
+  std::vector<std::string> renderers;
+  double stiffness{1000.0};
+  std::optional<double> friction;
+  double rate{1000.0};
+  int resolution{64};
+  std::optional<double> shading;
+  std::vector<double> tip{0.0, 0.0, 0.0};
+  double radius{0.0};
+  std::vector<double> sensor{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
+  std::vector<double> free;
+  std::vector<double> load;
+  std::optional<double> lag;
+  bool registered{false};
+  bool on_body{false};
+  double threshold{1.0};
+  std::vector<double> grating;
+  bool simulated{false};
+  std::string out;
+};
 
 namespace fs = std::filesystem;
 using contact::RendererKind;
@@ -68,17 +99,13 @@ Eigen::Vector3d unit_vector(const char* what, const Eigen::Vector3d& v) {
 
 void take_sensors(const EvaluateOptions& o, evaluation::PrepareOptions& p) {
   p.radius = kMilli * checked_real("--radius", o.radius, 0.0, 1e3);
-  if (!o.tip.empty()) {
-    p.tip = kMilli * Eigen::Vector3d(o.tip[0], o.tip[1], o.tip[2]);
+  p.tip = kMilli * Eigen::Vector3d(o.tip[0], o.tip[1], o.tip[2]);
+  const Eigen::Quaterniond q(o.sensor[0], o.sensor[1], o.sensor[2], o.sensor[3]);
+  if (!(std::abs(q.norm() - 1.0) <= 0.01)) {
+    throw InputError(
+        fmt::format("--sensor has the length {:.4g}; allowed: 0.99 to 1.01", q.norm()));
   }
-  if (!o.sensor.empty()) {
-    const Eigen::Quaterniond q(o.sensor[0], o.sensor[1], o.sensor[2], o.sensor[3]);
-    if (!(std::abs(q.norm() - 1.0) <= 0.01)) {
-      throw InputError(
-          fmt::format("--sensor has the length {:.4g}; allowed: 0.99 to 1.01", q.norm()));
-    }
-    p.mount.orientation = q.normalized();
-  }
+  p.mount.orientation = q.normalized();
   if (o.free.size() % 2 != 0) {
     throw InputError(
         fmt::format("--free has {} times; allowed: pairs, from and to", o.free.size()));
@@ -223,8 +250,6 @@ int evaluate_demo_study(const EvaluateOptions& o) {
   return 0;
 }
 
-}  // namespace
-
 int evaluate(const EvaluateOptions& options) {
   if (options.duck) {
     return evaluate_demo_study(options);
@@ -267,6 +292,92 @@ int evaluate(const EvaluateOptions& options) {
     fmt::print("report: {}\n", (fs::path(options.out) / "report.html").string());
   }
   return 0;
+}
+
+std::string words_of(const std::vector<double>& numbers) {
+  return fmt::format("{}", fmt::join(numbers, " "));
+}
+
+void add_renderer_options(CLI::App& sub, EvaluateOptions& o) {
+  sub.add_option("--renderer", o.renderers,
+                 "Renderer: proxy, ruspini, penalty, voxel or distance-field; may be repeated or "
+                 "joined by commas (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  sub.add_option("--stiffness", o.stiffness,
+                 with_default("Stiffness of every renderer [N/m]", o.stiffness));
+  sub.add_option("--friction", o.friction,
+                 "Friction coefficient of the proxies (default: the one that fits best)");
+  sub.add_option("--rate", o.rate, with_default("Ticks per second [Hz]", o.rate));
+  sub.add_option("--resolution", o.resolution,
+                 with_default("Number of voxels along the longest axis", o.resolution));
+  sub.add_option("--shading", o.shading,
+                 "Force shading of the proxies over edges less sharp than this [degrees] (default: "
+                 "none)");
+  sub.add_option("--threshold", o.threshold,
+                 with_default("Position error from which a place is listed [mm]", o.threshold));
+}
+
+void add_sensor_options(CLI::App& sub, EvaluateOptions& o) {
+  sub.add_option("--tip", o.tip,
+                 with_default("Place of the tip in the tracked frame, x y z [mm]", words_of(o.tip)))
+      ->expected(3);
+  sub.add_option("--radius", o.radius, with_default("Radius of the tip's sphere [mm]", o.radius));
+  sub.add_option(
+         "--sensor", o.sensor,
+         with_default(
+             "Orientation of the force sensor in the tracked frame, as a quaternion w x y z",
+             words_of(o.sensor)))
+      ->expected(4);
+  sub.add_option("--free", o.free,
+                 "Stretch without contact, from and to [s], for the sensor's load; may be repeated "
+                 "(default: the load is removed already)")
+      ->expected(2, 200);
+  sub.add_option("--load", o.load,
+                 "Known load of the sensor, in place of --free: weight in the tracker's frame and "
+                 "offset in the sensor's, x y z each [N]")
+      ->expected(6);
+  sub.add_option("--lag", o.lag, "Lag of the force's clock [ms] (default: estimated)");
+  sub.add_flag("--registered", o.registered, "Take the poses to be in the mesh's frame");
+  sub.add_flag("--on-body", o.on_body, "Take the forces to act on the body, not on the probe");
+  sub.add_option("--grating", o.grating,
+                 "Texture to identify: wavelength [mm] and axis x y z in the mesh's frame")
+      ->expected(4);
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "evaluate", "Compare renderings of a body with a recorded contact",
+                 "haptrial evaluate poses.csv forces.csv --mesh body.stl --units mm --out out/body",
+                 {"evaluation.json, report.html and its pictures in the folder of --out",
+                  "algorithms/contact-evaluation.md"});
+  auto& o = options_of<EvaluateOptions>(*sub, status, evaluate);
+  sub->add_option("RECORDING", o.recording,
+                  "Table of poses and forces (.csv), one table of each, a folder that holds "
+                  "nothing else, or a session file (.h5) with recorded contacts")
+      ->expected(1, 2);
+  sub->add_option("--object", o.object,
+                  "Object of a session file (default: the only one that was touched)");
+  sub->add_option("--trial", o.trial,
+                  "Trial of a session file (default: the first one in which it was touched)");
+  sub->add_option(
+         "--test-on", o.tested_on,
+         "Another recording of the body with the same probe, a table, a folder or a session file, "
+         "on which the "
+         "friction is tested that fits RECORDING, and the other way round; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--mesh", o.mesh, "Mesh of the body (.obj, .ply, .stl)");
+  sub->add_option("--units", o.units, with_default("Unit of the mesh: m, cm or mm", o.units));
+  add_renderer_options(*sub, o);
+  add_sensor_options(*sub, o);
+  sub->add_flag("--simulated", o.simulated, "Mark the report as one of a simulated recording");
+  sub->add_flag("--duck", o.duck,
+                "Simulate a duck, its scan and a recording of it and make the source's tables "
+                "anew, in place of RECORDING");
+  sub->add_option("--seed", o.seed, with_default("Seed of --duck", o.seed));
+  sub->add_option("--out", o.out, "New folder for the report, its pictures and the numbers");
 }
 
 }  // namespace haptrial::experiments

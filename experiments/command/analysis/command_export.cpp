@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "analysis/exchange/export_bids.h"
@@ -7,10 +8,10 @@
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/analysis_commands.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"
 #include "experiments/command/curves/export_watch.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 #include "experiments/runner/version.h"
 #include "experiments/studies/registry.h"
@@ -21,6 +22,17 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+struct ExportOptions {
+  std::vector<std::string> files;
+  std::string bids;
+  std::string csv;
+  std::string curves;
+  bool samples{false};
+  std::string name;
+  std::vector<std::string> authors;
+  std::optional<int> jobs;
+};
 
 using analysis::counted;
 
@@ -82,8 +94,6 @@ void check_form(const ExportOptions& options) {
   allow(options.csv, "--samples", options.samples, "--csv");
 }
 
-}  // namespace
-
 int export_sessions(const ExportOptions& options) {
   const int jobs = checked_jobs(options.jobs);
   check_form(options);
@@ -94,9 +104,31 @@ int export_sessions(const ExportOptions& options) {
   } else if (!options.csv.empty()) {
     export_as_csv(options, files, jobs);
   } else {
-    export_curves(options, files, jobs);
+    export_curves(options.curves, files, jobs);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "export", "Write sessions in the formats of other programs",
+                 "haptrial export --bids data-set out/force_training-001",
+                 {"the folder that --bids, --csv or --curves names", "guide-analyst.md"});
+  auto& o = options_of<ExportOptions>(*sub, status, export_sessions);
+  sub->add_option("FILE", o.files, "Session file (.h5) or folder of session files; may be repeated")
+      ->required();
+  sub->add_option("--bids", o.bids, "New folder for a BIDS data set");
+  sub->add_option("--csv", o.csv, "New folder for tidy tables (.csv)");
+  sub->add_option("--curves", o.curves, "New folder for the scored curves (.csv)");
+  sub->add_flag("--samples", o.samples,
+                "Samples of every tick beside the tables of --csv (.csv.gz)");
+  sub->add_option("--name", o.name,
+                  "Name of the BIDS data set (default: the name of the experiment)");
+  sub->add_option("--author", o.authors, "Author of the BIDS data set; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
 }
 
 }  // namespace haptrial::experiments

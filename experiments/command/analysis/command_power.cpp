@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,12 +11,31 @@
 #include "analysis/statistics/tests/repeated_power.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
-#include "experiments/command/analysis_commands.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
 namespace {
 
+struct PowerOptions {
+  std::string test;
+  std::optional<std::string> design;
+  std::optional<double> delta;
+  double sd{1.0};
+  std::optional<double> f;
+  std::optional<int> groups;
+  std::optional<std::string> effect;
+  std::optional<int> measurements;
+  std::optional<double> correlation;
+  std::optional<double> epsilon;
+  std::optional<long> n;
+  std::optional<double> power;
+  double alpha{0.05};
+  bool one_tailed{false};
+};
+
 constexpr int kMostGroups = 1000;
+constexpr const char* kDefaultDesign = "two-sample";
+constexpr const char* kDefaultEffect = "within";
 
 void check_inside(const char* option, double value, double low, double high) {
   if (!(value > low && value < high)) {
@@ -86,7 +106,7 @@ void check_numbers(const PowerOptions& options) {
     check_inside("--power", *options.power, options.alpha, 1.0);
   }
   const int fewest =
-      options.test == "repeated" && options.effect.value_or("within") == "within" ? 1 : 2;
+      options.test == "repeated" && options.effect.value_or(kDefaultEffect) == "within" ? 1 : 2;
   check_count("--groups", options.groups, fewest);
   check_count("--measurements", options.measurements, 2);
   if (const double r = options.correlation.value_or(0.0); !(r >= 0.0 && r < 1.0)) {
@@ -117,7 +137,7 @@ void check_numbers(const PowerOptions& options) {
 }
 
 analysis::TPlan t_plan(const PowerOptions& options) {
-  const std::string design = options.design.value_or("two-sample");
+  const std::string design = options.design.value_or(kDefaultDesign);
   analysis::TPlan plan{analysis::TDesign::kTwoSample, options.alpha, options.one_tailed};
   if (design == "one-sample") {
     plan.design = analysis::TDesign::kOneSample;
@@ -176,7 +196,7 @@ Plan anova_solution(const PowerOptions& options) {
 
 analysis::RepeatedPlan repeated_plan(const PowerOptions& options) {
   analysis::RepeatedPlan plan;
-  const std::string effect = options.effect.value_or("within");
+  const std::string effect = options.effect.value_or(kDefaultEffect);
   if (effect != "within" && effect != "interaction" && effect != "between") {
     throw InputError(
         not_allowed("--effect", fmt::format("'{}'", effect), {"within", "interaction", "between"}));
@@ -216,7 +236,7 @@ void print_size(const Plan& plan, int groups) {
 }
 
 void print_t(const PowerOptions& options, const Plan& plan) {
-  const std::string design = options.design.value_or("two-sample");
+  const std::string design = options.design.value_or(kDefaultDesign);
   fmt::print("{} t test, {}-tailed, significance level {}\n", design,
              options.one_tailed ? "one" : "two", options.alpha);
   const double delta = options.delta.value_or(plan.effect * options.sd);
@@ -242,8 +262,6 @@ void print_repeated(const PowerOptions& options) {
   print_size(solution, plan.groups);
 }
 
-}  // namespace
-
 int power(const PowerOptions& options) {
   check_test(options);
   check_numbers(options);
@@ -263,6 +281,55 @@ int power(const PowerOptions& options) {
       plan.effect);
   print_size(plan, *options.groups);
   return 0;
+}
+
+}  // namespace
+
+void add_power(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "power",
+                             "Compute the participants, the effect or the power of a planned study",
+                             "haptrial power t --design paired --delta 20 --sd 35 --power 0.8",
+                             {"", "algorithms/power.md"});
+  auto& o = options_of<PowerOptions>(*sub, status, [sub, &status](const PowerOptions& options) {
+    return sub->get_subcommands().empty() ? power(options) : status;
+  });
+  sub->add_option("TEST", o.test,
+                  "Test: t, anova (one-way) or repeated (repeated measures and mixed designs)");
+  sub->add_option(
+      "--design", o.design,
+      with_default("Design of the t test: two-sample, paired or one-sample", kDefaultDesign));
+  sub->add_option("--delta", o.delta, "Difference of the means to detect (t test)");
+  sub->add_option(
+      "--sd", o.sd,
+      with_default("Standard deviation, of the differences if paired, in the unit of --delta",
+                   o.sd));
+  sub->add_option(
+      "--f", o.f,
+      "Effect size f: standard deviation of the means over that within a cell (anova, repeated)");
+  sub->add_option("--groups", o.groups, "Number of groups (anova; repeated, default: 1)");
+  sub->add_option("--effect", o.effect,
+                  fmt::format("Effect: within, interaction or between (repeated; default: {})",
+                              kDefaultEffect));
+  sub->add_option("--measurements", o.measurements,
+                  "Number of conditions that everybody has (repeated)");
+  sub->add_option(
+      "--correlation", o.correlation,
+      fmt::format("Correlation of any two conditions over participants (repeated; default: {})",
+                  analysis::RepeatedPlan{}.correlation));
+  sub->add_option(
+      "--epsilon", o.epsilon,
+      fmt::format("Epsilon of Greenhouse and Geisser, 1 for a sphere (repeated; default: {})",
+                  analysis::RepeatedPlan{}.epsilon));
+  sub->add_option("--n", o.n, "Number of participants in each group");
+  sub->add_option("--power", o.power, "Power: probability of detecting the effect");
+  sub->add_option("--alpha", o.alpha,
+                  with_default("Significance level: false-positive rate", o.alpha));
+  sub->add_flag("--one-tailed", o.one_tailed,
+                "Test one tail only; the sign of the difference was planned (t test)");
+  add_power_simulate(*sub, status);
+  add_power_merge(*sub, status);
+  add_power_status(*sub, status);
+  add_power_plan(*sub, status);
 }
 
 }  // namespace haptrial::experiments

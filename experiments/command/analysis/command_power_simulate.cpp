@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <filesystem>
 
 #include "analysis/power/power_report.h"
 #include "core/base/error.h"
-#include "experiments/command/analysis/power_commands.h"
 #include "experiments/command/arguments.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/power/power_run.h"
@@ -15,6 +16,14 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+struct PowerSimulateOptions {
+  std::string question;
+  std::string out;
+  std::string part;
+  std::optional<int> jobs;
+  std::optional<double> minutes;
+};
 
 constexpr int kMostTasks = 1'000'000;
 
@@ -40,8 +49,6 @@ void write_report(const PowerFolder& folder) {
   fmt::print("report: {}\n",
              (fs::absolute(folder.path()) / "report.html").lexically_normal().string());
 }
-
-}  // namespace
 
 int power_simulate(const PowerSimulateOptions& options) {
   watch_for_interrupt();
@@ -86,6 +93,32 @@ int power_merge(const std::string& folder) {
   const PowerQuestion question = PowerFolder::question_of(folder);
   write_report(PowerFolder(folder, question));
   return 0;
+}
+
+}  // namespace
+
+void add_power_simulate(CLI::App& power, int& status) {
+  CLI::App* sub = subcommand(
+      power, "simulate", "Simulate a study many times and count what its report finds",
+      "haptrial power simulate docs/worked/power/repetition.toml --out out/repetition",
+      {"parts and, once they are all there, a report, tables and a figure in the folder of --out",
+       "guide-power.md"});
+  auto& o = options_of<PowerSimulateOptions>(*sub, status, power_simulate);
+  sub->add_option("DEFINITION", o.question,
+                  "Definition with a table [power], or a file with [power] that names one (.toml)")
+      ->required();
+  sub->add_option("--out", o.out, "Folder of the simulation (default: out/NAME-power)");
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
+  sub->add_option("--part", o.part, "Do part I of N of the work, I/N, without a report");
+  sub->add_option("--minutes", o.minutes, "Begin nothing after this time, and exit with status 0");
+}
+
+void add_power_merge(CLI::App& power, int& status) {
+  CLI::App* sub =
+      subcommand(power, "merge", "Make the report of a simulation whose parts are all there",
+                 "haptrial power merge out/repetition", {"", "guide-power.md"});
+  auto& folder = options_of<std::string>(*sub, status, power_merge);
+  sub->add_option("DIR", folder, "Folder of a simulation")->required();
 }
 
 }  // namespace haptrial::experiments

@@ -1,17 +1,19 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <map>
 #include <set>
 
-#include "experiments/command/analysis/power_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/power/power_folder.h"
 #include "experiments/power/power_part.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
+namespace {
 
 int power_status(const std::string& path) {
   const PowerQuestion question = PowerFolder::question_of(path);
@@ -49,6 +51,15 @@ int power_status(const std::string& path) {
   }
   fmt::print("next: haptrial power {} {}\n", missing.empty() ? "merge" : "status", path);
   return 0;
+}
+
+}  // namespace
+
+void add_power_status(CLI::App& power, int& status) {
+  CLI::App* sub = subcommand(power, "status", "Print how far a simulation is",
+                             "haptrial power status out/repetition", {"", "guide-power.md"});
+  auto& folder = options_of<std::string>(*sub, status, power_status);
+  sub->add_option("DIR", folder, "Folder of a simulation")->required();
 }
 
 }  // namespace haptrial::experiments

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "analysis/statistics/design/analysis_plan.h"
@@ -9,20 +10,34 @@
 #include "core/base/alike_names.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
-#include "experiments/command/analysis_commands.h"
 #include "experiments/command/arguments.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
 namespace {
 
+struct StatisticsOptions {
+  std::string table;
+  std::vector<std::string> subject{"subject"};
+  std::vector<std::string> factors{"condition"};
+  std::vector<std::string> between;
+  bool leave_out_missing{false};
+  std::string value{"score"};
+  std::vector<std::string> planned;
+  std::string reference;
+  int resamples{9999};
+  std::string seed{"1"};
+  std::string json;
+  std::optional<int> jobs;
+};
+
 /// Every column has one part; only a second column of the participants may be a factor, too.
 /// @throws InputError
-void check_columns(const StatisticsOptions& options, const std::vector<std::string>& subject,
-                   const std::vector<std::string>& factors) {
+void check_columns(const StatisticsOptions& options) {
   std::vector<std::string> columns{options.value};
-  columns.insert(columns.end(), factors.begin(), factors.end());
-  for (const std::string& column : subject) {
-    if (subject.size() == 1 || std::ranges::count(factors, column) == 0) {
+  columns.insert(columns.end(), options.factors.begin(), options.factors.end());
+  for (const std::string& column : options.subject) {
+    if (options.subject.size() == 1 || std::ranges::count(options.factors, column) == 0) {
       columns.push_back(column);
     }
   }
@@ -35,9 +50,9 @@ void check_columns(const StatisticsOptions& options, const std::vector<std::stri
     }
   }
   for (const std::string& name : options.between) {
-    if (std::ranges::count(factors, name) == 0) {
+    if (std::ranges::count(options.factors, name) == 0) {
       throw InputError(fmt::format("--between names '{}', which is no factor; allowed: '{}'", name,
-                                   fmt::join(factors, "', '")));
+                                   fmt::join(options.factors, "', '")));
     }
   }
 }
@@ -89,8 +104,6 @@ void warn_of_alike_levels(const analysis::DesignTable& table) {
   }
 }
 
-}  // namespace
-
 int statistics(const StatisticsOptions& options) {
   analysis::Resampling resampling;
   resampling.seed = checked_seed(options.seed);
@@ -99,21 +112,17 @@ int statistics(const StatisticsOptions& options) {
   resampling.threads = checked_jobs(options.jobs);
   const analysis::AnalysisPlan plan =
       analysis::parse_analysis_plan(options.planned, options.reference, "--planned");
-  const std::vector<std::string> factors =
-      options.factors.empty() ? std::vector<std::string>{"condition"} : options.factors;
-  const std::vector<std::string> subject =
-      options.subject.empty() ? std::vector<std::string>{"subject"} : options.subject;
-  check_columns(options, subject, factors);
+  check_columns(options);
   if (!options.json.empty() && std::filesystem::exists(options.json)) {
     throw InputError(fmt::format("{}: exists already; choose another --json", options.json));
   }
   const analysis::ObservedTable observed = analysis::read_observations(
-      options.table, subject, factors, options.value, options.leave_out_missing);
+      options.table, options.subject, options.factors, options.value, options.leave_out_missing);
   if (observed.observations.empty()) {
     throw InputError(fmt::format("{}: every row has a missing field", options.table));
   }
   const analysis::DesignTable table = analysis::design_table(
-      observed.observations, factors,
+      observed.observations, options.factors,
       plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});
   check_between(table, options.between);
   check_groups(table);
@@ -131,6 +140,41 @@ int statistics(const StatisticsOptions& options) {
     write_text(options.json, analysis::design_json(tests) + "\n");
   }
   return 0;
+}
+
+}  // namespace
+
+void add_statistics(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "statistics",
+                             "Test a table with one value in each row, as its design calls for",
+                             "haptrial statistics scores.csv --planned 'visual < haptic'",
+                             {"", "algorithms/statistics.md"});
+  auto& o = options_of<StatisticsOptions>(*sub, status, statistics);
+  sub->add_option("TABLE", o.table, "Table (.csv), or - for standard input")->required();
+  sub->add_option("--value", o.value, with_default("Column of the values", o.value));
+  sub->add_option("--subject", o.subject,
+                  with_default("Column of the participants", o.subject.front()) +
+                      "; may be repeated, with the column of the group if each group numbers its "
+                      "people anew")
+      ->allow_extra_args(false);
+  sub->add_option("--factor", o.factors,
+                  with_default("Column of a factor; may be repeated", o.factors.front()))
+      ->allow_extra_args(false);
+  sub->add_flag("--leave-out-missing", o.leave_out_missing,
+                "Leave out and count rows with a field that is empty, NA, NaN, N/A or '.'");
+  sub->add_option("--between", o.between,
+                  "Factor of which each participant has one level; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--planned", o.planned,
+                  "Planned test, 'A < B', 'A > B' or 'A != B'; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--reference", o.reference, "Level that tables and comparisons begin with");
+  sub->add_option(
+      "--resamples", o.resamples,
+      with_default("Number of random arrangements and resamples; 0 for none", o.resamples));
+  sub->add_option("--seed", o.seed, with_default("Seed of the random arrangements", o.seed));
+  sub->add_option("--json", o.json, "File for the unrounded numbers (.json)");
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
 }
 
 }  // namespace haptrial::experiments

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iterator>
 
@@ -11,11 +12,30 @@
 #include "analysis/force_training/score/score.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
-#include "experiments/command/analysis_commands.h"
 #include "experiments/command/arguments.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct AlignOptions {
+  std::string target;
+  std::string applied;
+  std::string time;
+  std::string value;
+  std::string applied_value;
+  std::optional<double> rate;
+  int samples{1000};
+  double filter{0.1};
+  double power{1.0};
+  double slope_weight{0.5};
+  std::optional<double> penalty;
+  std::string pattern{"published"};
+  std::optional<double> window;
+  bool open_begin{false};
+  bool open_end{false};
+  std::string out;
+};
 
 using analysis::AlignmentOptions;
 using analysis::RecallDetail;
@@ -109,8 +129,6 @@ void print(const RecallDetail& recall, const ScoreParameters& p) {
   fmt::print("\n");
 }
 
-}  // namespace
-
 int align(const AlignOptions& options) {
   if (options.target == "-" && options.applied == "-") {
     throw InputError("TARGET and APPLIED are both '-'; read only one of them from standard input");
@@ -130,6 +148,48 @@ int align(const AlignOptions& options) {
     fmt::print(stderr, "{}\n", warning);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_align(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(
+      app, "align", "Align two curves from any source (.csv) and score the second",
+      "haptrial align target.csv applied.csv --value force --out aligned",
+      {"tables and a picture in the folder of --out", "algorithms/alignment-options.md"});
+  auto& o = options_of<AlignOptions>(*sub, status, align);
+  sub->add_option("TARGET", o.target, "Table of the target curve (.csv), or - for standard input")
+      ->required();
+  sub->add_option("APPLIED", o.applied,
+                  "Table of the applied curve (.csv), or - for standard input")
+      ->required();
+  sub->add_option("--time", o.time, "Column of times [s], by name or number (default: time)");
+  sub->add_option("--rate", o.rate, "Rows per second [Hz], in place of a column of times");
+  sub->add_option("--value", o.value,
+                  "Column of values, by name or number (default: the only one besides the times)");
+  sub->add_option("--applied-value", o.applied_value,
+                  "Column of values of APPLIED (default: as --value)");
+  sub->add_option("--samples", o.samples,
+                  with_default("Number of samples of the common time base", o.samples));
+  sub->add_option("--filter", o.filter,
+                  with_default("Width of the box filter on APPLIED [s]", o.filter));
+  sub->add_option("--power", o.power,
+                  with_default("Exponent of the differences, 1 or more", o.power));
+  sub->add_option("--slope-weight", o.slope_weight,
+                  with_default("Weight of the differences of slopes", o.slope_weight));
+  sub->add_option("--penalty", o.penalty,
+                  fmt::format("Penalty for a step off the diagonal (default: {} with the published "
+                              "pattern, otherwise 0)",
+                              AlignmentOptions{}.penalty));
+  sub->add_option(
+      "--pattern", o.pattern,
+      with_default("Step pattern: published, symmetric1, symmetric2, asymmetric or symmetricP1",
+                   o.pattern));
+  sub->add_option("--window", o.window,
+                  "Largest time difference of paired samples [s] (default: no limit)");
+  sub->add_flag("--open-begin", o.open_begin, "Allow APPLIED to begin before the match");
+  sub->add_flag("--open-end", o.open_end, "Allow APPLIED to continue after the match");
+  sub->add_option("--out", o.out, "New folder for the aligned curves, their path and a picture");
 }
 
 }  // namespace haptrial::experiments

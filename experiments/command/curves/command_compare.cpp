@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 
 #include "analysis/force_training/report/comparison.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/analysis_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 #include "protocols/interface/study_rules.h"
@@ -14,6 +15,13 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+struct CompareOptions {
+  std::string first;
+  std::string second;
+  std::string out;
+  bool different_scoring{false};
+};
 
 /// A session of the study in a folder; nothing without one that can be read.
 std::optional<record::SessionInfo> session_in(const fs::path& folder) {
@@ -43,8 +51,6 @@ std::vector<std::string> remarks_on_definitions(const fs::path& first, const fs:
                       sentence_of(changes.free))};
 }
 
-}  // namespace
-
 int compare(const CompareOptions& options) {
   analysis::StudyComparison comparison = analysis::compare_studies(
       analysis::read_scored_study(options.first), analysis::read_scored_study(options.second),
@@ -67,6 +73,21 @@ int compare(const CompareOptions& options) {
     fmt::print("comparison: {}\n", (fs::path(out) / "comparison.html").string());
   }
   return 0;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(
+      app, "compare", "Compare the scores of two analysed studies",
+      "haptrial compare results/force_training results/force_training_curve --out out/compared",
+      {"a report, a figure and the numbers in the folder of --out", "guide-analyst.md"});
+  auto& o = options_of<CompareOptions>(*sub, status, compare);
+  sub->add_option("FIRST", o.first, "Folder of the first analysed study")->required();
+  sub->add_option("SECOND", o.second, "Folder of the second analysed study")->required();
+  sub->add_option("--out", o.out, "Folder for the comparison: a report, a figure and the numbers");
+  sub->add_flag("--different-scoring", o.different_scoring,
+                "Compare scores made with different parameters, with a warning on top");
 }
 
 }  // namespace haptrial::experiments

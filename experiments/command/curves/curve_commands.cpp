@@ -13,7 +13,6 @@
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/analysis_commands.h"
 #include "experiments/command/curves/export_watch.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
@@ -28,7 +27,7 @@ namespace {
 
 using analysis::counted;
 
-analysis::StudyResult analyzed_curves(const AnalyzeOptions& options, int threads) {
+analysis::StudyResult analyzed_curves(const CurveOptions& options, int threads) {
   watch_for_interrupt();
   CurveAnalysis curves;
   if (!options.definition.empty()) {
@@ -92,25 +91,25 @@ CurveAnalysis analysis_of_curves(const std::vector<fs::path>& files) {
 
 }  // namespace
 
-std::vector<std::string> analyze_curves(const AnalyzeOptions& options, int threads) {
+std::vector<std::string> analyze_curves(const CurveOptions& options, int paper, int threads) {
   const analysis::StudyResult study = analyzed_curves(options, threads);
-  analysis::write_analysis(study, options.out, options.paper.value_or(0));
+  analysis::write_analysis(study, options.out, paper);
   std::vector<std::string> lines = analysis::summary_lines(study);
   lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
   lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
   return lines;
 }
 
-void export_curves(const ExportOptions& options, const std::vector<fs::path>& given, int jobs) {
+void export_curves(const std::string& folder, const std::vector<fs::path>& given, int jobs) {
   const CurveAnalysis analysis = analysis_of_curves(given);
   const std::vector<fs::path> files = without_pilots(given);
   ExportWatch watch(files);
   // One definition says how all of them are scored.
   definition_remarks(protocol_of(record::SessionReader(files.front()).info()), files);
-  const auto done = exchange::export_curves(files, options.curves, analysis.scoring, jobs,
+  const auto done = exchange::export_curves(files, folder, analysis.scoring, jobs,
                                             [&](std::uint64_t samples) { watch(samples); });
   fmt::print("{} of {}\ncurves: {}\n", counted(done.trials, "scored trial"),
-             counted(done.subjects, "participant"), options.curves);
+             counted(done.subjects, "participant"), folder);
 }
 
 }  // namespace haptrial::experiments

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -14,10 +17,33 @@
 #include "experiments/command/deform/calibration_report.h"
 #include "experiments/command/deform/deform_files.h"
 #include "experiments/command/deform/deform_loads.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct DeformCalibrateOptions {
+  DeformInput input;
+  std::string out;
+  std::string constants{"homogeneous"};
+  std::vector<int> grid;
+  std::string method{"descent"};
+  std::optional<int> evaluations;
+  std::optional<int> samples;
+  int batch{1};
+  std::vector<double> range;
+  std::vector<double> hand;
+  double enough{0.0};
+  std::string seed{"1"};
+  std::optional<int> jobs;
+};
+
+// Defaults of options that belong to one kind of constants or one method alone.
+constexpr std::array kNodes{5, 5, 3};  // of --grid
+constexpr int kSamples = 100;
+constexpr int kDescent = 200;  // evaluations
+constexpr int kAnnealing = 1000;
 
 namespace fs = std::filesystem;
 using deformable::CalibrationLoad;
@@ -51,7 +77,7 @@ deformable::SearchRange range_of(const DeformCalibrateOptions& o, double materia
 }
 
 std::array<int, 3> grid_of(const DeformCalibrateOptions& o) {
-  return o.grid.empty() ? std::array{5, 5, 3} : std::array{o.grid[0], o.grid[1], o.grid[2]};
+  return o.grid.empty() ? kNodes : std::array{o.grid[0], o.grid[1], o.grid[2]};
 }
 
 SpringParameters parameters_of(const DeformCalibrateOptions& o, const SpringBody& springs) {
@@ -137,8 +163,6 @@ std::vector<CalibrationLoad> seen_of(const std::vector<NamedLoad>& loads,
   return seen;
 }
 
-constexpr int kSamples = 100;
-
 /// Another number for another body, reference or search; evaluations at most may grow.
 std::uint64_t fingerprint(const DeformCalibrateOptions& o, const DeformBody& body,
                           const CalibrationRun& run, const std::vector<CalibrationLoad>& seen) {
@@ -163,7 +187,7 @@ std::uint64_t fingerprint(const DeformCalibrateOptions& o, const DeformBody& bod
 
 void search(const DeformCalibrateOptions& o, const CalibrationProblem& problem,
             const SpringParameters& parameters, CalibrationJournal& journal, CalibrationRun& run) {
-  constexpr int kAnnealing = 1000, kDescent = 200, kMost = 10000000;
+  constexpr int kMost = 10000000;
   constexpr double kMilli = 1e-3;
   deformable::CalibrationSettings settings;
   settings.method = method_of(o.method);
@@ -244,8 +268,6 @@ std::array<double, 3> hand_of(const DeformCalibrateOptions& o, double material) 
           checked_real("--hand", o.hand[2], 0.0, kMost)};
 }
 
-}  // namespace
-
 int deform_calibrate(const DeformCalibrateOptions& options) {
   check_together(options);
   const MemoryBudget budget(options.input.max_memory);
@@ -302,6 +324,46 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   }
   fmt::print("report: {}\n", (fs::path(options.out) / "report.html").string());
   return 0;
+}
+
+}  // namespace
+
+void add_deform_calibrate(CLI::App& deform, int& status) {
+  CLI::App* sub = subcommand(
+      deform, "calibrate", "Find the constants with which springs follow a reference",
+      "haptrial deform calibrate gear.toml --out out/calibration",
+      {"constants.csv, evaluations.csv, calibration.json and report.html in the folder of --out. "
+       "A run that was killed goes on from OUT.evaluations",
+       "guide-deformable.md"});
+  auto& o = options_of<DeformCalibrateOptions>(*sub, status, deform_calibrate);
+  add_deform_input(*sub, o.input);
+  sub->add_option("--out", o.out, "New folder")->required();
+  sub->add_option("--constants", o.constants,
+                  with_default("Constants to find: homogeneous, grid or elements", o.constants));
+  sub->add_option("--grid", o.grid,
+                  with_default("Nodes of the grid along x, y and z",
+                               fmt::format("{}", fmt::join(kNodes, " "))))
+      ->expected(3);
+  sub->add_option("--method", o.method, with_default("Search: descent or annealing", o.method));
+  sub->add_option(
+      "--evaluations", o.evaluations,
+      fmt::format("Largest number of evaluations (default: {} of a descent, {} of an annealing)",
+                  kDescent, kAnnealing));
+  sub->add_option("--samples", o.samples, with_default("Coarse samples of an annealing", kSamples));
+  sub->add_option("--batch", o.batch,
+                  with_default("Candidates of an annealing that are computed at once", o.batch));
+  sub->add_option("--range", o.range,
+                  "Smallest and largest common logarithm of a constant [log10 J] (default: around "
+                  "the material's)")
+      ->expected(2);
+  sub->add_option("--hand", o.hand,
+                  "Constants set by hand, for comparison: lengths, areas and volumes [J] (default: "
+                  "a power of ten near the material's)")
+      ->expected(3);
+  sub->add_option("--enough", o.enough,
+                  with_default("Error at which the search ends [mm]", o.enough));
+  sub->add_option("--seed", o.seed, with_default("Seed of an annealing", o.seed));
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
 }
 
 }  // namespace haptrial::experiments

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,17 @@
 #include "core/deformable/springs/stable_step.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct DeformInfoOptions {
+  DeformInput input;
+  int resolution{20};
+  double scale{1.0};
+  std::vector<double> constants;
+};
 
 using Eigen::Vector3d;
 using geometry::TetMesh;
@@ -165,8 +174,6 @@ TetMesh mesh_alone(const DeformInfoOptions& o, const MemoryBudget& budget) {
       setup, [&](const std::string& what, double bytes) { budget.check(what, bytes); });
 }
 
-}  // namespace
-
 int deform_info(const DeformInfoOptions& options) {
   const MemoryBudget budget(options.input.max_memory);
   const bool stated = std::filesystem::path(options.input.file).extension() == ".toml";
@@ -193,6 +200,23 @@ int deform_info(const DeformInfoOptions& options) {
     print_springs(body, options.constants);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_deform_info(CLI::App& deform, int& status) {
+  CLI::App* sub = subcommand(deform, "info", "Describe a body: shapes, volume, mass, step, memory",
+                             "haptrial deform info gear.toml", {"", "guide-deformable.md"});
+  auto& o = options_of<DeformInfoOptions>(*sub, status, deform_info);
+  add_deform_input(*sub, o.input,
+                   "Definition of a body (.toml), mesh (.obj, .ply, .stl) or tetrahedra (.node)");
+  sub->add_option("--resolution", o.resolution,
+                  with_default("Number of cubes along the longest axis of a mesh", o.resolution));
+  sub->add_option("--scale", o.scale, with_default("Length of one unit of a mesh [m]", o.scale));
+  sub->add_option("--springs", o.constants,
+                  "Constants of springs, of lengths, areas and volumes [J], whose stable step is "
+                  "computed")
+      ->expected(3);
 }
 
 }  // namespace haptrial::experiments

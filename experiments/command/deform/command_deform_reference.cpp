@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,10 +14,21 @@
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/deform/deform_files.h"
 #include "experiments/command/deform/deform_loads.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct DeformReferenceOptions {
+  DeformInput input;
+  std::string out;
+  std::vector<std::string> loads;
+  std::string model{"static"};
+  double seconds{1.0};
+  double step{1e-3};
+  double damping{0.0};
+};
 
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
@@ -103,8 +115,6 @@ std::string reference_json(const DeformBody& body, const std::vector<Answer>& an
   return all.dump(2) + "\n";
 }
 
-}  // namespace
-
 int deform_reference(const DeformReferenceOptions& options) {
   if (options.model != "static" && options.model != "dynamic") {
     throw InputError(
@@ -152,6 +162,26 @@ int deform_reference(const DeformReferenceOptions& options) {
   }
   fmt::print("wrote       {}\n", options.out);
   return 0;
+}
+
+}  // namespace
+
+void add_deform_reference(CLI::App& deform, int& status) {
+  CLI::App* sub = subcommand(
+      deform, "reference", "Compute a body under its loads by finite elements",
+      "haptrial deform reference gear.toml --out out/reference",
+      {"displacements (.csv, .vtu), reference.json and report.html in the folder of --out",
+       "guide-deformable.md"});
+  auto& o = options_of<DeformReferenceOptions>(*sub, status, deform_reference);
+  add_deform_input(*sub, o.input);
+  sub->add_option("--out", o.out, "New folder")->required();
+  sub->add_option("--load", o.loads, "Name of a load; may be repeated (default: all)")
+      ->allow_extra_args(false);
+  sub->add_option("--model", o.model, with_default("Model: static or dynamic", o.model));
+  sub->add_option("--seconds", o.seconds,
+                  with_default("Duration of a dynamic model [s]", o.seconds));
+  sub->add_option("--step", o.step, with_default("Step of a dynamic model [s]", o.step));
+  sub->add_option("--damping", o.damping, with_default("Damping by mass [1/s]", o.damping));
 }
 
 }  // namespace haptrial::experiments

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,10 +16,27 @@
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/deform/deform_files.h"
 #include "experiments/command/deform/deform_loads.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct DeformSimulateOptions {
+  DeformInput input;
+  std::string out;
+  std::string load;
+  std::string model{"springs"};
+  std::string constants;
+  std::vector<double> three;
+  double seconds{1.0};
+  bool to_rest{false};
+  int frames{20};
+  std::optional<double> step;
+  double damping{20.0};
+};
+
+constexpr double kElementStep = 1e-3;  // [s]
 
 using Eigen::Vector3d;
 using Places = std::vector<Vector3d>;
@@ -108,7 +126,7 @@ deformable::SpringBody springs_asked_for(const DeformBody& body, const DeformSim
 
 std::unique_ptr<Stepper> stepper_of(const DeformBody& body, const deformable::LoadCase& load,
                                     const DeformSimulateOptions& o, const MemoryBudget& budget) {
-  constexpr double kElementStep = 1e-3, kOfStable = 0.5;
+  constexpr double kOfStable = 0.5;
   const double damping = checked_real("--damping", o.damping, 0.0, 1e6);
   const auto step_or = [&](double otherwise) {
     return o.step ? checked_real("--step", *o.step, 1e-12, 10.0) : otherwise;
@@ -162,8 +180,6 @@ void check_finite(const Places& u, double time) {
     }
   }
 }
-
-}  // namespace
 
 int deform_simulate(const DeformSimulateOptions& options) {
   constexpr int kMostFrames = 100000;
@@ -219,6 +235,31 @@ int deform_simulate(const DeformSimulateOptions& options) {
   }
   fmt::print("wrote       {}\n", options.out);
   return 0;
+}
+
+}  // namespace
+
+void add_deform_simulate(CLI::App& deform, int& status) {
+  CLI::App* sub = subcommand(
+      deform, "simulate", "Move a body in time or to rest",
+      "haptrial deform simulate gear.toml --springs 100 100 100 --out out/motion",
+      {"frames (.vtu, .csv) and series.pvd in the folder of --out", "guide-deformable.md"});
+  auto& o = options_of<DeformSimulateOptions>(*sub, status, deform_simulate);
+  add_deform_input(*sub, o.input);
+  sub->add_option("--out", o.out, "New folder")->required();
+  sub->add_option("--load", o.load, "Name of the load (default: the first)");
+  sub->add_option("--model", o.model, with_default("Model: springs or elements", o.model));
+  sub->add_option("--constants", o.constants, "Constants of springs from a calibration (.csv)");
+  sub->add_option("--springs", o.three, "Constants of springs: lengths, areas and volumes [J]")
+      ->expected(3);
+  sub->add_option("--seconds", o.seconds, with_default("Duration [s]", o.seconds));
+  sub->add_flag("--to-rest", o.to_rest, "End when the body rests, if that is sooner");
+  sub->add_option("--frames", o.frames,
+                  with_default("Number of frames over the duration", o.frames));
+  sub->add_option("--step", o.step,
+                  fmt::format("Step [s] (default: half the stable one of springs, {} of elements)",
+                              kElementStep));
+  sub->add_option("--damping", o.damping, with_default("Damping by mass [1/s]", o.damping));
 }
 
 }  // namespace haptrial::experiments

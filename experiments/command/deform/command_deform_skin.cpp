@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "analysis/files/new_folder.h"
@@ -9,9 +10,21 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/deform/deform_files.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
+namespace {
+
+struct DeformSkinOptions {
+  DeformInput input;
+  std::string surface;
+  std::vector<std::string> states;
+  std::string out;
+  double scale{1.0};
+  int neighbours{5};
+  std::string format{"ply"};
+};
 
 int deform_skin(const DeformSkinOptions& options) {
   namespace fs = std::filesystem;
@@ -47,6 +60,27 @@ int deform_skin(const DeformSkinOptions& options) {
   }
   fmt::print("wrote       {}\n", options.out);
   return 0;
+}
+
+}  // namespace
+
+void add_deform_skin(CLI::App& deform, int& status) {
+  CLI::App* sub =
+      subcommand(deform, "skin", "Move a fine surface with a body",
+                 "haptrial deform skin gear.toml gear.ply out/reference/twist.csv --out out/skin",
+                 {"a mesh for each state in the folder of --out", "guide-deformable.md"});
+  auto& o = options_of<DeformSkinOptions>(*sub, status, deform_skin);
+  add_deform_input(*sub, o.input);
+  sub->add_option("SURFACE", o.surface, "Surface (.obj, .ply, .stl)")->required();
+  sub->add_option("STATES", o.states, "Displacements of the body's vertices (.csv)")->required();
+  sub->add_option("--out", o.out, "New folder")->required();
+  sub->add_option("--scale", o.scale,
+                  with_default("Length of one unit of the surface [m]", o.scale));
+  sub->add_option(
+      "--neighbours", o.neighbours,
+      with_default("Number of vertices of the body that place one of the surface", o.neighbours));
+  sub->add_option("--format", o.format,
+                  with_default("Format of the meshes: ply, obj, stl or off", o.format));
 }
 
 }  // namespace haptrial::experiments

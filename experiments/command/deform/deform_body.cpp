@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +11,12 @@
 namespace haptrial::experiments {
 
 using Eigen::Vector3d;
+
+void add_deform_input(CLI::App& sub, DeformInput& input, const char* what) {
+  sub.add_option("BODY", input.file, what)->required();
+  sub.add_option("--max-memory", input.max_memory,
+                 "Limit of memory [GB]; a larger body is refused (default: the free memory)");
+}
 
 DeformBody load_deform_body(const DeformInput& input) {
   const MemoryBudget budget(input.max_memory);

@@ -1,15 +1,27 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/deformable/elements/setup_body.h"
 #include "core/deformable/elements/static_solver.h"
 #include "core/deformable/springs/spring_body.h"
-#include "experiments/command/deform/deform_commands.h"
 #include "experiments/command/mesh_command.h"
 
+namespace CLI {
+class App;
+}
+
 namespace haptrial::experiments {
+
+/// Input of every subcommand of haptrial deform.
+struct DeformInput {
+  std::string file;
+  std::optional<double> max_memory;  // [GB]
+};
+void add_deform_input(CLI::App& sub, DeformInput& input,
+                      const char* what = "Definition of a body and its loads (.toml)");
 
 /// Body of a file, ready for use.
 struct DeformBody {

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "experiments/command/line/command_lines.h"
 #include "experiments/command/start/examples.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
 
@@ -50,7 +50,6 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_validate(app, status);
   add_keys(app, status);
   add_power(app, status);
-  add_simulated_power(*app.get_subcommand("power"), status);
   add_devices(app, status);
   add_device_test(app, status);
   add_mesh(app, status);

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "core/device/catalog.h"
-#include "experiments/command/sessions/device_commands.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
+namespace {
 
 int devices() {
   for (const device::DeviceListing& listing : device::list_devices()) {
@@ -11,6 +14,14 @@ int devices() {
                listing.what);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_devices(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "devices", "List the devices and how to use them",
+                             "haptrial devices", {"", "devices.md"});
+  run_when_read(*sub, status, devices);
 }
 
 }  // namespace haptrial::experiments

@@ -1,7 +1,6 @@
-#include "experiments/command/sessions/session_commands.h"
-
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/experiment.h"
@@ -23,6 +23,22 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+struct DryRunOptions {
+  std::string definition;
+  std::optional<int> subjects;
+  std::string seed{"1"};
+  std::optional<int> jobs;
+  std::string out;
+  std::string parts;
+  int frames{0};
+  std::optional<int> trials;
+  std::optional<int> session;
+  std::string tutor;
+  bool taught{false};
+  std::string language;
+  std::vector<std::string> set{};
+};
 
 /// out/NAME-001, or the next number that is free.
 fs::path fresh_folder(const std::string& name) {
@@ -69,8 +85,6 @@ int take_parts(const DryRunOptions& options, DryRun& dry) {
   dry.start = static_cast<double>(rank->rank) / rank->size;
   return rank->rank;
 }
-
-}  // namespace
 
 /// run_dry(), whose interrupt says what is left and how more would be.
 static DryRunSummary run_until_interrupt(const protocols::Protocol& protocol,
@@ -182,6 +196,44 @@ int dry_run(const DryRunOptions& options) {
   fmt::print("sessions: {}\n", dry.folder.string());
   fmt::print("next: {}\n", experiment.study->next_step(dry.folder));
   return 0;
+}
+
+}  // namespace
+
+void add_dry_run(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "dry-run", "Run a whole study with virtual subjects, faster than real time",
+                 "haptrial dry-run first_experiment --jobs 2",
+                 {"a session file for each subject, for analyze", "guide-experimenter.md"});
+  auto& o = options_of<DryRunOptions>(*sub, status, dry_run);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("--subjects", o.subjects,
+                  "Number of virtual subjects (default: the participants of the definition)");
+  sub->add_option("--seed", o.seed, with_default("Seed of every random number", o.seed));
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
+  sub->add_option("--out", o.out, "New folder for the session files (default: out/NAME-001)");
+  sub->add_option("--parts", o.parts,
+                  "Folder of session files, in place of --out: the same command again, or several "
+                  "at once, run the sessions that are missing");
+  sub->add_option("--trials", o.trials,
+                  "Number of trials of each session, from the first (default: all)");
+  sub->add_option(
+      "--session", o.session,
+      "Number of the one session of each subject to run (default: all, in their order)");
+  sub->add_option("--language", o.language,
+                  "Language of what participants read, such as de (default: the definition's)");
+  sub->add_option("--tutor", o.tutor,
+                  "Recorded run that leads the hand: FILE, FILE:TRIAL or FILE:TRIAL@SECONDS");
+  sub->add_flag("--taught", o.taught,
+                "Lead each participant by a second virtual one, over a simulated network");
+  sub->add_option(
+      "--frames", o.frames,
+      with_default("Number of pictures to write of each pass, as the subject saw it", o.frames));
+  sub->add_option("--set", o.set,
+                  "KEY=VALUE: a key of the definition that has another value, as a definition "
+                  "writes it, such as observer.lapse=0.05; may be repeated")
+      ->expected(1)
+      ->take_all();
 }
 
 }  // namespace haptrial::experiments

@@ -1,7 +1,6 @@
-#include "experiments/command/sessions/session_commands.h"
-
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -17,6 +16,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_progress.h"
 #include "core/stream/marker_times.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/lab_file.h"
 
@@ -112,8 +112,6 @@ bool is_told(const std::string& kind) {
   return std::find(kTold.begin(), kTold.end(), kind) != kTold.end();
 }
 
-}  // namespace
-
 int info(const std::string& file) {
   const std::optional<std::string> unreadable = record::what_cannot_be_read(file);
   const record::SessionReader reader(file);
@@ -157,6 +155,16 @@ int info(const std::string& file) {
   print_progress(reader, integrity);
   fmt::print("recording   {}\n", integrity.ok ? "intact: every tick is recorded" : "NOT intact");
   return integrity.ok && integrity.state == record::RunState::kEnded ? 0 : 1;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "info", "Show what a session file holds and whether it is complete",
+                 "haptrial info out/force_training-001/S01.h5", {"", "session-file.md"});
+  auto& file = options_of<std::string>(*sub, status, info);
+  sub->add_option("FILE", file, "Session file (.h5)")->required();
 }
 
 }  // namespace haptrial::experiments

@@ -1,14 +1,20 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "core/base/counted.h"
 #include "core/record/recovery/recover.h"
-#include "experiments/command/sessions/session_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct RecoverOptions {
+  std::string file;
+  std::string out;
+};
 
 /// S01.h5 and S01.h5.partial become S01.recovered.h5, beside them.
 std::filesystem::path default_output(std::filesystem::path file) {
@@ -18,10 +24,11 @@ std::filesystem::path default_output(std::filesystem::path file) {
   return file.replace_extension(".recovered.h5");
 }
 
-}  // namespace
-
-int recover(const std::string& file, const std::string& out) {
-  const std::filesystem::path to = out.empty() ? default_output(file) : std::filesystem::path(out);
+/// @returns 0 when something was recovered, else 1.
+int recover(const RecoverOptions& options) {
+  const std::string& file = options.file;
+  const std::filesystem::path to =
+      options.out.empty() ? default_output(file) : std::filesystem::path(options.out);
   const record::Recovery found = record::recover_session(file, to, known_tables());
   if (!found.anything()) {
     fmt::print("{}: nothing of a session is left in its {} bytes; nothing was written\n", file,
@@ -40,6 +47,18 @@ int recover(const std::string& file, const std::string& out) {
   fmt::print("loop        {}\n", found.ended ? "complete" : "its counts are lost");
   fmt::print("written to  {}; {} is unchanged\n", to.string(), file);
   return 0;
+}
+
+}  // namespace
+
+void add_recover(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "recover", "Save what a damaged session file still holds",
+                             "haptrial recover out/sessions/P01.h5.partial",
+                             {"a session file of what could be read", "session-file.md"});
+  auto& o = options_of<RecoverOptions>(*sub, status, recover);
+  sub->add_option("FILE", o.file, "Damaged session file (.h5, .partial), which is left unchanged")
+      ->required();
+  sub->add_option("OUT", o.out, "New session file (default: S01.recovered.h5 for S01.h5)");
 }
 
 }  // namespace haptrial::experiments

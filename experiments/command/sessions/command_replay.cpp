@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -7,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/sessions/session_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/signals.h"
@@ -18,6 +19,16 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+struct ReplayOptions {
+  std::string file;
+  int trial{0};
+  std::string phase;
+  std::string video;
+  std::string frames;
+  std::string sound;
+  int fps{30};
+};
 
 /// A new folder of pictures; without keep() they go again.
 class PictureFolder {
@@ -58,8 +69,6 @@ class PictureFolder {
   bool kept_{false};
   int count_{0};
 };
-
-}  // namespace
 
 int replay(const ReplayOptions& options) {
   watch_for_interrupt();
@@ -120,6 +129,25 @@ int replay(const ReplayOptions& options) {
     fmt::print("{}\n", line);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "replay",
+                 "Replay a recorded trial as the participant saw it, or simulate a drilling again",
+                 "haptrial replay out/force_training-001/S01.h5 --trial 3 --video trial-3.mp4",
+                 {"the video, pictures or sound asked for", "guide-analyst.md"});
+  auto& o = options_of<ReplayOptions>(*sub, status, replay);
+  sub->add_option("FILE", o.file, "Session file (.h5)")->required();
+  sub->add_option("--trial", o.trial,
+                  "Number of the trial, from 1 (default: of a drilling all, in a video the first)");
+  sub->add_option("--phase", o.phase, "Phase of the trial: training or test (default: both)");
+  sub->add_option("--video", o.video, "New video (.mp4); needs ffmpeg");
+  sub->add_option("--frames", o.frames, "New folder for pictures (.png)");
+  sub->add_option("--sound", o.sound, "New sound file of a drilling (.wav)");
+  sub->add_option("--fps", o.fps, with_default("Pictures per second [1/s]", o.fps));
 }
 
 }  // namespace haptrial::experiments

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -12,12 +13,22 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/exclude.h"
 #include "experiments/command/sessions/next_session.h"
-#include "experiments/command/sessions/session_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct RosterOptions {
+  std::string definition;
+  std::string folder;
+  std::optional<std::string> seed;
+  std::string json;
+  std::string csv;
+  std::string exclude;
+  std::string because;
+};
 
 namespace fs = std::filesystem;
 using Row = std::vector<std::string>;
@@ -167,8 +178,6 @@ void write_new(const std::string& file, const std::string& text) {
   fmt::print("roster: {}\n", file);
 }
 
-}  // namespace
-
 int roster(const RosterOptions& options) {
   const Experiment experiment = load_experiment(options.definition);
   RosterRequest request;
@@ -190,6 +199,30 @@ int roster(const RosterOptions& options) {
   write_new(options.json, json_of(roster));
   write_new(options.csv, csv_of(roster));
   return 0;
+}
+
+}  // namespace
+
+void add_roster(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "roster", "Show who has done what in a study, and who is next",
+                 "haptrial roster curl_field out/curl_field",
+                 {"the same as JSON or as a table if asked for", "guide-experimenter.md"});
+  auto& o = options_of<RosterOptions>(*sub, status, roster);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("FOLDER", o.folder, "Folder of the session files; need not be there yet")
+      ->required();
+  sub->add_option(
+      "--seed", o.seed,
+      "Seed of the study, for orders (default: that of the sessions; 1 if there are none)");
+  sub->add_option("--json", o.json, "New file for the roster as JSON");
+  sub->add_option("--csv", o.csv, "New file for the roster as a table, a row for each session");
+  auto* exclude = sub->add_option("--exclude", o.exclude,
+                                  "Participant whose files are moved into the folder excluded; the "
+                                  "next new participant gets the place");
+  auto* because = sub->add_option("--because", o.because, "Why, for excluded/reasons.csv");
+  exclude->needs(because);
+  because->needs(exclude);
 }
 
 }  // namespace haptrial::experiments

@@ -1,10 +1,9 @@
-#include "experiments/command/sessions/session_commands.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -20,6 +19,8 @@
 #include "experiments/command/sessions/meet_partner.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/sessions/run_checks.h"
+#include "experiments/command/sessions/run_options.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/console/console.h"
 #include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/keyboard.h"
@@ -31,6 +32,9 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr const char* kSessions = "out/sessions";
+constexpr const char* kTeaching = "out/teaching";  // with --teach
 
 /// Several devices of one vendor are told apart by their order.
 void choose_devices(const RunOptions& options, SessionRequest& request) {
@@ -143,14 +147,12 @@ protocols::AuxiliaryPages chosen_pages(const RunOptions& options,
   return chosen;
 }
 
-}  // namespace
-
 int run(const RunOptions& asked) {
   watch_for_interrupt();
   watch_fatal_signals();
   RunOptions options = asked;
   if (options.out.empty()) {
-    options.out = options.teach ? "out/teaching" : "out/sessions";
+    options.out = options.teach ? kTeaching : kSessions;
   }
   check_run_options(options);
   if (::isatty(STDERR_FILENO) != 0) {
@@ -254,6 +256,72 @@ int run(const RunOptions& asked) {
     fmt::print("WARNING: the servo loop did not keep its rate: {}\n", *late);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "run", "Run one participant's session in real time",
+                             "haptrial run first_experiment --subject P01",
+                             {"the session file ID.h5, for analyze", "guide-experimenter.md"});
+  auto& o = options_of<RunOptions>(*sub, status, run);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("--subject", o.subject,
+                  "Participant's identifier: letters, digits, '-', '_' (default: the next one of "
+                  "the roster)");
+  sub->add_option("--session", o.session,
+                  "Number of the participant's session, of a study on several days (default: the "
+                  "first that is left)");
+  sub->add_option("--device", o.devices,
+                  with_default("Device: virtual, mouse, gamepad, force-dimension, open-haptics, "
+                               "replay:FILE or one of this program's own",
+                               o.devices.front()) +
+                      "; repeated for each device of an experiment with several")
+      ->allow_extra_args(false);
+  sub->add_option("--library", o.library,
+                  "Path of the vendor's library (default: found by the system)");
+  sub->add_option("--tutor", o.tutor,
+                  "Recorded run that leads the hand: FILE, FILE:TRIAL or FILE:TRIAL@SECONDS");
+  sub->add_option("--teach", o.teach,
+                  "Port at which another machine's session is awaited, whose hand is led");
+  sub->add_option("--learn-from", o.learn_from,
+                  "HOST:PORT of the session whose hand leads, started there with --teach");
+  sub->add_option("--secret", o.secret,
+                  "File of the secret that both sides have (haptrial secret FILE)");
+  sub->add_flag("--window", o.window, "Show the participant's screen");
+  sub->add_flag("--keyboard", o.keyboard, "Control the session with this terminal's keys");
+  sub->add_flag("--console", o.console, "Serve the experimenter's page on the loopback address");
+  sub->add_option("--side-page", o.auxiliary_pages,
+                  "Name of a page to serve beside the console; repeated for each page (haptrial "
+                  "validate lists those of a definition)")
+      ->allow_extra_args(false);
+  sub->add_option("--port", o.port, "Port of the console (default: any free port)");
+  sub->add_option("--address", o.address,
+                  with_default("Address of the console; needs --remote", ConsoleOptions{}.address));
+  sub->add_flag("--remote", o.remote, "Allow a console address that other machines can reach");
+  sub->add_flag("--lsl", o.stream,
+                "Stream to the Lab Streaming Layer; an error if its library is absent");
+  sub->add_flag("--lsl-optional", o.stream_optional,
+                "Stream to the Lab Streaming Layer if its library is present");
+  sub->add_flag("--resume", o.resume, "Resume the participant's unfinished session");
+  sub->add_option("--language", o.language,
+                  "Language of what the participant reads, such as de (default: the definition's)");
+  sub->add_flag("--pilot", o.pilot, "Mark the session as a pilot, which analyze leaves out");
+  sub->add_option("--handedness", o.person.handedness, "Participant's handedness");
+  sub->add_option("--age-band", o.person.age_band, "Participant's age band, such as 18-25");
+  sub->add_option("--sex", o.person.sex, "Participant's sex");
+  sub->add_option("--consent", o.person.consent_confirmed,
+                  "Confirmation of consent, such as yes or a date");
+  sub->add_option("--notes", o.person.notes, "Free text for the session file");
+  sub->add_option("--seed", o.seed,
+                  with_default("Seed of the study, the same for all participants", o.seed));
+  sub->add_option("--participant", o.participant,
+                  "Participant's number, for the order of conditions (default: the one that ends "
+                  "the identifier)");
+  sub->add_option("--trials", o.trials, "Number of trials, from the first (default: all)");
+  sub->add_option("--out", o.out,
+                  fmt::format("Folder for the session file (default: {}; with --teach {})",
+                              kSessions, kTeaching));
 }
 
 }  // namespace haptrial::experiments

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
-#include "experiments/command/sessions/session_commands.h"
+#include <CLI/CLI.hpp>
+
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/definition/languages.h"
 
@@ -12,8 +14,6 @@ void print_undrawable(const Experiment& experiment) {
     fmt::print("warning: {}\n", sentence);
   }
 }
-
-}  // namespace
 
 int validate(const std::string& file) {
   const Experiment experiment = load_experiment(file);
@@ -41,6 +41,15 @@ int validate(const std::string& file) {
     print_undrawable(translated);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "validate", "Check a definition and show the study that it plans",
+                             "haptrial validate first_experiment", {"", "guide-experimenter.md"});
+  auto& definition = options_of<std::string>(*sub, status, validate);
+  sub->add_option("DEFINITION", definition, "Experiment definition (.toml)")->required();
 }
 
 }  // namespace haptrial::experiments

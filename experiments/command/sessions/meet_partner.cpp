@@ -62,13 +62,4 @@ std::optional<protocols::LinkChoice> meet_partner(const RunOptions& options,
   return link;
 }
 
-int make_secret(const std::string& file) {
-  network::Secret::make(file);
-  fmt::print(
-      "{}: a new secret; copy it to the other machine by a way that nobody else can read, and keep "
-      "it out of folders of results\n",
-      file);
-  return 0;
-}
-
 }  // namespace haptrial::experiments

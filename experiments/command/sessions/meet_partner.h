@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "experiments/command/sessions/session_commands.h"
+#include "experiments/command/sessions/run_options.h"
 #include "experiments/runner/session_request.h"
 
 namespace haptrial::experiments {

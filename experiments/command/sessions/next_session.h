@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "experiments/command/sessions/session_commands.h"
+#include "experiments/command/sessions/run_options.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "experiments/command/sessions/session_commands.h"
+#include "experiments/command/sessions/run_options.h"
 
 namespace haptrial::protocols {
 struct Definition;

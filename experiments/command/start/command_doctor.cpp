@@ -1,16 +1,21 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <optional>
 
 #include "experiments/command/start/examples.h"
 #include "experiments/command/start/machine_checks.h"
-#include "experiments/command/start/start_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct DoctorOptions {
+  std::string where{"."};
+};
 
 constexpr double kClockSeconds = 2.0;
 constexpr double kUsualRate = 1000.0;  // [Hz]
@@ -49,9 +54,9 @@ bool is_definition(const std::string& where) {
           std::ranges::any_of(examples(), [&](const Example& e) { return e.name == where; }));
 }
 
-}  // namespace
-
-int doctor(const std::string& where) {
+/// Prints what this machine can do. @returns 0 if sessions can run, else 1.
+int doctor(const DoctorOptions& options) {
+  const std::string& where = options.where;
   std::optional<Experiment> experiment;
   if (is_definition(where)) {
     experiment = load_experiment(definition_or_example(where));
@@ -89,6 +94,18 @@ int doctor(const std::string& where) {
           ? "can run here; what is limited above is worth mending before a participant comes."
           : "can run here.");
   return broken == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, int& status) {
+  CLI::App* sub =
+      subcommand(app, "doctor", "Check whether this machine is fit for sessions",
+                 "haptrial doctor first_experiment", {"", "guide-first-participant.md"});
+  auto& o = options_of<DoctorOptions>(*sub, status, doctor);
+  sub->add_option("WHERE", o.where,
+                  "Definition whose sessions are to run here, or folder for session files "
+                  "(default: here)");
 }
 
 }  // namespace haptrial::experiments

@@ -1,12 +1,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
+
 #include "core/base/error.h"
-#include "experiments/command/start/key_commands.h"
 #include "experiments/command/start/key_list.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {
+namespace {
+
+struct KeysOptions {
+  std::string word;
+  bool json_schema{false};
+};
 
 int keys(const KeysOptions& options) {
   const Study* study = find_study(options.word);
@@ -25,6 +33,19 @@ int keys(const KeysOptions& options) {
   fmt::print("{}",
              all ? key_page(key_sections(protocol)) : found_keys(sections_with(options.word)));
   return 0;
+}
+
+}  // namespace
+
+void add_keys(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "keys", "List the keys that a definition may have",
+                             "haptrial keys stiffness", {"", "keys.md"});
+  auto& o = options_of<KeysOptions>(*sub, status, keys);
+  sub->add_option("WORD", o.word,
+                  "Protocol whose keys are listed, or a word to search keys for (default: all "
+                  "keys)");
+  sub->add_flag("--json-schema", o.json_schema,
+                "Print a JSON Schema of the protocol's definitions, for editors");
 }
 
 }  // namespace haptrial::experiments

@@ -1,16 +1,22 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
 #include "experiments/command/start/examples.h"
-#include "experiments/command/start/start_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct NewOptions {
+  std::string file;
+  std::string from{"first_experiment"};
+};
 
 std::filesystem::path definition_file(const std::string& given) {
   std::filesystem::path file(given);
@@ -22,8 +28,6 @@ std::filesystem::path definition_file(const std::string& given) {
   }
   return file;
 }
-
-}  // namespace
 
 int new_definition(const NewOptions& options) {
   const std::filesystem::path file = definition_file(options.file);
@@ -38,6 +42,17 @@ int new_definition(const NewOptions& options) {
   fmt::print("next: haptrial validate {0}\n      haptrial dry-run {0} --subjects 2\n",
              file.string());
   return 0;
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "new", "Begin a definition of one's own from a shipped one",
+                             "haptrial new my_study.toml --from stiffness_discrimination",
+                             {"FILE", "guide-own-experiment.md"});
+  auto& o = options_of<NewOptions>(*sub, status, new_definition);
+  sub->add_option("FILE", o.file, "The definition to be written (.toml)")->required();
+  sub->add_option("--from", o.from, with_default("One that haptrial examples lists", o.from));
 }
 
 }  // namespace haptrial::experiments

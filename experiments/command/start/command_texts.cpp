@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -10,13 +11,18 @@
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
-#include "experiments/command/start/start_commands.h"
+#include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/definition/languages.h"
 #include "protocols/definition/program_words.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct TextsOptions {
+  std::string definition;
+  std::string language;
+};
 
 /// A text in quotes. The escapes of JSON are among those of TOML.
 std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
@@ -35,8 +41,6 @@ std::string toml_key(const std::string& key) {
   }
   return fmt::format("{}", fmt::join(parts, "."));
 }
-
-}  // namespace
 
 int write_texts(const TextsOptions& options) {
   protocols::check_language(options.language);
@@ -65,6 +69,18 @@ int write_texts(const TextsOptions& options) {
   fmt::print("{}: {} texts to translate\n", out.file().string(), count);
   fmt::print("next: haptrial validate {}\n", options.definition);
   return 0;
+}
+
+}  // namespace
+
+void add_texts(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "texts", "Begin the file of a definition's texts in a language",
+                             "haptrial texts first_experiment --language ja",
+                             {"DEFINITION.texts.LANGUAGE.toml, to be filled in",
+                              "guide-own-experiment.md#pages-and-languages"});
+  auto& o = options_of<TextsOptions>(*sub, status, write_texts);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("--language", o.language, "Language, such as ja or pt-BR")->required();
 }
 
 }  // namespace haptrial::experiments

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -12,10 +13,25 @@
 #include "core/base/whole_file.h"
 #include "core/sound/power_spectrum.h"
 #include "core/sound/wav.h"
-#include "experiments/command/tools/tool_commands.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
 namespace {
+
+struct SpectrumOptions {
+  std::string file;
+  std::string out;
+  std::string burr{"cutting"};
+  std::string level{"typical"};
+  double force{0.0};
+  int peaks{24};
+  int segment{0};
+  bool add{false};
+  std::string wav;
+  std::string picture;
+  bool overwrite{false};
+};
 
 namespace fs = std::filesystem;
 
@@ -44,17 +60,7 @@ void check(const SpectrumOptions& options) {
     throw InputError(
         fmt::format("--peaks is {}; allowed: 1 to {}", options.peaks, sound::Spectrum::kMaxPeaks));
   }
-  if (!options.picture.empty()) {
-    const std::string ending = fs::path(options.picture).extension().string();
-    if (ending != ".png" && ending != ".svg") {
-      throw InputError(
-          fmt::format("{}: ends in '{}'; allowed: .png, .svg", options.picture, ending));
-    }
-    if (!options.overwrite && fs::exists(options.picture)) {
-      throw InputError(fmt::format("{}: exists already; choose another name or add --overwrite",
-                                   options.picture));
-    }
-  }
+  check_new_figure(options.picture, options.overwrite);
 }
 
 sound::PowerSpectrum spectrum_of(const sound::Recording& recording, int segment,
@@ -179,8 +185,6 @@ void draw(const SpectrumOptions& options, const sound::PowerSpectrum& recorded,
   fs::remove_all(folder, ignored);
 }
 
-}  // namespace
-
 int spectrum(const SpectrumOptions& options) {
   check(options);
   burr_of(options.burr);
@@ -210,6 +214,28 @@ int spectrum(const SpectrumOptions& options) {
     fmt::print("wrote       {}\n", options.picture);
   }
   return 0;
+}
+
+}  // namespace
+
+void add_spectrum(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "spectrum", "Make a table of a drill's sound from a recording",
+                             "haptrial spectrum drill.wav drill.toml --level free",
+                             {"", "algorithms/drill-sound.md"});
+  auto& o = options_of<SpectrumOptions>(*sub, status, spectrum);
+  sub->add_option("FILE", o.file, "Recording (.wav, .flac, .aiff)")->required();
+  sub->add_option("OUT", o.out, "New table (.toml) (default: print only)");
+  sub->add_option("--burr", o.burr, with_default("Kind of burr: diamond or cutting", o.burr));
+  sub->add_option("--level", o.level,
+                  with_default("Name of the level; 'free' for the drill in the air", o.level));
+  sub->add_option("--force", o.force, with_default("Force of the burr on the bone [N]", o.force));
+  sub->add_option("--peaks", o.peaks, with_default("Largest number of peaks", o.peaks));
+  sub->add_option("--segment", o.segment,
+                  "Samples in a segment, a power of two (default: 40 ms or more)");
+  sub->add_flag("--add", o.add, "Add the level to an existing table");
+  sub->add_option("--wav", o.wav, "New sound file made from the peaks (.wav)");
+  sub->add_option("--picture", o.picture, "New picture of both spectra (.png, .svg)");
+  sub->add_flag("--overwrite", o.overwrite, "Overwrite existing files");
 }
 
 }  // namespace haptrial::experiments

@@ -1,0 +1,233 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "analysis/document/figure_gnuplot.h"
+#include "core/base/error.h"
+#include "core/base/nearest.h"
+#include "core/bone/model/crop.h"
+#include "core/bone/model/tidy.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/bone/bone_carving.h"
+#include "experiments/command/bone/bone_options.h"
+#include "experiments/command/subcommand.h"
+
+namespace haptrial::experiments {
+namespace {
+
+struct BoneImportOptions : BoneInput, BoneOutput {
+  std::vector<double> crop;
+  std::vector<double> around;
+  std::string segmentation;
+  std::vector<std::string> structures;
+  std::string mesh_axes{"auto"};
+  bool largest{false};
+  std::optional<double> fill;
+  std::string histogram;
+};
+
+namespace fs = std::filesystem;
+
+/// The box of --crop or --around. @throws InputError
+std::optional<Eigen::AlignedBox3d> chosen_box(const BoneImportOptions& options) {
+  const auto finite = [](const std::vector<double>& numbers) {
+    return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                             static_cast<Eigen::Index>(numbers.size()))
+        .allFinite();
+  };
+  const std::vector<double>& crop = options.crop;
+  const std::vector<double>& around = options.around;
+  if (crop.empty() && around.empty()) {
+    return std::nullopt;
+  }
+  if (!crop.empty() && !around.empty()) {
+    throw InputError("--crop and --around both choose a part; write one of them");
+  }
+  if (!around.empty()) {
+    if (around.size() != 4 || !finite(around) || !(around[3] > 0.0)) {
+      throw InputError("--around is not a place and an edge; allowed: X,Y,Z,EDGE [mm]");
+    }
+    const Eigen::Vector3d middle = kMillimetre * Eigen::Vector3d(around[0], around[1], around[2]);
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * kMillimetre * around[3]);
+    return Eigen::AlignedBox3d(middle - half, middle + half);
+  }
+  const bool six = crop.size() == 6 && finite(crop);
+  if (!six || !(crop[0] < crop[1] && crop[2] < crop[3] && crop[4] < crop[5])) {
+    throw InputError("--crop is not a box; allowed: X0,X1,Y0,Y1,Z0,Z1 [mm], the lower first");
+  }
+  return Eigen::AlignedBox3d(kMillimetre * Eigen::Vector3d(crop[0], crop[2], crop[4]),
+                             kMillimetre * Eigen::Vector3d(crop[1], crop[3], crop[5]));
+}
+
+/// "NAME=FILE" for each. @throws InputError
+std::vector<bone::MeshStructure> meshes_of(const BoneImportOptions& options) {
+  std::optional<bool> ras;
+  if (options.mesh_axes == "ras" || options.mesh_axes == "lps") {
+    ras = options.mesh_axes == "ras";
+  } else if (options.mesh_axes != "auto") {
+    throw InputError(
+        not_allowed("--mesh-axes", fmt::format("'{}'", options.mesh_axes), {"auto", "lps", "ras"}));
+  }
+  std::vector<bone::MeshStructure> meshes;
+  for (const std::string& words : options.structures) {
+    const std::size_t sign = words.find('=');
+    if (sign == std::string::npos || sign == 0 || sign + 1 == words.size()) {
+      throw InputError(
+          fmt::format("--structure is '{}'; allowed: NAME=FILE, as in 'facial "
+                      "nerve=nerve.stl'",
+                      words));
+    }
+    meshes.push_back({words.substr(0, sign), words.substr(sign + 1), ras});
+  }
+  return meshes;
+}
+
+void check_fill(const BoneImportOptions& options) {
+  constexpr double kMost = 1e6;  // [mm3]
+  if (options.fill && !(*options.fill > 0.0 && *options.fill <= kMost)) {
+    throw InputError(
+        fmt::format("--fill is {}; allowed: above 0, to {} [mm3]", *options.fill, kMost));
+  }
+}
+
+analysis::Series upright_line(const std::string& label, double x, double top, const char* color,
+                              const char* dash) {
+  analysis::Series series;
+  series.label = label;
+  series.mark = analysis::Mark::kSegments;
+  series.look = {.color = color, .dash = dash, .width = 2.0};
+  series.x = {x};
+  series.y = {0.0};
+  series.x2 = {x};
+  series.y2 = {top};
+  return series;
+}
+
+analysis::Figure histogram_figure(const bone::GreyFindings& findings, const std::string& name) {
+  const bone::GreyHistogram& histogram = findings.histogram;
+  analysis::Figure figure;
+  figure.name = "histogram";
+  figure.title = name;
+  figure.x_label = "value";
+  figure.y_label = "log10(voxels + 1)";
+  analysis::Series counts;
+  counts.label = "voxels";
+  counts.look = {.color = "#1f6f8b", .width = 1.5};
+  double top = 1.0;
+  for (std::size_t bin = 0; bin < bone::GreyHistogram::kBins; ++bin) {
+    const double height = std::log10(histogram.counts[bin] + 1.0);
+    top = std::max(top, height);
+    for (const double side : {0.0, 1.0}) {  // steps
+      counts.x.push_back(histogram.value_of(static_cast<double>(bin) + side));
+      counts.y.push_back(height);
+    }
+  }
+  figure.series.push_back(std::move(counts));
+  figure.series.push_back(upright_line(fmt::format("suggested: {:.6g}", findings.suggested),
+                                       findings.suggested, top, "#c8553d", "(6,3)"));
+  if (findings.used) {
+    figure.series.push_back(
+        upright_line(fmt::format("bone from {:.6g} on", findings.used->threshold),
+                     findings.used->threshold, top, "#000000", "solid"));
+    figure.series.push_back(upright_line(fmt::format("dense at {:.6g}", findings.used->dense),
+                                         findings.used->dense, top, "#6b6b6b", "(2,3)"));
+  }
+  figure.height = 0.45;
+  return figure;
+}
+
+/// Draws NAME.svg or NAME.png elsewhere and brings the one that is asked for.
+void draw_histogram(const BoneImportOptions& options, const bone::GreyFindings& findings) {
+  std::string folder = (fs::temp_directory_path() / "haptrial-histogram-XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) {
+    throw RunError(fmt::format("{}: cannot be made", folder));
+  }
+  std::error_code ignored;
+  try {
+    analysis::draw_figures({histogram_figure(findings, fs::path(options.in).filename().string())},
+                           folder);
+    const fs::path ending = fs::path(options.histogram).extension();
+    fs::copy_file(fs::path(folder) / ("histogram" + ending.string()), options.histogram,
+                  fs::copy_options::overwrite_existing);
+  } catch (const fs::filesystem_error& error) {
+    fs::remove_all(folder, ignored);
+    throw InputError(
+        fmt::format("{}: cannot be written ({}); choose a folder with write permission",
+                    options.histogram, error.code().message()));
+  } catch (...) {
+    fs::remove_all(folder, ignored);
+    throw;
+  }
+  fs::remove_all(folder, ignored);
+  fmt::print("histogram   {}: a threshold of {:.6g} is suggested\n", options.histogram,
+             findings.suggested);
+}
+
+void tidy(const BoneImportOptions& options, bone::BoneModel& model) {
+  if (options.fill) {
+    const double voxel = 1e9 * std::pow(model.grid.spacing, 3);
+    const auto most = static_cast<std::size_t>(*options.fill / voxel);
+    const bone::Tidied filled = bone::fill_holes(model, most);
+    fmt::print("filled      {} holes: {} voxels, {:.1f} mm3\n", filled.parts, filled.voxels,
+               static_cast<double>(filled.voxels) * voxel);
+  }
+  if (options.largest) {
+    const bone::Tidied left = bone::keep_largest_part(model);
+    bone::crop_to_bone(model);
+    fmt::print("left out    {} loose parts of bone: {} voxels\n", left.parts, left.voxels);
+  }
+}
+
+int bone_import(const BoneImportOptions& options) {
+  const MemoryBudget budget(options.max_memory);
+  check_new_bone(options);
+  check_new_figure(options.histogram, options.overwrite);
+  check_fill(options);
+  bone::LoadOptions load = load_options(options, budget);
+  load.crop = chosen_box(options);
+  load.segments = options.segmentation;
+  load.meshes = meshes_of(options);
+  if (!options.histogram.empty()) {
+    load.findings = [&](const bone::GreyFindings& findings) { draw_histogram(options, findings); };
+  }
+  ShownWork work("importing");
+  bone::BoneModel model = bone::load_bone(options.in, load, work.report());
+  tidy(options, model);
+  print_bone(model);
+  print_unknown(model);
+  save_new_bone(options, model);
+  return 0;
+}
+
+}  // namespace
+
+void add_bone_import(CLI::App& bone, int& status) {
+  CLI::App* sub =
+      subcommand(bone, "import", "Make a bone from CT or from labels",
+                 "haptrial bone import head.nii.gz head.nrrd --threshold 300 --spacing 0.5",
+                 {"the bone OUT", "guide-scan.md"});
+  auto& o = options_of<BoneImportOptions>(*sub, status, bone_import);
+  add_bone_input(*sub, o);
+  add_bone_output(*sub, o);
+  sub->add_option("--crop", o.crop, "Box to keep: X0,X1,Y0,Y1,Z0,Z1 [mm], as info prints places")
+      ->delimiter(',');
+  sub->add_option("--around", o.around, "Cube to keep about a point: X,Y,Z,EDGE [mm]")
+      ->delimiter(',');
+  sub->add_option("--segmentation", o.segmentation,
+                  "Structures of the scan as 3D Slicer saves them (.seg.nrrd)");
+  sub->add_option("--structure", o.structures,
+                  "Structure as a mesh: NAME=FILE (.stl, .obj, .ply) [mm]; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--mesh-axes", o.mesh_axes,
+                  with_default("Axes of meshes: lps, ras or auto, as their files say",
+                               o.mesh_axes + ", then lps"));
+  sub->add_flag("--largest", o.largest, "Leave out loose parts of bone: keep the largest");
+  sub->add_option("--fill", o.fill, "Largest hole to fill with bone [mm3] (default: none)");
+  sub->add_option("--histogram", o.histogram,
+                  "New picture of a grey volume's values and thresholds (.png, .svg)");
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record/rows/session_types.h"
+
+namespace haptrial::experiments {
+
+/// Options of haptrial run, which command_run.cpp describes.
+struct RunOptions {
+  std::string definition;
+  std::string subject;
+  std::vector<std::string> devices{"virtual"};  // in the order in which the protocol has them
+  std::string library;
+  std::string seed{"1"};
+  std::optional<int> participant;
+  std::optional<int> session;
+  std::string out;
+  std::optional<int> trials;
+  std::string tutor;
+  std::optional<int> teach;
+  std::string learn_from;
+  std::string secret;
+  bool console{false};
+  std::vector<std::string> auxiliary_pages;
+  bool keyboard{false};
+  std::optional<std::string> address;
+  std::optional<int> port;
+  bool remote{false};
+  bool window{false};
+  bool stream{false};
+  bool stream_optional{false};
+  bool resume{false};
+  bool pilot{false};
+  std::string language;
+  record::Participant person;
+};
+
+}  // namespace haptrial::experiments
