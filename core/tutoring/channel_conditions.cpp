@@ -2,7 +2,7 @@
 
 #include "core/base/definition/schema.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 const Schema<ChannelConditions>& channel_schema() {
   using C = ChannelConditions;
@@ -22,4 +22,4 @@ const Schema<ChannelConditions>& channel_schema() {
   return schema;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

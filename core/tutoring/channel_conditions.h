@@ -5,7 +5,7 @@ template <class T>
 class Schema;
 }
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Effects of a network on messages in one direction.
 struct ChannelConditions {
@@ -22,4 +22,4 @@ struct ChannelConditions {
 /// The keys of [tutoring.channel], and of a network of [[tutoring.networks]].
 const Schema<ChannelConditions>& channel_schema();
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -61,4 +61,4 @@ std::int64_t ClockOffset::offset(std::int64_t now) const noexcept {
   return base_ + std::llround(mean_offset_ + drift_ * static_cast<double>(now - mean_time_));
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// How the partner's clock runs beside the own one, from the times of messages that were answered:
 /// offset as in NTP (RFC 5905, section 8), from the answer of each second that was under way for
@@ -50,4 +50,4 @@ class ClockOffset {
   std::int64_t least_round_trip_{-1};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
-using control::Partner;
 using Eigen::Vector3d;
+using tutoring::Partner;
 
 static constexpr double kBackToOwnWorld = 0.05;  // after the link was lost [s]
 
@@ -53,7 +53,7 @@ void CoupledSide::look_at_partner(std::int64_t now_ns, double dt) noexcept {
   used_for_ = message.sequence != used_.sequence ? 0.0 : used_for_ + dt;
   used_ = message;
   const Partner sent{{message.position, message.velocity}, message.force};
-  partner_ = p_.sparse ? control::expected(sent, used_for_, p_.deadband.keepalive) : sent;
+  partner_ = p_.sparse ? tutoring::expected(sent, used_for_, p_.deadband.keepalive) : sent;
 }
 
 Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
@@ -61,7 +61,7 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
   last_place_ = own.tool.position;
   stepped_ = true;
   played_.setZero();
-  const control::Lead lead{1.0 - own.lead, own.felt_back};
+  const tutoring::Lead lead{1.0 - own.lead, own.felt_back};
   const double share =  // of the coupling that is on
       strength_ * std::clamp(std::max(lead.partner, lead.felt_back), 0.0, 1.0);
   if (!linked_) {
@@ -69,8 +69,8 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
     return Vector3d::Zero();
   }
   const Vector3d whole =
-      strength_ * control::tutoring_force(p_.gains, lead, partner_, own.tool, Vector3d::Zero());
-  const Vector3d wanted = share * control::coupling_force(p_.gains, partner_.tool, own.tool);
+      strength_ * tutoring::tutoring_force(p_.gains, lead, partner_, own.tool, Vector3d::Zero());
+  const Vector3d wanted = share * tutoring::coupling_force(p_.gains, partner_.tool, own.tool);
   played_ = whole - wanted;
   return p_.passivity == Passivity::kNone
              ? whole
@@ -118,4 +118,4 @@ CoupledSide::Output CoupledSide::step(const Own& own, std::int64_t now_ns, doubl
   return out;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

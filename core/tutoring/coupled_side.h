@@ -10,7 +10,7 @@
 #include "core/tutoring/side_parameters.h"
 #include "core/tutoring/tick_message.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// One side of a coupling over a link: what it hears, what it feels, what it tells. The same on a
 /// simulated and on a real link. What keeps it passive watches spring and damper; the forces of the
@@ -54,9 +54,9 @@ class CoupledSide {
   double own_share() const noexcept { return own_share_; }
   /// Whether the partner was heard within the deadline.
   bool linked() const noexcept { return linked_; }
-  std::uint64_t losses() const noexcept { return losses_; }              // of the link
-  bool stop_asked() const noexcept { return stop_asked_; }               // by the partner; stays
-  const control::Partner& partner() const noexcept { return partner_; }  // as this side takes it
+  std::uint64_t losses() const noexcept { return losses_; }               // of the link
+  bool stop_asked() const noexcept { return stop_asked_; }                // by the partner; stays
+  const tutoring::Partner& partner() const noexcept { return partner_; }  // as this side takes it
   const TickMessage& newest() const noexcept { return newest_; }
   std::int64_t heard_ns() const noexcept { return heard_ns_; }  // own clock, when that came
   /// The message that this tick goes by; its number is 0 before the first.
@@ -65,7 +65,7 @@ class CoupledSide {
   const SequenceWindow& sequence() const noexcept { return window_; }
   const ClockOffset& clock() const noexcept { return clock_; }
   const JitterBuffer& buffer() const noexcept { return *buffer_; }
-  const control::EnergyTank& tank() const noexcept { return tank_; }
+  const tutoring::EnergyTank& tank() const noexcept { return tank_; }
   std::uint64_t messages() const noexcept { return sent_; }
 
  private:
@@ -79,15 +79,15 @@ class CoupledSide {
   SequenceWindow window_;
   ClockOffset clock_;
   std::unique_ptr<JitterBuffer> buffer_;  // large
-  control::EnergyTank tank_;
-  control::Deadband deadband_;
+  tutoring::EnergyTank tank_;
+  tutoring::Deadband deadband_;
 
   TickMessage newest_;        // by sequence number
   TickMessage used_;          // that the partner's state is from
   double used_for_{0.0};      // [s]
   std::int64_t heard_ns_{0};  // when the newest came
   double energy_heard_{0.0};  // highest total
-  control::Partner partner_;
+  tutoring::Partner partner_;
   Eigen::Vector3d last_place_;                       // of the own tool
   Eigen::Vector3d played_{Eigen::Vector3d::Zero()};  // of the partner's world, in this tick [N]
   bool stepped_{false};
@@ -102,4 +102,4 @@ class CoupledSide {
   TurnState told_turn_;
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

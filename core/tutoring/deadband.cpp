@@ -4,7 +4,7 @@
 
 #include "core/base/longer.h"
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 
 Partner expected(const Partner& sent, double since, double most) noexcept {
   Partner now = sent;
@@ -37,4 +37,4 @@ bool Deadband::due(const Partner& now, double dt, bool news) noexcept {
   return true;
 }
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

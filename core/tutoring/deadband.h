@@ -5,7 +5,7 @@
 #include "core/tutoring/held_force.h"
 #include "core/tutoring/tutoring_law.h"
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 
 struct DeadbandParameters {
   double force_fraction{0.1};  // Weber fraction of force, 0 to 1
@@ -52,4 +52,4 @@ class Deadband {
   std::uint64_t messages_{0};
 };
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

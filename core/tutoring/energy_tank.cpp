@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 
 void EnergyTank::account(const Eigen::Vector3d& moved, double received) noexcept {
   if (received > received_) {  // a total that comes late is lower, and old
@@ -55,4 +55,4 @@ void EnergyTank::let_go(const Eigen::Vector3d& moved, double received) noexcept 
   cut_ = 0.0;
 }
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 
 struct TankParameters {
   double wanted{0.05};       // level that the hand's own motion refills >= 0 [J]
@@ -62,4 +62,4 @@ class EnergyTank {
   double cut_{0.0};
 };
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

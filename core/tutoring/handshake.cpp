@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 constexpr std::string_view kVersion = "haptrial link 02";
@@ -141,4 +141,4 @@ bool Handshake::make_keys(Role role, std::span<const unsigned char, 32> their_pu
   return true;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

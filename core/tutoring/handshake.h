@@ -9,7 +9,7 @@
 
 #include "core/tutoring/secret.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Keys of two sides that have shown each other that they know the secret.
 struct LinkKeys {
@@ -94,4 +94,4 @@ class Handshake {
   Answer answer_{};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

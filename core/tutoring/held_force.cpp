@@ -4,7 +4,7 @@
 
 #include "core/base/longer.h"
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 namespace {
 
 using Eigen::Vector3d;
@@ -102,4 +102,4 @@ Vector3d HeldForce::choose(double most) const noexcept {
   return best;
 }
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 
 /// Chooses the force that a partner is to hold until the next message: one that stays within a
 /// bound of the forces to come for as long as can be expected. The present force is a poor choice
@@ -51,4 +51,4 @@ class HeldForce {
   std::size_t count_{0};
 };
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

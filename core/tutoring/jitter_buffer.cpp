@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// The transit of a message is known up to the offset of the clocks, which cancels.
 void JitterBuffer::measure(std::int64_t transit) noexcept {
@@ -48,4 +48,4 @@ const TickMessage* JitterBuffer::take(std::int64_t now) noexcept {
   return out_ > 0 ? &given_ : nullptr;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

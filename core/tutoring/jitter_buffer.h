@@ -6,7 +6,7 @@
 
 #include "core/tutoring/tick_message.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Gives messages out as evenly as they were sent, at the price of a delay that is chosen by what
 /// was measured: the least delay under which at most `late` of the last kMeasured messages came too
@@ -46,4 +46,4 @@ class JitterBuffer {
   std::uint64_t too_late_{0};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

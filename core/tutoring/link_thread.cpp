@@ -7,7 +7,7 @@
 #include <ctime>
 #include <utility>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 std::int64_t link_clock_ns() noexcept {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -118,4 +118,4 @@ WireCounts LinkThread::counts() const noexcept {
           out_.dropped() + in_.dropped()};
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -9,7 +9,7 @@
 #include "core/tutoring/sealer.h"
 #include "core/tutoring/wire.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// The link while a session runs: one thread that sends and receives, and two lock-free logs to and
 /// from the servo thread, which never waits for it. It looks for messages to send every quarter of
@@ -51,4 +51,4 @@ class LinkThread final : public Wire {
 /// The clock of arrivals [ns].
 std::int64_t link_clock_ns() noexcept;
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/tutoring/waiting_guests.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -100,4 +100,4 @@ Met meet(const Secret& secret, const MeetingRequest& request) {
   return request.guest_of.empty() ? host(secret, request, end) : guest(secret, request, end);
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -9,7 +9,7 @@
 #include "core/tutoring/handshake.h"
 #include "core/tutoring/sockets.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// A link that may begin: everything that LinkThread needs.
 struct Met {
@@ -35,4 +35,4 @@ struct MeetingRequest {
 ///         secret
 Met meet(const Secret& secret, const MeetingRequest& request);
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Bytes of a length that is not known before, without memory of their own elsewhere.
 /// @tparam kMost  the longest
@@ -30,4 +30,4 @@ class Packet {
   std::size_t size_{0};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -1,6 +1,6 @@
 #include "core/tutoring/pass_barrier.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 static std::uint32_t trial_of(std::uint32_t item) { return item / PassBarrier::kPhases; }
 
@@ -71,4 +71,4 @@ PassBarrier::Step PassBarrier::step(const TurnState& other, bool own_done, bool 
   return done ? end(true, Step::kComplete) : Step::kHold;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -4,7 +4,7 @@
 
 #include "core/tutoring/tick_message.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Keeps the passes of two sessions in step over a link that may lose any message: a pass begins
 /// when both sides have come to it, and is completed when both have completed it; one that is
@@ -50,4 +50,4 @@ class PassBarrier {
   bool alone_{false};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
@@ -108,4 +108,4 @@ void ReliableStream::fill(StreamPart& part, std::int64_t now_ns) noexcept {
   }
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -8,7 +8,7 @@
 
 #include "core/tutoring/tick_message.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Source and receiver of data that must not be lost. Servo thread.
 class ReliablePayload {
@@ -78,4 +78,4 @@ class ReliableStream {
   bool answer_due_{false};  // something has come that the other side does not know of
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

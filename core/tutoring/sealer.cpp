@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 constexpr std::size_t kHead = 16;
@@ -59,4 +59,4 @@ std::optional<TickMessage> Opener::open(std::span<const unsigned char> datagram)
   return message;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -10,7 +10,7 @@
 #include "core/tutoring/sequence_window.h"
 #include "core/tutoring/tick_message.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// A datagram: session, sequence number, the message enciphered, and what authenticates all of it.
 inline constexpr std::size_t kSealBytes = 8 + 8 + 16;
@@ -49,4 +49,4 @@ class Opener {
   Counts counts_;
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

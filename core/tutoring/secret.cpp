@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 static_assert(sizeof(Secret::Salt) == crypto_pwhash_SALTBYTES);
@@ -94,4 +94,4 @@ Secret::Key Secret::key(const Salt& salt) const {
   return key;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// The secret that both sides of a link know and nobody else: the text of a small file that each
 /// keeps for itself. The secret never goes into a file of results, a log or a message, and its
@@ -41,4 +41,4 @@ class Secret {
 /// Tells whether both sides have the same text (BLAKE2b).
 std::array<unsigned char, 32> checksum_of(std::string_view text);
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

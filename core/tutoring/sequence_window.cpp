@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 bool SequenceWindow::would_accept(std::uint64_t sequence) const noexcept {
   if (sequence == 0) {
@@ -30,4 +30,4 @@ bool SequenceWindow::accept(std::uint64_t sequence) noexcept {
   return true;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

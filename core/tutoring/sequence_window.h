@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Takes each sequence number once: a message that comes twice, or so late that nobody can tell
 /// whether it did, is refused and counted. As in RFC 4303, 3.4.3. Numbers begin with 1.
@@ -33,4 +33,4 @@ class SequenceWindow {
   std::uint64_t refused_{0};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -6,20 +6,20 @@
 #include "core/tutoring/energy_tank.h"
 #include "core/tutoring/tutoring_law.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Method that keeps a coupling over a delay from swinging up.
 enum class Passivity : std::uint8_t {
   kNone,  // nothing: right where only one side feels the other
-  kTank,  // control::EnergyTank
+  kTank,  // tutoring::EnergyTank
 };
 
 struct SideParameters {
-  control::TutoringGains gains;
+  tutoring::TutoringGains gains;
   Passivity passivity{Passivity::kTank};
-  control::TankParameters tank;
+  tutoring::TankParameters tank;
   bool sparse{false};  // only the messages that Deadband asks for
-  control::DeadbandParameters deadband;
+  tutoring::DeadbandParameters deadband;
   bool even{false};            // partner's ticks as evenly as they were sent; costs delay
   double late{0.01};           // share of messages that may be too late for that
   double longest_buffer{0.1};  // [s]
@@ -27,4 +27,4 @@ struct SideParameters {
   double ramp{0.5};            // from no force to all of it, also after a loss > 0 [s]
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 SimulatedChannel::SimulatedChannel(const ChannelConditions& conditions, std::uint64_t seed,
                                    std::string_view name)
@@ -56,4 +56,4 @@ std::optional<TickBytes> SimulatedChannel::receive(double now) noexcept {
   return bytes;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -9,7 +9,7 @@
 #include "core/tutoring/channel_conditions.h"
 #include "core/tutoring/tick_message.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// One way of a network on the simulated clock: what arrives when is a function of what was sent
 /// when, of the conditions and of a named stream, to the bit. Servo thread: no allocation, lock,
@@ -54,4 +54,4 @@ class SimulatedChannel {
   std::uint64_t lost_{0};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 SimulatedLink::SimulatedLink(const ChannelConditions& conditions, double least_delay,
                              std::uint64_t seed, double rate)
@@ -75,4 +75,4 @@ WireCounts SimulatedLink::End::counts() const noexcept {
   return counts;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -8,7 +8,7 @@
 #include "core/tutoring/simulated_channel.h"
 #include "core/tutoring/wire.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// Two sessions on simulated clocks, each on a thread of its own, joined by a simulated network.
 /// Their ticks go side by side: a tick begins when all is known that can arrive before it, so that
@@ -61,4 +61,4 @@ class SimulatedLink {
   End second_;
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -17,7 +17,7 @@
 
 #include "core/base/error.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 sockaddr* generic(Address& address) { return reinterpret_cast<sockaddr*>(&address.storage); }
@@ -221,4 +221,4 @@ bool receive_all(const Socket& socket, std::span<unsigned char> bytes, const Pat
   return true;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

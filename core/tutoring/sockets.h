@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// A file descriptor that closes itself.
 class Socket {
@@ -58,4 +58,4 @@ Socket accepted(const Socket& listener, const Patience& patience, Address* from)
 bool send_all(const Socket& socket, std::span<const unsigned char> bytes, const Patience& patience);
 bool receive_all(const Socket& socket, std::span<unsigned char> bytes, const Patience& patience);
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "messages are little-endian");
@@ -87,4 +87,4 @@ std::optional<TickMessage> decode(std::span<const std::byte> bytes) noexcept {
   return makes_sense(message) ? std::optional(message) : std::nullopt;
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

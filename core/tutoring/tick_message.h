@@ -9,7 +9,7 @@
 
 #include "core/tutoring/packet.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// How far a side is with its pass.
 enum class TurnPhase : std::uint8_t {
@@ -20,7 +20,7 @@ enum class TurnPhase : std::uint8_t {
   kBroken,  // aborted
 };
 
-/// Which pass the sender is at (network::PassBarrier).
+/// Which pass the sender is at (tutoring::PassBarrier).
 struct TurnState {
   std::uint32_t pass{0};  // number since the link began, from 1; 0: none yet
   std::uint32_t with{0};  // the other side's that goes with it; 0: not known yet
@@ -31,7 +31,7 @@ struct TurnState {
   bool operator==(const TurnState&) const = default;
 };
 
-/// A message's part of a stream that may lose nothing (network::ReliableStream).
+/// A message's part of a stream that may lose nothing (tutoring::ReliableStream).
 struct StreamPart {
   static constexpr std::size_t kMost = 192;     // bytes of a chunk
   static constexpr std::size_t kBeyond = 1024;  // chunks that may come while one is missing
@@ -87,4 +87,4 @@ TickBytes encode(const TickMessage& message) noexcept;
 /// Servo thread.
 std::optional<TickMessage> decode(std::span<const std::byte> bytes) noexcept;
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

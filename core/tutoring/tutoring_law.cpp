@@ -2,23 +2,23 @@
 
 #include <algorithm>
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 
 static Eigen::Vector3d towards(const TutoringGains& gains, const PointState& partner,
-                               const PointState& own, const GainShares& shares) noexcept {
+                               const PointState& own, const control::GainShares& shares) noexcept {
   return shares.stiffness * gains.stiffness * (partner.position - own.position) +
          shares.damping * gains.damping * (partner.velocity - own.velocity);
 }
 
 Eigen::Vector3d coupling_force(const TutoringGains& gains, const PointState& partner,
-                               const PointState& own, const GainShares& shares) noexcept {
+                               const PointState& own, const control::GainShares& shares) noexcept {
   const Eigen::Vector3d f = towards(gains, partner, own, shares);
   return f.allFinite() ? f : Eigen::Vector3d::Zero();
 }
 
 Eigen::Vector3d tutoring_force(const TutoringGains& gains, const Lead& lead, const Partner& partner,
                                const PointState& own, const Eigen::Vector3d& own_force,
-                               const GainShares& shares) noexcept {
+                               const control::GainShares& shares) noexcept {
   const double a = std::clamp(lead.partner, 0.0, 1.0);
   const double coupled = std::max(a, std::clamp(lead.felt_back, 0.0, 1.0));
   const Eigen::Vector3d f = (1.0 - a) * own_force + a * gains.force_share * partner.force +
@@ -38,4 +38,4 @@ double stiffest_over_delay(double damping, double period, double delay) noexcept
   return damping / (0.5 * period + delay);
 }
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

@@ -5,7 +5,7 @@
 #include "core/base/point_state.h"
 #include "core/control/gain_shares.h"
 
-namespace haptrial::control {
+namespace haptrial::tutoring {
 
 /// How strongly one hand is led by another. Source: Morris 2006, §3.4.1.
 struct TutoringGains {
@@ -28,7 +28,8 @@ struct Partner {
 /// @param shares  of K_p and D that are used
 /// @returns zero where an input is not finite. Servo thread.
 Eigen::Vector3d coupling_force(const TutoringGains& gains, const PointState& partner,
-                               const PointState& own, const GainShares& shares = {}) noexcept;
+                               const PointState& own,
+                               const control::GainShares& shares = {}) noexcept;
 
 /// Shares of the lead, seen from one side.
 struct Lead {
@@ -46,7 +47,7 @@ struct Lead {
 /// @returns zero where an input is not finite. Servo thread.
 Eigen::Vector3d tutoring_force(const TutoringGains& gains, const Lead& lead, const Partner& partner,
                                const PointState& own, const Eigen::Vector3d& own_force,
-                               const GainShares& shares = {}) noexcept;
+                               const control::GainShares& shares = {}) noexcept;
 
 /// The authority as it goes from one hand to the other: at an even rate, never by a step.
 class Handover {
@@ -69,4 +70,4 @@ class Handover {
 /// @param delay    there and back [s]
 double stiffest_over_delay(double damping, double period, double delay) noexcept;
 
-}  // namespace haptrial::control
+}  // namespace haptrial::tutoring

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 /// This much fits into the buffer of a connection that carried little before.
@@ -123,4 +123,4 @@ void WaitingGuests::say(const char* notice) const {
   }
 }
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

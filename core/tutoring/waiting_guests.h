@@ -9,7 +9,7 @@
 #include "core/tutoring/handshake.h"
 #include "core/tutoring/sockets.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// The guests with whom a host speaks at once, so that one that says nothing holds up nobody. Each
 /// has five seconds for its answer. When there are too many, the one that has waited longest of the
@@ -58,4 +58,4 @@ class WaitingGuests {
   Clock::time_point pulsed_{};
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

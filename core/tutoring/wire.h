@@ -5,7 +5,7 @@
 #include "core/tutoring/channel_conditions.h"
 #include "core/tutoring/tick_message.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 
 /// A message and when it came, on this side's clock.
 struct Arrived {
@@ -56,4 +56,4 @@ class Wire {
   virtual WireCounts counts() const noexcept = 0;  // any thread
 };
 
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

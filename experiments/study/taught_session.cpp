@@ -13,7 +13,7 @@
 namespace haptrial::experiments {
 namespace {
 
-protocols::LinkChoice choice(const std::shared_ptr<network::SimulatedLink>& link,
+protocols::LinkChoice choice(const std::shared_ptr<tutoring::SimulatedLink>& link,
                              protocols::LinkRole role) {
   const bool teaches = role == protocols::LinkRole::kTeaches;
   return {role, {link, &link->end(teaches ? 0 : 1)}, "simulated"};
@@ -21,7 +21,7 @@ protocols::LinkChoice choice(const std::shared_ptr<network::SimulatedLink>& link
 
 /// Closes the end whatever comes, so that the other side does not wait for it.
 SessionSummary run_side(const SessionRequest& request) {
-  const std::shared_ptr<network::Wire> wire = request.link->wire;
+  const std::shared_ptr<tutoring::Wire> wire = request.link->wire;
   try {
     SessionSummary done = run_session(request);
     wire->close({});
@@ -44,7 +44,7 @@ SessionSummary run_taught_session(const SessionRequest& request,
               return n.channel.delay;
             })->channel.delay;
   }
-  const auto link = std::make_shared<network::SimulatedLink>(
+  const auto link = std::make_shared<tutoring::SimulatedLink>(
       networks.empty() ? d.tutoring.channel : networks.front().channel, least,
       derived_seed(request.seed, "link " + request.subject), d.rate);
   SessionRequest learns = request;

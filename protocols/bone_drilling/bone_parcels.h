@@ -12,7 +12,8 @@
 namespace haptrial::protocols {
 
 /// Kind of a parcel that the side that owns the bone sends to the other; within a stream of which
-/// nothing is lost (network::ReliableStream). The first byte of a parcel says which of these it is.
+/// nothing is lost (tutoring::ReliableStream). The first byte of a parcel says which of these it
+/// is.
 enum class BoneParcelKind : std::uint8_t {
   kBegin = 1,  // a pass
   kSplit,      // a part was separated on the tick whose kStep comes next
@@ -21,7 +22,7 @@ enum class BoneParcelKind : std::uint8_t {
   kChecksum,   // of the bone, at the end of a pass; also told back
 };
 
-using BoneParcel = network::Packet<std::byte, 184>;
+using BoneParcel = tutoring::Packet<std::byte, 184>;
 
 struct BoneBegin {
   std::int32_t pass{0};  // of the side that tells, since the link began, from 1

@@ -13,8 +13,8 @@
 
 namespace haptrial::protocols {
 
-using control::TutoringGains;
-using network::Passivity;
+using tutoring::Passivity;
+using tutoring::TutoringGains;
 
 static const Schema<TutoringNetwork>& network_schema() {
   using N = TutoringNetwork;
@@ -22,7 +22,7 @@ static const Schema<TutoringNetwork>& network_schema() {
       Schema<N>()
           .text("name", &N::name, "Name of a simulated network that is a condition")
           .required()
-          .keys_of(&N::channel, network::channel_schema());
+          .keys_of(&N::channel, tutoring::channel_schema());
   return schema;
 }
 
@@ -93,7 +93,7 @@ const Schema<TutoringOptions>& tutoring_schema() {
                   "Silence of a link after which the force is zero")
           .number("patience", &O::patience, {1.0, 600.0}, "s",
                   "Silence of a link after which the session ends, to be resumed")
-          .table("channel", &O::channel, network::channel_schema(),
+          .table("channel", &O::channel, tutoring::channel_schema(),
                  "Simulated network of a dry run, each way")
           .custom("networks",
                   "Simulated networks that are conditions: in a dry run each trial goes over one "
@@ -106,8 +106,8 @@ bool asks_to_wait(const TutoringOptions& o, const device::DeviceReading& reading
   return (reading.buttons & o.pause_buttons) != 0 || (reading.keys & kPauseBit) != 0;
 }
 
-network::SideParameters side_parameters(const TutoringOptions& o) {
-  network::SideParameters p;
+tutoring::SideParameters side_parameters(const TutoringOptions& o) {
+  tutoring::SideParameters p;
   p.gains = o.gains;
   p.passivity = o.passivity;
   p.sparse = o.deadband;

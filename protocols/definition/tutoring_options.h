@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/tutoring/side_parameters.h"
 #include "core/tutoring/channel_conditions.h"
+#include "core/tutoring/side_parameters.h"
 #include "core/tutoring/tutoring_law.h"
 
 namespace haptrial {
@@ -21,12 +21,12 @@ namespace haptrial::protocols {
 /// A network over which some of the trials go.
 struct TutoringNetwork {
   std::string name;
-  network::ChannelConditions channel;  // each way
+  tutoring::ChannelConditions channel;  // each way
 };
 
 /// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
-  control::TutoringGains gains;
+  tutoring::TutoringGains gains;
   double ramp{0.5};                // from no lead to all of it, and back [s]
   double speed{1.0};               // of a playback, 0.5 to 1 of the original
   std::uint32_t pause_buttons{0};  // a playback waits while one is pressed: bit i, button i
@@ -36,12 +36,12 @@ struct TutoringOptions {
   // Over a link.
   double authority{1.0};  // of who teaches over the other hand, 0 to 1
   double felt_back{1.0};  // of the coupling that is felt by who leads, 0 to 1
-  network::Passivity passivity{network::Passivity::kTank};
-  bool deadband{false};                // only messages that would be missed are sent
-  bool jitter_buffer{false};           // the partner's ticks as evenly as they were sent
-  double deadline{0.1};                // silence after which the force is zero [s]
-  double patience{10.0};               // silence after which the session ends [s]
-  network::ChannelConditions channel;  // of a dry run, each way
+  tutoring::Passivity passivity{tutoring::Passivity::kTank};
+  bool deadband{false};                 // only messages that would be missed are sent
+  bool jitter_buffer{false};            // the partner's ticks as evenly as they were sent
+  double deadline{0.1};                 // silence after which the force is zero [s]
+  double patience{10.0};                // silence after which the session ends [s]
+  tutoring::ChannelConditions channel;  // of a dry run, each way
   /// Networks of a dry run, one for each trial; if there are none, `channel` serves all trials.
   std::vector<TutoringNetwork> networks;
 };
@@ -57,6 +57,6 @@ const Schema<TutoringOptions>& tutoring_schema();
 bool asks_to_wait(const TutoringOptions& options, const device::DeviceReading& reading) noexcept;
 
 /// Parameters of one side of a link.
-network::SideParameters side_parameters(const TutoringOptions& options);
+tutoring::SideParameters side_parameters(const TutoringOptions& options);
 
 }  // namespace haptrial::protocols

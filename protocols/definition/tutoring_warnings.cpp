@@ -6,7 +6,7 @@
 
 namespace haptrial::protocols {
 
-using network::Passivity;
+using tutoring::Passivity;
 
 std::vector<std::string> tutoring_warnings(const Definition& definition) {
   const TutoringOptions& o = definition.tutoring;
@@ -26,7 +26,7 @@ std::vector<std::string> tutoring_warnings(const Definition& definition) {
     way = std::max(way, network.channel.delay + network.channel.jitter);
   }
   const double delay = 2.0 * way;
-  const double most = control::stiffest_over_delay(damping, 1.0 / definition.rate, delay);
+  const double most = tutoring::stiffest_over_delay(damping, 1.0 / definition.rate, delay);
   if (o.gains.stiffness >= most) {
     warnings.push_back(fmt::format(
         "tutoring.stiffness is {:g} N/m without passivity control; over {:.0f} ms there and back "

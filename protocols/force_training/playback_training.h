@@ -5,7 +5,7 @@
 namespace haptrial::protocols {
 
 /// Training by playback: the hand is led along the path by the expert's, with the expert's forces
-/// (control::tutoring_force). Nothing is seen of either, or, if it is watched as well, the path,
+/// (tutoring::tutoring_force). Nothing is seen of either, or, if it is watched as well, the path,
 /// the own tool on it and a blue bar of the target force. Source: Morris 2006, §3.4.1.
 class PlaybackTraining final : public TrajectoryPass {
  public:

@@ -100,7 +100,7 @@ void TrajectoryPass::enter(Stage stage) noexcept {
                                      std::clamp(gentle, 1e-9, parameters_.approach_speed));
   } else if (stage == Stage::kRun) {
     along_ = 0.0;
-    handover_ = control::Handover(parameters_.tutoring.ramp);
+    handover_ = tutoring::Handover(parameters_.tutoring.ramp);
     if (guide_) {
       guide_->start();
     }
@@ -207,8 +207,8 @@ Eigen::Vector3d TrajectoryPass::expert_place(double progress) const noexcept {
 }
 
 /// State of the expert, who presses as hard as the pattern asks, so that the world pushes back.
-control::Partner TrajectoryPass::expert() const noexcept {
-  control::Partner expert;
+tutoring::Partner TrajectoryPass::expert() const noexcept {
+  tutoring::Partner expert;
   expert.tool = stimulus_.path.at(along_);
   expert.tool.velocity *= paused_ ? 0.0 : parameters_.tutoring.speed;
   expert.force.y() = stimulus_.force.at(along_);
@@ -244,13 +244,13 @@ PointState TrajectoryPass::released(const PointState& tool) noexcept {
 /// Plays the force of an expert's hand, in place of the push of the target force; a row of it.
 void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading) noexcept {
   const PointState& tool = reading.tool;
-  const control::Partner model = expert();
+  const tutoring::Partner model = expert();
   const double share = handover_.share();
   Eigen::Vector3d played = Eigen::Vector3d::Zero();
   if (run_lead() == RunLead::kPlayed) {
-    const control::TutoringGains& gains = parameters_.tutoring.gains;
+    const tutoring::TutoringGains& gains = parameters_.tutoring.gains;
     const Eigen::Vector3d coupling =
-        share * control::coupling_force(gains, model.tool, tool, reading.shares);
+        share * tutoring::coupling_force(gains, model.tool, tool, reading.shares);
     played = share * gains.force_share * model.force + coupling;
     Eigen::Vector3d own = out.force;
     own.y() *= 1.0 - share;

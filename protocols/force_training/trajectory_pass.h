@@ -120,7 +120,7 @@ class TrajectoryPass : public Pass {
     return run_lead() == RunLead::kWatched || run_lead() == RunLead::kPlayed;
   }
   bool waits_for_hand(const device::DeviceReading& reading) const noexcept;
-  control::Partner expert() const noexcept;
+  tutoring::Partner expert() const noexcept;
   double longest_run() const noexcept;
   PointState released(const PointState& tool) noexcept;
   void play(PassOutput& out, const device::DeviceReading& reading) noexcept;
@@ -142,7 +142,7 @@ class TrajectoryPass : public Pass {
   Eigen::Vector3d target_{Eigen::Vector3d::Zero()};  // where the guide was last [m]
   control::MinimumJerkMove move_;
   std::optional<CurveGuide> guide_;  // where the participant sets the pace
-  control::Handover handover_;       // from the guide to what leads the run
+  tutoring::Handover handover_;      // from the guide to what leads the run
   bool paused_{false};               // the expert waits
   double dt_{0.0};
   ExpertLog* log_{nullptr};

@@ -7,7 +7,7 @@ namespace haptrial::protocols {
 /// Simulation that two linked sessions share: the world of the side that teaches; that of the other
 /// side follows it by the bytes that one side gives and the other takes. The protocol knows the
 /// meaning of the bytes.
-class SharedSimulation : public network::ReliablePayload {
+class SharedSimulation : public tutoring::ReliablePayload {
  public:
   /// Whether both sides know that the pass that was completed left them the same world, or have
   /// said how it differs; the pass lasts until then. Servo thread.

@@ -5,7 +5,7 @@
 
 namespace haptrial::protocols {
 
-void LinkQuality::hear(const network::Arrived& arrived) noexcept {
+void LinkQuality::hear(const tutoring::Arrived& arrived) noexcept {
   constexpr double kShare = 1.0 / 16.0;  // of the newest, as in RFC 3550
   const std::int64_t transit = arrived.time_ns - arrived.message.sent_ns;
   if (begun_) {
@@ -16,7 +16,7 @@ void LinkQuality::hear(const network::Arrived& arrived) noexcept {
   begun_ = true;
 }
 
-void LinkQuality::step(const network::SequenceWindow& window, std::int64_t now_ns) noexcept {
+void LinkQuality::step(const tutoring::SequenceWindow& window, std::int64_t now_ns) noexcept {
   constexpr std::int64_t kSecond = 1'000'000'000;
   if (now_ns < second_ends_) {
     return;

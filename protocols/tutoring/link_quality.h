@@ -10,9 +10,9 @@ namespace haptrial::protocols {
 /// How well messages come through. Servo thread.
 class LinkQuality {
  public:
-  void hear(const network::Arrived& arrived) noexcept;
+  void hear(const tutoring::Arrived& arrived) noexcept;
   /// Takes a tick's counts; call once a tick. @param window  of the messages
-  void step(const network::SequenceWindow& window, std::int64_t now_ns) noexcept;
+  void step(const tutoring::SequenceWindow& window, std::int64_t now_ns) noexcept;
 
   /// Mean change of the time under way from message to message (RFC 3550, 6.4.1) [s].
   double jitter() const noexcept { return jitter_; }

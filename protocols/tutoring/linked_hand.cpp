@@ -7,20 +7,20 @@
 
 namespace haptrial::protocols {
 
-using network::PassBarrier;
-using network::TickFlag;
-using network::TickMessage;
-using network::TurnPhase;
+using tutoring::PassBarrier;
+using tutoring::TickFlag;
+using tutoring::TickMessage;
+using tutoring::TurnPhase;
 
 LinkedHand::LinkedHand(const Parts& parts)
     : p_(parts),
       side_(side_parameters(parts.options)),
-      stream_(parts.payload != nullptr ? std::make_unique<network::ReliableStream>() : nullptr),
+      stream_(parts.payload != nullptr ? std::make_unique<tutoring::ReliableStream>() : nullptr),
       coupled_(parts.options.ramp),
       claim_(parts.options.ramp),
       taught_(parts.options.ramp, parts.options.authority) {}
 
-void LinkedHand::hear(const network::Arrived& arrived) noexcept {
+void LinkedHand::hear(const tutoring::Arrived& arrived) noexcept {
   ++arrived_;
   quality_.hear(arrived);
   side_.hear(arrived.message, arrived.time_ns);
@@ -112,7 +112,7 @@ void LinkedHand::step(const PointState& tool, const Eigen::Vector3d& own_force,
   own_.flags = flags();
   own_.turn = turns_.own();
   own_.news = stream_ && stream_->wants(*p_.payload, now_, side_.clock().round_trip());
-  network::CoupledSide::Output out = side_.step(own_, now_, dt);
+  tutoring::CoupledSide::Output out = side_.step(own_, now_, dt);
   coupling_ = out.force - side_.own_share() * own_force;
   sent_ = out.message ? static_cast<std::int64_t>(out.message->sequence) : 0;
   if (out.message) {
@@ -172,7 +172,7 @@ void LinkedHand::record(std::uint64_t sequence, const Readings& readings,
     } else if (turns_.open()) {
       step_ = turns_.step(side_.newest().turn, false, alone());
     }
-    coupled_ = control::Handover(p_.options.ramp);
+    coupled_ = tutoring::Handover(p_.options.ramp);
     share_lead(false, dt_);
     step(readings[0].tool, Eigen::Vector3d::Zero(), readings[0].buttons, dt_);
     coupling_.setZero();
@@ -190,7 +190,7 @@ void LinkedHand::record(std::uint64_t sequence, const Readings& readings,
 
 void LinkedHand::keep_row(std::uint64_t sequence) noexcept {
   const TickMessage& used = side_.used();
-  const network::ClockOffset& clock = side_.clock();
+  const tutoring::ClockOffset& clock = side_.clock();
   const std::int64_t offset = clock.known() ? clock.offset(now_) : 0;
   record::LinkRow row;
   row.sequence = sequence;
@@ -232,7 +232,7 @@ void LinkedHand::tell_state(double dt) noexcept {
     return;
   }
   untold_ = 0.0;
-  const network::ClockOffset& clock = side_.clock();
+  const tutoring::ClockOffset& clock = side_.clock();
   record::PartnerState s;
   s.heard = side_.sequence().highest() > 0;
   s.linked = side_.linked();
@@ -261,7 +261,7 @@ const record::PartnerState& LinkedHand::state() noexcept {
   return read_;
 }
 
-TickMessage LinkedHand::last_words(network::TickFlag flag) const noexcept {
+TickMessage LinkedHand::last_words(tutoring::TickFlag flag) const noexcept {
   TickMessage m;
   m.sequence = side_.messages() + 1;
   m.position = own_.tool.position;

@@ -27,15 +27,15 @@ enum class LinkRole : std::uint8_t { kTeaches, kLearns };
 /// The first device's hand, coupled to a partner's over a wire: what is heard, felt and told at
 /// each tick of a session, in passes and between them. Servo thread, unless a function says
 /// otherwise: no allocation, lock, I/O or throw; on a real clock nothing waits.
-class LinkedHand final : public TickLog, public stimulus::Observer, private network::Listener {
+class LinkedHand final : public TickLog, public stimulus::Observer, private tutoring::Listener {
  public:
   struct Parts {
     const TutoringOptions& options;
     LinkRole role{LinkRole::kLearns};
-    network::Wire& wire;
-    TickLog* inner{nullptr};                     // the protocol's own; null: none
-    std::function<void()> stop;                  // an emergency stop of the own session
-    network::ReliablePayload* payload{nullptr};  // that must not be lost; null: there is none
+    tutoring::Wire& wire;
+    TickLog* inner{nullptr};                      // the protocol's own; null: none
+    std::function<void()> stop;                   // an emergency stop of the own session
+    tutoring::ReliablePayload* payload{nullptr};  // that must not be lost; null: there is none
   };
   /// All parts outlive it.
   explicit LinkedHand(const Parts& parts);
@@ -47,7 +47,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   void begin_pass() noexcept { begun_ = true; }
   /// A tick of the pass, first of all. @param own_done  whether the own part is completed
   /// @param holds  whether the pass then lasts until the other side has completed it too
-  network::PassBarrier::Step begin_tick(bool own_done, bool holds) noexcept;
+  tutoring::PassBarrier::Step begin_tick(bool own_done, bool holds) noexcept;
   /// The same tick: what the hand feels of both worlds. @param out  of the own world; changed
   void couple(PassOutput& out, const device::DeviceReading& reading, double dt) noexcept;
   /// Whether nothing is to be expected of the partner any more.
@@ -77,10 +77,10 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   std::size_t waiting_rows() const noexcept { return log_.taken(); }
   std::size_t room() const noexcept { return log_.capacity(); }
   /// Last message to the partner when the loop has ended. @param flag  kOver or kLeft
-  network::TickMessage last_words(network::TickFlag flag) const noexcept;
+  tutoring::TickMessage last_words(tutoring::TickFlag flag) const noexcept;
 
  private:
-  void hear(const network::Arrived& arrived) noexcept override;
+  void hear(const tutoring::Arrived& arrived) noexcept override;
   void listen() noexcept;
   void heed_partner() noexcept;
   void keep_within_envelope(PassOutput& out) noexcept;
@@ -93,14 +93,14 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   void keep_row(std::uint64_t sequence) noexcept;
 
   Parts p_;
-  network::CoupledSide side_;
-  std::unique_ptr<network::ReliableStream> stream_;  // where there is payload
-  network::PassBarrier turns_;
-  network::PassBarrier::Step step_{network::PassBarrier::Step::kWait};  // the last one
+  tutoring::CoupledSide side_;
+  std::unique_ptr<tutoring::ReliableStream> stream_;  // where there is payload
+  tutoring::PassBarrier turns_;
+  tutoring::PassBarrier::Step step_{tutoring::PassBarrier::Step::kWait};  // the last one
   LinkQuality quality_;
-  control::Handover coupled_;  // how much of the coupling is on
-  control::Handover claim_;    // of the lead, by this side
-  control::Handover taught_;   // authority of who teaches, at that side
+  tutoring::Handover coupled_;  // how much of the coupling is on
+  tutoring::Handover claim_;    // of the lead, by this side
+  tutoring::Handover taught_;   // authority of who teaches, at that side
   realtime::BlockLog<record::LinkRow> log_{1024, 16};
   realtime::LatestValue<record::PartnerState> told_;
   record::PartnerState read_;  // session's thread
@@ -116,7 +116,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private netw
   bool ever_over_{false};      // the partner has said that it is over
   bool ever_left_{false};
   device::Fault fault_{device::Fault::kNone};
-  network::CoupledSide::Own own_;
+  tutoring::CoupledSide::Own own_;
   Eigen::Vector3d coupling_{Eigen::Vector3d::Zero()};  // of this tick, before the envelope [N]
   Eigen::Vector3d acts_{Eigen::Vector3d::Zero()};      // on the hand until the next tick [N]
   double last_share_{1.0};                             // of the own world

@@ -2,7 +2,7 @@
 
 namespace haptrial::protocols {
 
-using network::PassBarrier;
+using tutoring::PassBarrier;
 
 bool LinkedPass::may_begin() noexcept {
   if (!awaited_) {

@@ -10,7 +10,7 @@ namespace haptrial::protocols {
 /// both run it.
 class LinkedPass final : public Pass {
  public:
-  /// @param item   as network::PassBarrier has it
+  /// @param item   as tutoring::PassBarrier has it
   /// @param holds  whether it lasts until the other side has completed it too
   /// @param world  that both work on; null: there is none
   /// Inner pass, hand and world outlive it.
@@ -27,7 +27,7 @@ class LinkedPass final : public Pass {
   bool wants_attention() noexcept override;
 
   /// Why it was aborted, if it was; kRun: for a reason of this side.
-  network::PassBarrier::Step why() const noexcept { return why_; }
+  tutoring::PassBarrier::Step why() const noexcept { return why_; }
 
  private:
   bool own_done() const noexcept;
@@ -41,7 +41,7 @@ class LinkedPass final : public Pass {
   bool awaited_{false};
   bool ticked_{false};  // the inner pass, in this tick
   PassState state_{PassState::kRunning};
-  network::PassBarrier::Step why_{network::PassBarrier::Step::kRun};
+  tutoring::PassBarrier::Step why_{tutoring::PassBarrier::Step::kRun};
   PassOutput last_;  // of the inner pass
 };
 

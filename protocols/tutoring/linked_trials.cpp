@@ -16,7 +16,7 @@
 namespace haptrial::protocols {
 namespace {
 
-using network::PassBarrier;
+using tutoring::PassBarrier;
 
 /// Attempts of an aborted trial on a real clock before it is left.
 constexpr int kMostAgain = 3;
@@ -34,7 +34,7 @@ class LinkedTrials final : public Trials {
         world_(inner_->share_world(link.role == LinkRole::kTeaches)),
         hand_({options_, link.role, *link_.wire, inner_->tick_log(), place.stop, world_}) {}
   ~LinkedTrials() override {
-    link_.wire->close(hand_.last_words(all_presented_ ? network::kOver : network::kLeft));
+    link_.wire->close(hand_.last_words(all_presented_ ? tutoring::kOver : tutoring::kLeft));
   }
   LinkedTrials(const LinkedTrials&) = delete;
   LinkedTrials& operator=(const LinkedTrials&) = delete;
@@ -165,13 +165,13 @@ void LinkedTrials::check_partner() {
 void LinkedTrials::close_pass(SessionFile& file, std::int32_t row) {
   inner_->close_pass(file, row);
   if (network_ != nullptr) {
-    const network::ChannelConditions& n = network_->channel;
+    const tutoring::ChannelConditions& n = network_->channel;
     const record::NetworkRow network{row,    network_->name, n.delay,      n.jitter,
                                      n.loss, n.duplication,  n.reordering, n.bandwidth};
     file.add(std::span(&network, 1));
   }
   const record::PartnerState& s = hand_.state();
-  const network::WireCounts c = link_.wire->counts();
+  const tutoring::WireCounts c = link_.wire->counts();
   file.event("link",
              fmt::format("round trip {:.1f} ms, jitter {:.1f} ms, {:.1f} % lost, lost link {} "
                          "times; clock offset {:.3f} ms, drift {:.1f} ppm; {} sent, {} accepted, "

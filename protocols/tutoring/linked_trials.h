@@ -13,7 +13,7 @@ namespace haptrial::protocols {
 /// Which side of a pair of sessions this one is, and how it reaches the other.
 struct LinkChoice {
   LinkRole role{LinkRole::kLearns};
-  std::shared_ptr<network::Wire> wire;
+  std::shared_ptr<tutoring::Wire> wire;
   std::string session;  // of the link, the same on both sides; never the secret
 };
 

@@ -20,9 +20,9 @@ bool read_number(std::string_view text, Number& number) {
   return read.ec == std::errc() && read.ptr == text.data() + text.size();
 }
 
-std::vector<control::Partner> run_of(const record::SessionReader& reader,
-                                     const record::PassRow& pass) {
-  std::vector<control::Partner> ticks;
+std::vector<tutoring::Partner> run_of(const record::SessionReader& reader,
+                                      const record::PassRow& pass) {
+  std::vector<tutoring::Partner> ticks;
   for (const record::Sample& sample :
        reader.samples(pass.first_sample, pass.last_sample - pass.first_sample + 1)) {
     if (sample.stage == record::Stage::kRun) {
@@ -89,17 +89,17 @@ ModelMotion read_model(const TutorChoice& choice) {
   return motion;
 }
 
-control::Partner Playback::now() const noexcept {
-  const std::vector<control::Partner>& ticks = motion_->ticks;
+tutoring::Partner Playback::now() const noexcept {
+  const std::vector<tutoring::Partner>& ticks = motion_->ticks;
   if (over()) {
     return {{ticks.back().tool.position, Eigen::Vector3d::Zero()}, Eigen::Vector3d::Zero()};
   }
   const double at = time_ * motion_->rate;
   const auto i = static_cast<std::size_t>(at);
   const double part = at - static_cast<double>(i);
-  const control::Partner& a = ticks[i];
-  const control::Partner& b = ticks[std::min(i + 1, ticks.size() - 1)];
-  control::Partner now;
+  const tutoring::Partner& a = ticks[i];
+  const tutoring::Partner& b = ticks[std::min(i + 1, ticks.size() - 1)];
+  tutoring::Partner now;
   now.tool.position = (1.0 - part) * a.tool.position + part * b.tool.position;
   now.tool.velocity =
       (waits_ ? 0.0 : speed_) * ((1.0 - part) * a.tool.velocity + part * b.tool.velocity);

@@ -22,8 +22,8 @@ TutorChoice read_tutor_choice(const std::string& text);
 struct ModelMotion {
   double rate{1000.0};  // [Hz]
   int trial{0};
-  std::string subject;                  // who did it
-  std::vector<control::Partner> ticks;  // not empty
+  std::string subject;                   // who did it
+  std::vector<tutoring::Partner> ticks;  // not empty
   double duration() const noexcept { return static_cast<double>(ticks.size() - 1) / rate; }
 };
 
@@ -41,7 +41,7 @@ class Playback {
   /// State between two recorded ticks: places and forces on the line between them; a slower
   /// playback has smaller velocities and the same forces. After its end it stands still without a
   /// force.
-  control::Partner now() const noexcept;
+  tutoring::Partner now() const noexcept;
   void step(double dt) noexcept { time_ += waits_ ? 0.0 : speed_ * dt; }
   /// Whether it stands where it is, from now on: without velocity, with the force of that place.
   void wait(bool waits) noexcept { waits_ = waits; }

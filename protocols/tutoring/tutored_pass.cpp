@@ -41,16 +41,17 @@ PassOutput TutoredPass::tick(const Readings& readings, double dt) noexcept {
 /// A tutor works on the hand: of his force only the spring has to be passive about his motion.
 void TutoredPass::lead(PassOutput& out, const device::DeviceReading& reading) noexcept {
   const PointState& own = reading.tool;
-  const control::Partner tutor = playback_.now();
+  const tutoring::Partner tutor = playback_.now();
   const double share = handover_.share();
-  const control::TutoringGains& gains = options_->gains;
+  const tutoring::TutoringGains& gains = options_->gains;
   const Eigen::Vector3d own_force = out.force;
   const Eigen::Vector3d wanted =
-      control::tutoring_force(gains, {share, 0.0}, tutor, own, own_force, reading.shares);
+      tutoring::tutoring_force(gains, {share, 0.0}, tutor, own, own_force, reading.shares);
   out.force = control::saturate(wanted, options_->most_force);
   out.saturated = out.saturated || longer(wanted, options_->most_force);
   const Eigen::Vector3d stretch = tutor.tool.position - own.position;
-  out.intent.push = out.force - share * control::coupling_force(gains, tutor.tool, own, reading.shares);
+  out.intent.push =
+      out.force - share * tutoring::coupling_force(gains, tutor.tool, own, reading.shares);
   out.intent.drive = tutor.tool.velocity;
   out.intent.stored =
       0.5 * share * reading.shares.stiffness * gains.stiffness * stretch.squaredNorm();

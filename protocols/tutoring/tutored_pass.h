@@ -31,7 +31,7 @@ class TutoredPass final : public Pass {
   const TutoringOptions* options_;
   Playback playback_;
   TutoringLog* log_;
-  control::Handover handover_;
+  tutoring::Handover handover_;
   std::uint64_t sequence_{0};
 };
 

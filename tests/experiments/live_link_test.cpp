@@ -162,8 +162,8 @@ TEST_F(LiveLinkTest, AStrangerIsCountedAndChangesNothing) {
   test::write_text(definition(), slow() + "patience = 20\n");
   start(1, {});
   ASSERT_TRUE(coupled(partial("learning"))) << said();
-  const network::Socket socket = network::datagram_socket(0);
-  const network::Address to = network::address_of("127.0.0.1:" + std::to_string(port_));
+  const tutoring::Socket socket = tutoring::datagram_socket(0);
+  const tutoring::Address to = tutoring::address_of("127.0.0.1:" + std::to_string(port_));
   const std::string noise(200, 'x');
   for (int i = 0; i < 500; ++i) {
     ::sendto(socket.get(), noise.data(), noise.size(), 0,

@@ -82,8 +82,8 @@ struct Sent {
 
 Sent sent_of(const record::SessionReader& session) {
   constexpr std::uint64_t kPiece = 65536;
-  const control::DeadbandParameters p;
-  control::Deadband deadband(p);
+  const tutoring::DeadbandParameters p;
+  tutoring::Deadband deadband(p);
   for (std::uint64_t at = 0; at < session.sample_count(); at += kPiece) {
     const std::uint64_t count = std::min(kPiece, session.sample_count() - at);
     for (const record::Sample& s : session.samples(at, count)) {
@@ -91,7 +91,7 @@ Sent sent_of(const record::SessionReader& session) {
         continue;
       }
       deadband.due({{s.position, s.velocity}, s.force}, 1e-3);
-      const control::Partner held = deadband.held();
+      const tutoring::Partner held = deadband.held();
       EXPECT_LE((held.force - s.force).norm(),
                 std::max(p.force_fraction * s.force.norm(), p.least_force));
       EXPECT_LE((held.tool.position - s.position).norm(), p.place);

@@ -10,7 +10,7 @@ namespace haptrial::experiments {
 namespace {
 
 int make_secret(const std::string& file) {
-  network::Secret::make(file);
+  tutoring::Secret::make(file);
   fmt::print(
       "{}: a new secret; copy it to the other machine by a way that nobody else can read, and keep "
       "it out of folders of results\n",

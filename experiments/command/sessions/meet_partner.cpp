@@ -20,9 +20,9 @@ namespace {
 /// Checksum of all that both sides' presentation follows from.
 std::array<unsigned char, 32> study_of(const SessionRequest& request,
                                        const protocols::Definition& definition) {
-  return network::checksum_of(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", program_version(),
-                                          request.subject, request.participant, request.session,
-                                          request.seed, request.max_trials, definition.text));
+  return tutoring::checksum_of(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", program_version(),
+                                           request.subject, request.participant, request.session,
+                                           request.seed, request.max_trials, definition.text));
 }
 
 void say(const std::string& line) {
@@ -38,8 +38,8 @@ std::optional<protocols::LinkChoice> meet_partner(const RunOptions& options,
   if (!options.teach && options.learn_from.empty()) {
     return std::nullopt;
   }
-  const network::Secret secret = network::Secret::read(options.secret);
-  network::MeetingRequest meeting;
+  const tutoring::Secret secret = tutoring::Secret::read(options.secret);
+  tutoring::MeetingRequest meeting;
   meeting.guest_of = options.learn_from;
   meeting.study = study_of(request, definition);
   meeting.pulse = [] {
@@ -53,11 +53,11 @@ std::optional<protocols::LinkChoice> meet_partner(const RunOptions& options,
         static_cast<std::uint16_t>(checked_number("--teach", *options.teach, 1024, 65535));
     say(fmt::format("waiting at port {} for the side that learns", meeting.port));
   }
-  network::Met met = network::meet(secret, meeting);
+  tutoring::Met met = tutoring::meet(secret, meeting);
   protocols::LinkChoice link;
   link.role = options.teach ? protocols::LinkRole::kTeaches : protocols::LinkRole::kLearns;
   link.session = fmt::format("{:016x}", met.keys.session);
-  link.wire = std::make_shared<network::LinkThread>(std::move(met));
+  link.wire = std::make_shared<tutoring::LinkThread>(std::move(met));
   say(fmt::format("linked: this side {}", protocols::name_of(link.role)));
   return link;
 }

@@ -9,7 +9,7 @@ namespace haptrial::experiments {
 
 /// Waits for the other side of a link, or goes to it; nothing without --teach and --learn-from.
 /// @param request  all that says what is presented
-/// @throws InputError, RunError as network::meet() does
+/// @throws InputError, RunError as tutoring::meet() does
 std::optional<protocols::LinkChoice> meet_partner(const RunOptions& options,
                                                   const SessionRequest& request,
                                                   const protocols::Definition& definition);

@@ -14,7 +14,7 @@
 #include "core/tutoring/tick_message.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 TickMessage message(std::uint64_t sequence) {
@@ -248,4 +248,4 @@ TEST(JitterBufferTest, WithoutJitterItCostsNothing) {
 }
 
 }  // namespace
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

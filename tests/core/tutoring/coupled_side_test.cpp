@@ -12,7 +12,7 @@
 #include "core/tutoring/simulated_channel.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 using Eigen::Vector3d;
@@ -263,4 +263,4 @@ TEST(CoupledSideTest, ATickDoesNotAllocate) {
 }
 
 }  // namespace
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

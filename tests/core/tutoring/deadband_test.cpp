@@ -12,7 +12,7 @@
 #include "core/tutoring/held_force.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::control::deadband_test {
+namespace haptrial::tutoring::deadband_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -153,4 +153,4 @@ TEST(DeadbandTest, AForceIsNeverStuckForLongerThanTheKeepalive) {
 }
 
 }  // namespace
-}  // namespace haptrial::control::deadband_test
+}  // namespace haptrial::tutoring::deadband_test

@@ -25,7 +25,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
-namespace haptrial::network::link_test {
+namespace haptrial::tutoring::link_test {
 namespace {
 
 using testing::HasSubstr;
@@ -381,4 +381,4 @@ TEST(LinkThreadTest, EverythingArrivesAndAFloodOfStrangersIsCounted) {
 }
 
 }  // namespace
-}  // namespace haptrial::network::link_test
+}  // namespace haptrial::tutoring::link_test

@@ -11,7 +11,7 @@
 
 #include "core/base/random.h"
 
-namespace haptrial::network {
+namespace haptrial::tutoring {
 namespace {
 
 using Step = PassBarrier::Step;
@@ -162,4 +162,4 @@ TEST(TurnsTest, AWordFromThePassBeforeBeginsNothing) {
 }
 
 }  // namespace
-}  // namespace haptrial::network
+}  // namespace haptrial::tutoring

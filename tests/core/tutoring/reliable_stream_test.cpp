@@ -12,7 +12,7 @@
 #include "core/tutoring/simulated_channel.h"
 #include "tests/support/allocation_guard.h"
 
-namespace haptrial::network::reliable_stream_test {
+namespace haptrial::tutoring::reliable_stream_test {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
@@ -146,4 +146,4 @@ TEST(ReliableStreamTest, AMessageWithoutAStreamIsAsShortAsEver) {
 }
 
 }  // namespace
-}  // namespace haptrial::network::reliable_stream_test
+}  // namespace haptrial::tutoring::reliable_stream_test

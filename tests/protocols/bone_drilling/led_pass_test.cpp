@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr network::ChannelConditions kBad{
+constexpr tutoring::ChannelConditions kBad{
     .delay = 0.02, .jitter = 0.01, .loss = 0.1, .duplication = 0.05, .reordering = 0.2};
 
 template <class Row>
@@ -36,27 +36,27 @@ std::vector<Row> rows_of(realtime::BlockLog<Row>& log) {
 /// One end of two simulated ways.
 struct End {
   explicit End(bool leads) : bone(leads) {}
-  void tick(network::SimulatedChannel& in, network::SimulatedChannel& out, int now) {
+  void tick(tutoring::SimulatedChannel& in, tutoring::SimulatedChannel& out, int now) {
     while (const auto bytes = in.receive(1e-3 * now)) {
-      stream.hear(network::decode(*bytes)->stream);
+      stream.hear(tutoring::decode(*bytes)->stream);
     }
     stream.deliver(bone);
-    network::TickMessage message;
+    tutoring::TickMessage message;
     message.sequence = static_cast<std::uint64_t>(now) + 1;
     if (stream.wants(bone, now * kMillisecond, 60 * kMillisecond)) {
       stream.fill(message.stream, now * kMillisecond);
-      out.send(network::encode(message), 1e-3 * now);
+      out.send(tutoring::encode(message), 1e-3 * now);
     }
   }
 
   SharedBone bone;
-  network::ReliableStream stream;
+  tutoring::ReliableStream stream;
 };
 
 /// A drilling that leads and one that is led.
 class LedPassTest : public testing::Test {
  protected:
-  void begin(const network::ChannelConditions& network, bool real = false,
+  void begin(const tutoring::ChannelConditions& network, bool real = false,
              bone::BoneModel theirs = test::dumbbell(), bool threads = false) {
     now_ = 0;
     teaches_.emplace(true);
@@ -131,8 +131,8 @@ class LedPassTest : public testing::Test {
 
   std::optional<End> teaches_;
   std::optional<End> learns_;
-  std::optional<network::SimulatedChannel> there_;
-  std::optional<network::SimulatedChannel> back_;
+  std::optional<tutoring::SimulatedChannel> there_;
+  std::optional<tutoring::SimulatedChannel> back_;
   std::optional<test::Workshop> own_;
   std::unique_ptr<test::Workshop> led_;
   std::unique_ptr<LedPass> pass_;

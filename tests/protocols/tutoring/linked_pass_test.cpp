@@ -16,31 +16,31 @@ namespace {
 using Eigen::Vector3d;
 
 /// A message of one side is there for the other at its next tick.
-class DirectWire final : public network::Wire {
+class DirectWire final : public tutoring::Wire {
  public:
   DirectWire() { inbox_.reserve(16); }
   std::int64_t tick() noexcept override { return now_ += 1'000'000; }
-  void receive(network::Listener& listener) noexcept override {
-    for (const network::TickMessage& m : inbox_) {
+  void receive(tutoring::Listener& listener) noexcept override {
+    for (const tutoring::TickMessage& m : inbox_) {
       listener.hear({m, now_});
     }
     inbox_.clear();
   }
-  void send(const network::TickMessage& m) noexcept override {
+  void send(const tutoring::TickMessage& m) noexcept override {
     if (open) {
       other->inbox_.push_back(m);
     }
   }
   bool closed() const noexcept override { return false; }
-  void close(const network::TickMessage& m) noexcept override { send(m); }
-  network::WireCounts counts() const noexcept override { return {}; }
+  void close(const tutoring::TickMessage& m) noexcept override { send(m); }
+  tutoring::WireCounts counts() const noexcept override { return {}; }
 
   DirectWire* other{nullptr};
   bool open{true};
 
  private:
   std::int64_t now_{0};
-  std::vector<network::TickMessage> inbox_;
+  std::vector<tutoring::TickMessage> inbox_;
 };
 
 /// Pushes with a constant force, for a number of ticks; `stored` is what its springs would hold.
@@ -71,7 +71,7 @@ TutoringOptions options() {
   TutoringOptions o;
   o.ramp = 0.05;
   o.felt_back = 0.0;
-  o.passivity = network::Passivity::kNone;
+  o.passivity = tutoring::Passivity::kNone;
   return o;
 }
 
@@ -224,7 +224,7 @@ TEST(LinkedPassTest, AnAbortOnOneSideIsOneOnBoth) {
   EXPECT_EQ(pair.teaches.pass.state(), PassState::kAborted);
   pair.tick();
   EXPECT_EQ(pair.learns.pass.state(), PassState::kAborted);
-  EXPECT_EQ(pair.learns.pass.why(), network::PassBarrier::Step::kBreak);
+  EXPECT_EQ(pair.learns.pass.why(), tutoring::PassBarrier::Step::kBreak);
   EXPECT_EQ(pair.learns.stops, 0);
 }
 

@@ -42,7 +42,7 @@ TEST(PlaybackTest, AtHalfTheSpeedPlacesAndForcesAreTheSameAndVelocitiesHalf) {
   Playback playback(motion, 0.5, 0.2);
   double time = 0.2;
   while (!playback.over()) {
-    const control::Partner now = playback.now();
+    const tutoring::Partner now = playback.now();
     ASSERT_NEAR(now.tool.position.x(), time * time, 2.6e-5) << "a chord of the parabola";
     ASSERT_NEAR(now.tool.velocity.x(), 0.5 * 2.0 * time, 1e-12);
     ASSERT_NEAR(now.force.y(), time, 1e-12);
@@ -58,7 +58,7 @@ TEST(PlaybackTest, AtHalfTheSpeedPlacesAndForcesAreTheSameAndVelocitiesHalf) {
 TEST(PlaybackTest, WhileItWaitsItStandsAndItsForceStays) {
   const ModelMotion motion = accelerating();
   Playback playback(motion, 1.0, 0.5);
-  const control::Partner before = playback.now();
+  const tutoring::Partner before = playback.now();
   playback.wait(true);
   for (int i = 0; i < 100; ++i) {
     playback.step(1e-3);
