@@ -13,13 +13,14 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/psychometric/procedure/staircase.h"
+#include "core/psychometric/procedure/procedure.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
@@ -168,9 +169,9 @@ TEST(TrialsSessionTest, EveryLevelFollowsFromTheAnswersBefore) {
   run_session(request_for(experiment, folder / "S01.h5", 40));
   const record::SessionReader file(folder / "S01.h5");
   const auto& d = dynamic_cast<const protocols::TrialsDefinition&>(*experiment.definition);
-  std::map<std::string, psychometric::Staircase> tracks;
+  std::map<std::string, std::unique_ptr<psychometric::Procedure>> tracks;
   for (const protocols::Track& track : d.tracks) {
-    tracks.emplace(track.name, psychometric::Staircase(*track.staircase));
+    tracks[track.name] = track.begin(1, track.name);
   }
   std::map<std::int32_t, std::int32_t> correct;
   for (const record::ResponseRow& row : file.responses()) {
@@ -178,7 +179,7 @@ TEST(TrialsSessionTest, EveryLevelFollowsFromTheAnswersBefore) {
   }
   std::size_t rows = 0;
   for (const record::LevelRow& row : file.rows<record::LevelRow>()) {
-    psychometric::Staircase& track = tracks.at(row.track);
+    psychometric::Procedure& track = *tracks.at(row.track);
     EXPECT_EQ(track.next().front(), row.asked);
     EXPECT_EQ(row.outcome, correct.at(row.pass));
     track.report(row.outcome, {row.applied});

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "core/base/random.h"
-#include "core/psychometric/procedure/staircase.h"
+#include "core/psychometric/procedure/procedure.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
 
 namespace haptrial::protocols {
@@ -51,9 +52,9 @@ bool answer_of(const TrialSequence&, int trial) {
 TEST(TrialSequenceTest, EachTrackGoesAsItWouldAlone) {
   const auto d = definition(kTwoTracks);
   TrialSequence sequence(*d, taker());
-  std::map<std::string, std::unique_ptr<psychometric::Staircase>> alone;
+  std::map<std::string, std::unique_ptr<psychometric::Procedure>> alone;
   for (const Track& track : d->tracks) {
-    alone[track.name] = std::make_unique<psychometric::Staircase>(*track.staircase);
+    alone[track.name] = track.begin(1, track.name);
   }
   std::set<std::string> seen;
   int changes = 0;
