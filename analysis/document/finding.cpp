@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "analysis/document/number.h"
 #include "analysis/files/delimited.h"
@@ -20,16 +21,33 @@ std::string word_of(const Finding& f) {
   if (!f.why_not.empty()) {
     return "not defined, because " + f.why_not;
   }
-  if (f.value.is_number_float()) {
-    return number_with_interval(f.value.get<double>(), f.low, f.high);
+  if (const double* number = f.value.number()) {
+    return number_with_interval(*number, f.low, f.high);
   }
-  return f.value.is_string() ? f.value.get<std::string>()
-         : f.value.is_null() ? "–"
-                             : f.value.dump();
+  const std::int64_t* count = f.value.count();
+  return count != nullptr            ? std::to_string(*count)
+         : f.value.word() != nullptr ? *f.value.word()
+                                     : "–";
+}
+
+bool has_number(const Finding& f) {
+  return f.why_not.empty() && (f.value.number() != nullptr || f.value.count() != nullptr);
+}
+
+Json value_of(const Finding& f) {
+  if (!f.json.empty()) {
+    return Json::parse(f.json);
+  }
+  const double* number = f.value.number();
+  const std::int64_t* count = f.value.count();
+  return number != nullptr           ? Json(*number)
+         : count != nullptr          ? Json(*count)
+         : f.value.word() != nullptr ? Json(*f.value.word())
+                                     : Json();
 }
 
 Json described(const Finding& f) {
-  Json made{{"title", f.title}, {"estimate", f.value}};
+  Json made{{"title", f.title}, {"estimate", value_of(f)}};
   if (!std::isnan(f.low) && !std::isnan(f.high)) {
     made["low_95"] = f.low;
     made["high_95"] = f.high;
@@ -110,15 +128,22 @@ class TableText {
 
 std::string line_of(const Finding& f) {
   return fmt::format("{}: {}{}{}", f.title, word_of(f),
-                     f.unit.empty() || !f.is_number() ? "" : " " + f.unit,
+                     f.unit.empty() || !has_number(f) ? "" : " " + f.unit,
                      f.n > 0 ? fmt::format(" (n = {})", f.n) : "");
 }
 
-std::vector<std::string> lines_of(const FindingList& list) {
+std::vector<std::string> lines_of(const FindingRow& row) {
   std::vector<std::string> lines;
-  for (const Finding& f : list.findings) {
-    lines.push_back(line_of(f));
+  for (const Finding& f : row) {
+    if (!f.title.empty()) {
+      lines.push_back(line_of(f));
+    }
   }
+  return lines;
+}
+
+std::vector<std::string> lines_of(const FindingList& list) {
+  std::vector<std::string> lines = lines_of(list.findings);
   for (const FindingTable& table : list.tables) {
     lines.push_back(fmt::format("{}: {} rows", table.title, table.rows.size()));
   }
@@ -135,12 +160,12 @@ nlohmann::ordered_json json_of(const FindingRow& row) {
     Json& at = made[Json::json_pointer(place)];
     if (!f.why_not.empty()) {
       at = {{"not_defined", f.why_not}};
-    } else if (f.form == JsonForm::kDescribed && f.value.is_number()) {
+    } else if (f.form == JsonForm::kDescribed && has_number(f)) {
       at = described(f);
     } else if (f.form == JsonForm::kEstimate) {
-      at = {{"estimate", f.value}, {"low_95", f.low}, {"high_95", f.high}};
+      at = {{"estimate", value_of(f)}, {"low_95", f.low}, {"high_95", f.high}};
     } else {
-      at = f.value;
+      at = value_of(f);
     }
     if (f.form == JsonForm::kBeside) {
       made[Json::json_pointer(place + "_low_95")] = f.low;
@@ -186,9 +211,7 @@ void add_findings(Document& document, const std::vector<FindingList>& lists,
   Document part;
   for (const FindingList& list : lists) {
     part.heading(list.heading);
-    std::vector<std::string> lines;
-    std::ranges::transform(list.findings, std::back_inserter(lines), line_of);
-    if (!lines.empty()) {
+    if (const std::vector<std::string> lines = lines_of(list.findings); !lines.empty()) {
       part.points(lines);
     }
     for (const FindingTable& table : list.tables) {
@@ -218,16 +241,17 @@ std::string findings_csv(const std::vector<FindingTable>& tables,
   const auto add = [&](const FindingRow& findings) {
     std::map<std::string, std::string> words;
     for (const Finding& f : findings) {
-      if (f.value.is_string()) {
-        words[f.name] = f.value.get<std::string>();
+      if (const std::string* word = f.value.word()) {
+        words[f.name] = *word;
       }
-      if (f.csv.empty() || !f.is_number() || !std::isfinite(f.value.get<double>())) {
+      const Json value = value_of(f);
+      if (f.csv.empty() || !has_number(f) || !std::isfinite(value.get<double>())) {
         continue;
       }
       for (const CsvLabel& label : labels) {
         row.add(words[label.second]);
       }
-      row.add(f.csv).add(f.value.get<double>()).add(f.low).add(f.high).add(f.unit).end();
+      row.add(f.csv).add(value.get<double>()).add(f.low).add(f.high).add(f.unit).end();
     }
   };
   for (const FindingTable& table : tables) {
@@ -244,8 +268,8 @@ void write_findings(const std::vector<FindingList>& lists, const Staging& stagin
     tables.push_back(table);
     for (const FindingRow& row : table.rows) {
       for (const Finding& f : row) {
-        if (f.value.is_string() &&
-            std::ranges::find(labels, f.name, &CsvLabel::first) == labels.end()) {
+        const auto found = std::ranges::find(labels, f.name, &CsvLabel::first);
+        if (f.value.word() != nullptr && found == labels.end()) {
           labels.emplace_back(f.name, f.name);
         }
       }

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <concepts>
+#include <cstdint>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "analysis/document/document.h"
@@ -21,23 +24,38 @@ enum class JsonForm {
   kBeside,    // "d_prime": 1.2, "d_prime_low_95": 0.9, "d_prime_high_95": 1.5
 };
 
+/// A number, a count or a word; empty: there is none.
+class FindingValue {
+ public:
+  FindingValue() = default;
+  FindingValue(double number) : value_(number) {}
+  FindingValue(std::integral auto count) : value_(static_cast<std::int64_t>(count)) {}
+  FindingValue(std::string word) : value_(std::move(word)) {}
+  FindingValue(const char* word) : value_(std::string(word)) {}
+
+  const double* number() const { return std::get_if<double>(&value_); }
+  const std::int64_t* count() const { return std::get_if<std::int64_t>(&value_); }
+  const std::string* word() const { return std::get_if<std::string>(&value_); }
+
+ private:
+  std::variant<std::monostate, double, std::int64_t, std::string> value_;
+};
+
 /// One result of an analysis, or a word that says whose result it is. Reports, JSON, CSV and the
 /// terminal print findings; an analysis states each once.
 struct Finding {
-  using Value = nlohmann::ordered_json;
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   std::string name;                // JSON pointer without its first '/': "detection/d_prime"
   std::string title{};             // column of a report; empty: not in one
-  Value value{};                   // number, word, or what JSON alone shows
+  FindingValue value{};            // [unit]
   double low{kNone}, high{kNone};  // 95 %; NaN: not known; infinite: open
   std::string unit{};              // empty: a pure number
   std::size_t n{0};                // participants or trials behind it; 0: not stated
   std::string why_not{};           // completes "not defined, because"; empty: there is a value
   std::string csv{};               // its name in a table of estimates; empty: not there
   JsonForm form{JsonForm::kDescribed};
-
-  bool is_number() const { return why_not.empty() && value.is_number(); }
+  std::string json{};  // text of a list or an object that JSON alone shows in place of the value
 };
 
 /// Findings that belong together, as those of a participant under a condition.
@@ -62,7 +80,9 @@ struct FindingList {
 
 /// "Way of the hand: 0.3120 [0.2900, 0.3340] m (n = 12)".
 std::string line_of(const Finding& finding);
-/// A sentence for each finding, and how long each table is.
+/// A line for each finding with a title.
+std::vector<std::string> lines_of(const FindingRow& row);
+/// These lines, and how long each table is.
 std::vector<std::string> lines_of(const FindingList& list);
 
 /// @throws nlohmann::json::exception for a name that is a value and a group at once

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "core/base/error.h"
@@ -22,7 +24,7 @@ void complete(const std::string& list, FindingRow& row) {
     if (f.name.empty()) {
       throw RunError(fmt::format("the findings '{}' have one without a name: '{}'", list, f.title));
     }
-    if (f.is_number() && f.csv.empty()) {
+    if (f.csv.empty()) {
       f.csv = f.name;
     }
   }

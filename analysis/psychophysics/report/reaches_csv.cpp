@@ -20,7 +20,7 @@ const char* word_of(ReachKind kind) {
   return kind == ReachKind::kClamp ? "clamp" : kind == ReachKind::kCatch ? "catch" : "plain";
 }
 
-RowText& add(RowText& row, const std::optional<double>& value) {
+RowText& add_optional(RowText& row, const std::optional<double>& value) {
   return value ? row.add(*value) : row.add_missing();
 }
 
@@ -30,7 +30,7 @@ void add_metrics(RowText& row, const StudyReach& reach) {
        {m.reaction_time, m.movement_time, m.peak_speed, m.path_length,
         m.maximum_perpendicular_error, reach.error_at_150_ms, m.direction_error, m.signed_area,
         m.endpoint_error, m.mean_lateral_force, m.peak_lateral_force}) {
-    add(row, value);
+    add_optional(row, value);
   }
   if (reach.compensation) {
     row.add(reach.compensation->slope).add(reach.compensation->slope_error);

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::trials {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t kMostShown = 4;  // pictures; the others lie beside the report
 
 std::string condition_name(const SurfaceCondition& one) {
   return one.condition.empty()
@@ -83,7 +84,17 @@ void add_points(Document& document, const std::vector<SurfaceCondition>& surface
 
 void add_surfaces(Document& document, const TrialsResult& result,
                   const std::vector<Drawing>& drawings) {
-  add_pictures(document, drawings, "surface-", 4);
+  std::size_t shown = 0, others = 0;
+  for (const Drawing& drawing : drawings) {
+    if (drawing.figure.name.starts_with("surface-")) {
+      shown < kMostShown ? document.picture(drawing) : static_cast<void>(++others);
+      shown += shown < kMostShown ? 1 : 0;
+    }
+  }
+  if (others > 0) {
+    document.paragraph(fmt::format("{} of other functions beside this report (surface-*.svg).",
+                                   counted(others, "picture")));
+  }
   add_parameters(document, result.surfaces);
   add_points(document, result.surfaces, result.plan.function.axis.unit);
   document.paragraph(fmt::format(

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/result_json_internal.h"
@@ -15,7 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A number, word or list; its own key in JSON. @returns it, for what else there is to say
-Finding& add(FindingRow& row, const std::string& name, const std::string& title, Json value) {
+Finding& add(FindingRow& row, const std::string& name, const std::string& title,
+             FindingValue value) {
   return row.emplace_back(
       Finding{.name = name, .title = title, .value = std::move(value), .form = JsonForm::kPlain});
 }
@@ -31,9 +33,15 @@ Finding& add(FindingRow& row, const std::string& name, const std::string& title,
   return f;
 }
 
+/// A list or an object of JSON alone.
+void add_json(FindingRow& row, const std::string& name, const Json& value) {
+  add(row, name, "", FindingValue()).json =
+      value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 Finding& add_missing(FindingRow& row, const std::string& name, const std::string& title,
                      const std::string& because) {
-  Finding& f = add(row, name, title, Json());
+  Finding& f = add(row, name, title, FindingValue());
   f.why_not = because;
   return f;
 }
@@ -81,7 +89,7 @@ void add_roc(FindingRow& row, const std::string& name, const std::string& title,
     area.low = i->low;
     area.high = i->high;
   }
-  add(row, name + "/interval", "", Json{{"low_95", i->low}, {"high_95", i->high}});
+  add_json(row, name + "/interval", {{"low_95", i->low}, {"high_95", i->high}});
 }
 
 std::string title_if(bool shown, const char* title) { return shown ? title : ""; }
@@ -148,12 +156,12 @@ FindingRow row_of(const TrialsResult& result, const FunctionFit& fit) {
   add(row, "deviance", "", fit.deviance);
   add(row, "deviance_p", "", fit.deviance_p);
   add(row, "overdispersion_eta", "", fit.overdispersion);
-  add(row, "warnings", "", fit.warnings);
+  add_json(row, "warnings", fit.warnings);
   Json blocks = Json::array();
   for (const TrialBlock& b : fit.blocks) {
     blocks.push_back({{"level", b.level}, {"ones", b.correct}, {"trials", b.total}});
   }
-  add(row, "answers", "", blocks);
+  add_json(row, "answers", blocks);
   return row;
 }
 
@@ -166,7 +174,7 @@ void add_effect(FindingRow& row, const std::string& name, const std::string& tit
     f.low = *effect - kNormal * error;
     f.high = *effect + kNormal * error;
   }
-  add(row, name + "_standard_error", "", effect ? Json(error) : Json());
+  add(row, name + "_standard_error", "", effect ? FindingValue(error) : FindingValue());
   add_defined(row, name + "_log_odds_by_chance", "", by_chance);
 }
 
@@ -186,7 +194,7 @@ FindingTable participant_findings(const TrialsResult& result) {
     const char* time = "median reaction time";  // nothing is asked in reaches
     add_defined(row, "median_reaction_time_s", title_if(!result.reaching, time), p.reaction_time)
         .unit = "s";
-    add(row, "share_of_trials_at_force_limit_by_stage", "", p.at_limit);
+    add_json(row, "share_of_trials_at_force_limit_by_stage", p.at_limit);
   }
   return table;
 }
@@ -245,7 +253,7 @@ FindingTable track_findings(const TrialsResult& result) {
                            {"high_95", known.high},
                            {"remark", e.remark}});
     }
-    add(row, "estimates", "", estimates);
+    add_json(row, "estimates", estimates);
     if (track.estimates.empty()) {
       add_missing(row, "", title_if(shown, "estimate of the procedure"), track.because).form =
           JsonForm::kAbsent;
@@ -279,8 +287,8 @@ FindingTable detection_findings(const TrialsResult& result) {
     } else {
       add_missing(row, "detection", "d'", d.because());
     }
-    add(row, "ratings_of_noise", "", one.ratings.noise);
-    add(row, "ratings_of_signal", "", one.ratings.signal);
+    add_json(row, "ratings_of_noise", one.ratings.noise);
+    add_json(row, "ratings_of_signal", one.ratings.signal);
     add_roc(row, "roc", "ROC area, trapezoids", one.roc, "roc_area", true);
     if (const auto& b = one.binormal) {
       add(row, "binormal_roc/area", "ROC area, binormal", {b->area, b->area_low, b->area_high},
@@ -303,8 +311,8 @@ FindingTable identification_findings(const TrialsResult& result) {
   for (const IdentifiedCondition& one : result.identified) {
     FindingRow row = row_of(result, one.participant, one.levels, "identification");
     add(row, "condition", "condition", one.condition);
-    add(row, "stimuli", "", one.confusions.stimuli);
-    add(row, "answers", "", one.confusions.answers);
+    add_json(row, "stimuli", one.confusions.stimuli);
+    add_json(row, "answers", one.confusions.answers);
     add(row, "trials", "trials", one.trials);
     add(row, "right", "right", one.right);
     add(row, "share", "share", {one.share, one.low, one.high}, JsonForm::kBeside, "share_right");
@@ -326,7 +334,7 @@ FindingTable law_findings(const TrialsResult& result) {
   for (const MagnitudeCondition& one : result.magnitudes) {
     FindingRow& row = table.rows.emplace_back();
     add(row, "condition", "condition", one.condition);
-    add(row, "participants", "", one.participants);
+    add_json(row, "participants", one.participants);
     add(row, "answers_not_above_0", "answers of 0 or below left out", one.not_positive);
     if (!one.law) {
       add_missing(row, "law", "exponent", one.law.because());
@@ -341,8 +349,8 @@ FindingTable law_findings(const TrialsResult& result) {
     add_defined(row, "law/high_95", "", law.high);
     add(row, "law/constant", "constant", law.constant);
     add(row, "law/r_squared", "R² of the levels' means", law.r_squared);
-    add(row, "law/exponents", "", law.exponents);
-    add(row, "law/moduli", "", law.moduli);
+    add_json(row, "law/exponents", law.exponents);
+    add_json(row, "law/moduli", law.moduli);
     Json levels = Json::array();
     for (const MagnitudeLevel& l : law.levels) {
       levels.push_back({{"level", l.level},
@@ -351,7 +359,7 @@ FindingTable law_findings(const TrialsResult& result) {
                         {"high_95", l.high},
                         {"participants", l.participants}});
     }
-    add(row, "law/levels", "", levels);
+    add_json(row, "law/levels", levels);
   }
   return table;
 }
@@ -420,7 +428,7 @@ FindingTable contrast_findings(const ReachingResult& reaching) {
     add_word(row, "", "difference [95 %]",
              estimate_word({scale * test.difference, scale * test.low, scale * test.high}) +
                  (each.unit.empty() ? "" : " mm"));
-    add(row, "test", "", analysis::to_json(test));
+    add_json(row, "test", analysis::to_json(test));
     add_word(row, "", "paired t-test, not adjusted", t_result(test));
     add(row, "p_holm", "", *each.holm);
     add_word(row, "", "p after Holm", p_result(each.holm));
