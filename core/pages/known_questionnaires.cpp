@@ -5,8 +5,12 @@
 #include <limits>
 #include <utility>
 
+#include "core/questions/scale_kind.h"
+
 namespace haptrial::pages {
 namespace {
+
+using questions::Question;
 
 struct TlxScale {
   const char* title;
@@ -40,12 +44,13 @@ constexpr std::array<Activity, 10> kActivities{{
     {"box", "Opening a box (the lid)"},
 }};
 
-Item rating(std::size_t scale) {
-  Item item;
+Question rating(std::size_t scale) {
+  Question item;
   item.name = kTlxScales[scale];
-  item.kind = ItemKind::kScale;
+  item.kind = &questions::scale_kind();
   item.title = kTlxTexts[scale].title;
   item.text = kTlxTexts[scale].question;
+  item.high = 100.0;
   item.step = 5.0;
   const bool performance = item.name == "performance";
   item.low_end = performance ? "Perfect" : "Very low";
@@ -53,10 +58,9 @@ Item rating(std::size_t scale) {
   return item;
 }
 
-Item pair(std::size_t first, std::size_t second) {
-  Item item;
+Question pair(std::size_t first, std::size_t second) {
+  Question item;
   item.name = fmt::format("{} or {}", kTlxScales[first], kTlxScales[second]);
-  item.kind = ItemKind::kChoice;
   item.text = "Which contributed more to the workload of the task?";
   item.choices = {{kTlxScales[first], kTlxTexts[first].title, 1.0},
                   {kTlxScales[second], kTlxTexts[second].title, 2.0}};
@@ -65,8 +69,8 @@ Item pair(std::size_t first, std::size_t second) {
 
 }  // namespace
 
-std::vector<Item> nasa_tlx_items(bool weighted) {
-  std::vector<Item> items;
+std::vector<Question> nasa_tlx_items(bool weighted) {
+  std::vector<Question> items;
   for (std::size_t scale = 0; scale < kTlxScales.size(); ++scale) {
     items.push_back(rating(scale));
   }
@@ -78,12 +82,11 @@ std::vector<Item> nasa_tlx_items(bool weighted) {
   return items;
 }
 
-std::vector<Item> edinburgh_items() {
-  std::vector<Item> items;
+std::vector<Question> edinburgh_items() {
+  std::vector<Question> items;
   for (const Activity& activity : kActivities) {
-    Item item;
+    Question item;
     item.name = activity.name;
-    item.kind = ItemKind::kChoice;
     item.title = activity.question;
     item.text = "Which hand do you prefer to use?";
     item.choices = {

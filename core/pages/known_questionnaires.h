@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pages/page.h"
+#include "core/questions/question.h"
 
 namespace haptrial::pages {
 
@@ -16,11 +16,11 @@ inline constexpr std::array<const char*, 6> kTlxScales{"mental",      "physical"
 /// the 15 pairs of scales, of which the one that matters more is chosen; items "mental" … and
 /// "mental or physical" …
 /// Source: Hart and Staveland 1988; Hart, NASA Task Load Index v. 1.0, 1986.
-std::vector<Item> nasa_tlx_items(bool weighted);
+std::vector<questions::Question> nasa_tlx_items(bool weighted);
 
 /// Edinburgh handedness inventory, ten activities, each answered from "always left" (-2) over
 /// "either" (0) to "always right" (2), or "never done", which has no number.
 /// Source: Oldfield 1971, appendix II.
-std::vector<Item> edinburgh_items();
+std::vector<questions::Question> edinburgh_items();
 
 }  // namespace haptrial::pages

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/pages/known_questionnaires.h"
+#include "core/questions/question_kind.h"
 
 namespace haptrial::pages {
 namespace {
@@ -56,9 +57,8 @@ std::optional<double> tlx_weighted(const std::vector<GivenAnswer>& answers) {
   }
   double sum = 0.0;
   int pairs = 0;
-  for (const Item& item : nasa_tlx_items(true)) {
-    const GivenAnswer* chosen =
-        item.kind == ItemKind::kChoice ? answer_to(answers, item.name) : nullptr;
+  for (const questions::Question& item : nasa_tlx_items(true)) {
+    const GivenAnswer* chosen = item.choices.empty() ? nullptr : answer_to(answers, item.name);
     const auto scale = chosen == nullptr
                            ? kTlxScales.end()
                            : std::find(kTlxScales.begin(), kTlxScales.end(), chosen->text);
@@ -74,7 +74,7 @@ std::optional<double> tlx_weighted(const std::vector<GivenAnswer>& answers) {
 std::optional<double> laterality_quotient(const std::vector<GivenAnswer>& answers) {
   double right = 0.0;
   double left = 0.0;
-  for (const Item& item : edinburgh_items()) {
+  for (const questions::Question& item : edinburgh_items()) {
     const GivenAnswer* answer = answer_to(answers, item.name);
     if (answer == nullptr || !std::isfinite(answer->value)) {
       continue;
@@ -95,11 +95,10 @@ std::vector<Score> scores_of(const Page& page, const std::vector<GivenAnswer>& a
     add(scores, "laterality quotient", laterality_quotient(answers));
     return scores;
   }
-  for (const Item& item : page.items) {
-    const bool weighs = page.kind == PageKind::kNasaTlx && item.kind == ItemKind::kChoice;
-    const bool none = item.kind == ItemKind::kRead || item.kind == ItemKind::kText ||
-                      item.kind == ItemKind::kConsent || weighs;
-    const GivenAnswer* answer = none ? nullptr : answer_to(answers, item.name);
+  for (const questions::Question& item : page.items) {
+    const bool weighs = page.kind == PageKind::kNasaTlx && !item.choices.empty();
+    const bool scored = item.kind->traits().scored && !weighs;
+    const GivenAnswer* answer = scored ? answer_to(answers, item.name) : nullptr;
     if (answer != nullptr && std::isfinite(answer->value)) {
       scores.push_back({item.name, answer->value});
     }

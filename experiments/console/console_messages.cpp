@@ -46,6 +46,8 @@ json asked_json(const AskedItem& asked) {
   }
   return {{"number", asked.number},
           {"kind", asked.kind},
+          {"asks", asked.asks},
+          {"consents", asked.consents},
           {"title", asked.title},
           {"text", asked.text},
           {"choices", asked.choices},

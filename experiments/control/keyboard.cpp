@@ -264,7 +264,7 @@ class Keyboard::Implementation {
       lines += "  answer so far: " + asked.given + "\n";
     }
     lines += asked.back ? "Backspace: back\n" : "";
-    show(lines + (asked.kind == "consent"
+    show(lines + (asked.consents
                       ? "The participant answers in the window. If a paper form is signed: Enter, "
                         "then 1: and the reason\n"
                       : "Enter: answer\n"));
@@ -275,7 +275,7 @@ class Keyboard::Implementation {
     if (asked.number == 0) {
       return;
     }
-    if (asked.kind == "read") {
+    if (!asked.asks) {
       control_.answer(asked.number, "", RequestSource::kTerminal);
       return;
     }

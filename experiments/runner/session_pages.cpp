@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "core/base/file_text.h"
+#include "core/questions/question_kind.h"
+#include "core/questions/reading_kind.h"
 #include "core/render/gl/image.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/virtual_answers.h"
@@ -18,7 +20,6 @@
 namespace haptrial::experiments {
 namespace {
 
-using pages::ItemKind;
 using record::AnsweredAt;
 using record::PageTime;
 
@@ -33,25 +34,27 @@ std::string occasion_of(PageTime when, int block) {
 }
 
 /// "3 / 10" on a page with several items.
-std::string progress_of(const pages::Page* page, const pages::Item& item) {
+std::string progress_of(const pages::Page* page, const questions::Question& item) {
   return page != nullptr && page->items.size() > 1
              ? fmt::format("{} / {}", &item - page->items.data() + 1, page->items.size())
              : "";
 }
 
-bool is_question(const pages::Item& item) {
-  return item.kind != ItemKind::kRead && item.kind != ItemKind::kConsent;
+bool is_question(const questions::Question& item) {
+  const questions::QuestionTraits traits = item.kind->traits();
+  return traits.asks && !traits.consents;
 }
 
 /// Whether an answer says the same as one that was given before.
-bool is_same(const PageAnswer& answer, const record::AnswerRow& earlier) {
+bool is_same(const questions::Answer& answer, const record::AnswerRow& earlier) {
   const bool no_numbers = std::isnan(answer.value) && std::isnan(earlier.value);
   return answer.text == earlier.text && (no_numbers || answer.value == earlier.value);
 }
 
-pages::Item last_look(const std::string& text) {
+questions::Question last_look(const std::string& text) {
   const render::TextPage shown = protocols::page_of(text);
-  pages::Item item;
+  questions::Question item;
+  item.kind = &questions::reading_kind();
   item.name = "answered";
   item.title = shown.title;
   item.text = shown.body;
@@ -81,8 +84,8 @@ bool SessionPages::show(const std::vector<std::string>& names, PageTime when, in
   std::vector<Place> places;
   for (const std::string& name : names) {
     const pages::Page& page = d_.pages.page(name);
-    for (const pages::Item& item : page.items) {
-      if (!missed || item.kind != ItemKind::kRead) {
+    for (const questions::Question& item : page.items) {
+      if (!missed || item.kind->traits().asks) {
         places.push_back({&page, &item, when, block});
       }
     }
@@ -112,7 +115,7 @@ bool SessionPages::show(const std::vector<std::string>& names, PageTime when, in
 /// Answers of an earlier run stand; texts are shown again, as instructions are.
 /// @param again  the participant has gone back to it
 SessionPages::Turn SessionPages::show_item(const Place& place, bool again) {
-  const pages::Item& item = *place.item;
+  const questions::Question& item = *place.item;
   record::AnswerRow row;
   row.when = place.when;
   row.block = place.block;
@@ -120,10 +123,10 @@ SessionPages::Turn SessionPages::show_item(const Place& place, bool again) {
   row.item = item.name;
   const std::optional<record::AnswerRow> earlier = answer_to(row);
   if (earlier && !again) {
-    declined_ = declined_ || (item.kind == ItemKind::kConsent && earlier->value == 0.0);
+    declined_ = declined_ || (item.kind->traits().consents && earlier->value == 0.0);
     return declined_ ? Turn::kEnd : Turn::kOn;
   }
-  PageAnswer answer;
+  questions::Answer answer;
   const auto begun = std::chrono::steady_clock::now();
   if (person_answers()) {
     if (const Turn turn = ask(place, earlier, answer, row.source); turn != Turn::kOn) {
@@ -142,9 +145,9 @@ SessionPages::Turn SessionPages::show_item(const Place& place, bool again) {
 }
 
 /// @param changed  the item was answered before
-void SessionPages::keep(const pages::Item& item, const PageAnswer& answer, record::AnswerRow row,
-                        bool changed) {
-  if (item.kind == ItemKind::kRead) {
+void SessionPages::keep(const questions::Question& item, const questions::Answer& answer,
+                        record::AnswerRow row, bool changed) {
+  if (!item.kind->traits().asks) {
     return;
   }
   row.value = answer.value;
@@ -157,7 +160,7 @@ void SessionPages::keep(const pages::Item& item, const PageAnswer& answer, recor
   if (!answer.reason.empty()) {
     p_.record.event("consent_by_experimenter", answer.reason);
   }
-  if (item.kind == ItemKind::kConsent && answer.value == 0.0) {
+  if (item.kind->traits().consents && answer.value == 0.0) {
     declined_ = true;
     p_.record.event("consent_declined", "the participant did not agree to take part");
   }
@@ -180,8 +183,8 @@ bool SessionPages::person_answers() const {
 /// Shows the item until it is answered, left for the one before, or the session is ended.
 SessionPages::Turn SessionPages::ask(const Place& place,
                                      const std::optional<record::AnswerRow>& earlier,
-                                     PageAnswer& answer, AnsweredAt& source) {
-  const pages::Item& item = *place.item;
+                                     questions::Answer& answer, AnsweredAt& source) {
+  const questions::Question& item = *place.item;
   PageInput input(item, d_.texts, place.may_go_back);
   if (earlier) {
     input.show_earlier({earlier->value, earlier->text});
@@ -198,7 +201,7 @@ SessionPages::Turn SessionPages::ask(const Place& place,
     render::TextPage shown = input.page(picture);
     shown.progress = progress_of(place.page, item);
     p_.pacing.show_page(std::move(shown),
-                      item.title.empty() ? item.text : item.title + "\n" + item.text);
+                        item.title.empty() ? item.text : item.title + "\n" + item.text);
   };
   p_.keys.set_open(true);
   p_.controller.status().asked = std::move(asked);
@@ -219,7 +222,7 @@ SessionPages::Turn SessionPages::ask(const Place& place,
       }
     }
     take_answers(input, source);
-    if (item.kind == ItemKind::kRead && requests.start && !input.answer()) {
+    if (!item.kind->traits().asks && requests.start && !input.answer()) {
       input.give("");  // the experimenter goes on
       source = AnsweredAt::kConsole;
     }

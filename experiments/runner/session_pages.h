@@ -48,7 +48,7 @@ class SessionPages {
   /// An item of the pages that follow each other, and when they do.
   struct Place {
     const pages::Page* page;  // null: the last look at all answers
-    const pages::Item* item;
+    const questions::Question* item;
     record::PageTime when;
     int block;
     bool may_go_back{false};
@@ -58,16 +58,17 @@ class SessionPages {
   bool show(const std::vector<std::string>& names, record::PageTime when, int block,
             bool missed = false);
   Turn show_item(const Place& place, bool again);
-  Turn ask(const Place& place, const std::optional<record::AnswerRow>& earlier, PageAnswer& answer,
-           record::AnsweredAt& source);
-  void keep(const pages::Item& item, const PageAnswer& answer, record::AnswerRow row, bool changed);
+  Turn ask(const Place& place, const std::optional<record::AnswerRow>& earlier,
+           questions::Answer& answer, record::AnsweredAt& source);
+  void keep(const questions::Question& item, const questions::Answer& answer, record::AnswerRow row,
+            bool changed);
   std::optional<record::AnswerRow> answer_to(const record::AnswerRow& asked) const;
   void take_answers(PageInput& input, record::AnsweredAt& source);
   bool person_answers() const;
 
   Parts p_;
   const protocols::Definition& d_;
-  pages::Item last_look_;                   // after several questions
+  questions::Question last_look_;           // after several questions
   std::vector<record::AnswerRow> answers_;  // of earlier runs and this one
   int asked_{0};
   bool declined_{false};

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/pages/page.h"
-#include "experiments/runner/page_input.h"
 
 namespace haptrial::experiments {
 
@@ -13,7 +12,7 @@ namespace haptrial::experiments {
 /// answer does not depend on other items.
 /// @param session_seed  of the participant
 /// @param occasion      "before", "after block 2", …
-PageAnswer virtual_answer(const pages::Page& page, const pages::Item& item,
-                          std::uint64_t session_seed, const std::string& occasion);
+questions::Answer virtual_answer(const pages::Page& page, const questions::Question& item,
+                                 std::uint64_t session_seed, const std::string& occasion);
 
 }  // namespace haptrial::experiments

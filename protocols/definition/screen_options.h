@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/questions/hint_texts.h"
 #include "core/render/flat/text_screen.h"
 
 namespace haptrial {
@@ -33,7 +34,7 @@ struct ScreenOptions {
 };
 
 /// Texts that the participant reads. The first line of a text is its title.
-struct SessionTexts {
+struct SessionTexts : questions::HintTexts {
   std::string instructions;  // before the first trial
   std::string practice;      // before the practice trials
   std::string rest;          // during a break, above the countdown
@@ -51,12 +52,6 @@ struct SessionTexts {
       "A square in the upper right corner shows that the device is at its force limit."};
   std::string begin{"The experimenter will start"};  // the small line below a text that waits
   std::string begin_alone{"Press Enter or the space bar to begin"};  // without an experimenter
-  // The small line below a page, by what is done there.
-  std::string go_on{"Press Enter to go on"};
-  std::string choose{"Choose with a number key or the arrows, then press Enter"};
-  std::string move_mark{"Move the mark with the arrow keys or type a number, then press Enter"};
-  std::string type_number{"Type a number, then press Enter"};
-  std::string type_words{"Type your answer, then press Enter"};
   std::string go_back{"Press Backspace to go back"};
   std::string answered{"Thank you\nThese were all questions for now."};  // answers may be changed
   std::string declined{"Thank you\nThe session ends here."};             // who does not consent

@@ -11,6 +11,11 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/questions/choice_kind.h"
+#include "core/questions/consent_kind.h"
+#include "core/questions/number_kind.h"
+#include "core/questions/scale_kind.h"
+#include "core/questions/words_kind.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
@@ -29,10 +34,10 @@ namespace haptrial::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-using pages::Item;
-using pages::ItemKind;
+using questions::Answer;
+using questions::Question;
+using questions::QuestionKind;
 using record::AnswerRow;
-using render::KeyPress;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -82,19 +87,20 @@ SessionRequest request_for(const Experiment& experiment, const fs::path& file) {
   return request;
 }
 
-Item item_of(ItemKind kind) {
-  Item item;
+Question item_of(const QuestionKind& kind) {
+  Question item;
   item.name = "x";
-  item.kind = kind;
+  item.kind = &kind;
   item.text = "?";
   item.choices = {{"a", "A", 1.0}, {"b", "B", 2.0}};
+  item.high = 100.0;
   item.step = 5.0;
   return item;
 }
 
 TEST(PageInputTest, KeysAndTheConsoleGiveTheSameAnswers) {
   const protocols::SessionTexts words;
-  const Item choice = item_of(ItemKind::kChoice);
+  const Question choice = item_of(questions::choice_kind());
   PageInput keys(choice, words);
   EXPECT_TRUE(keys.press({'9'})) << "there is no ninth, and the hint says so";
   EXPECT_TRUE(keys.page(nullptr).hint_is_urgent);
@@ -114,7 +120,7 @@ TEST(PageInputTest, KeysAndTheConsoleGiveTheSameAnswers) {
 
 TEST(PageInputTest, DigitsMoveTheMarkAndAKeyThatDoesNothingIsSaid) {
   const protocols::SessionTexts words;
-  Item scale = item_of(ItemKind::kScale);
+  Question scale = item_of(questions::scale_kind());
   scale.low = 1.0;
   scale.high = 7.0;
   scale.step = 1.0;
@@ -125,8 +131,8 @@ TEST(PageInputTest, DigitsMoveTheMarkAndAKeyThatDoesNothingIsSaid) {
   EXPECT_TRUE(tired.page(nullptr).hint_is_urgent);
   EXPECT_TRUE(tired.press({'4'}));
   EXPECT_FALSE(tired.page(nullptr).hint_is_urgent);
-  EXPECT_EQ(tired.page(nullptr).chosen, 3);
-  EXPECT_EQ(tired.page(nullptr).scale->numbers,
+  EXPECT_EQ(tired.page(nullptr).answer.chosen, 3);
+  EXPECT_EQ(tired.page(nullptr).answer.scale->numbers,
             (std::vector<std::string>{"1", "2", "3", "4", "5", "6", "7"}));
   tired.press({KeyPress::kEnter});
   ASSERT_TRUE(tired.answer());
@@ -139,10 +145,10 @@ TEST(PageInputTest, DigitsMoveTheMarkAndAKeyThatDoesNothingIsSaid) {
   for (const char digit : {'8', '5'}) {
     load.press({digit});
   }
-  EXPECT_EQ(load.page(nullptr).chosen, 17);
-  EXPECT_TRUE(load.page(nullptr).scale->numbers.empty());
+  EXPECT_EQ(load.page(nullptr).answer.chosen, 17);
+  EXPECT_TRUE(load.page(nullptr).answer.scale->numbers.empty());
 
-  Item age = item_of(ItemKind::kNumber);
+  Question age = item_of(questions::number_kind());
   age.low = 18.0;
   age.high = 99.0;
   PageInput years(age, words);
@@ -157,7 +163,7 @@ TEST(PageInputTest, DigitsMoveTheMarkAndAKeyThatDoesNothingIsSaid) {
 
 TEST(PageInputTest, AnExperimenterConsentsOnlyWithAReason) {
   const protocols::SessionTexts words;
-  Item consent = item_of(ItemKind::kConsent);
+  Question consent = item_of(questions::consent_kind());
   consent.choices = {{"accepted", "I agree", 1.0}, {"declined", "I do not", 0.0}};
   PageInput console(consent, words);
   EXPECT_THAT(console.give("1"), HasSubstr("paper form"));
@@ -178,7 +184,7 @@ TEST(PageInputTest, AnExperimenterConsentsOnlyWithAReason) {
 
 TEST(PageInputTest, AMarkMovesInStepsAndStopsAtTheEnds) {
   const protocols::SessionTexts words;
-  const Item scale = item_of(ItemKind::kScale);
+  const Question scale = item_of(questions::scale_kind());
   PageInput input(scale, words);
   input.press({KeyPress::kEnter});
   EXPECT_FALSE(input.answer()) << "the mark has no place before it is moved";
@@ -196,7 +202,7 @@ TEST(PageInputTest, AMarkMovesInStepsAndStopsAtTheEnds) {
 
 TEST(PageInputTest, WordsOfAnyScriptAreTyped) {
   const protocols::SessionTexts words;
-  const Item text = item_of(ItemKind::kText);
+  const Question text = item_of(questions::words_kind());
   PageInput input(text, words);
   for (const char32_t c : std::u32string(U"नहीं!é")) {
     input.press({KeyPress::kOther, c});
@@ -205,7 +211,7 @@ TEST(PageInputTest, WordsOfAnyScriptAreTyped) {
   input.press({KeyPress::kEnter});
   ASSERT_TRUE(input.answer());
   EXPECT_EQ(input.answer()->text, "नहीं!");
-  const Item number = item_of(ItemKind::kNumber);
+  const Question number = item_of(questions::number_kind());
   PageInput typed(number, words);
   for (const char32_t c : std::u32string(U"4x2,5")) {
     typed.press({KeyPress::kOther, c});
@@ -218,7 +224,7 @@ TEST(PageInputTest, WordsOfAnyScriptAreTyped) {
 TEST(PageInputTest, BackspaceGoesBackWhereNothingIsTyped) {
   const protocols::SessionTexts words;
   const KeyPress back{KeyPress::kBackspace};
-  const Item choice = item_of(ItemKind::kChoice);
+  const Question choice = item_of(questions::choice_kind());
   PageInput first(choice, words);
   first.press(back);
   EXPECT_FALSE(first.goes_back()) << "nothing is before it";
@@ -226,31 +232,31 @@ TEST(PageInputTest, BackspaceGoesBackWhereNothingIsTyped) {
   EXPECT_THAT(second.page(nullptr).hint, HasSubstr(words.go_back));
   second.press(back);
   EXPECT_TRUE(second.goes_back());
-  const Item text = item_of(ItemKind::kText);
+  const Question text = item_of(questions::words_kind());
   PageInput typed(text, words, true);
   typed.press({KeyPress::kOther, U'x'});
   typed.press(back);
   EXPECT_FALSE(typed.goes_back()) << "it takes the x away";
-  EXPECT_EQ(typed.page(nullptr).typed, "");
+  EXPECT_EQ(typed.page(nullptr).answer.typed, "");
   typed.press(back);
   EXPECT_TRUE(typed.goes_back());
 }
 
 TEST(PageInputTest, AnEarlierAnswerIsShownAndKeptByEnter) {
   const protocols::SessionTexts words;
-  const auto kept = [&](const Item& item, const PageAnswer& earlier) {
+  const auto kept = [&](const Question& item, const Answer& earlier) {
     PageInput input(item, words, true);
     input.show_earlier(earlier);
     PageInput console(item, words, true);
     EXPECT_EQ(console.give(input.asked(1).given), "") << "what the console shows is an answer";
     EXPECT_EQ(console.answer()->text, earlier.text);
     input.press({KeyPress::kEnter});
-    return input.answer().value_or(PageAnswer{-1.0, "none"});
+    return input.answer().value_or(Answer{-1.0, "none"});
   };
-  EXPECT_EQ(kept(item_of(ItemKind::kChoice), {2.0, "b"}).text, "b");
-  EXPECT_EQ(kept(item_of(ItemKind::kScale), {35.0, ""}).value, 35.0);
-  EXPECT_EQ(kept(item_of(ItemKind::kNumber), {42.5, ""}).value, 42.5);
-  EXPECT_EQ(kept(item_of(ItemKind::kText), {std::nan(""), "é!"}).text, "é!");
+  EXPECT_EQ(kept(item_of(questions::choice_kind()), {2.0, "b"}).text, "b");
+  EXPECT_EQ(kept(item_of(questions::scale_kind()), {35.0, ""}).value, 35.0);
+  EXPECT_EQ(kept(item_of(questions::number_kind()), {42.5, ""}).value, 42.5);
+  EXPECT_EQ(kept(item_of(questions::words_kind()), {std::nan(""), "é!"}).text, "é!");
 }
 
 TEST(SessionPagesTest, VirtualParticipantsAnswerEveryPage) {
@@ -265,7 +271,7 @@ TEST(SessionPagesTest, VirtualParticipantsAnswerEveryPage) {
   EXPECT_EQ(rows.front().when, record::PageTime::kBefore);
   EXPECT_EQ(rows.back().text, "SIMULATED");
   EXPECT_EQ(rows.back().when, record::PageTime::kAfter);
-  const Item& age = experiment.definition->pages.page("you").items.front();
+  const Question& age = experiment.definition->pages.page("you").items.front();
   EXPECT_GE(rows[rows.size() - 2].value, age.low);
   EXPECT_LE(rows[rows.size() - 2].value, age.high);
   for (const AnswerRow& row : rows) {

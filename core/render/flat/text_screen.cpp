@@ -19,6 +19,7 @@ constexpr double kColumn = 1.45;  // longest line: longer ones are tiring to rea
 constexpr double kShrink = 0.9;   // from one try to the next
 constexpr double kSmallest = 0.3;
 constexpr double kPicture = 0.4;  // most of the screen's height that a picture takes
+constexpr double kFigure = 0.3;   // of the screen's height
 constexpr double kTick = 0.03;    // of a scale
 constexpr double kLine = 1.35;    // from choice to choice, of their height
 const Colour kUrgent{0.80, 0.08, 0.08};
@@ -65,17 +66,22 @@ double TextScreen::picture_height(const TextPage& page) const {
   return page.picture ? std::min<double>(page.picture->height, kPicture * height_) : 0.0;
 }
 
+double TextScreen::figure_height() const { return kFigure * height_; }
+
+double TextScreen::scale_height(const questions::ScaleView& scale, const Sizes& sizes) {
+  const double lines = scale.numbers.empty() ? 2.0 : 3.0;
+  return lines * text_.line_height(sizes.body) + 2.0 * kTick * std::min(width_, height_);
+}
+
 double TextScreen::answer_height(const TextPage& page, const Sizes& sizes) {
   double height = 0.0;
-  for (const std::string& choice : page.choices) {
+  for (const std::string& choice : page.answer.choices) {
     height += kLine * text_.height_of(choice, column(), sizes.body);
   }
-  if (page.scale) {
-    const double lines = page.scale->numbers.empty() ? 2.0 : 3.0;
-    height += lines * text_.line_height(sizes.body) + 2.0 * kTick * std::min(width_, height_);
-  }
-  if (page.typed) {
-    height += text_.height_of(*page.typed + "_", column(), sizes.body);
+  height += page.answer.scale ? scale_height(*page.answer.scale, sizes) : 0.0;
+  height += page.answer.figure.empty() ? 0.0 : figure_height() + gap();
+  if (page.answer.typed) {
+    height += text_.height_of(*page.answer.typed + "_", column(), sizes.body);
   }
   return height;
 }
@@ -148,29 +154,34 @@ double TextScreen::draw_picture(const TextPage& page, double y) {
 }
 
 void TextScreen::draw_answer(const TextPage& page, const Sizes& sizes, double y) {
-  draw_choices(page, sizes, y);
-  if (page.scale) {
+  y = draw_choices(page, sizes, y);
+  if (page.answer.scale) {
     draw_scale(page, sizes, y);
+    y += scale_height(*page.answer.scale, sizes);
   }
-  if (page.typed) {
+  if (!page.answer.figure.empty()) {
+    draw_figure(page, y);
+    y += figure_height() + gap();
+  }
+  if (page.answer.typed) {
     TextStyle style = sizes.body;
     style.colour = accent_;
-    text_.paragraphs(*page.typed + "_", {0.5 * width_, y}, column(), style);
+    text_.paragraphs(*page.answer.typed + "_", {0.5 * width_, y}, column(), style);
   }
 }
 
-/// A block of lines in the middle that begin below each other.
-void TextScreen::draw_choices(const TextPage& page, const Sizes& sizes, double y) {
+/// A block of lines in the middle that begin below each other. @returns where it ends
+double TextScreen::draw_choices(const TextPage& page, const Sizes& sizes, double y) {
   double widest = 0.0;
-  for (const std::string& choice : page.choices) {
+  for (const std::string& choice : page.answer.choices) {
     widest = std::max<double>(widest, text_.width_of(choice, sizes.body));
   }
   const double width = std::min(widest + 1.0, column());
   const double left = 0.5 * (width_ - width);
-  for (std::size_t i = 0; i < page.choices.size(); ++i) {
+  for (std::size_t i = 0; i < page.answer.choices.size(); ++i) {
     TextStyle style = sizes.body;
-    const double height = text_.height_of(page.choices[i], column(), style);
-    if (static_cast<int>(i) == page.chosen) {
+    const double height = text_.height_of(page.answer.choices[i], column(), style);
+    if (static_cast<int>(i) == page.answer.chosen) {
       style.colour = accent_;
       const double room = 0.5 * gap();
       painter_.begin_over();
@@ -178,9 +189,10 @@ void TextScreen::draw_choices(const TextPage& page, const Sizes& sizes, double y
                        0.3 * height, 2.0, accent_);
       painter_.end();
     }
-    text_.paragraphs(page.choices[i], {left, y}, width, style, Align::kLeft);
+    text_.paragraphs(page.answer.choices[i], {left, y}, width, style, Align::kLeft);
     y += kLine * height;
   }
+  return y;
 }
 
 /// A line with a tick for each step, words below its ends, and the mark.
@@ -191,24 +203,39 @@ void TextScreen::draw_scale(const TextPage& page, const Sizes& sizes, double y) 
   const double middle = y + tick;
   painter_.begin_over();
   painter_.line({left, middle}, {left + 2.0 * half, middle}, 2.0, ink_);
-  for (int i = 0; i <= page.scale->steps; ++i) {
-    const double x = left + 2.0 * half * i / page.scale->steps;
+  for (int i = 0; i <= page.answer.scale->steps; ++i) {
+    const double x = left + 2.0 * half * i / page.answer.scale->steps;
     painter_.line({x, middle - 0.5 * tick}, {x, middle + 0.5 * tick}, 2.0, ink_);
   }
-  if (page.chosen >= 0) {
-    painter_.disc({left + 2.0 * half * page.chosen / page.scale->steps, middle}, 0.6 * tick,
-                  accent_);
+  if (page.answer.chosen >= 0) {
+    painter_.disc({left + 2.0 * half * page.answer.chosen / page.answer.scale->steps, middle},
+                  0.6 * tick, accent_);
   }
   painter_.end();
   double below = middle + 1.2 * tick;
-  for (std::size_t i = 0; i < page.scale->numbers.size(); ++i) {
-    const double x = left + 2.0 * half * static_cast<double>(i) / page.scale->steps;
-    text_.paragraphs(page.scale->numbers[i], {x, below}, column(), sizes.body);
+  for (std::size_t i = 0; i < page.answer.scale->numbers.size(); ++i) {
+    const double x = left + 2.0 * half * static_cast<double>(i) / page.answer.scale->steps;
+    text_.paragraphs(page.answer.scale->numbers[i], {x, below}, column(), sizes.body);
   }
-  below += page.scale->numbers.empty() ? 0.0 : text_.line_height(sizes.body);
-  text_.paragraphs(page.scale->low_end, {left, below}, half, sizes.body, Align::kCentre);
-  text_.paragraphs(page.scale->high_end, {left + 2.0 * half, below}, half, sizes.body,
+  below += page.answer.scale->numbers.empty() ? 0.0 : text_.line_height(sizes.body);
+  text_.paragraphs(page.answer.scale->low_end, {left, below}, half, sizes.body, Align::kCentre);
+  text_.paragraphs(page.answer.scale->high_end, {left + 2.0 * half, below}, half, sizes.body,
                    Align::kCentre);
+}
+
+/// A square in the middle; its y points up.
+void TextScreen::draw_figure(const TextPage& page, double y) {
+  constexpr double kThin = 2.0, kThick = 4.0;  // [px]
+  const double half = 0.5 * figure_height();
+  const auto pixel = [&](const std::array<double, 2>& point) {
+    return Eigen::Vector2d(0.5 * width_ + half * point[0], y + half * (1.0 - point[1]));
+  };
+  painter_.begin_over();
+  for (const questions::FigureLine& line : page.answer.figure) {
+    painter_.line(pixel(line.from), pixel(line.to), line.marked ? kThick : kThin,
+                  line.marked ? accent_ : ink_);
+  }
+  painter_.end();
 }
 
 }  // namespace haptrial::render

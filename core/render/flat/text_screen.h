@@ -3,21 +3,14 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "core/questions/answer_view.h"
 #include "core/render/flat/painter.h"
 #include "core/render/flat/picture_quad.h"
 #include "core/render/flat/text.h"
 #include "core/render/gl/image.h"
 
 namespace haptrial::render {
-
-/// A scale that is answered with a mark.
-struct PageScale {
-  int steps{20};  // from end to end, >= 1
-  std::string low_end, high_end;
-  std::vector<std::string> numbers{};  // at the ticks, one for each; empty: none
-};
 
 /// A text that a participant reads between passes, and how it is answered.
 struct TextPage {
@@ -26,10 +19,7 @@ struct TextPage {
   std::string hint;                        // at the bottom: "Press the button to go on"
   std::optional<double> countdown;         // shown as minutes and seconds [s]
   std::shared_ptr<const Image> picture{};  // between title and text; null: none
-  std::vector<std::string> choices{};      // below the text
-  std::optional<PageScale> scale{};        // likewise
-  std::optional<std::string> typed{};      // likewise; a cursor follows
-  int chosen{-1};                          // choice, or step of the scale; -1: none yet
+  questions::AnswerView answer{};          // below the text
   bool hint_is_urgent{false};              // a key did nothing: red and bold
   std::string progress{};                  // in the upper right corner: "3 / 10"
 };
@@ -57,12 +47,15 @@ class TextScreen {
   double column() const;
   double height_of(const TextPage& page, const Sizes& sizes);
   double picture_height(const TextPage& page) const;
+  double figure_height() const;
+  double scale_height(const questions::ScaleView& scale, const Sizes& sizes);
   double answer_height(const TextPage& page, const Sizes& sizes);
   double draw_picture(const TextPage& page, double y);
   void draw_answer(const TextPage& page, const Sizes& sizes, double y);
   void draw_corner(const std::string& words, const TextStyle& style);
-  void draw_choices(const TextPage& page, const Sizes& sizes, double y);
+  double draw_choices(const TextPage& page, const Sizes& sizes, double y);
   void draw_scale(const TextPage& page, const Sizes& sizes, double y);
+  void draw_figure(const TextPage& page, double y);
 
   int width_;
   int height_;

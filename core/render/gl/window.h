@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/key_press.h"
 #include "core/render/gl/gl.h"
 #include "core/render/gl/image.h"
 
@@ -20,22 +21,7 @@ struct WindowOptions {
   bool refresh_lock{true};  // swap() waits for the monitor's refresh, where the display can
 };
 
-/// A key that went down, or a character that was typed: these follow the keys that make them up.
-/// Letters and digits are their capital characters, 'P' or '1'.
-struct KeyPress {
-  static constexpr int kEscape = 256;
-  static constexpr int kEnter = 257;
-  static constexpr int kSpace = ' ';
-  static constexpr int kBackspace = 259;
-  static constexpr int kRight = 262;
-  static constexpr int kLeft = 263;
-  static constexpr int kDown = 264;
-  static constexpr int kUp = 265;
-  static constexpr int kOther = 0;
-  int key{kOther};
-  char32_t character{0};  // that was typed; 0: a key
-  bool operator==(const KeyPress&) const = default;
-};
+using haptrial::KeyPress;
 
 /// The mouse, in pixels from the window's top left corner.
 struct Pointer {

@@ -7,6 +7,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/questions/question_kind.h"
 
 namespace haptrial::pages {
 namespace {
@@ -69,19 +70,19 @@ words = true
 )");
   EXPECT_THAT(plan.before, testing::ElementsAre("welcome", "agree", "hand"));
   EXPECT_EQ(plan.page("welcome").items.front().picture, "hand.png");
-  EXPECT_EQ(plan.page("agree").items.front().kind, ItemKind::kConsent);
+  EXPECT_EQ(plan.page("agree").items.front().kind->word(), "consent");
   EXPECT_EQ(plan.page("hand").items.size(), 10u);
   EXPECT_EQ(plan.page("load").items.size(), 21u);
   EXPECT_EQ(plan.after_block.at("first").front(), "load");
   const Page& you = plan.page("you");
   ASSERT_EQ(you.items.size(), 4u);
-  EXPECT_EQ(you.items[0].kind, ItemKind::kNumber);
+  EXPECT_EQ(you.items[0].kind->word(), "number");
   EXPECT_EQ(you.items[0].high, 99.0);
   EXPECT_EQ(you.items[1].choices[0].label, "never");
   EXPECT_EQ(you.items[1].choices[0].number, 0.0);
   EXPECT_EQ(you.items[1].choices[1].label, "Every day");
   EXPECT_EQ(you.items[2].low_end, "not at all");
-  EXPECT_EQ(you.items[3].kind, ItemKind::kText);
+  EXPECT_EQ(you.items[3].kind->word(), "words");
 }
 
 TEST(PagesTest, MistakesGetTheirSentence) {

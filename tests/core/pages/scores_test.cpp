@@ -21,8 +21,8 @@ std::vector<GivenAnswer> filled(const Ratings& ratings, std::map<std::string, in
   for (std::size_t i = 0; i < ratings.size(); ++i) {
     answers.push_back({kTlxScales[i], ratings[i], ""});
   }
-  for (const Item& item : nasa_tlx_items(true)) {
-    if (item.kind == ItemKind::kChoice) {
+  for (const questions::Question& item : nasa_tlx_items(true)) {
+    if (!item.choices.empty()) {
       const bool first = weights[item.choices[0].value] >= weights[item.choices[1].value];
       const std::string chosen = item.choices[first ? 0 : 1].value;
       answers.push_back({item.name, first ? 1.0 : 2.0, chosen});
@@ -43,10 +43,10 @@ TEST(TlxTest, AsksEveryPairOfScalesOnce) {
   EXPECT_EQ(nasa_tlx_items(false).size(), 6u);
   std::map<std::string, int> asked;
   int pairs = 0;
-  for (const Item& item : nasa_tlx_items(true)) {
-    if (item.kind == ItemKind::kChoice) {
+  for (const questions::Question& item : nasa_tlx_items(true)) {
+    if (!item.choices.empty()) {
       ++pairs;
-      for (const ItemChoice& choice : item.choices) {
+      for (const questions::Choice& choice : item.choices) {
         ++asked[choice.value];
       }
     }
@@ -107,7 +107,7 @@ TEST(TlxTest, HasNoScoreWhileAnswersAreMissing) {
 /// Answers to the first activities in their order.
 double quotient(const std::vector<double>& values) {
   std::vector<GivenAnswer> answers;
-  const std::vector<Item> items = edinburgh_items();
+  const std::vector<questions::Question> items = edinburgh_items();
   for (std::size_t i = 0; i < values.size(); ++i) {
     answers.push_back({items.at(i).name, values[i], ""});
   }

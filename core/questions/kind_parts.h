@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/definition/schema.h"
+#include "core/questions/question.h"
+#include "core/questions/question_kind.h"
+
+namespace haptrial::questions {
+
+// Parts that several kinds of questions share, also a program's own.
+
+/// Bounds of names and values in files [bytes].
+inline constexpr std::size_t kNameBytes = 64;
+/// Longest text of a question; more would not be legible on a screen [bytes].
+inline constexpr std::size_t kLongestText = 4000;
+
+/// title
+const Schema<Question>& title_schema();
+/// text and picture
+const Schema<Question>& reading_schema();
+
+/// Gives an entry of a list its name, which files and translations have. A name with a point, or
+/// one that is too long, is noted as a problem.
+void name_entry(Table& table, const char* key, const std::string& name);
+
+/// Reads [lowest, highest] into the bounds of a question; another list is noted as a problem.
+void read_range(Table& table, const std::string& key, Question& question);
+
+/// The number that a text is, with a decimal point or a comma; nothing if it is none. Servo thread:
+/// no allocation, lock, I/O or throw.
+std::optional<double> number_in(std::string_view text) noexcept;
+
+/// The keys 0 to 9 and the given ones, each as itself.
+std::vector<HeardKey> digits_and(std::initializer_list<int> others);
+
+}  // namespace haptrial::questions
