@@ -28,6 +28,7 @@ struct DeviceReading {
   /// it. Which way the handle runs in its frame is a parameter of what is held.
   Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
   std::uint32_t keys{0};  // bit i: function i of the definition is held by a key of the window
+  char32_t typed{0};      // character that was typed in the window since the last reading; 0: none
   double pedal{0.0};      // how far an analog pedal is down, 0 to 1
   control::GainShares shares{};  // of the gains of all laws, which the handle carries now
 };

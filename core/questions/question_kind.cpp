@@ -58,6 +58,11 @@ const QuestionKind* stated_kind(Table& table, const std::vector<const QuestionKi
       ++count;
     }
   }
+  for (const QuestionKind* kind : kinds) {
+    if (count > 1 && !kind->key().empty()) {
+      table.pass_over(kind->key());  // known, so that the sentence is about their number
+    }
+  }
   return count == 1 ? found : nullptr;
 }
 

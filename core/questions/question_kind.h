@@ -98,7 +98,8 @@ void add_kind_of_question(const QuestionKind& kind);
 /// The keys of these kinds, for sentences: "choices, scale, number, words".
 std::string keys_of_kinds(const std::vector<const QuestionKind*>& kinds);
 
-/// The kind that a table states, one of `kinds`; null if it states none or several.
+/// The kind that a table states, one of `kinds`; null if it states none or several. The caller
+/// notes the problem.
 const QuestionKind* stated_kind(Table& table, const std::vector<const QuestionKind*>& kinds);
 
 }  // namespace haptrial::questions

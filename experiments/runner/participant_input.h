@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "experiments/runner/page_keys.h"
 #include "experiments/runner/reported_mistakes.h"
 #include "experiments/runner/session_pedal.h"
+#include "protocols/interface/window_input.h"
 
 namespace haptrial::experiments {
 
@@ -31,8 +31,8 @@ class ParticipantInput {
   std::vector<std::string> losses(device::Gamepad* pad) const;
 
   SessionPedal pedal;
-  std::atomic<std::uint32_t> held_keys{0};  // functions of the protocol
-  std::atomic<bool> begin_pressed{false};   // without an experimenter
+  protocols::WindowInput window;           // for a trial
+  std::atomic<bool> begin_pressed{false};  // without an experimenter
   PageKeys page_keys;
   ReportedMistakes mistakes;
 

@@ -173,7 +173,7 @@ Session::Session(const SessionRequest& request)
               .device_log = &record_.device_log(),
               .tick_log = trials_->tick_log(),
               .observers = observers(),
-              .keys = &input_.held_keys,
+              .window = &input_.window,
               .pedal = input_.pedal.pedal(),
               .onsets = d_.markers.used ? &onsets_ : nullptr},
              real_, record_.origin()),

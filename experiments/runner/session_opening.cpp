@@ -214,6 +214,12 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
     }
     return says;
   };
+  const auto types = [&input](const render::KeyPress& press) {
+    if (press.character != 0) {
+      input.window.type(press.character);
+    }
+    return press.character != 0;
+  };
   ScreenCallbacks callbacks;
   callbacks.words = [noted_until, &words = request.definition->texts.mistake_noted] {
     return screen_ns() < *noted_until ? words : std::string();
@@ -221,9 +227,9 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
   SessionControl* control = request.control;
   if (control != nullptr) {
     const bool steers = request.definition->screen.participant_steers;
-    callbacks.key = [control, steers, &input, says_mistake,
+    callbacks.key = [control, steers, &input, says_mistake, types,
                      &request](const render::KeyPress& press) {
-      if (input.page_keys.take(press) || press.character != 0 || says_mistake(press)) {
+      if (input.page_keys.take(press) || types(press) || says_mistake(press)) {
         return;
       }
       if (begins(press)) {  // heard in a break that the participant ends
@@ -240,8 +246,8 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
       control->ask(steers ? Request::kAbort : Request::kEmergencyStop, RequestSource::kWindow);
     };
   } else {  // nobody is there who could clear a stop or say that it goes on
-    callbacks.key = [&input, says_mistake](const render::KeyPress& press) {
-      if (input.page_keys.take(press) || says_mistake(press)) {
+    callbacks.key = [&input, says_mistake, types](const render::KeyPress& press) {
+      if (input.page_keys.take(press) || types(press) || says_mistake(press)) {
         return;
       }
       if (press.key == render::KeyPress::kEscape) {
@@ -266,7 +272,7 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
     };
   }
   callbacks.held = [&input, &request](const std::vector<int>& keys) {
-    input.held_keys.store(request.definition->bits_of(keys), std::memory_order_relaxed);
+    input.window.hold(request.definition->bits_of(keys));
   };
   const protocols::Definition& setup = *request.definition;
   return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks),

@@ -17,6 +17,7 @@
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "protocols/interface/trials.h"
+#include "protocols/interface/window_input.h"
 
 namespace haptrial::device {
 class MouseDevice;

@@ -26,10 +26,12 @@ DeviceSet::DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& lo
   stimuli_.resize(arms.size(), Eigen::Vector3d::Zero());
 }
 
-void DeviceSet::read(std::uint32_t keys, std::optional<double> pedal, double dt) noexcept {
+void DeviceSet::read(std::uint32_t keys, char32_t typed, std::optional<double> pedal,
+                     double dt) noexcept {
   for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
     const bool read_ok = devices_[arm]->read(readings_[arm]);
     readings_[arm].keys = keys;
+    readings_[arm].typed = typed;
     readings_[arm].pedal = pedal.value_or(readings_[arm].pedal);
     envelopes_[arm].check(read_ok, readings_[arm]);
     readings_[arm].shares =

@@ -35,7 +35,7 @@ class DeviceSet {
   /// Reads every device and judges what it said. @param keys  of the window; all devices get them
   /// @param pedal  how far the session's pedal is down; nothing if it has none
   /// @param dt     since the tick before [s]
-  void read(std::uint32_t keys, std::optional<double> pedal, double dt) noexcept;
+  void read(std::uint32_t keys, char32_t typed, std::optional<double> pedal, double dt) noexcept;
   Readings readings() const noexcept { return Readings(readings_); }
 
   /// The forces of this tick, from what a pass wants of each device.

@@ -23,7 +23,7 @@ SessionTask::SessionTask(const Parts& parts, Leave leave, Origin origin)
       log_(parts.log),
       device_log_(parts.device_log),
       tick_log_(parts.tick_log),
-      keys_(parts.keys),
+      window_(parts.window),
       pedal_(parts.pedal),
       onsets_(parts.onsets),
       observers_(parts.observers),
@@ -60,7 +60,8 @@ bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
   resume_after_gap(tick.time_ns);
 
-  devices_.read(keys_ != nullptr ? keys_->load(std::memory_order_relaxed) : 0,
+  devices_.read(window_ != nullptr ? window_->held() : 0,
+                window_ != nullptr ? window_->take_typed() : 0,
                 pedal_ != nullptr ? std::optional(pedal_->depth()) : std::nullopt, tick.dt);
   const bool runs = pass_ != nullptr && !broken_off_ && devices_.fault() == device::Fault::kNone;
   const PassOutput out = runs ? pass_->tick(devices_.readings(), tick.dt) : nothing();

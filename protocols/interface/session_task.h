@@ -13,6 +13,7 @@
 #include "core/stream/onset_log.h"
 #include "protocols/interface/device_set.h"
 #include "protocols/interface/pass.h"
+#include "protocols/interface/window_input.h"
 
 namespace haptrial::protocols {
 
@@ -63,9 +64,9 @@ class SessionTask final : public realtime::ServoTask {
     DeviceLog* device_log{nullptr};  // of the devices after the first
     TickLog* tick_log{nullptr};      // the protocol's own
     std::vector<stimulus::Observer*> observers{};
-    const std::atomic<std::uint32_t>* keys{nullptr};  // DeviceReading::keys, of the window
-    device::Pedal* pedal{nullptr};                    // of all devices; null: as each says
-    markers::OnsetLog* onsets{nullptr};               // null: nobody is told what begins when
+    WindowInput* window{nullptr};        // of the participant; null: there is none
+    device::Pedal* pedal{nullptr};       // of all devices; null: as each says
+    markers::OnsetLog* onsets{nullptr};  // null: nobody is told what begins when
   };
   explicit SessionTask(const Parts& parts, Leave leave, Origin origin = Origin{});
   /// A task with one device.
@@ -118,7 +119,7 @@ class SessionTask final : public realtime::ServoTask {
   Log& log_;
   DeviceLog* device_log_;
   TickLog* tick_log_;
-  const std::atomic<std::uint32_t>* keys_;
+  WindowInput* window_;
   device::Pedal* pedal_;
   markers::OnsetLog* onsets_;
   std::vector<stimulus::Observer*> observers_;

@@ -179,7 +179,7 @@ void DefinedTrials::check_resumed(const record::SessionReader& file) const {
   }
   CarriedOver before;
   for (const record::ResponseRow& row : file.responses()) {
-    if (!d_.questions.empty() && !d_.questions.front().types() &&
+    if (!d_.questions.empty() && d_.questions.front().has_choices() &&
         row.question == d_.questions.front().name) {
       before.previous = static_cast<int>(std::lround(row.value - d_.questions.front().first));
     }
@@ -386,10 +386,9 @@ std::vector<PresentedQuestion> DefinedTrials::make_questions() {
 /// Regions as they are in the last interval.
 std::vector<TouchedPlace> DefinedTrials::places_of(const Question& question) const {
   std::vector<TouchedPlace> places;
-  for (std::size_t i = 0; i < question.choices.size(); ++i) {
-    const auto region =
-        std::ranges::find(regions_, question.choices[i].touch, &scene::Region::name);
-    if (!question.choices[i].touch.empty() && region != regions_.end()) {
+  for (std::size_t i = 0; i < question.means.size(); ++i) {
+    const auto region = std::ranges::find(regions_, question.means[i].touch, &scene::Region::name);
+    if (!question.means[i].touch.empty() && region != regions_.end()) {
       const auto index = region - regions_.begin();
       places.push_back({scene::PlacedShape(region->shape),
                         region_devices_[static_cast<std::size_t>(index)], i,

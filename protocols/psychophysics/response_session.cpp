@@ -116,10 +116,9 @@ class ResponseSession::SimulatedSession {
           decider_.decide(question, first, std::span(percepts_.data(), intervals));
       record::ResponseRow& row = answers.emplace_back();
       row.question = question.name;
-      row.value = question.types() ? said.value : question.first + said.choice;
-      if (!question.types()) {
-        row.text = question.choices[static_cast<std::size_t>(said.choice)].value;
-      }
+      const questions::Answer given = given_answer(question, said.choice, said.draft);
+      row.value = given.value;
+      row.text = given.text;
       if (!question.correct.empty()) {
         row.correct = right_choice(names_, question) == said.choice ? 1 : 0;
       }

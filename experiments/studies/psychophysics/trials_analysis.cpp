@@ -138,7 +138,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
       defaults.levels["block"].push_back(block.name);
     }
   }
-  if (!d.questions.empty() && !d.questions.front().types()) {
+  if (!d.questions.empty() && d.questions.front().has_choices()) {
     defaults.choices = d.questions.front().answers();
   }
   for (std::size_t i = 1; i < d.questions.size() && defaults.rating.empty(); ++i) {

@@ -80,7 +80,7 @@ void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& f
 
 /// The numbers that formulas may take an answer for: each choice, or the ends of a typed one.
 std::vector<double> values_of(const Question& question) {
-  if (question.types()) {
+  if (!question.has_choices()) {
     return {question.low, question.high};
   }
   std::vector<double> values;
@@ -118,6 +118,9 @@ void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& 
       const std::vector<double> all = values_of(question);
       const double value = all[rest % all.size()];
       rest /= all.size();
+      if (!question.is_number()) {
+        continue;
+      }
       names.set(question.name, value);
       answers += fmt::format("{}{} = {:g}", answers.empty() ? "" : ", ", question.name, value);
     }

@@ -4,17 +4,22 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
+#include "core/questions/choice_kind.h"
+#include "core/questions/scale_kind.h"
 #include "core/record/rows/response.h"
 #include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
 namespace {
+
+using questions::Choice;
+using questions::QuestionKind;
 
 constexpr std::size_t kMostChoices = 12;
 
@@ -32,7 +37,7 @@ struct Means {
   std::vector<std::string> regions;
 };
 
-const Schema<Choice>& choice_schema() {
+const Schema<Choice>& trial_choice_schema() {
   using C = Choice;
   static const auto schema =
       Schema<C>()
@@ -43,7 +48,14 @@ const Schema<Choice>& choice_schema() {
             choice.label = choice.value;
           })
           .shown_text("label", &C::label, "Words of the choice that participants read")
-          .otherwise("the value")
+          .otherwise("the value");
+  return schema;
+}
+
+const Schema<ChoiceMeans>& means_schema() {
+  using C = ChoiceMeans;
+  static const auto schema =
+      Schema<C>()
           .bits("buttons", &C::buttons, "Buttons of the device that make the choice")
           .otherwise("the button of its place")
           .text("touch", &C::touch,
@@ -55,7 +67,7 @@ const Schema<Choice>& choice_schema() {
   return schema;
 }
 
-void read_choice_keys(Table& table, KeyBits& keys, Choice& choice) {
+void read_choice_keys(Table& table, KeyBits& keys, ChoiceMeans& choice) {
   table.describe({"keys", "Keys of the participant's window that make the choice",
                   "the digit of its place", false});
   if (table.has("keys")) {
@@ -65,7 +77,7 @@ void read_choice_keys(Table& table, KeyBits& keys, Choice& choice) {
   }
 }
 
-void check_touch(Table& table, const Means& means, const Choice& choice) {
+void check_touch(Table& table, const Means& means, const ChoiceMeans& choice) {
   if (table.has("touch") && std::ranges::find(means.regions, choice.touch) == means.regions.end()) {
     table.reject("touch", fmt::format("\"{}\"", choice.touch),
                  means.regions.empty()
@@ -74,8 +86,8 @@ void check_touch(Table& table, const Means& means, const Choice& choice) {
   }
 }
 
-Choice read_choice(Table& table, std::size_t place, Means& means) {
-  Choice choice = choice_schema().read(table);
+ChoiceMeans read_means(Table& table, std::size_t place, Means& means) {
+  ChoiceMeans choice = means_schema().read(table);
   read_choice_keys(table, means.keys, choice);
   check_touch(table, means, choice);
   if (choice.keys == 0 && choice.buttons == 0 && choice.touch.empty() && choice.pedal == 0.0) {
@@ -83,6 +95,11 @@ Choice read_choice(Table& table, std::size_t place, Means& means) {
     choice.hint = fmt::format("{}", place + 1);
     choice.buttons = std::uint32_t{1} << place;
   }
+  return choice;
+}
+
+Choice read_trial_choice(Table& table) {
+  Choice choice = trial_choice_schema().read(table);
   if (choice.value.size() > record::kAnswerBytes) {
     table.reject("value", "too long", fmt::format("at most {} bytes", record::kAnswerBytes));
   }
@@ -90,13 +107,14 @@ Choice read_choice(Table& table, std::size_t place, Means& means) {
 }
 
 /// The key in which two choices are the same; null: in none.
-const char* same_key(const Choice& a, const Choice& b) {
-  return a.value == b.value                       ? "value"
-         : (a.keys & b.keys) != 0                 ? "keys"
-         : (a.buttons & b.buttons) != 0           ? "buttons"
-         : !a.touch.empty() && a.touch == b.touch ? "touch"
-         : a.pedal > 0.0 && b.pedal > 0.0         ? "pedal"
-                                                  : nullptr;
+const char* same_key(const Question& question, std::size_t one, std::size_t other) {
+  const ChoiceMeans &a = question.means[one], &b = question.means[other];
+  return question.choices[one].value == question.choices[other].value ? "value"
+         : (a.keys & b.keys) != 0                                     ? "keys"
+         : (a.buttons & b.buttons) != 0                               ? "buttons"
+         : !a.touch.empty() && a.touch == b.touch                     ? "touch"
+         : a.pedal > 0.0 && b.pedal > 0.0                             ? "pedal"
+                                                                      : nullptr;
 }
 
 void read_choices(Table& table, Question& question, Means& means) {
@@ -106,9 +124,10 @@ void read_choices(Table& table, Question& question, Means& means) {
                  fmt::format("2 to {} choices", kMostChoices));
   }
   for (std::size_t i = 0; i < choices.size(); ++i) {
-    question.choices.push_back(read_choice(choices[i], i, means));
+    question.choices.push_back(read_trial_choice(choices[i]));
+    question.means.push_back(read_means(choices[i], i, means));
     for (std::size_t before = 0; before < i; ++before) {
-      const char* key = same_key(question.choices[before], question.choices[i]);
+      const char* key = same_key(question, before, i);
       if (key != nullptr) {
         choices[i].reject(
             key, fmt::format("that of choices[{}]", before + 1),
@@ -118,15 +137,19 @@ void read_choices(Table& table, Question& question, Means& means) {
     }
   }
   const auto touched = std::ranges::count_if(
-      question.choices, [](const Choice& choice) { return !choice.touch.empty(); });
+      question.means, [](const ChoiceMeans& choice) { return !choice.touch.empty(); });
   if (std::cmp_greater(touched, kMostTouched)) {
     table.reject("choices", fmt::format("a list with {} places to touch", touched),
                  fmt::format("at most {}", kMostTouched));
   }
 }
 
-void read_scale(Table& table, Question& question, KeyBits& keys) {
-  table.describe({"scale", "Lowest and highest digit of a rating", "choices or a number", false});
+/// Reads a rating by digits, which are choices.
+void read_digits(Table& table, Question& question, KeyBits& keys) {
+  table.describe({"scale",
+                  "Lowest and highest digit of a rating; with `step` or `ends`, lowest and "
+                  "highest value of a scale on which a mark is moved",
+                  "choices, a number or words", false});
   const std::vector<double> range = table.numbers("scale", {0.0, 9.0}, "");
   const bool whole =
       std::all_of(range.begin(), range.end(), [](double each) { return each == std::floor(each); });
@@ -138,40 +161,44 @@ void read_scale(Table& table, Question& question, KeyBits& keys) {
   for (double value = range[0]; value <= range[1]; ++value) {
     const std::string digit = fmt::format("{:.0f}", value);
     const auto button = static_cast<unsigned>(value - range[0]);
-    question.choices.push_back(
-        {digit, digit, "", keys.bit_of(digit.front()), std::uint32_t{1} << button});
+    question.choices.push_back({digit, digit});
+    question.means.push_back({"", keys.bit_of(digit.front()), std::uint32_t{1} << button});
   }
 }
 
-void read_number(Table& table, Question& question, KeyBits& keys) {
-  table.describe(
-      {"number", "Lowest and highest number that may be typed", "choices or a scale", false});
-  const std::vector<double> range = table.numbers("number", {}, "");
-  if (range.size() != 2 || range[1] <= range[0]) {
-    table.reject("number", "another list", "[lowest, highest]");
-    return;
+/// The kinds that a trial asks.
+std::vector<const QuestionKind*> kinds_in_trials() {
+  std::vector<const QuestionKind*> kinds;
+  std::ranges::copy_if(questions::kinds_of_question(), std::back_inserter(kinds),
+                       [](const QuestionKind* kind) { return kind->traits().in_trials; });
+  return kinds;
+}
+
+/// The keys of a question without choices, and enter, which gives the answer.
+void hear_keys(Question& question, KeyBits& keys) {
+  for (const questions::HeardKey& key : question.kind->heard_keys(question)) {
+    question.heard.push_back({keys.bit_of(key.code), key.press});
   }
-  question.low = range[0];
-  question.high = range[1];
-  static constexpr std::array kTyping{'0' + 0, '1' + 0,       '2' + 0,  '3' + 0, '4' + 0,
-                                      '5' + 0, '6' + 0,       '7' + 0,  '8' + 0, '9' + 0,
-                                      '.' + 0, kBackspaceKey, kEnterKey};
-  for (const int code : kTyping) {
-    question.typing.push_back(keys.bit_of(code));
+  question.heard.push_back({keys.bit_of(KeyPress::kEnter), {KeyPress::kEnter}});
+  if (question.kind->traits().any_character) {
+    keys.use_characters();
   }
 }
 
 void read_answer(Table& table, Question& question, Means& means) {
-  const int kinds =
-      (table.has("choices") ? 1 : 0) + (table.has("scale") ? 1 : 0) + (table.has("number") ? 1 : 0);
-  if (kinds != 1) {
-    table.reject("question", "has no one way to be answered; state one of choices, scale, number");
-  } else if (table.has("choices")) {
+  const std::vector<const QuestionKind*> kinds = kinds_in_trials();
+  const QuestionKind* kind = questions::stated_kind(table, kinds);
+  if (kind == nullptr) {
+    table.reject("question", fmt::format("has no one way to be answered; state one of {}",
+                                         questions::keys_of_kinds(kinds)));
+  } else if (kind == &questions::choice_kind()) {
     read_choices(table, question, means);
-  } else if (table.has("scale")) {
-    read_scale(table, question, means.keys);
+  } else if (kind == &questions::scale_kind() && !table.has("step") && !table.has("ends")) {
+    read_digits(table, question, means.keys);
   } else {
-    read_number(table, question, means.keys);
+    question.kind = kind;
+    kind->read(table, question);
+    hear_keys(question, means.keys);
   }
 }
 
@@ -268,6 +295,7 @@ const Schema<Question>& question_text_schema() {
 /// @param listed  one of several, which translations tell apart by their names
 Question read_question(Table& table, Table& root, Means& means, bool listed) {
   Question question = question_name_schema().read(table);
+  question.most_bytes = record::kAnswerBytes;
   if (listed) {
     table.name_entry(question.name);
   }
@@ -288,14 +316,14 @@ Question read_question(Table& table, Table& root, Means& means, bool listed) {
 
 std::vector<std::string> Question::answers() const {
   std::vector<std::string> values;
-  for (const Choice& choice : choices) {
+  for (const questions::Choice& choice : choices) {
     values.push_back(choice.value);
   }
-  return values.empty() ? std::vector<std::string>{"number"} : values;
+  return values.empty() ? std::vector<std::string>{kind->word()} : values;
 }
 
 bool Question::touched() const {
-  return std::ranges::any_of(choices, [](const Choice& choice) { return !choice.touch.empty(); });
+  return std::ranges::any_of(means, [](const ChoiceMeans& each) { return !each.touch.empty(); });
 }
 
 bool Question::has_limits() const { return too_fast > 0.0 || std::isfinite(too_slow); }
@@ -318,6 +346,11 @@ std::uint32_t KeyBits::bit_of(int code) {
   return std::uint32_t{1} << place;
 }
 
+void KeyBits::use_characters() {
+  constexpr int kAnyCharacter = -1;  // no key has this code
+  characters_ = bit_of(kAnyCharacter);
+}
+
 std::uint32_t KeyBits::bits_of(const std::vector<int>& held) const {
   std::uint32_t bits = 0;
   for (std::size_t i = 0; i < codes_.size(); ++i) {
@@ -325,7 +358,17 @@ std::uint32_t KeyBits::bits_of(const std::vector<int>& held) const {
       bits |= std::uint32_t{1} << i;
     }
   }
-  return bits;
+  const bool types =
+      std::ranges::any_of(held, [](int code) { return code >= ' ' && code < KeyPress::kEscape; });
+  return bits == 0 && types ? characters_ : bits;
+}
+
+questions::Answer given_answer(const Question& question, int choice,
+                               const questions::AnswerDraft& draft) {
+  return question.has_choices()
+             ? questions::Answer{question.first + choice,
+                                 question.choices[static_cast<std::size_t>(choice)].value}
+             : question.kind->answer(question, draft);
 }
 
 std::vector<Question> read_questions(Table& root, KeyBits& keys) {

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/key_press.h"
+#include "core/questions/question.h"
+
 namespace haptrial {
 class Table;
 }
@@ -17,21 +20,23 @@ class KeyBits {
   static constexpr std::size_t kMost = 31;  // the last bit pauses a playback
   /// The bit of a key's code; a new one gets the next. @throws InputError beyond kMost keys
   std::uint32_t bit_of(int code);
+  /// From now on every key that types a character has a bit: the same one for all that have none
+  /// of their own. @throws InputError as above
+  void use_characters();
   /// The bits of held keys; keys that nobody asked for have none.
   std::uint32_t bits_of(const std::vector<int>& held) const;
 
  private:
   std::vector<int> codes_;
+  std::uint32_t characters_{0};  // their bit; 0: they are not used
 };
 
 /// Trials in which the participant is told whether an answer was right.
 enum class Feedback : std::uint8_t { kNever, kPractice, kAlways };
 
-/// One answer that may be chosen.
-struct Choice {
-  std::string value;         // what is recorded
-  std::string label;         // what is shown
-  std::string hint;          // how it is given: "1"; shown before the label; empty: by buttons only
+/// How a choice is made in a trial, at once.
+struct ChoiceMeans {
+  std::string hint;          // "1"; shown before the label; empty: by buttons only
   std::uint32_t keys{0};     // of KeyBits: any of these gives it
   std::uint32_t buttons{0};  // of the device, likewise
   std::string touch{};       // region into which the tip of the tool is moved; empty: none
@@ -44,16 +49,22 @@ inline constexpr std::size_t kMostTouched = 8;
 /// Time of an answer relative to its limits.
 enum class Pace : std::uint8_t { kInTime, kTooFast, kTooSlow };
 
-/// A question to the participant after the last interval.
-struct Question {
-  std::string name{"answer"};   // in /responses and in formulas
-  std::string text;             // what is read
-  std::vector<Choice> choices;  // empty: a number is typed, and ended with enter
+/// A key that an answer hears in a trial.
+struct HeardBit {
+  std::uint32_t bit{0};  // of KeyBits
+  KeyPress press;        // that it stands for
+};
+
+/// A question to the participant after the last interval. Its name is that in /responses and in
+/// formulas. A question with choices is answered at once, by the means of one of them; all others
+/// by the keys of their kind, and ended with enter.
+struct Question : questions::Question {
+  Question() { name = "answer"; }
+
+  std::vector<ChoiceMeans> means;  // (choices)
   double first{1.0};            // what formulas take choice 0 for; each further one counts 1 more
-  double low{0.0}, high{0.0};   // bounds of a typed number
-  std::vector<std::uint32_t>
-      typing;           // of KeyBits: 0 to 9, ".", backspace, enter; of a typed number
-  std::string correct;  // formula: the number of the right choice, or its word; empty: none
+  std::vector<HeardBit> heard;  // without choices, enter last
+  std::string correct;          // formula: the number of the right choice, or its word; empty: none
   Feedback feedback{Feedback::kNever};
   double timeout{0.0};    // then the trial is aborted; 0: never [s]
   std::string onset;      // stage of the last interval from whose beginning the reaction counts;
@@ -64,14 +75,21 @@ struct Question {
   bool again{false};  // the trial of such an answer comes again at the end of its block
   std::string fast_text{"Too fast"}, slow_text{"Too slow"};  // what is told
 
-  bool types() const { return choices.empty(); }
+  bool has_choices() const { return !choices.empty(); }
+  /// Whether formulas know the answer by its name.
+  bool is_number() const { return has_choices() || low < high; }
   bool touched() const;     // whether a choice is given by touch
   bool has_limits() const;  // whether an answer can be too fast or too slow
   /// @param reaction_time  [s]; NaN is in time
   Pace pace_of(double reaction_time) const noexcept;
-  /// Each answer that has a marker of its own: the choices, or "number".
+  /// Each answer that has a marker of its own: the choices, or the word of the kind.
   std::vector<std::string> answers() const;
 };
+
+/// An answer as /responses has it. @param choice  from 0, of a question with choices
+/// @param draft  complete, of any other
+questions::Answer given_answer(const Question& question, int choice,
+                               const questions::AnswerDraft& draft);
 
 /// Reads [response], or several [[responses]]; without either, nothing is asked. Keys in brackets
 /// are optional.
@@ -80,7 +98,9 @@ struct Question {
 ///     question     the text
 ///     choices      [{ value, [label], [keys], [buttons], [touch], [pedal] }, …], or
 ///     scale        [lowest, highest]: whole numbers, by the keys of their digits, or
-///     number       [lowest, highest]: typed
+///     scale        with step or ends: a mark is moved by the arrow keys, as on a page, or
+///     number       [lowest, highest]: typed, or
+///     words        true: any words, typed, or the key of a kind that a program adds
 ///     [correct]    formula of the right choice: its number, from 1, or its value as a word
 ///     [feedback]   "never" (as if left out), "practice" or "always"
 ///     [timeout]    then the trial is aborted [s]

@@ -62,7 +62,9 @@ void declare_names(Names& names, const TrialsDefinition& d) {
     }
   }
   for (const Question& question : d.questions) {
-    names.declare(question.name);
+    if (question.is_number()) {
+      names.declare(question.name);
+    }
   }
 }
 

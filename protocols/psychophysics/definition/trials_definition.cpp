@@ -194,7 +194,7 @@ std::vector<std::string> TrialsDefinition::warnings() const {
 PedalUse TrialsDefinition::pedal_use() const {
   PedalUse use = PedalUse::kNone;
   for (const Question& question : questions) {
-    for (const Choice& choice : question.choices) {
+    for (const ChoiceMeans& choice : question.means) {
       if (choice.pedal > 0.0) {
         const bool alone = choice.keys == 0 && choice.buttons == 0 && choice.touch.empty();
         use = std::max(use, alone ? PedalUse::kOnly : PedalUse::kBeside);

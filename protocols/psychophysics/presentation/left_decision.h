@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/questions/question.h"
+
 namespace haptrial::protocols {
 
 /// Most intervals of a trial that a virtual participant compares.
@@ -16,9 +18,9 @@ class LeftDecision {
  public:
   /// The answer to one question.
   struct Answer {
-    int choice{-1};        // from 0; of a typed number -1
-    double value{0.0};     // of a typed number
-    double reaction{0.0};  // from the question to the answer >= 0 [s]
+    int choice{-1};                // from 0; -1: the question has no choices
+    questions::AnswerDraft draft;  // of a question without choices
+    double reaction{0.0};          // from the question to the answer >= 0 [s]
   };
   struct DecisionRequest {
     std::size_t question{0};                      // from 0

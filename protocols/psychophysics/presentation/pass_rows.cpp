@@ -29,10 +29,9 @@ std::vector<record::ResponseRow> response_rows(const TrialPass& pass,
     record::ResponseRow row;
     row.question = question.name;
     row.interval = static_cast<std::int32_t>(pass.intervals_begun());
-    row.value = question.types() ? answer.value : question.first + answer.choice;
-    if (!question.types()) {
-      row.text = question.choices[static_cast<std::size_t>(answer.choice)].value;
-    }
+    const questions::Answer given = given_answer(question, answer.choice, answer.draft);
+    row.value = given.value;
+    row.text = given.text;
     row.correct = right[i] < 0 ? -1 : answer.choice == right[i] ? 1 : 0;
     row.source = answer.source;
     row.code = answer.code;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/questions/question_kind.h"
 #include "core/render/flat/painter.h"
 #include "core/render/flat/shaded_surface.h"
 #include "core/render/flat/text.h"
@@ -18,19 +19,22 @@
 namespace haptrial::protocols {
 namespace {
 
-/// Text of a question, and below it how each choice is given.
-std::string question_body(const Question& question, const TrialView& view) {
-  if (question.types()) {
-    return fmt::format("{}_", view.typed.data());
+/// A choice and before it the key that gives it.
+std::string line_of(const Question& question, std::size_t choice) {
+  const std::string& hint = question.means[choice].hint;
+  return (hint.empty() ? "" : fmt::format("[{}]  ", hint)) + question.choices[choice].label;
+}
+
+/// How a question is answered, and its answer so far.
+questions::AnswerView answer_view(const Question& question, const TrialView& view) {
+  questions::AnswerDraft draft;
+  draft.chosen = view.chosen;
+  draft.typed.set(view.typed.data());
+  questions::AnswerView shown = question.kind->view(question, draft);
+  for (std::size_t i = 0; i < question.means.size(); ++i) {
+    shown.choices[i] = line_of(question, i);  // made at once, by keys of its own
   }
-  std::string body;
-  for (std::size_t i = 0; i < question.choices.size(); ++i) {
-    const Choice& choice = question.choices[i];
-    body +=
-        fmt::format("{}{}{}", body.empty() ? "" : "\n",
-                    choice.hint.empty() ? "" : fmt::format("[{}]  ", choice.hint), choice.label);
-  }
-  return body;
+  return shown;
 }
 
 /// The part of the window that one eye, or both, look at.
@@ -93,7 +97,11 @@ class TrialDrawing final : public Drawing {
     const Question& question = d_.questions[view.question - 1U];
     render::TextPage page;
     page.title = question.text;
-    page.body = question_body(question, view);
+    if (!view.told()) {
+      page.answer = answer_view(question, view);
+      page.hint = question.has_choices() ? "" : question.kind->hint(question, d_.texts);
+      page.hint_is_urgent = view.refused;
+    }
     if (view.told()) {
       const std::string pace = view.pace == Pace::kTooFast   ? question.fast_text
                                : view.pace == Pace::kTooSlow ? question.slow_text
@@ -129,12 +137,12 @@ class TrialDrawing final : public Drawing {
       text_.paragraphs(question.text, top, 2.0 * (half_.x() - margin), asked);
       double y = 2.0 * half_.y() - margin;
       std::size_t mark = 0;
-      for (const Choice& choice : question.choices) {
-        if (!choice.touch.empty() && mark < view.mark_count) {
-          draw_label(choice, view.marks[mark++], part, label);
-        } else if (choice.touch.empty()) {
-          const std::string hint = choice.hint.empty() ? "" : fmt::format("[{}]  ", choice.hint);
-          text_.line(hint + choice.label, {part.middle.x(), y}, label, render::Align::kCentre);
+      for (std::size_t i = 0; i < question.choices.size(); ++i) {
+        const bool touched = !question.means[i].touch.empty();
+        if (touched && mark < view.mark_count) {
+          draw_label(question.choices[i], view.marks[mark++], part, label);
+        } else if (!touched) {
+          text_.line(line_of(question, i), {part.middle.x(), y}, label, render::Align::kCentre);
           y -= text_.line_height(label);
         }
       }
@@ -143,7 +151,7 @@ class TrialDrawing final : public Drawing {
   }
 
   /// Draws a label below its place.
-  void draw_label(const Choice& choice, const Mark& mark, const Part& part,
+  void draw_label(const questions::Choice& choice, const Mark& mark, const Part& part,
                   const render::TextStyle& style) {
     const double below = scale_ * static_cast<double>(mark.radius) + 1.2 * style.size;
     text_.line(choice.label, pixel_of(place_of(mark.place), part) + Eigen::Vector2d(0.0, below),

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <utility>
+
+#include "core/questions/question_kind.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -241,8 +242,10 @@ void TrialPass::ask() noexcept {
   view_.show(sight.marks, sight.objects, sight.hand, false, {});
   dwells_ = {};
   pedal_up_ = pedal_;
-  view_.typed = {};
-  typed_ = 0;
+  draft_ = {};
+  repeating_ = 0;
+  view_.show(draft_);
+  view_.refused = false;
   time_ = 0.0;
   asked_at_ = sequence_ + 1;
   if (setup_.said != nullptr) {
@@ -275,9 +278,9 @@ void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noe
   if (setup_.said != nullptr && setup_.said->given) {
     answer.given = true;
     answer.choice = setup_.said->choice;
-    answer.value = setup_.said->value;
-  } else if (question.types()) {
-    listen_to_number(question, answer);
+    answer.draft = setup_.said->draft;
+  } else if (!question.has_choices()) {
+    listen_to_keys(question, readings[0].typed, answer);
   } else {
     listen_to_choice(question, answer);
     listen_to_pedal(question, answer);
@@ -291,8 +294,8 @@ void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noe
 }
 
 void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexcept {
-  for (std::size_t i = 0; i < question.choices.size() && !answer.given; ++i) {
-    const Choice& choice = question.choices[i];
+  for (std::size_t i = 0; i < question.means.size() && !answer.given; ++i) {
+    const ChoiceMeans& choice = question.means[i];
     const std::uint32_t button = choice.buttons & pressed_buttons_;
     const std::uint32_t key = choice.keys & pressed_keys_;
     if (button != 0 || key != 0) {
@@ -307,8 +310,8 @@ void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexc
 /// Takes the pedal as an answer when it goes down during the question, from half that depth or
 /// less.
 void TrialPass::listen_to_pedal(const Question& question, Answer& answer) noexcept {
-  for (std::size_t i = 0; i < question.choices.size() && !answer.given; ++i) {
-    const double depth = question.choices[i].pedal;
+  for (std::size_t i = 0; i < question.means.size() && !answer.given; ++i) {
+    const double depth = question.means[i].pedal;
     if (depth > 0.0 && pedal_ >= depth && pedal_up_ <= 0.5 * depth) {
       answer.given = true;
       answer.choice = static_cast<int>(i);
@@ -344,33 +347,52 @@ void TrialPass::watch_places(const Readings& readings, Answer& answer) noexcept 
   }
 }
 
-void TrialPass::listen_to_number(const Question& question, Answer& answer) noexcept {
-  const std::vector<std::uint32_t>& bits = question.typing;
-  for (std::size_t i = 0; i < bits.size(); ++i) {
-    if ((pressed_keys_ & bits[i]) == 0) {
+/// Keys that went down on this tick; one that is held repeats itself, so that a mark need not be
+/// moved step by step. Characters do not.
+std::uint32_t TrialPass::repeated_keys(const Question& question) noexcept {
+  constexpr double kDelay = 0.4, kPeriod = 0.05;  // [s]
+  if (pressed_keys_ != 0) {
+    repeating_ = question.kind->traits().types ? 0 : pressed_keys_;
+    held_for_ = -kDelay;
+    return pressed_keys_;
+  }
+  repeating_ &= keys_;
+  held_for_ += tick_time_;
+  if (repeating_ == 0 || held_for_ < 0.0) {
+    return 0;
+  }
+  held_for_ -= kPeriod;
+  return repeating_;
+}
+
+/// An answer that enter finds not to be allowed is given anew.
+void TrialPass::listen_to_keys(const Question& question, char32_t typed, Answer& answer) noexcept {
+  const questions::QuestionKind& kind = *question.kind;
+  const std::uint32_t keys = repeated_keys(question);
+  if (typed != 0 && kind.traits().any_character) {
+    kind.press(question, {KeyPress::kOther, typed}, draft_);
+    view_.refused = false;
+  }
+  for (const HeardBit& each : question.heard) {
+    if ((keys & each.bit) == 0) {
       continue;
     }
-    constexpr std::size_t kPoint = 10, kBack = 11;
-    if (i <= kPoint) {
-      if (typed_ + 1 < view_.typed.size()) {
-        view_.typed[typed_++] = i == kPoint ? '.' : static_cast<char>('0' + i);
-      }
-    } else if (i == kBack) {
-      typed_ -= typed_ > 0 ? 1 : 0;
-      view_.typed[typed_] = '\0';
-    } else if (typed_ > 0) {
-      double value = question.low - 1.0;  // what is no number is out of the range
-      std::from_chars(view_.typed.data(), view_.typed.data() + typed_, value);
-      answer.given = value >= question.low && value <= question.high;
-      answer.value = value;
+    const bool ends =
+        each.press.key == KeyPress::kEnter
+            ? (pressed_keys_ & each.bit) != 0
+            : kind.press(question, each.press, draft_) == questions::KeyEffect::kGiven;
+    view_.refused = ends && !kind.is_complete(question, draft_);
+    if (view_.refused) {
+      draft_ = {};
+    } else if (ends) {
+      answer.given = true;
+      answer.draft = draft_;
       answer.source = record::ResponseSource::kKey;
-      answer.code = lowest_bit(bits[i]);
-      if (!answer.given) {  // out of the range: to be typed again
-        view_.typed = {};
-        typed_ = 0;
-      }
+      answer.code = lowest_bit(each.bit);
+      break;
     }
   }
+  view_.show(draft_);
 }
 
 /// The participant hears whether the answer was right when this is shown.

@@ -71,8 +71,8 @@ struct PresentedQuestion {
 /// An answer.
 struct Answer {
   bool given{false};
-  int choice{-1};                                          // from 0
-  double value{std::numeric_limits<double>::quiet_NaN()};  // of a typed number
+  int choice{-1};                // from 0; -1: the question has no choices
+  questions::AnswerDraft draft;  // of a question without choices
   record::ResponseSource source{record::ResponseSource::kNone};
   int code{-1};                                                    // of the button or the key's bit
   std::uint64_t sequence{0};                                       // of the tick
@@ -157,7 +157,8 @@ class TrialPass final : public Pass {
   void listen_to_choice(const Question& question, Answer& answer) noexcept;
   void listen_to_pedal(const Question& question, Answer& answer) noexcept;
   void watch_places(const Readings& readings, Answer& answer) noexcept;
-  void listen_to_number(const Question& question, Answer& answer) noexcept;
+  void listen_to_keys(const Question& question, char32_t typed, Answer& answer) noexcept;
+  std::uint32_t repeated_keys(const Question& question) noexcept;
   void take(const Answer& answer, PassOutput& out) noexcept;
   void go_on() noexcept;
   void look_at_hands(const Readings& readings) noexcept;
@@ -194,7 +195,9 @@ class TrialPass final : public Pass {
   };
   std::array<Dwell, kMostTouched> dwells_{};  // (places of the question)
   bool hands_known_{false};
-  std::size_t typed_{0};
+  questions::AnswerDraft draft_;  // of a question without choices
+  std::uint32_t repeating_{0};    // key that is held down, of those in pressed_keys_
+  double held_for_{0.0};          // until it repeats itself [s]
   const char* why_{""};
 };
 

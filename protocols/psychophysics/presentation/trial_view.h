@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
+#include "core/record/rows/response.h"
 #include "protocols/interface/pass.h"
 #include "protocols/psychophysics/definition/question.h"
 #include "protocols/psychophysics/objects/look.h"
@@ -35,7 +37,7 @@ enum class Verdict : std::uint8_t { kNone, kRight, kWrong };
 /// from here.
 struct TrialView {
   static constexpr std::size_t kMostMarks = 8;
-  static constexpr std::size_t kTyped = 16;
+  static constexpr std::size_t kTyped = record::kAnswerBytes + 1;
   static_assert(kMostTouched <= kMostMarks);
 
   Eigen::Vector3d tool{Eigen::Vector3d::Zero()};                // of the first device
@@ -44,7 +46,8 @@ struct TrialView {
   std::array<Mark, kMostMarks> marks{};
   std::array<SeenObject, kMostSeenObjects> objects{};  // those that are seen come first
   SeenForces pressed;                                  // on them
-  std::array<char, kTyped> typed{};                    // of a number, ended by 0
+  std::array<char, kTyped> typed{};                    // of an answer, ended by 0
+  std::int32_t chosen{-1};                             // likewise: its step; -1: none yet
   std::int32_t trial{0};  // of the presentation: changes from trial to trial
   std::uint8_t other_count{0};
   std::uint8_t mark_count{0};
@@ -55,9 +58,17 @@ struct TrialView {
   Pace pace{Pace::kInTime};  // of the answer that is told about
   bool hand_shown{false};
   bool number_shown{false};  // of the interval
+  bool refused{false};       // enter was pressed, and the answer is none that is allowed
 
   bool engaged() const noexcept { return interval > 0 || question > 0; }
   bool told() const noexcept { return verdict != Verdict::kNone || pace != Pace::kInTime; }
+  /// Shows the answer so far. Servo thread: no allocation or throw.
+  void show(const questions::AnswerDraft& draft) noexcept {
+    chosen = draft.chosen;
+    const std::string_view text = cut_text(draft.typed.view(), kTyped - 1);
+    typed = {};
+    std::ranges::copy(text, typed.begin());
+  }
   /// Sets the content of a stage; at most kMostMarks marks. Servo thread: no allocation or throw.
   void show(std::span<const Mark> seen, std::span<const SeenObject> bodies, bool hand, bool number,
             const DotsShown& bar) noexcept {
@@ -76,8 +87,8 @@ struct TrialView {
 /// the servo thread.
 struct SimulatedAnswer {
   bool given{false};
-  int choice{-1};     // from 0; of a typed number -1
-  double value{0.0};  // of a typed number
+  int choice{-1};                // from 0; -1: the question has no choices
+  questions::AnswerDraft draft;  // of a question without choices
 };
 
 }  // namespace haptrial::protocols

@@ -4,12 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/questions/question_kind.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -32,28 +34,32 @@ Line stimulus_of(std::span<const record::VariableRow> variables, std::size_t int
 }
 
 void add_allowed(Line& line, const Question& question) {
-  if (question.types()) {
-    line["low"] = question.low;
-    line["high"] = question.high;
+  if (question.has_choices()) {
+    line["choices"] = Line::array();
+    for (const questions::Choice& choice : question.choices) {
+      line["choices"].push_back(choice.value);
+    }
     return;
   }
-  line["choices"] = Line::array();
-  for (const Choice& choice : question.choices) {
-    line["choices"].push_back(choice.value);
+  line["kind"] = question.kind->word();
+  if (question.is_number()) {
+    line["low"] = question.low;
+    line["high"] = question.high;
   }
 }
 
 Line written(const LeftDecision::Answer& answer, const Question& question) {
-  return question.types() ? Line(answer.value)
-                          : Line(question.choices[static_cast<std::size_t>(answer.choice)].value);
+  const questions::Answer given = given_answer(question, answer.choice, answer.draft);
+  return question.has_choices() || std::isnan(given.value) ? Line(given.text) : Line(given.value);
 }
 
 std::string allowed_words(const Question& question) {
-  if (question.types()) {
-    return fmt::format("a number from {} to {}", question.low, question.high);
+  if (!question.has_choices()) {
+    return question.is_number() ? fmt::format("a number from {} to {}", question.low, question.high)
+                                : fmt::format("a text of at most {} bytes", question.most_bytes);
   }
   std::vector<std::string> values;
-  for (const Choice& choice : question.choices) {
+  for (const questions::Choice& choice : question.choices) {
     values.push_back(Line(choice.value).dump());
   }
   return fmt::format("{}", fmt::join(values, ", "));
@@ -65,13 +71,14 @@ std::optional<LeftDecision::Answer> answer_in(const Line& said, const Question& 
   if (said.is_null()) {
     return answer;
   }
-  if (question.types()) {
-    answer.value = said.is_number() ? said.get<double>() : question.low - 1.0;
-    const bool good = answer.value >= question.low && answer.value <= question.high;
+  const std::string value = said.is_string() ? said.get<std::string>() : said.dump();
+  if (!question.has_choices()) {
+    answer.draft = {};
+    const bool form = said.is_number() == question.is_number();
+    const bool good = form && question.kind->parse(question, value, answer.draft).empty();
     return good ? std::optional(answer) : std::nullopt;
   }
-  const std::string value = said.is_string() ? said.get<std::string>() : said.dump();
-  const auto found = std::ranges::find(question.choices, value, &Choice::value);
+  const auto found = std::ranges::find(question.choices, value, &questions::Choice::value);
   answer.choice = static_cast<int>(found - question.choices.begin());
   return found != question.choices.end() ? std::optional(answer) : std::nullopt;
 }

@@ -16,12 +16,12 @@ Eigen::Vector3d place_of_mark(const Mark& mark) noexcept {
 
 int AnswerByHand::place_of(const Question& question, int choice) noexcept {
   const auto chosen = static_cast<std::size_t>(choice);
-  if (choice < 0 || chosen >= question.choices.size() || question.choices[chosen].touch.empty()) {
+  if (choice < 0 || chosen >= question.means.size() || question.means[chosen].touch.empty()) {
     return -1;
   }
   int place = 0;
   for (std::size_t i = 0; i < chosen; ++i) {
-    place += question.choices[i].touch.empty() ? 0 : 1;
+    place += question.means[i].touch.empty() ? 0 : 1;
   }
   return place;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/questions/question_kind.h"
 #include "core/subject/perceiver/trial_stream.h"
 
 namespace haptrial::protocols {
@@ -13,14 +14,23 @@ RandomStream sense_stream(std::uint64_t seed, int trial, int interval) noexcept 
 
 Decider::Decider(const ObserverPlan& plan, const subject::JudgementParameters& judgement,
                  std::uint64_t session_seed)
-    : plan_(plan), judgement_(judgement), judge_(judgement, session_seed) {}
+    : plan_(plan),
+      judgement_(judgement),
+      judge_(judgement, session_seed),
+      seed_(session_seed),
+      other_(subject::trial_stream(session_seed, "other answers", 0)) {}
+
+void Decider::begin_trial(int trial) noexcept {
+  judge_.begin_trial(trial);
+  other_ = subject::trial_stream(seed_, "other answers", trial);
+}
 
 Decider::Said Decider::decide(const Question& question, bool first,
                               std::span<const double> percepts) noexcept {
   Said said;
-  if (question.types()) {
-    said.value =
-        std::clamp(judge_.magnitude(std::max(0.0, percepts.back())), question.low, question.high);
+  if (!question.has_choices()) {
+    question.kind->simulate(question, judge_.magnitude(std::max(0.0, percepts.back())), other_,
+                            said.draft);
     return said;
   }
   const int most = static_cast<int>(question.choices.size());

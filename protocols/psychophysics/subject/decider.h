@@ -19,16 +19,15 @@ RandomStream sense_stream(std::uint64_t seed, int trial, int interval) noexcept;
 /// without one. Servo thread after construction: no allocation, lock, I/O or throw.
 class Decider {
  public:
-  /// An answer: a choice, from 0, or a number that is typed.
   struct Said {
-    int choice{-1};
-    double value{0.0};
+    int choice{-1};                // from 0; -1: the question has no choices
+    questions::AnswerDraft draft;  // of a question without choices
   };
   /// @param plan  outlives it; @param session_seed  the participant's
   Decider(const ObserverPlan& plan, const subject::JudgementParameters& judgement,
           std::uint64_t session_seed);
 
-  void begin_trial(int trial) noexcept { judge_.begin_trial(trial); }
+  void begin_trial(int trial) noexcept;
   /// @param answer  to the first question in the trial before; -1: there is none
   void set_previous(int answer) noexcept { judge_.set_previous(answer); }
   /// The last interval is judged; "largest" and "smallest" compare all, "adjust" the last with the
@@ -42,6 +41,8 @@ class Decider {
   subject::JudgementParameters judgement_;
   subject::Judge judge_;
   subject::Decision decision_;
+  std::uint64_t seed_;
+  RandomStream other_;  // of the trial, for answers that follow from nothing felt
 };
 
 }  // namespace haptrial::protocols

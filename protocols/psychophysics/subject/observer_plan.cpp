@@ -34,12 +34,12 @@ Schema<Adaptation> make_adaptation_schema(const ObserverNames& names) {
 }
 
 /// The choice of the first question whose value the key names, from 0.
-int read_choice(Table& table, const std::string& key, const std::vector<Question>& questions,
+int read_choice(Table& table, const std::string& key, const std::vector<Question>& asked,
                 int otherwise) {
   const std::string value = table.text(key);
-  const std::vector<Choice> choices =
-      questions.empty() ? std::vector<Choice>{} : questions.front().choices;
-  const auto found = std::ranges::find(choices, value, &Choice::value);
+  const std::vector<questions::Choice> choices =
+      asked.empty() ? std::vector<questions::Choice>{} : asked.front().choices;
+  const auto found = std::ranges::find(choices, value, &questions::Choice::value);
   if (found == choices.end()) {
     table.reject(key, fmt::format("\"{}\"", value), "the value of a choice of the response");
     return otherwise;

@@ -307,7 +307,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     }
     const Decider::Said said = left_ != nullptr ? left_said_ : decide();
     said_.choice = said.choice;
-    said_.value = said.value;
+    said_.draft = said.draft;
     decided_ = true;
     give(questions_[view.question - 1U], view);
   }
@@ -327,7 +327,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     left_->ask({static_cast<std::size_t>(question_ - 1),
                 percepts_,
                 std::min(intervals_, kMostIntervals),
-                {left_said_.choice, left_said_.value, left_reaction_}});
+                {left_said_.choice, left_said_.draft, left_reaction_}});
     thinks_ = true;
   }
 
@@ -336,7 +336,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (answer == nullptr) {
       return;
     }
-    left_said_ = {answer->choice, answer->value};
+    left_said_ = {answer->choice, answer->draft};
     wait_ += answer->reaction - left_reaction_;
     if (question_ == 1) {
       decider_.set_previous(answer->choice);
@@ -353,7 +353,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
           hands_[std::min<std::size_t>(view.marks[mark].device, hands_.size() - 1)];
       by_hand_.begin(view, mark, hand.prober, hand.state);
     } else if (said_.choice >= 0 &&
-               question.choices[static_cast<std::size_t>(said_.choice)].pedal > 0.0) {
+               question.means[static_cast<std::size_t>(said_.choice)].pedal > 0.0) {
       hold_pedal(1.0);
     } else {
       said_.given = true;

@@ -23,9 +23,8 @@ constexpr int kStage = 10;              // ticks before the question
 Question by_hand() {
   Question q;
   q.name = "side";
-  q.choices = {{"left", "left", "", 0, 0, "left_box"},
-               {"right", "right", "", 0, 0, "right_box"},
-               {"not sure", "not sure", "", 0, 0, "", 0.6}};
+  q.choices = {{"left", "left"}, {"right", "right"}, {"not sure", "not sure"}};
+  q.means = {{"", 0, 0, "left_box"}, {"", 0, 0, "right_box"}, {"", 0, 0, "", 0.6}};
   q.touch_for = 0.05;
   return q;
 }
@@ -125,7 +124,8 @@ TEST_F(AnswersTest, ThePedalAnswersWhenItGoesDownDuringTheQuestion) {
 Question limited(bool again) {
   Question q;
   q.name = "answer";
-  q.choices = {{"yes", "yes", "", 0, 0, "", 0.5}, {"no", "no", "", 0, 2}};
+  q.choices = {{"yes", "yes"}, {"no", "no"}};
+  q.means = {{"", 0, 0, "", 0.5}, {"", 0, 2}};
   q.too_fast = 0.15;
   q.too_slow = 0.4;
   q.again = again;

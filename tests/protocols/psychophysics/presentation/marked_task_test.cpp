@@ -34,7 +34,8 @@ const Question& question() {
   static const Question asked = [] {
     Question q;
     q.name = "answer";
-    q.choices = {{"yes", "yes", "", 0, 1}, {"no", "no", "", 0, 2}};
+    q.choices = {{"yes", "yes"}, {"no", "no"}};
+    q.means = {{"", 0, 1}, {"", 0, 2}};
     return q;
   }();
   return asked;

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "core/questions/number_kind.h"
+
 namespace haptrial::protocols {
 namespace {
 
@@ -15,9 +17,11 @@ TEST(DeciderTest, TheLastIntervalIsJudgedWhateverCameBefore) {
   judgement.exponent = 0.5;
   judgement.criterion = 8.0;
   Question number;
+  number.kind = &questions::number_kind();
   number.high = 1000.0;
   plan.decides = Decides::kMagnitude;
-  EXPECT_NEAR(Decider(plan, judgement, 1).decide(number, true, kTwoIntervals).value, 4.0, 1e-12);
+  const auto said = Decider(plan, judgement, 1).decide(number, true, kTwoIntervals);
+  EXPECT_NEAR(given_answer(number, said.choice, said.draft).value, 4.0, 1e-12);
   Question choice;
   choice.choices.resize(2);
   plan.decides = Decides::kYes;

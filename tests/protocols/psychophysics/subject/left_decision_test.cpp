@@ -60,7 +60,7 @@ class LeftDecisionTest : public testing::Test {
 
   std::unique_ptr<Definition> definition_;
   SimulatedAnswer said_;
-  LeftDecision::Answer answer_{1, 0.0, 0.010};
+  LeftDecision::Answer answer_{1, {}, 0.010};
   std::vector<LeftDecision::DecisionRequest> asked_;
   std::unique_ptr<TrialsRig> rig_;
 };
@@ -114,10 +114,10 @@ TEST(LeftDecisionMailboxTest, AnAnswerThatNobodyWaitsForIsDropped) {
   LeftDecision left;
   left.ask({});
   left.forget();
-  left.answer({1, 0.0, 0.0});
+  left.answer({1, {}, 0.0});
   EXPECT_EQ(left.answer(), nullptr);
   left.ask({});
-  left.answer({2, 0.0, 0.0});
+  left.answer({2, {}, 0.0});
   ASSERT_NE(left.answer(), nullptr);
   EXPECT_EQ(left.answer()->choice, 2);
 }

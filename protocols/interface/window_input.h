@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+namespace haptrial::protocols {
+
+/// Keys of the participant's window on their way from the screen's thread to the servo thread: the
+/// functions that are held now, and the characters that were typed, one a tick. Neither side waits,
+/// allocates or throws.
+class WindowInput {
+ public:
+  // Screen's thread.
+  /// @param functions  DeviceReading::keys
+  void hold(std::uint32_t functions) noexcept { held_.store(functions, std::memory_order_relaxed); }
+  /// A character is lost if the servo thread has not taken kRoom others, which no hand types.
+  void type(char32_t character) noexcept {
+    const std::size_t written = written_.load(std::memory_order_relaxed);
+    if (written - taken_.load(std::memory_order_acquire) < kRoom) {
+      typed_[written % kRoom] = character;
+      written_.store(written + 1, std::memory_order_release);
+    }
+  }
+
+  // Servo thread.
+  std::uint32_t held() const noexcept { return held_.load(std::memory_order_relaxed); }
+  /// The next character; 0: there is none.
+  char32_t take_typed() noexcept {
+    const std::size_t taken = taken_.load(std::memory_order_relaxed);
+    if (taken == written_.load(std::memory_order_acquire)) {
+      return 0;
+    }
+    const char32_t character = typed_[taken % kRoom];
+    taken_.store(taken + 1, std::memory_order_release);
+    return character;
+  }
+
+ private:
+  static constexpr std::size_t kRoom = 64;
+
+  std::atomic<std::uint32_t> held_{0};
+  std::array<char32_t, kRoom> typed_{};
+  std::atomic<std::size_t> written_{0}, taken_{0};
+};
+
+}  // namespace haptrial::protocols
