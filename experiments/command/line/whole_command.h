@@ -8,7 +8,8 @@ namespace haptrial::experiments {
 /// @param add_own  adds it once, before the line is read: add_study() (experiments/studies),
 ///                 register_device() (core/device), add_kind_of_field() and
 ///                 add_kind_of_shape() (core/scene/read), add_kind_of_renderer() (core/contact),
-///                 add_kind_of_procedure() (core/psychometric/definition), add_score() and
+///                 add_kind_of_procedure() (core/psychometric/definition),
+///                 add_kind_of_question() (core/questions), add_score() and
 ///                 add_finding_source() (analysis/exchange).
 ///                 A name that is taken ends the program with a sentence and status 1
 /// @returns exit status: 0 done, 1 failed, 2 bad input; sentences go to standard error
