@@ -10,7 +10,7 @@
 #include "core/tutoring/energy_tank.h"
 #include "core/tutoring/tutoring_law.h"
 
-namespace haptrial::tutoring {
+namespace haptrial::tutoring::tutoring_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -112,4 +112,4 @@ TEST(EnergyTankTest, WhatIsNotANumberIsNoForce) {
 }
 
 }  // namespace
-}  // namespace haptrial::tutoring
+}  // namespace haptrial::tutoring::tutoring_test
