@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "analysis/document/number.h"
 #include "analysis/files/delimited.h"
@@ -13,8 +12,6 @@
 
 namespace haptrial::analysis {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The value as a report shows it, without its unit.
 std::string word_of(const Finding& f) {
@@ -30,35 +27,8 @@ std::string word_of(const Finding& f) {
                                      : "–";
 }
 
-bool has_number(const Finding& f) {
-  return f.why_not.empty() && (f.value.number() != nullptr || f.value.count() != nullptr);
-}
-
-Json value_of(const Finding& f) {
-  if (!f.json.empty()) {
-    return Json::parse(f.json);
-  }
-  const double* number = f.value.number();
-  const std::int64_t* count = f.value.count();
-  return number != nullptr           ? Json(*number)
-         : count != nullptr          ? Json(*count)
-         : f.value.word() != nullptr ? Json(*f.value.word())
-                                     : Json();
-}
-
-Json described(const Finding& f) {
-  Json made{{"title", f.title}, {"estimate", value_of(f)}};
-  if (!std::isnan(f.low) && !std::isnan(f.high)) {
-    made["low_95"] = f.low;
-    made["high_95"] = f.high;
-  }
-  if (!f.unit.empty()) {
-    made["unit"] = f.unit;
-  }
-  if (f.n > 0) {
-    made["n"] = f.n;
-  }
-  return made;
+double number_of(const Finding& f) {
+  return f.why_not.empty() ? f.value.as_number() : Finding::kNone;
 }
 
 /// "threshold [95 %] (N/m)".
@@ -126,9 +96,16 @@ class TableText {
 
 }  // namespace
 
+double FindingValue::as_number() const {
+  const std::int64_t* whole = count();
+  return number() != nullptr ? *number()
+         : whole != nullptr  ? static_cast<double>(*whole)
+                             : Finding::kNone;
+}
+
 std::string line_of(const Finding& f) {
   return fmt::format("{}: {}{}{}", f.title, word_of(f),
-                     f.unit.empty() || !has_number(f) ? "" : " " + f.unit,
+                     f.unit.empty() || std::isnan(number_of(f)) ? "" : " " + f.unit,
                      f.n > 0 ? fmt::format(" (n = {})", f.n) : "");
 }
 
@@ -148,54 +125,6 @@ std::vector<std::string> lines_of(const FindingList& list) {
     lines.push_back(fmt::format("{}: {} rows", table.title, table.rows.size()));
   }
   return lines;
-}
-
-nlohmann::ordered_json json_of(const FindingRow& row) {
-  Json made = Json::object();
-  for (const Finding& f : row) {
-    if (f.form == JsonForm::kAbsent) {
-      continue;
-    }
-    const std::string place = "/" + f.name;
-    Json& at = made[Json::json_pointer(place)];
-    if (!f.why_not.empty()) {
-      at = {{"not_defined", f.why_not}};
-    } else if (f.form == JsonForm::kDescribed && has_number(f)) {
-      at = described(f);
-    } else if (f.form == JsonForm::kEstimate) {
-      at = {{"estimate", value_of(f)}, {"low_95", f.low}, {"high_95", f.high}};
-    } else {
-      at = value_of(f);
-    }
-    if (f.form == JsonForm::kBeside) {
-      made[Json::json_pointer(place + "_low_95")] = f.low;
-      made[Json::json_pointer(place + "_high_95")] = f.high;
-    }
-  }
-  return made;
-}
-
-nlohmann::ordered_json json_of(const std::vector<FindingRow>& rows) {
-  Json made = Json::array();
-  for (const FindingRow& row : rows) {
-    made.push_back(json_of(row));
-  }
-  return made;
-}
-
-nlohmann::ordered_json json_of(const std::vector<FindingList>& lists) {
-  Json all = Json::object();
-  for (const FindingList& list : lists) {
-    Json& made = all[list.name];
-    made = {{"heading", list.heading}, {"findings", json_of(list.findings)}};
-    for (const FindingTable& table : list.tables) {
-      made["tables"][table.name] = json_of(table.rows);
-    }
-    for (const Figure& figure : list.figures) {
-      made["figures"].push_back(figure.name);
-    }
-  }
-  return all;
 }
 
 void add_table(Document& document, const FindingTable& table, bool folded) {
@@ -244,14 +173,14 @@ std::string findings_csv(const std::vector<FindingTable>& tables,
       if (const std::string* word = f.value.word()) {
         words[f.name] = *word;
       }
-      const Json value = value_of(f);
-      if (f.csv.empty() || !has_number(f) || !std::isfinite(value.get<double>())) {
+      const double number = number_of(f);
+      if (f.csv.empty() || !std::isfinite(number)) {
         continue;
       }
       for (const CsvLabel& label : labels) {
         row.add(words[label.second]);
       }
-      row.add(f.csv).add(value.get<double>()).add(f.low).add(f.high).add(f.unit).end();
+      row.add(f.csv).add(number).add(f.low).add(f.high).add(f.unit).end();
     }
   };
   for (const FindingTable& table : tables) {

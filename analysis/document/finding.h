@@ -3,7 +3,6 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <variant>
@@ -34,6 +33,7 @@ class FindingValue {
   FindingValue(const char* word) : value_(std::string(word)) {}
 
   const double* number() const { return std::get_if<double>(&value_); }
+  double as_number() const;  // of a count, too; NaN: there is none
   const std::int64_t* count() const { return std::get_if<std::int64_t>(&value_); }
   const std::string* word() const { return std::get_if<std::string>(&value_); }
 
@@ -84,11 +84,6 @@ std::string line_of(const Finding& finding);
 std::vector<std::string> lines_of(const FindingRow& row);
 /// These lines, and how long each table is.
 std::vector<std::string> lines_of(const FindingList& list);
-
-/// @throws nlohmann::json::exception for a name that is a value and a group at once
-nlohmann::ordered_json json_of(const FindingRow& row);
-nlohmann::ordered_json json_of(const std::vector<FindingRow>& rows);
-nlohmann::ordered_json json_of(const std::vector<FindingList>& lists);  // by name
 
 /// The table of those findings that have a title. Columns that are empty in every row are left out.
 /// @param folded  under the table's title

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "analysis/document/finding_json_internal.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/document/finding_json_internal.h"
 #include "analysis/statistics/design/result_json_internal.h"
 
 namespace haptrial::analysis::drilling {

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/document/finding_json_internal.h"
 #include "analysis/force_training/study/identity_json_internal.h"
 #include "analysis/force_training/study/quality_summary.h"
 #include "analysis/statistics/design/result_json_internal.h"

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/document/finding_json_internal.h"
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_json.h"
 #include "analysis/statistics/design/result_json_internal.h"

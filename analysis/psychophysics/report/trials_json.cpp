@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/document/finding_json_internal.h"
 #include "analysis/psychophysics/report/report_surfaces.h"
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/statistics/design/result_json_internal.h"

@@ -6,6 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "analysis/document/finding_json_internal.h"
+
 namespace haptrial::analysis {
 namespace {
 
