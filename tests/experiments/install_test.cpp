@@ -140,8 +140,9 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
       << ran.errors;
 
   ran = test::run_command(folder + "robbins_monro keys trials");
-  EXPECT_NE(ran.output.find("Share of answers 1 that the levels come to (kind: robbins_monro) |"),
-            std::string::npos)
+  EXPECT_NE(
+      ran.output.find("later ones are divided by the number of trials (kind: robbins_monro) |"),
+      std::string::npos)
       << ran.errors;
 
   ran = test::run_command("cd '" + root_ +

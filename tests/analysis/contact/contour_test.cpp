@@ -12,6 +12,7 @@
 #include "analysis/contact/evaluation/in_trajectory.h"
 #include "analysis/contact/evaluation/registration.h"
 #include "analysis/contact/recording/stream_lag.h"
+#include "core/contact/renderer_kinds.h"
 #include "tests/analysis/contact/contour_data.h"
 
 namespace haptrial::evaluation {

@@ -8,6 +8,7 @@
 
 #include "analysis/contact/demo_study/simulated_probe.h"
 #include "core/base/random.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/support/contact_truth/true_contact.h"
 #include "tests/support/message_of.h"
