@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -25,6 +26,9 @@ void read_kind(Table& table, const std::string& key, Track& track) {
     words.push_back(kind.word);
   }
   track.kind = table.choice(key, words);
+  if (std::ranges::find(words, table.whole_text(key).value_or("")) == words.end()) {
+    table.check();  // the other keys are those of another kind
+  }
 }
 
 /// Keys of a track, and of the procedure that it belongs to.

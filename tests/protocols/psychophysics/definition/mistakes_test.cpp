@@ -47,6 +47,13 @@ TEST(TrialMistakesTest, AStartIsComparedWithARangeThatIsOne) {
               ElementsAre(HasSubstr("range is another list; allowed: [lowest, highest]")));
 }
 
+TEST(TrialMistakesTest, OfAnUnknownProcedureNothingElseIsSaid) {
+  EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"", "kind = \"stairs\"")),
+              ElementsAre(HasSubstr("procedure.kind is \"stairs\"; allowed: staircase, pest")));
+  EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"\n", "")),
+              ElementsAre(HasSubstr("procedure.kind is missing")));
+}
+
 TEST(TrialMistakesTest, WithoutBlocksNoStageIsCalledUnknown) {
   const std::string stages = "[[stages]]\nname = \"rest\"\nuntil = { time = 0.1 }\n";
   const std::string head =
