@@ -9,6 +9,7 @@
 #include "core/pages/known_questionnaires.h"
 #include "core/questions/consent_kind.h"
 #include "core/questions/kind_parts.h"
+#include "core/questions/question_kinds.h"
 #include "core/questions/reading_kind.h"
 
 namespace haptrial::pages {

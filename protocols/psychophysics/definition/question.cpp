@@ -11,6 +11,7 @@
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/questions/choice_kind.h"
+#include "core/questions/question_kinds.h"
 #include "core/questions/scale_kind.h"
 #include "core/record/rows/response.h"
 #include "protocols/definition/window_keys.h"

@@ -13,6 +13,7 @@
 #include "core/questions/choice_kind.h"
 #include "core/questions/number_kind.h"
 #include "core/questions/question_kind.h"
+#include "core/questions/question_kinds.h"
 #include "core/questions/scale_kind.h"
 #include "core/questions/words_kind.h"
 #include "tests/support/allocation_guard.h"

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/questions/number_kind.h"
+#include "core/questions/question_kinds.h"
 #include "core/questions/scale_kind.h"
 #include "core/questions/words_kind.h"
 #include "protocols/psychophysics/presentation/pass_rows.h"
