@@ -152,7 +152,7 @@ record::TableList DefinedTrials::tables() const {
   if (adapts()) {
     tables.push_back(&record::table_of<record::AdaptationRow>());
   }
-  if (std::ranges::any_of(d_.questions, &Question::has_limits)) {
+  if (std::ranges::any_of(d_.questions, &TrialQuestion::has_limits)) {
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
   }
   if (contacts_) {
@@ -234,7 +234,7 @@ std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
 /// recorded, as what a procedure learns.
 bool DefinedTrials::comes_again(const std::vector<record::ResponseRow>& responses) const {
   return std::ranges::any_of(responses, [this](const record::ResponseRow& row) {
-    const auto at = std::ranges::find(d_.questions, row.question, &Question::name);
+    const auto at = std::ranges::find(d_.questions, row.question, &TrialQuestion::name);
     return at != d_.questions.end() && at->again && at->pace_of(row.reaction_time) != Pace::kInTime;
   });
 }
@@ -359,7 +359,7 @@ std::vector<PresentedQuestion> DefinedTrials::make_questions() {
   std::vector<PresentedQuestion> asked;
   right_.clear();
   int marker = 0;
-  for (const Question& question : d_.questions) {
+  for (const TrialQuestion& question : d_.questions) {
     PresentedQuestion each{&question};
     each.marker = marker;
     marker += static_cast<int>(question.answers().size());
@@ -384,7 +384,7 @@ std::vector<PresentedQuestion> DefinedTrials::make_questions() {
 }
 
 /// Regions as they are in the last interval.
-std::vector<TouchedPlace> DefinedTrials::places_of(const Question& question) const {
+std::vector<TouchedPlace> DefinedTrials::places_of(const TrialQuestion& question) const {
   std::vector<TouchedPlace> places;
   for (std::size_t i = 0; i < question.means.size(); ++i) {
     const auto region = std::ranges::find(regions_, question.means[i].touch, &scene::Region::name);

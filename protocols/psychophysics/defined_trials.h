@@ -71,7 +71,7 @@ class DefinedTrials final : public Trials {
   void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
   double outcome_of(const std::vector<record::ResponseRow>& responses);
   bool comes_again(const std::vector<record::ResponseRow>& responses) const;
-  std::vector<TouchedPlace> places_of(const Question& question) const;
+  std::vector<TouchedPlace> places_of(const TrialQuestion& question) const;
   void keep_level(SessionFile& file, std::int32_t row);
   void keep_adaptation(SessionFile& file, std::int32_t row) const;
   bool adapts() const { return rig_ != nullptr && d_.observer.adaptation.has_value(); }

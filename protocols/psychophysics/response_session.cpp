@@ -110,7 +110,7 @@ class ResponseSession::SimulatedSession {
 
   void ask(int number, std::size_t intervals, std::vector<record::ResponseRow>& answers) {
     decider_.begin_trial(number);
-    for (const Question& question : s_.d_.questions) {
+    for (const TrialQuestion& question : s_.d_.questions) {
       const bool first = answers.empty();
       const Decider::Said said =
           decider_.decide(question, first, std::span(percepts_.data(), intervals));

@@ -70,7 +70,7 @@ void check_tracks(Table& root, const TrialsDefinition& d) {
 }
 
 /// A track that settles where guessing leads would go nowhere.
-void check_balance(Table& root, const Track& track, const Question& question) {
+void check_balance(Table& root, const Track& track, const TrialQuestion& question) {
   const double guess = 1.0 / static_cast<double>(question.choices.size());
   if (track.balance && *track.balance <= guess) {
     root.reject(table_of_tracks(root),
@@ -138,7 +138,7 @@ void check_seen_objects(Table& root, const TrialsDefinition& d,
 
 void check_questions(Table& root, const TrialsDefinition& d,
                      const std::vector<NamedStage>& stages) {
-  for (const Question& question : d.questions) {
+  for (const TrialQuestion& question : d.questions) {
     const auto named = [&](const NamedStage& stage) { return stage.name == question.onset; };
     if (!question.onset.empty() && std::none_of(stages.begin(), stages.end(), named)) {
       root.reject(root.has("response") ? "response" : "responses",

@@ -79,7 +79,7 @@ void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& f
 }
 
 /// The numbers that formulas may take an answer for: each choice, or the ends of a typed one.
-std::vector<double> values_of(const Question& question) {
+std::vector<double> values_of(const TrialQuestion& question) {
   if (!question.has_choices()) {
     return {question.low, question.high};
   }
@@ -108,13 +108,13 @@ void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& 
     return;  // the block asks no procedure
   }
   std::size_t combinations = 1;
-  for (const Question& question : d.questions) {
+  for (const TrialQuestion& question : d.questions) {
     combinations = std::min(kMostCombinations, combinations * values_of(question).size());
   }
   for (std::size_t c = 0; c < combinations; ++c) {
     std::string answers;
     std::size_t rest = c;
-    for (const Question& question : d.questions) {
+    for (const TrialQuestion& question : d.questions) {
       const std::vector<double> all = values_of(question);
       const double value = all[rest % all.size()];
       rest /= all.size();
@@ -163,7 +163,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       }
     }
     give(*names, d, values);
-    for (const Question& question : d.questions) {
+    for (const TrialQuestion& question : d.questions) {
       if (!question.correct.empty()) {
         right_choice(*names, question);
       }

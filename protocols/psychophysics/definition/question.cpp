@@ -108,7 +108,7 @@ Choice read_trial_choice(Table& table) {
 }
 
 /// The key in which two choices are the same; null: in none.
-const char* same_key(const Question& question, std::size_t one, std::size_t other) {
+const char* same_key(const TrialQuestion& question, std::size_t one, std::size_t other) {
   const ChoiceMeans &a = question.means[one], &b = question.means[other];
   return question.choices[one].value == question.choices[other].value ? "value"
          : (a.keys & b.keys) != 0                                     ? "keys"
@@ -118,7 +118,7 @@ const char* same_key(const Question& question, std::size_t one, std::size_t othe
                                                                       : nullptr;
 }
 
-void read_choices(Table& table, Question& question, Means& means) {
+void read_choices(Table& table, TrialQuestion& question, Means& means) {
   std::vector<Table> choices = table.tables("choices");
   if (choices.size() < 2 || choices.size() > kMostChoices) {
     table.reject("choices", fmt::format("a list of {}", choices.size()),
@@ -146,7 +146,7 @@ void read_choices(Table& table, Question& question, Means& means) {
 }
 
 /// Reads a rating by digits, which are choices.
-void read_digits(Table& table, Question& question, KeyBits& keys) {
+void read_digits(Table& table, TrialQuestion& question, KeyBits& keys) {
   table.describe({"scale",
                   "Lowest and highest digit of a rating; with `step` or `ends`, lowest and "
                   "highest value of a scale on which a mark is moved",
@@ -176,7 +176,7 @@ std::vector<const QuestionKind*> kinds_in_trials() {
 }
 
 /// The keys of a question without choices, and enter, which gives the answer.
-void hear_keys(Question& question, KeyBits& keys) {
+void hear_keys(TrialQuestion& question, KeyBits& keys) {
   for (const questions::HeardKey& key : question.kind->heard_keys(question)) {
     question.heard.push_back({keys.bit_of(key.code), key.press});
   }
@@ -186,7 +186,7 @@ void hear_keys(Question& question, KeyBits& keys) {
   }
 }
 
-void read_answer(Table& table, Question& question, Means& means) {
+void read_answer(Table& table, TrialQuestion& question, Means& means) {
   const std::vector<const QuestionKind*> kinds = kinds_in_trials();
   const QuestionKind* kind = questions::stated_kind(table, kinds);
   if (kind == nullptr) {
@@ -203,20 +203,20 @@ void read_answer(Table& table, Question& question, Means& means) {
   }
 }
 
-void check_feedback(Table& table, Question& question) {
+void check_feedback(Table& table, TrialQuestion& question) {
   if (question.feedback != Feedback::kNever && question.correct.empty()) {
     table.reject("feedback", question.feedback == Feedback::kAlways ? "\"always\"" : "\"practice\"",
                  "\"never\" unless `correct` says which answer is right");
   }
 }
 
-void check_touch_time(Table& table, Question& question) {
+void check_touch_time(Table& table, TrialQuestion& question) {
   if (table.has("touch_for") && !question.touched()) {
     table.reject("touch_for", "stands alone; add touch, a region, to a choice");
   }
 }
 
-void check_limits(Table& table, Question& question) {
+void check_limits(Table& table, TrialQuestion& question) {
   if (table.has("out_of_time") && !question.has_limits()) {
     table.reject("out_of_time", "stands alone; add too_fast or too_slow, a limit in seconds");
   }
@@ -234,8 +234,8 @@ void check_limits(Table& table, Question& question) {
 constexpr Bounds kLimit{0.0, 3600.0, true};  // [s]
 
 /// Keys of a question whose answers are read.
-const Schema<Question>& question_schema() {
-  using Q = Question;
+const Schema<TrialQuestion>& question_schema() {
+  using Q = TrialQuestion;
   static const auto schema =
       Schema<Q>()
           .text("correct", &Q::correct,
@@ -270,8 +270,8 @@ const Schema<Question>& question_schema() {
 }
 
 /// The keys of [texts] that a question with limits has.
-const Schema<Question>& limit_text_schema() {
-  using Q = Question;
+const Schema<TrialQuestion>& limit_text_schema() {
+  using Q = TrialQuestion;
   static const auto schema =
       Schema<Q>()
           .shown_text("too_fast", &Q::fast_text,
@@ -281,21 +281,23 @@ const Schema<Question>& limit_text_schema() {
   return schema;
 }
 
-const Schema<Question>& question_name_schema() {
-  static const auto schema = Schema<Question>().text("name", &Question::name,
-                                                     "Name of the question, in formulas and files");
+const Schema<TrialQuestion>& question_name_schema() {
+  static const auto schema = Schema<TrialQuestion>().text(
+      "name", &TrialQuestion::name, "Name of the question, in formulas and files");
   return schema;
 }
 
-const Schema<Question>& question_text_schema() {
+const Schema<TrialQuestion>& question_text_schema() {
   static const auto schema =
-      Schema<Question>().shown_text("question", &Question::text, "Text of the question").required();
+      Schema<TrialQuestion>()
+          .shown_text("question", &TrialQuestion::text, "Text of the question")
+          .required();
   return schema;
 }
 
 /// @param listed  one of several, which translations tell apart by their names
-Question read_question(Table& table, Table& root, Means& means, bool listed) {
-  Question question = question_name_schema().read(table);
+TrialQuestion read_question(Table& table, Table& root, Means& means, bool listed) {
+  TrialQuestion question = question_name_schema().read(table);
   question.most_bytes = record::kAnswerBytes;
   if (listed) {
     table.name_entry(question.name);
@@ -315,7 +317,7 @@ Question read_question(Table& table, Table& root, Means& means, bool listed) {
 
 }  // namespace
 
-std::vector<std::string> Question::answers() const {
+std::vector<std::string> TrialQuestion::answers() const {
   std::vector<std::string> values;
   for (const questions::Choice& choice : choices) {
     values.push_back(choice.value);
@@ -323,13 +325,13 @@ std::vector<std::string> Question::answers() const {
   return values.empty() ? std::vector<std::string>{kind->word()} : values;
 }
 
-bool Question::touched() const {
+bool TrialQuestion::touched() const {
   return std::ranges::any_of(means, [](const ChoiceMeans& each) { return !each.touch.empty(); });
 }
 
-bool Question::has_limits() const { return too_fast > 0.0 || std::isfinite(too_slow); }
+bool TrialQuestion::has_limits() const { return too_fast > 0.0 || std::isfinite(too_slow); }
 
-Pace Question::pace_of(double reaction_time) const noexcept {
+Pace TrialQuestion::pace_of(double reaction_time) const noexcept {
   return reaction_time < too_fast   ? Pace::kTooFast
          : reaction_time > too_slow ? Pace::kTooSlow
                                     : Pace::kInTime;
@@ -364,7 +366,7 @@ std::uint32_t KeyBits::bits_of(const std::vector<int>& held) const {
   return bits == 0 && types ? characters_ : bits;
 }
 
-questions::Answer given_answer(const Question& question, int choice,
+questions::Answer given_answer(const TrialQuestion& question, int choice,
                                const questions::AnswerDraft& draft) {
   return question.has_choices()
              ? questions::Answer{question.first + choice,
@@ -372,8 +374,8 @@ questions::Answer given_answer(const Question& question, int choice,
              : question.kind->answer(question, draft);
 }
 
-std::vector<Question> read_questions(Table& root, KeyBits& keys) {
-  std::vector<Question> questions;
+std::vector<TrialQuestion> read_questions(Table& root, KeyBits& keys) {
+  std::vector<TrialQuestion> questions;
   Means means{keys,
               root.has("regions") ? root.table("regions").keys() : std::vector<std::string>{}};
   if (root.has("response")) {
@@ -386,7 +388,9 @@ std::vector<Question> read_questions(Table& root, KeyBits& keys) {
     }
     for (Table& table : root.tables("responses")) {
       questions.push_back(read_question(table, root, means, true));
-      const auto same = [&](const Question& each) { return each.name == questions.back().name; };
+      const auto same = [&](const TrialQuestion& each) {
+        return each.name == questions.back().name;
+      };
       if (std::any_of(questions.begin(), questions.end() - 1, same)) {
         table.reject("name", fmt::format("\"{}\"", questions.back().name),
                      "a name that no other response has");

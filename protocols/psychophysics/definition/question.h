@@ -58,8 +58,8 @@ struct HeardBit {
 /// A question to the participant after the last interval. Its name is that in /responses and in
 /// formulas. A question with choices is answered at once, by the means of one of them; all others
 /// by the keys of their kind, and ended with enter.
-struct Question : questions::Question {
-  Question() { name = "answer"; }
+struct TrialQuestion : questions::Question {
+  TrialQuestion() { name = "answer"; }
 
   std::vector<ChoiceMeans> means;  // (choices)
   double first{1.0};            // what formulas take choice 0 for; each further one counts 1 more
@@ -88,7 +88,7 @@ struct Question : questions::Question {
 
 /// An answer as /responses has it. @param choice  from 0, of a question with choices
 /// @param draft  complete, of any other
-questions::Answer given_answer(const Question& question, int choice,
+questions::Answer given_answer(const TrialQuestion& question, int choice,
                                const questions::AnswerDraft& draft);
 
 /// Reads [response], or several [[responses]]; without either, nothing is asked. Keys in brackets
@@ -111,6 +111,6 @@ questions::Answer given_answer(const Question& question, int choice,
 ///     [out_of_time]  of answers beyond them: "go on" (as if left out), or "repeat", the trial at
 ///                  the end of its block
 /// Choices without keys, buttons, touch and pedal have the keys 1, 2, … and the buttons 0, 1, …
-std::vector<Question> read_questions(Table& root, KeyBits& keys);
+std::vector<TrialQuestion> read_questions(Table& root, KeyBits& keys);
 
 }  // namespace haptrial::protocols

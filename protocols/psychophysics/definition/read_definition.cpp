@@ -208,7 +208,7 @@ std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
   return names;
 }
 
-int right_choice(const Names& names, const Question& question) {
+int right_choice(const Names& names, const TrialQuestion& question) {
   const double value = names.value(question.correct);
   const auto word = names.word_of(value);
   const auto count = static_cast<int>(question.choices.size());

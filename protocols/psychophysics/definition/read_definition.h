@@ -17,7 +17,7 @@ std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& definitio
 
 /// The choice that is right with the values that the names have, from 0.
 /// @throws InputError for a value that is no choice's number or word
-int right_choice(const Names& names, const Question& question);
+int right_choice(const Names& names, const TrialQuestion& question);
 
 /// Reads everything but who stands in for people. Problems are noted.
 void read_trials_definition(Table& root, std::string_view file_name, TrialsDefinition& definition);

@@ -61,7 +61,7 @@ void declare_names(Names& names, const TrialsDefinition& d) {
       names.declare(name);
     }
   }
-  for (const Question& question : d.questions) {
+  for (const TrialQuestion& question : d.questions) {
     if (question.is_number()) {
       names.declare(question.name);
     }

@@ -146,7 +146,7 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
         stage_markers[i] > 0 ? stage_markers[i] : markers.stage + static_cast<int>(i));
   }
   int code = markers.response;
-  for (const Question& question : questions) {
+  for (const TrialQuestion& question : questions) {
     const std::string of = questions.size() > 1 ? question.name + " " : "";
     for (const std::string& answer : question.answers()) {
       add(MarkerOf::kResponse, static_cast<std::size_t>(code - markers.response), of + answer,
@@ -171,7 +171,7 @@ std::vector<std::string> TrialsDefinition::warnings() const {
         "their own, which are presented where it gives none",
         script->file.filename().string()));
   }
-  for (const Question& question : questions) {
+  for (const TrialQuestion& question : questions) {
     const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
     if (tells && feedback_time == 0.0) {
       all.push_back(
@@ -193,7 +193,7 @@ std::vector<std::string> TrialsDefinition::warnings() const {
 
 PedalUse TrialsDefinition::pedal_use() const {
   PedalUse use = PedalUse::kNone;
-  for (const Question& question : questions) {
+  for (const TrialQuestion& question : questions) {
     for (const ChoiceMeans& choice : question.means) {
       if (choice.pedal > 0.0) {
         const bool alone = choice.keys == 0 && choice.buttons == 0 && choice.touch.empty();

@@ -43,7 +43,7 @@ struct TrialsDefinition : Definition {
   TrialDesign order;
   std::vector<Interval> intervals;  // at least one
   bool random_intervals{false};     // their order, within each trial
-  std::vector<Question> questions;
+  std::vector<TrialQuestion> questions;
   KeyBits keys;
   std::vector<Track> tracks;
   std::optional<ScriptPlan> script;  // may choose the levels of the tracks

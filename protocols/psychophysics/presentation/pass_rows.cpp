@@ -17,12 +17,12 @@ record::StageEnding ending_of(StageEnd how) {
 }  // namespace
 
 std::vector<record::ResponseRow> response_rows(const TrialPass& pass,
-                                               const std::vector<Question>& questions,
+                                               const std::vector<TrialQuestion>& questions,
                                                const std::vector<int>& right) {
   std::vector<record::ResponseRow> rows;
   for (std::size_t i = 0; i < pass.answers().size(); ++i) {
     const Answer& answer = pass.answers()[i];
-    const Question& question = questions[i];
+    const TrialQuestion& question = questions[i];
     if (!answer.given) {
       continue;
     }
@@ -43,12 +43,12 @@ std::vector<record::ResponseRow> response_rows(const TrialPass& pass,
 }
 
 std::vector<record::OutOfTimeRow> out_of_time_rows(const TrialPass& pass,
-                                                   const std::vector<Question>& questions,
+                                                   const std::vector<TrialQuestion>& questions,
                                                    std::int32_t row) {
   std::vector<record::OutOfTimeRow> rows;
   for (std::size_t i = 0; i < pass.answers().size(); ++i) {
     const Answer& answer = pass.answers()[i];
-    const Question& question = questions[i];
+    const TrialQuestion& question = questions[i];
     if (answer.given && answer.pace != Pace::kInTime) {
       const bool fast = answer.pace == Pace::kTooFast;
       rows.push_back({row, question.name,

@@ -15,12 +15,12 @@ namespace haptrial::protocols {
 /// The answers that were given.
 /// @param right  (questions) the choice that is correct, -1 where there is none
 std::vector<record::ResponseRow> response_rows(const TrialPass& pass,
-                                               const std::vector<Question>& questions,
+                                               const std::vector<TrialQuestion>& questions,
                                                const std::vector<int>& right);
 
 /// The answers that came too early or too late.
 std::vector<record::OutOfTimeRow> out_of_time_rows(const TrialPass& pass,
-                                                   const std::vector<Question>& questions,
+                                                   const std::vector<TrialQuestion>& questions,
                                                    std::int32_t row);
 
 /// The stages that were begun.

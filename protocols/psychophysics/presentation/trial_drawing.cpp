@@ -20,13 +20,13 @@ namespace haptrial::protocols {
 namespace {
 
 /// A choice and before it the key that gives it.
-std::string line_of(const Question& question, std::size_t choice) {
+std::string line_of(const TrialQuestion& question, std::size_t choice) {
   const std::string& hint = question.means[choice].hint;
   return (hint.empty() ? "" : fmt::format("[{}]  ", hint)) + question.choices[choice].label;
 }
 
 /// How a question is answered, and its answer so far.
-questions::AnswerView answer_view(const Question& question, const TrialView& view) {
+questions::AnswerView answer_view(const TrialQuestion& question, const TrialView& view) {
   questions::AnswerDraft draft;
   draft.chosen = view.chosen;
   draft.typed.set(view.typed.data());
@@ -94,7 +94,7 @@ class TrialDrawing final : public Drawing {
   }
 
   void draw_question(const TrialView& view) {
-    const Question& question = d_.questions[view.question - 1U];
+    const TrialQuestion& question = d_.questions[view.question - 1U];
     render::TextPage page;
     page.title = question.text;
     if (!view.told()) {
@@ -120,7 +120,7 @@ class TrialDrawing final : public Drawing {
 
   /// The places to touch with their choices, the hand, and above them the question; below them the
   /// choices that are given in another way.
-  void draw_places(const Question& question, const TrialView& view) {
+  void draw_places(const TrialQuestion& question, const TrialView& view) {
     painter_.begin(d_.display.background);
     for (const Part& part : parts_) {
       draw_marks(view, part);

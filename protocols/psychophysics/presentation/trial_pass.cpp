@@ -273,7 +273,7 @@ void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noe
     }
     return;
   }
-  const Question& question = *setup_.questions[question_].question;
+  const TrialQuestion& question = *setup_.questions[question_].question;
   Answer answer;
   if (setup_.said != nullptr && setup_.said->given) {
     answer.given = true;
@@ -293,7 +293,7 @@ void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noe
   }
 }
 
-void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexcept {
+void TrialPass::listen_to_choice(const TrialQuestion& question, Answer& answer) noexcept {
   for (std::size_t i = 0; i < question.means.size() && !answer.given; ++i) {
     const ChoiceMeans& choice = question.means[i];
     const std::uint32_t button = choice.buttons & pressed_buttons_;
@@ -309,7 +309,7 @@ void TrialPass::listen_to_choice(const Question& question, Answer& answer) noexc
 
 /// Takes the pedal as an answer when it goes down during the question, from half that depth or
 /// less.
-void TrialPass::listen_to_pedal(const Question& question, Answer& answer) noexcept {
+void TrialPass::listen_to_pedal(const TrialQuestion& question, Answer& answer) noexcept {
   for (std::size_t i = 0; i < question.means.size() && !answer.given; ++i) {
     const double depth = question.means[i].pedal;
     if (depth > 0.0 && pedal_ >= depth && pedal_up_ <= 0.5 * depth) {
@@ -349,7 +349,7 @@ void TrialPass::watch_places(const Readings& readings, Answer& answer) noexcept 
 
 /// Keys that went down on this tick; one that is held repeats itself, so that a mark need not be
 /// moved step by step. Characters do not.
-std::uint32_t TrialPass::repeated_keys(const Question& question) noexcept {
+std::uint32_t TrialPass::repeated_keys(const TrialQuestion& question) noexcept {
   constexpr double kDelay = 0.4, kPeriod = 0.05;  // [s]
   if (pressed_keys_ != 0) {
     repeating_ = question.kind->traits().types ? 0 : pressed_keys_;
@@ -366,7 +366,8 @@ std::uint32_t TrialPass::repeated_keys(const Question& question) noexcept {
 }
 
 /// An answer that enter finds not to be allowed is given anew.
-void TrialPass::listen_to_keys(const Question& question, char32_t typed, Answer& answer) noexcept {
+void TrialPass::listen_to_keys(const TrialQuestion& question, char32_t typed,
+                               Answer& answer) noexcept {
   const questions::QuestionKind& kind = *question.kind;
   const std::uint32_t keys = repeated_keys(question);
   if (typed != 0 && kind.traits().any_character) {

@@ -59,9 +59,9 @@ struct TouchedPlace {
 
 /// A question after the intervals.
 struct PresentedQuestion {
-  const Question* question{nullptr};  // outlives the pass
-  int right{-1};                      // choice, from 0; -1: none is known to be right
-  bool feedback{false};               // tells whether it was right
+  const TrialQuestion* question{nullptr};  // outlives the pass
+  int right{-1};                           // choice, from 0; -1: none is known to be right
+  bool feedback{false};                    // tells whether it was right
   int onset{-1};  // stage of the last interval from which the reaction counts; -1: the question
   int marker{0};  // index of the first answer's marker; those of the others follow
   std::vector<TouchedPlace> places{};  // in the order of the choices that they give
@@ -154,11 +154,11 @@ class TrialPass final : public Pass {
   void end_interval() noexcept;
   void ask() noexcept;
   void listen(const Readings& readings, double dt, PassOutput& out) noexcept;
-  void listen_to_choice(const Question& question, Answer& answer) noexcept;
-  void listen_to_pedal(const Question& question, Answer& answer) noexcept;
+  void listen_to_choice(const TrialQuestion& question, Answer& answer) noexcept;
+  void listen_to_pedal(const TrialQuestion& question, Answer& answer) noexcept;
   void watch_places(const Readings& readings, Answer& answer) noexcept;
-  void listen_to_keys(const Question& question, char32_t typed, Answer& answer) noexcept;
-  std::uint32_t repeated_keys(const Question& question) noexcept;
+  void listen_to_keys(const TrialQuestion& question, char32_t typed, Answer& answer) noexcept;
+  std::uint32_t repeated_keys(const TrialQuestion& question) noexcept;
   void take(const Answer& answer, PassOutput& out) noexcept;
   void go_on() noexcept;
   void look_at_hands(const Readings& readings) noexcept;

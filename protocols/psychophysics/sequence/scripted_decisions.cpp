@@ -33,7 +33,7 @@ Line stimulus_of(std::span<const record::VariableRow> variables, std::size_t int
   return all;
 }
 
-void add_allowed(Line& line, const Question& question) {
+void add_allowed(Line& line, const TrialQuestion& question) {
   if (question.has_choices()) {
     line["choices"] = Line::array();
     for (const questions::Choice& choice : question.choices) {
@@ -48,12 +48,12 @@ void add_allowed(Line& line, const Question& question) {
   }
 }
 
-Line written(const LeftDecision::Answer& answer, const Question& question) {
+Line written(const LeftDecision::Answer& answer, const TrialQuestion& question) {
   const questions::Answer given = given_answer(question, answer.choice, answer.draft);
   return question.has_choices() || std::isnan(given.value) ? Line(given.text) : Line(given.value);
 }
 
-std::string allowed_words(const Question& question) {
+std::string allowed_words(const TrialQuestion& question) {
   if (!question.has_choices()) {
     return question.is_number() ? fmt::format("a number from {} to {}", question.low, question.high)
                                 : fmt::format("a text of at most {} bytes", question.most_bytes);
@@ -66,7 +66,7 @@ std::string allowed_words(const Question& question) {
 }
 
 /// Nothing for an answer that the question does not allow.
-std::optional<LeftDecision::Answer> answer_in(const Line& said, const Question& question,
+std::optional<LeftDecision::Answer> answer_in(const Line& said, const TrialQuestion& question,
                                               LeftDecision::Answer answer) {
   if (said.is_null()) {
     return answer;
@@ -84,7 +84,8 @@ std::optional<LeftDecision::Answer> answer_in(const Line& said, const Question& 
 }
 
 /// A decision's own seed, of 53 bits: numbers of every language hold it.
-std::uint64_t seed_of(std::uint64_t seed, const TrialToDecide& trial, const Question& question) {
+std::uint64_t seed_of(std::uint64_t seed, const TrialToDecide& trial,
+                      const TrialQuestion& question) {
   return derived_seed(seed, fmt::format("decision {}{} {}", trial.practice ? "practice " : "",
                                         trial.trial, question.name)) >>
          11;
@@ -107,7 +108,7 @@ ScriptedDecisions::ScriptedDecisions(const ScriptPlan& plan, std::string subject
 
 ScriptedDecisions::~ScriptedDecisions() = default;
 
-std::string ScriptedDecisions::line_of(const TrialToDecide& trial, const Question& question,
+std::string ScriptedDecisions::line_of(const TrialToDecide& trial, const TrialQuestion& question,
                                        const LeftDecision::DecisionRequest& asked) const {
   Line line{{"subject", subject_},
             {"trial", trial.trial},
@@ -123,7 +124,8 @@ std::string ScriptedDecisions::line_of(const TrialToDecide& trial, const Questio
   return line.dump();
 }
 
-LeftDecision::Answer ScriptedDecisions::decide(const TrialToDecide& trial, const Question& question,
+LeftDecision::Answer ScriptedDecisions::decide(const TrialToDecide& trial,
+                                               const TrialQuestion& question,
                                                const LeftDecision::DecisionRequest& asked) {
   const auto refuse = [&](const std::string& why) {
     return InputError(fmt::format("observer.script: {}trial {} of {}: {}: {}",

@@ -38,14 +38,14 @@ class ScriptedDecisions {
   ~ScriptedDecisions();
 
   /// @throws InputError where it gives no answer, or one that the question does not allow
-  LeftDecision::Answer decide(const TrialToDecide& trial, const Question& question,
+  LeftDecision::Answer decide(const TrialToDecide& trial, const TrialQuestion& question,
                               const LeftDecision::DecisionRequest& asked);
   /// Tells the script the answers in a trial that counts, from then on.
   void told(int trial, bool practice, std::span<const record::ResponseRow> responses);
 
  private:
   struct History;
-  std::string line_of(const TrialToDecide& trial, const Question& question,
+  std::string line_of(const TrialToDecide& trial, const TrialQuestion& question,
                       const LeftDecision::DecisionRequest& asked) const;
 
   const ScriptPlan& plan_;

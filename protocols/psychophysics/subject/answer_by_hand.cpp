@@ -14,7 +14,7 @@ Eigen::Vector3d place_of_mark(const Mark& mark) noexcept {
 
 }  // namespace
 
-int AnswerByHand::place_of(const Question& question, int choice) noexcept {
+int AnswerByHand::place_of(const TrialQuestion& question, int choice) noexcept {
   const auto chosen = static_cast<std::size_t>(choice);
   if (choice < 0 || chosen >= question.means.size() || question.means[chosen].touch.empty()) {
     return -1;

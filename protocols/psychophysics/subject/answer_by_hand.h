@@ -21,7 +21,7 @@ class AnswerByHand {
   static constexpr double kPatience = 1.0;  // and then the hand waits to be heard [s]
 
   /// The number of a choice's place among those that are shown; -1: it is not given by touch.
-  static int place_of(const Question& question, int choice) noexcept;
+  static int place_of(const TrialQuestion& question, int choice) noexcept;
 
   /// @param mark  of view.marks
   void begin(const TrialView& view, std::size_t mark, subject::ExplorationController& prober,

@@ -25,7 +25,7 @@ void Decider::begin_trial(int trial) noexcept {
   other_ = subject::trial_stream(seed_, "other answers", trial);
 }
 
-Decider::Said Decider::decide(const Question& question, bool first,
+Decider::Said Decider::decide(const TrialQuestion& question, bool first,
                               std::span<const double> percepts) noexcept {
   Said said;
   if (!question.has_choices()) {

@@ -32,7 +32,7 @@ class Decider {
   void set_previous(int answer) noexcept { judge_.set_previous(answer); }
   /// The last interval is judged; "largest" and "smallest" compare all, "adjust" the last with the
   /// first. @param percepts  of the intervals, 1 to kMostIntervals
-  Said decide(const Question& question, bool first, std::span<const double> percepts) noexcept;
+  Said decide(const TrialQuestion& question, bool first, std::span<const double> percepts) noexcept;
 
  private:
   subject::Decision judged(std::span<const double> percepts) noexcept;

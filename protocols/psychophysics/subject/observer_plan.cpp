@@ -14,7 +14,7 @@ namespace {
 
 /// Names of a definition that [observer] may use.
 struct ObserverNames {
-  const std::vector<Question>& questions;
+  const std::vector<TrialQuestion>& questions;
   const std::vector<std::string>& stages;
   const std::vector<TrialDevice>& devices;
 };
@@ -34,7 +34,7 @@ Schema<Adaptation> make_adaptation_schema(const ObserverNames& names) {
 }
 
 /// The choice of the first question whose value the key names, from 0.
-int read_choice(Table& table, const std::string& key, const std::vector<Question>& asked,
+int read_choice(Table& table, const std::string& key, const std::vector<TrialQuestion>& asked,
                 int otherwise) {
   const std::string value = table.text(key);
   const std::vector<questions::Choice> choices =
@@ -48,7 +48,7 @@ int read_choice(Table& table, const std::string& key, const std::vector<Question
 }
 
 /// A percept for each choice of the first question.
-std::vector<double> read_prototypes(Table& table, const std::vector<Question>& questions) {
+std::vector<double> read_prototypes(Table& table, const std::vector<TrialQuestion>& questions) {
   const std::size_t choices = questions.empty() ? 0 : questions.front().choices.size();
   std::vector<double> prototypes = table.numbers("prototypes", kNonNegative, "");
   if (prototypes.size() != choices) {
@@ -62,7 +62,7 @@ using ChoiceOf = int ObserverPlan::*;
 
 /// Adds a key that names a choice of the first question, and sets its number.
 void add_choice(Schema<ObserverPlan>& schema, const char* name, ChoiceOf member,
-                const std::vector<Question>& questions, std::string description,
+                const std::vector<TrialQuestion>& questions, std::string description,
                 std::string otherwise) {
   schema
       .custom(name, std::move(description),
@@ -74,7 +74,7 @@ void add_choice(Schema<ObserverPlan>& schema, const char* name, ChoiceOf member,
 
 bool adjusts(const ObserverPlan& plan) { return plan.decides == Decides::kAdjust; }
 
-void add_decision(Schema<ObserverPlan>& schema, const std::vector<Question>& questions) {
+void add_decision(Schema<ObserverPlan>& schema, const std::vector<TrialQuestion>& questions) {
   using P = ObserverPlan;
   schema.choice("decides", &P::decides,
                 {{"largest", Decides::kLargest},
@@ -160,7 +160,7 @@ Schema<ObserverPlan> make_observer_schema(const ObserverNames& names,
 
 }  // namespace
 
-ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
+ObserverPlan read_observer(Table& root, const std::vector<TrialQuestion>& questions,
                            const std::vector<std::string>& stages,
                            const std::vector<TrialDevice>& devices) {
   const ObserverNames names{questions, stages, devices};

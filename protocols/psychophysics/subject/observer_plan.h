@@ -19,7 +19,7 @@ class Table;
 
 namespace haptrial::protocols {
 
-struct Question;
+struct TrialQuestion;
 
 /// How virtual participants of trials take what they feel for an answer.
 enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kNearest, kMagnitude, kAdjust };
@@ -49,7 +49,7 @@ struct ObserverPlan {
 };
 
 /// Reads [observer]; without it participants answer at random and rest. Problems are noted.
-ObserverPlan read_observer(Table& root, const std::vector<Question>& questions,
+ObserverPlan read_observer(Table& root, const std::vector<TrialQuestion>& questions,
                            const std::vector<std::string>& stages,
                            const std::vector<TrialDevice>& devices = {});
 

@@ -345,7 +345,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   }
 
   /// The answer that is decided, in the way in which it is to be given.
-  void give(const Question& question, const TrialView& view) noexcept {
+  void give(const TrialQuestion& question, const TrialView& view) noexcept {
     const int place = AnswerByHand::place_of(question, said_.choice);
     if (place >= 0 && place < view.mark_count) {
       const auto mark = static_cast<std::size_t>(place);
@@ -374,7 +374,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   }
 
   const ObserverPlan& plan_;
-  const std::vector<Question>& questions_;
+  const std::vector<TrialQuestion>& questions_;
   SimulatedAnswer& said_;
   LeftDecision* left_;  // null: decides by itself
   Decider::Said left_said_;

@@ -16,7 +16,7 @@
 
 namespace haptrial::protocols {
 
-struct Question;
+struct TrialQuestion;
 struct TrialDevice;
 
 /// State of a virtual participant that goes from one trial to the next.
@@ -34,7 +34,7 @@ class TrialsRig final : public Rig {
   struct Briefing {
     const Definition* definition{nullptr};
     const ObserverPlan* plan{nullptr};
-    const std::vector<Question>* questions{nullptr};
+    const std::vector<TrialQuestion>* questions{nullptr};
     std::vector<std::string> stages;  // names, in their order
     const std::vector<TrialDevice>* devices{nullptr};
     SimulatedAnswer* said{nullptr};  // where answers go

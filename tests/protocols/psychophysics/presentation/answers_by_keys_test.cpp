@@ -20,8 +20,8 @@ namespace {
 constexpr double kDt = 1e-3;
 constexpr int kStage = 10;  // ticks before the question
 
-Question question_of(const questions::QuestionKind& kind) {
-  Question question;
+TrialQuestion question_of(const questions::QuestionKind& kind) {
+  TrialQuestion question;
   question.kind = &kind;
   question.low = 0.0;
   question.high = 100.0;
@@ -76,7 +76,7 @@ class AnswersByKeysTest : public testing::Test {
   void enter() { press({KeyPress::kEnter}); }
   record::ResponseRow row() const { return response_rows(*pass_, {question_}, {-1}).at(0); }
 
-  Question question_;
+  TrialQuestion question_;
   std::optional<TrialPass> pass_;
   TrialView view_;
 };

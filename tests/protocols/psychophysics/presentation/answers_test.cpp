@@ -20,8 +20,8 @@ constexpr int kStage = 10;              // ticks before the question
 
 /// A question by hand: left at x = -30 mm, right at x = 30 mm, both of radius 10 mm; not sure by
 /// the pedal.
-Question by_hand() {
-  Question q;
+TrialQuestion by_hand() {
+  TrialQuestion q;
   q.name = "side";
   q.choices = {{"left", "left"}, {"right", "right"}, {"not sure", "not sure"}};
   q.means = {{"", 0, 0, "left_box"}, {"", 0, 0, "right_box"}, {"", 0, 0, "", 0.6}};
@@ -30,7 +30,7 @@ Question by_hand() {
 }
 
 /// One stage of ten ticks, then the questions.
-TrialPass pass_of(const std::vector<const Question*>& questions, int right = -1) {
+TrialPass pass_of(const std::vector<const TrialQuestion*>& questions, int right = -1) {
   Stage feel;
   feel.until.time = kStage * kDt;
   std::vector<scene::Scene> scenes;
@@ -39,7 +39,7 @@ TrialPass pass_of(const std::vector<const Question*>& questions, int right = -1)
   setup.feedback_time = 0.1;
   setup.intervals.push_back({std::move(scenes), StageMachine({feel}, {}, 0), {}, 0, -1});
   setup.intervals.back().sights.resize(1);
-  for (const Question* question : questions) {
+  for (const TrialQuestion* question : questions) {
     PresentedQuestion asked{question};
     asked.right = right;
     asked.feedback = right >= 0;
@@ -70,7 +70,7 @@ class AnswersTest : public testing::Test {
 };
 
 TEST_F(AnswersTest, APlaceAnswersWhenTheTipStaysInItAndIsTimedWhenItComesIn) {
-  const Question question = by_hand();
+  const TrialQuestion question = by_hand();
   TrialPass pass = pass_of({&question});
   pass.begin(kFirst);
   stay(pass, kStage + 300, 0.0);
@@ -90,7 +90,7 @@ TEST_F(AnswersTest, APlaceAnswersWhenTheTipStaysInItAndIsTimedWhenItComesIn) {
 }
 
 TEST_F(AnswersTest, AHandThatIsThereAlreadyHasNotAnswered) {
-  const Question question = by_hand();
+  const TrialQuestion question = by_hand();
   TrialPass pass = pass_of({&question});
   pass.begin(kFirst);
   stay(pass, kStage + 500, -0.03);
@@ -103,7 +103,7 @@ TEST_F(AnswersTest, AHandThatIsThereAlreadyHasNotAnswered) {
 }
 
 TEST_F(AnswersTest, ThePedalAnswersWhenItGoesDownDuringTheQuestion) {
-  const Question question = by_hand();
+  const TrialQuestion question = by_hand();
   TrialPass pass = pass_of({&question});
   pass.begin(kFirst);
   stay(pass, kStage + 200, 0.0, 0.9);  // down since the trial began
@@ -121,8 +121,8 @@ TEST_F(AnswersTest, ThePedalAnswersWhenItGoesDownDuringTheQuestion) {
   EXPECT_DOUBLE_EQ(answer.reaction_time, 271 * kDt);
 }
 
-Question limited(bool again) {
-  Question q;
+TrialQuestion limited(bool again) {
+  TrialQuestion q;
   q.name = "answer";
   q.choices = {{"yes", "yes"}, {"no", "no"}};
   q.means = {{"", 0, 0, "", 0.5}, {"", 0, 2}};
@@ -140,7 +140,7 @@ struct Case {
 class PaceTest : public AnswersTest, public testing::WithParamInterface<Case> {};
 
 TEST_P(PaceTest, AnAnswerOutOfTimeIsToldAndKept) {
-  const Question question = limited(false);
+  const TrialQuestion question = limited(false);
   TrialPass pass = pass_of({&question, &question});
   pass.begin(kFirst);
   stay(pass, kStage + GetParam().ticks - 1, 0.0);
@@ -156,7 +156,7 @@ TEST_P(PaceTest, AnAnswerOutOfTimeIsToldAndKept) {
 }
 
 TEST_P(PaceTest, OneThatComesAgainEndsTheTrial) {
-  const Question question = limited(true);
+  const TrialQuestion question = limited(true);
   TrialPass pass = pass_of({&question, &question}, 0);
   pass.begin(kFirst);
   stay(pass, kStage + GetParam().ticks - 1, 0.0);
@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(Times, PaceTest,
                                          Case{400, Pace::kInTime}, Case{401, Pace::kTooSlow}));
 
 TEST_F(AnswersTest, TheTickAllocatesNothing) {
-  const Question question = by_hand(), other = limited(false);
+  const TrialQuestion question = by_hand(), other = limited(false);
   TrialPass pass = pass_of({&question, &other});
   pass.begin(kFirst);
   const test::AllocationGuard guard;

@@ -30,9 +30,9 @@ IntervalRun interval(int marker) {
 }
 
 /// Two choices by buttons 0 and 1.
-const Question& question() {
-  static const Question asked = [] {
-    Question q;
+const TrialQuestion& question() {
+  static const TrialQuestion asked = [] {
+    TrialQuestion q;
     q.name = "answer";
     q.choices = {{"yes", "yes"}, {"no", "no"}};
     q.means = {{"", 0, 1}, {"", 0, 2}};

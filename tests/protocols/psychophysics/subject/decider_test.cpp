@@ -16,13 +16,13 @@ TEST(DeciderTest, TheLastIntervalIsJudgedWhateverCameBefore) {
   subject::JudgementParameters judgement;
   judgement.exponent = 0.5;
   judgement.criterion = 8.0;
-  Question number;
+  TrialQuestion number;
   number.kind = &questions::number_kind();
   number.high = 1000.0;
   plan.decides = Decides::kMagnitude;
   const auto said = Decider(plan, judgement, 1).decide(number, true, kTwoIntervals);
   EXPECT_NEAR(given_answer(number, said.choice, said.draft).value, 4.0, 1e-12);
-  Question choice;
+  TrialQuestion choice;
   choice.choices.resize(2);
   plan.decides = Decides::kYes;
   plan.yes = 1;
