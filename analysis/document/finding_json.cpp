@@ -58,7 +58,7 @@ nlohmann::ordered_json json_of(const FindingRow& row) {
     } else {
       at = value_of(f);
     }
-    if (f.form == JsonForm::kBeside) {
+    if (f.form == JsonForm::kBeside && f.why_not.empty()) {
       made[Json::json_pointer(place + "_low_95")] = f.low;
       made[Json::json_pointer(place + "_high_95")] = f.high;
     }

@@ -58,7 +58,9 @@ TEST(FindingTest, EachFormOfJsonHasItsKeys) {
             R"({"a":{"b":{"estimate":2.0,"low_95":1.0,"high_95":3.0}}})");
   EXPECT_EQ(text(JsonForm::kBeside), R"({"a":{"b":2.0,"b_low_95":1.0,"b_high_95":3.0}})");
   f.why_not = "there is none";
-  EXPECT_EQ(text(JsonForm::kPlain), R"({"a":{"b":{"not_defined":"there is none"}}})");
+  for (const JsonForm form : {JsonForm::kPlain, JsonForm::kBeside}) {  // no interval of nothing
+    EXPECT_EQ(text(form), R"({"a":{"b":{"not_defined":"there is none"}}})");
+  }
 }
 
 TEST(FindingTest, ATableHasAColumnForEachTitleThatSaysSomething) {
