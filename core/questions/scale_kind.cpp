@@ -27,7 +27,9 @@ const Schema<Question>& ends_schema() {
 
 const Schema<Question>& scale_schema() {
   static const auto schema =
-      steps_schema("scale", "Lowest and highest value of a scale on which a mark is moved",
+      steps_schema("scale",
+                   "Lowest and highest value of a scale on which a mark is moved; after a trial, "
+                   "without `step` and `ends`, lowest and highest digit",
                    "choices, a number or words")
           .custom("ends", "Words at both ends of a scale",
                   [](Table& table, const std::string& key, Question& question) {
@@ -85,6 +87,7 @@ Schema<Question> steps_schema(std::string key, std::string description, std::str
       .otherwise(std::move(otherwise))
       .number("step", &Question::step, {0.0, 1e9, true}, "",
               "Distance between neighbouring values of a scale")
+      .otherwise("1; after a trial, without `ends`, digits are typed")
       .check([key](Table& table, Question& question) {
         const double steps = (question.high - question.low) / question.step;
         if (std::abs(steps - std::round(steps)) > 1e-9 * steps || steps > kMostSteps) {

@@ -226,7 +226,8 @@ std::vector<KnownKey> KeyExploration::keys() const {
     if (const auto at = described_.find(path); at != described_.end()) {
       key.words = at->second;
     }
-    if (texts_.contains(path) && key.type.find("text") == std::string::npos) {
+    if (texts_.contains(path) && key.type != "choice" &&
+        key.type.find("text") == std::string::npos) {
       key.type += " or text";
       key.forms.push_back({"text", {}, {}});
     }

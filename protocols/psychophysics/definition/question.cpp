@@ -148,8 +148,8 @@ void read_choices(Table& table, TrialQuestion& question, Means& means) {
 /// Reads a rating by digits, which are choices.
 void read_digits(Table& table, TrialQuestion& question, KeyBits& keys) {
   table.describe({"scale",
-                  "Lowest and highest digit of a rating; with `step` or `ends`, lowest and "
-                  "highest value of a scale on which a mark is moved",
+                  "Lowest and highest value of a scale on which a mark is moved; after a trial, "
+                  "without `step` and `ends`, lowest and highest digit",
                   "choices, a number or words", false});
   const std::vector<double> range = table.numbers("scale", {0.0, 9.0}, "");
   const bool whole =
