@@ -4,7 +4,7 @@
 // number of threads.
 //
 //     bench_procedure_coverage [observers] [threads] [part of a name] [beta-binomial fits of each]
-//     bench_procedure_coverage 150 2 troubles   # lapses, false alarms, thresholds beyond the range
+//     bench_procedure_coverage 1000 2 troubles  # lapses, false alarms, thresholds beyond the range
 
 #include <fmt/format.h>
 
