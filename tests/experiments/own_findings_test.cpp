@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@
 
 #include "core/base/file_text.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/line/whole_command.h"
+#include "experiments/command/line/command_line.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
@@ -61,11 +61,11 @@ void analyze_with_source(const std::string& study, const std::string& terminal) 
     if (std::freopen(terminal.c_str(), "w", stdout) == nullptr) {
       return 3;
     }
-    std::array<std::string, 3> words{"haptrial", "analyze", study};
-    std::array<char*, 3> line{words[0].data(), words[1].data(), words[2].data()};
-    const int status = whole_command(3, line.data(), [] {
-      analysis::add_finding_source({"counts", count_passes});
-    });
+    analysis::add_finding_source({"counts", count_passes});
+    CLI::App app;
+    int status = 0;
+    declare_subcommands(app, status);
+    app.parse(std::vector<std::string>{study, "analyze"});  // CLI11 takes the last word first
     return std::fclose(stdout) == 0 ? status : 4;
   };
   EXPECT_EXIT(std::_Exit(child()), testing::ExitedWithCode(0), "");

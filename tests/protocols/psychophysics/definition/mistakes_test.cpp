@@ -49,7 +49,7 @@ TEST(TrialMistakesTest, AStartIsComparedWithARangeThatIsOne) {
 
 TEST(TrialMistakesTest, OfAnUnknownProcedureNothingElseIsSaid) {
   EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"", "kind = \"stairs\"")),
-              ElementsAre(HasSubstr("procedure.kind is \"stairs\"; allowed: staircase, pest")));
+              ElementsAre(HasSubstr("procedure.kind is 'stairs'; allowed: staircase, pest")));
   EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"\n", "")),
               ElementsAre(HasSubstr("procedure.kind is missing")));
 }
