@@ -22,7 +22,8 @@ struct FigureLine {
 };
 
 /// Content of the screen below a question's text: how it is answered, and the answer so far. Every
-/// kind of question is drawn from these parts, on pages and in trials alike.
+/// kind of question is drawn from these parts, on pages and in trials alike; what none of them
+/// shows, such as a picture, needs a part of its own here and in text_screen.cpp.
 struct AnswerView {
   std::vector<std::string> choices{};  // lines below each other
   std::optional<ScaleView> scale{};    // below them

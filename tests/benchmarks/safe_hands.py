@@ -267,14 +267,14 @@ def read_results(file):
         return {key_of(row): row for row in csv.DictReader(source)}
 
 
-def measured(cells, haptrial, jobs, csv_file=os.devnull, keep=None):
-    """Results of the cells in their order; each is written to the CSV file as soon as it is there."""
+def measured(cells, haptrial, jobs, csv_file=os.devnull, keep=None, in_order=True):
+    """Results of the cells; each is written to the CSV file as soon as it is there."""
     tasks = [(cell, os.path.abspath(haptrial), keep) for cell in cells]
     with (open(csv_file or os.devnull, "w", newline="", encoding="utf-8") as file,
           multiprocessing.Pool(jobs) as pool):
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        for result in pool.imap(present_cell, tasks):
+        for result in (pool.imap if in_order else pool.imap_unordered)(present_cell, tasks):
             writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in result.items()})
             file.flush()
             yield result
@@ -319,9 +319,10 @@ def main():
     print("| --- | --- | --- | " + " | ".join("---" for _ in hands) + " |")
     last = {(c.name, c.rate, c.delay): c.hand for c in cells}
     results = {}
-    for result in measured(cells, options.haptrial, options.jobs, options.csv, options.keep):
+    for result in measured(cells, options.haptrial, options.jobs, options.csv, options.keep,
+                           not options.sample):
         results[key_of(result)] = result
-        if last[key_of(result)[:3]] == result["hand"]:
+        if not options.sample and last[key_of(result)[:3]] == result["hand"]:
             print_row(key_of(result)[:3], hands, results, before)
     print(f"\n{summary(list(results.values()))}")
 
