@@ -16,7 +16,7 @@ std::uint64_t checked_seed(const std::string& text);
 
 /// @throws InputError if `file` exists and may not be overwritten; no file is always new.
 void check_new(const std::string& file, bool overwrite);
-/// The same for a figure, .png or .svg.
+/// Checks a figure likewise, .png or .svg.
 void check_new_figure(const std::string& file, bool overwrite);
 
 /// The number of threads: --jobs, or one per processor.

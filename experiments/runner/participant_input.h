@@ -13,9 +13,9 @@
 
 namespace haptrial::experiments {
 
-/// What a participant says beside moving the handle: by keys of the window, a pedal, and the buttons
-/// of a game controller. The screen's thread writes what its keys say; all else is the session's
-/// thread.
+/// Takes what a participant says beside moving the handle: by keys of the window, a pedal, and the
+/// buttons of a game controller. The screen's thread writes what its keys say; all else is the
+/// session's thread.
 class ParticipantInput {
  public:
   /// @param device  the session's first one

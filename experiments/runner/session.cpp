@@ -46,7 +46,7 @@ class TimedTrials {
     sum_ += seconds;
     ++count_;
   }
-  /// Of at least one. [s]
+  /// Needs at least one trial. @returns seconds
   double mean() const { return sum_ / count_; }
 
  private:

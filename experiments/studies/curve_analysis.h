@@ -26,7 +26,7 @@ struct CurveAnalysis {
 
 /// @param fresh  about to be used: a score that cannot depend on the forces is a problem
 CurveAnalysis read_curve_analysis(Table& root, bool fresh);
-/// The same of a definition that has been read. @throws InputError with problems in it
+/// Reads the table of a definition that has been read before. @throws InputError with problems in it
 CurveAnalysis curve_analysis_of(const protocols::Definition& definition);
 /// @throws InputError for a text without it, or with problems in it
 CurveAnalysis parse_curve_analysis(std::string_view text, std::string_view file_name);

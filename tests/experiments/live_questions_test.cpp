@@ -40,8 +40,8 @@ std::string definition() {
          "[screen]\nfull_screen = false\nparticipant_steers = true\n";
 }
 
-// The same keys come round and round, whatever is asked: p would pause a session whose window
-// steers, if it were not typed.
+// The person types the same keys round and round, whatever is asked. The letter p would pause a
+// session whose window steers, if it were not typed.
 TEST(LiveQuestionsTest, WordsAndAMarkAreAnsweredByKeysOfTheWindow) {
   const test::TemporaryFolder folder;
   test::write_text(folder / "study.toml", definition());

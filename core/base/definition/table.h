@@ -65,8 +65,8 @@ class Table {
   /// @throws InputError when the file is absent, a directory, unreadable, empty or not TOML.
   static Table load(const std::filesystem::path& file);
 
-  /// The same document, of which nothing has been read: no text is parsed again. Any thread may ask
-  /// a table that nobody reads meanwhile.
+  /// Gives the same document with nothing read yet; no text is parsed again. Any thread may ask a
+  /// table that nobody reads meanwhile.
   Table unread() const;
 
   /// Required values. Where a problem is noted the smallest allowed finite value comes back.
@@ -122,9 +122,8 @@ class Table {
   bool is_nested(std::string_view key) const;  // an array of arrays
   bool is_table(std::string_view key) const;   // likewise
   /// Gives the whole document what it lacks of another TOML text: missing tables, and missing keys
-  /// within tables; what it states stays. source() does not change. A
-  /// document that was unread() and still lacks something takes them before any table within it is
-  /// asked for, and has no others.
+  /// within tables; what it states stays. source() does not change. A document that was unread() and
+  /// still lacks something takes them before any table within it is asked for, and has no others.
   void fill_in(std::string_view defaults);
   /// From now on shown_text() gives texts in another language. source() does not change.
   void translate(const Translations& translations);

@@ -26,7 +26,7 @@ struct ProcedureKind {
 /// Every kind that read_tracks() knows. Call before threads are started.
 const std::vector<ProcedureKind>& kinds_of_procedure();
 
-/// @throws std::out_of_range for a word that is none of these
+/// @throws std::out_of_range for an unknown word
 const ProcedureKind& kind_of_procedure(std::string_view word);
 
 /// Adds a kind of a program's own.

@@ -151,11 +151,14 @@ void read_digits(Table& table, TrialQuestion& question, KeyBits& keys) {
                   "Lowest and highest value of a scale on which a mark is moved; after a trial, "
                   "without `step` and `ends`, lowest and highest digit",
                   "choices, a number or words", false});
-  const std::vector<double> range = table.numbers("scale", {0.0, 9.0}, "");
-  const bool whole =
-      std::all_of(range.begin(), range.end(), [](double each) { return each == std::floor(each); });
-  if (range.size() != 2 || !whole || range[1] <= range[0]) {
-    table.reject("scale", "another list", "[lowest, highest], whole numbers from 0 to 9");
+  const std::vector<double> range = table.numbers("scale", {}, "");
+  const bool digits = std::all_of(range.begin(), range.end(), [](double each) {
+    return each == std::floor(each) && each >= 0.0 && each <= 9.0;
+  });
+  if (range.size() != 2 || !digits || range[1] <= range[0]) {
+    table.reject("scale", "another list",
+                 "[lowest, highest], whole numbers from 0 to 9; on another scale a mark is moved: "
+                 "add step or ends");
     return;
   }
   question.first = range[0];

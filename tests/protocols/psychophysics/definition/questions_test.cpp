@@ -48,8 +48,9 @@ TEST(QuestionsTest, AScaleWithStepsIsMovedAndOneOfDigitsIsChosen) {
   ASSERT_EQ(digits.questions[1].choices.size(), 7u);
   EXPECT_EQ(given_answer(digits.questions[1], 6, {}).value, 7.0);
   EXPECT_EQ(given_answer(digits.questions[1], 6, {}).text, "7");
-  EXPECT_THAT(problems_of_trials(asking("scale = [0, 100]\n")),
-              Contains(HasSubstr("at least 0 and at most 9")));
+  EXPECT_THAT(
+      problems_of_trials(asking("scale = [0, 100]\n")),
+      Contains(HasSubstr("whole numbers from 0 to 9; on another scale a mark is moved: add step")));
   EXPECT_THAT(problems_of_trials(asking("scale = [0, 100]\nstep = 7\n")),
               Contains(HasSubstr("a whole number of steps")));
 }
