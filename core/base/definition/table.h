@@ -122,8 +122,8 @@ class Table {
   bool is_nested(std::string_view key) const;  // an array of arrays
   bool is_table(std::string_view key) const;   // likewise
   /// Gives the whole document what it lacks of another TOML text: missing tables, and missing keys
-  /// within tables; what it states stays. source() does not change. A document that was unread() and
-  /// still lacks something takes them before any table within it is asked for, and has no others.
+  /// within tables; what it states stays. source() does not change. A document that was unread(),
+  /// and still lacks something, takes them before any table within it is asked for.
   void fill_in(std::string_view defaults);
   /// From now on shown_text() gives texts in another language. source() does not change.
   void translate(const Translations& translations);
