@@ -26,7 +26,7 @@ void check(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-double spectral_radius(const Eigen::MatrixXd& matrix) {
+std::complex<double> dominant_eigenvalue(const Eigen::MatrixXd& matrix) {
   check(matrix);
   const auto n = static_cast<std::size_t>(matrix.rows());
   RowMajor copy = matrix;
@@ -39,11 +39,16 @@ double spectral_radius(const Eigen::MatrixXd& matrix) {
   if (gsl_eigen_nonsymm(&view.matrix, values.get(), work.get()) != 0) {
     throw std::runtime_error("the eigenvalues of a matrix did not converge");
   }
-  double largest = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    largest = std::max(largest, gsl_complex_abs(gsl_vector_complex_get(values.get(), i)));
+  gsl_complex largest = gsl_vector_complex_get(values.get(), 0);
+  for (std::size_t i = 1; i < n; ++i) {
+    const gsl_complex value = gsl_vector_complex_get(values.get(), i);
+    largest = gsl_complex_abs(value) > gsl_complex_abs(largest) ? value : largest;
   }
-  return largest;
+  return {GSL_REAL(largest), GSL_IMAG(largest)};
+}
+
+double spectral_radius(const Eigen::MatrixXd& matrix) {
+  return std::abs(dominant_eigenvalue(matrix));
 }
 
 Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& matrix) {

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 #include <stdexcept>
 
 #include "core/base/matrix_functions.h"
@@ -28,11 +30,10 @@ Eigen::Matrix<double, 2, 3> exact_step(const HandleLoop& loop, const HeldBy& han
   return matrix_exponential(flow / loop.rate).topRows(2);
 }
 
-}  // namespace
-
-double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
+/// One tick of the state: position, velocity, forces on their way (oldest first), readings (newest
+/// first).
+Eigen::MatrixXd tick_of(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
   check(loop, hand);
-  // The state: position, velocity, forces on their way (oldest first), readings (newest first).
   const int n = loop.velocity_window;
   const int d = loop.force_delay;
   const int reading = 2 + d;
@@ -57,10 +58,8 @@ double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldB
   for (int i = 1; i < n; ++i) {
     tick(reading + i, reading + i - 1) = 1.0;
   }
-  return haptrial::spectral_radius(tick);
+  return tick;
 }
-
-namespace {
 
 /// @param holds  whether a hand of this mass is heavy enough
 template <typename Holds>
@@ -82,6 +81,15 @@ double lightest(double heaviest, Holds holds) {
 }
 
 }  // namespace
+
+double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
+  return haptrial::spectral_radius(tick_of(gains, loop, hand));
+}
+
+double dominant_frequency(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
+  const std::complex<double> eigenvalue = dominant_eigenvalue(tick_of(gains, loop, hand));
+  return std::abs(std::arg(eigenvalue)) / (2.0 * std::numbers::pi) * loop.rate;
+}
 
 double lightest_stable_hand(const PdGains& gains, const HandleLoop& loop, double heaviest) {
   // A free mass that is pushed by nothing stays where it is: an eigenvalue of 1.

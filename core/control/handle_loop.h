@@ -25,6 +25,9 @@ struct HeldBy {
 /// @throws std::invalid_argument where a parameter is out of its bounds.
 double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand);
 
+/// Frequency at which the loop swings most, by the eigenvalue of the largest modulus [Hz].
+double dominant_frequency(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand);
+
 /// The lightest hand, a pure mass, with which the loop is stable [kg]: 0 where the bare handle
 /// is, `heaviest` + 1 where not even that hand is enough.
 double lightest_stable_hand(const PdGains& gains, const HandleLoop& loop, double heaviest = 2.0);

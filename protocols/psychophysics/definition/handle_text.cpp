@@ -139,7 +139,28 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
   return load;
 }
 
-/// @throws InputError if no hand carries it
+/// The guard leaves alone what swings no faster than a hand that trembles. With the hands of most
+/// people such swings reach 2 N only where even a heavy hand does not carry the load.
+/// @throws InputError if it is such a load
+void HandleReport::reject_slow_swings(const Load& load, const control::HandleLoop& loop) const {
+  constexpr double kTremor = 12.0;    // [Hz]
+  constexpr double kHeavyHand = 0.6;  // [kg]
+  if (load.lightest < kHeavyHand) {
+    return;
+  }
+  const double frequency = control::dominant_frequency(
+      {load.stiffness, load.damping}, loop, control::held_by_hand(0.98 * load.lightest));
+  if (frequency <= kTremor) {
+    throw InputError(fmt::format(
+        "stage {}: its fields add up to {}; at {:g} Hz, with forces that come {} late, hands of "
+        "less than {:.2f} kg oscillate with them at {:.1f} Hz, which cannot be told from a tremor; "
+        "allowed: less of it, or a faster loop",
+        load.stage, amount_of(load), d_.rate, control::ticks_in_words(loop.force_delay),
+        load.lightest, frequency));
+  }
+}
+
+/// @throws InputError if no hand carries it, or one swings with it as slowly as a tremor
 void HandleReport::judge(Load& load) const {
   const control::HandleLoop loop = handle_loop(d_);
   const control::PdGains gains{load.stiffness, load.damping};
@@ -157,6 +178,7 @@ void HandleReport::judge(Load& load) const {
         load.stage, amount_of(load), control::kHeaviestHand, d_.rate,
         control::ticks_in_words(loop.force_delay)));
   }
+  reject_slow_swings(load, loop);
   constexpr double kStep = 0.01;  // [kg]
   while (!mass_carried_by(load.lightest)) {
     load.lightest += kStep;

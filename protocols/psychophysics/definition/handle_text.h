@@ -3,6 +3,10 @@
 #include <string>
 #include <vector>
 
+namespace haptrial::control {
+struct HandleLoop;
+}
+
 namespace haptrial::protocols {
 
 struct Presented;
@@ -35,6 +39,7 @@ class HandleReport {
     bool own_hand{true};    // that of [hand] does
   };
   Load load_of(const Presented& presented, std::size_t stage) const;
+  void reject_slow_swings(const Load& load, const control::HandleLoop& loop) const;
   void judge(Load& load) const;
   void keep(const Load& load);
   std::string amount_of(const Load& load) const;

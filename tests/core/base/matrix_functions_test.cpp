@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <complex>
 #include <stdexcept>
 
 namespace haptrial {
@@ -19,6 +20,7 @@ TEST(MatrixFunctionsTest, TheRadiusOfKnownSpectra) {
   companion << 6.0, -11.0, 6.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
   EXPECT_NEAR(spectral_radius(companion), 3.0, 1e-12);
   EXPECT_EQ(spectral_radius(Eigen::MatrixXd::Zero(4, 4)), 0.0);
+  EXPECT_NEAR(std::abs(std::arg(dominant_eigenvalue(turned))), 1.0, 1e-12);
 }
 
 // A mass on a spring, however stiff it is beside the tick: cosines, and decay of what is damped.

@@ -40,6 +40,12 @@ TEST(HandleLoopTest, ASpringNeedsAsMuchDampingAsItsDelayTakes) {
   }
 }
 
+TEST(HandleLoopTest, AHandOnASpringSwingsAtTheFrequencyOfAMassOnIt) {
+  const HandleLoop loop{0.2, 4000.0, 8, 1};
+  const double free = std::sqrt(5000.0 / 1.5) / (2.0 * std::numbers::pi);
+  EXPECT_NEAR(dominant_frequency({5000.0, 0.0}, loop, {1.3, 0.0, 0.0}), free, 0.01);
+}
+
 TEST(HandleLoopTest, TheBareHandleCarriesItsShareOfDampingWithMargin) {
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
     for (const int delay : {1, 2, 3}) {

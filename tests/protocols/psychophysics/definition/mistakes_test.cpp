@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -397,6 +398,20 @@ TEST(TrialMistakesTest, AFieldThatTheHandDoesNotCarryGetsAWarningAndOneThatNoHan
   EXPECT_THAT(problems_of_trials(with(kSmall, "\"$stiffness\"", "90000.0")),
               Contains(AllOf(HasSubstr("no hand of up to 2 kg carries that at 1000 Hz"),
                              HasSubstr("allowed: less of it"))));
+}
+
+/// A mass m on a spring k swings at sqrt(k / m) / 2 pi, which is 9 Hz for 5000 N/m and 1.5 kg.
+TEST(TrialMistakesTest, AWallThatSwingsAsSlowlyAsATremorIsRefused) {
+  const auto problems = [](const char* rate, const char* delay) {
+    return problems_of_trials(
+        with(with(kSmall, "\"$stiffness\"", "5000.0"), "[experiment]\n",
+             fmt::format("[experiment]\nrate = {}\n", rate)) +
+        fmt::format("[device]\nforce_delay = {}\n", delay));
+  };
+  EXPECT_THAT(problems("1000.0", "1"), IsEmpty());
+  EXPECT_THAT(problems("500.0", "3"),
+              Contains(AllOf(HasSubstr("add up to 5000 N/m"), HasSubstr("3 ticks late"),
+                             HasSubstr("cannot be told from a tremor"))));
 }
 
 TEST(TrialMistakesTest, ARegionOutsideOfThePictureGetsAWarning) {
