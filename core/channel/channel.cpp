@@ -1,0 +1,176 @@
+#include "core/channel/channel.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/base/error.h"
+
+namespace haptrial::channel {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kLook{20};    // for the end of the session, and for silence
+constexpr milliseconds kRetry{500};  // until a lost instrument is opened again
+constexpr std::size_t kBlock = 256;  // samples in a block of the log
+constexpr double kKept = 10.0;       // for which the log has room [s]
+constexpr std::size_t kLeastBlocks = 16;
+constexpr std::size_t kMostIncidents = 10000;  // that wait for the session
+
+std::size_t blocks_of(double rate) {
+  return std::max(kLeastBlocks, static_cast<std::size_t>(kKept * rate) / kBlock + 1);
+}
+
+}  // namespace
+
+Channel::Channel(ChannelOptions options, Now now, std::uint64_t first)
+    : options_(std::move(options)),
+      now_(std::move(now)),
+      log_(kBlock, blocks_of(options_.plan.rate)),
+      clock_(options_.plan.clock),
+      next_(first) {
+  state_.values.fill(std::numeric_limits<double>::quiet_NaN());
+  newest_ = seen_ = state_;
+  thread_ = std::thread([this] { run(); });
+}
+
+Channel::~Channel() {
+  over_.store(true, std::memory_order_relaxed);
+  thread_.join();
+}
+
+std::string Channel::wait_until_open() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return tried_; });
+  return error_;
+}
+
+const ChannelState& Channel::newest() noexcept {
+  latest_.read(newest_);
+  return newest_;
+}
+
+ChannelState Channel::seen() const {
+  const std::lock_guard lock(mutex_);
+  return seen_;
+}
+
+std::vector<IncidentRow> Channel::take_incidents() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(incidents_, {});
+}
+
+void Channel::note(Incident what, double amount, const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  if (incidents_.size() < kMostIncidents) {
+    incidents_.push_back({now_(), options_.name, what, amount, text});
+  }
+}
+
+void Channel::show(bool live) {
+  state_.live = live;
+  latest_.write(state_);
+  const std::lock_guard lock(mutex_);
+  seen_ = state_;
+}
+
+void Channel::take(const Measured& sample) {
+  ChannelRow row;
+  row.received_ns = now_();
+  heard_ns_ = row.received_ns;
+  const bool timed = std::isfinite(sample.device_time);
+  const SampleTime time = timed ? clock_.time_of(sample.device_time, row.received_ns)
+                                : std::as_const(clock_).time_of(row.received_ns, sample.waited);
+  if (time.step != 0.0) {
+    note(Incident::kClockStep, time.step, "");
+  }
+  if (sample.lost > 0) {
+    note(Incident::kGap, static_cast<double>(sample.lost), "");
+    next_ += sample.lost;
+  }
+  row.sample = next_++;
+  row.time_ns = time.time_ns;
+  row.uncertainty = time.uncertainty;
+  row.device_time = sample.device_time;
+  row.values.fill(std::numeric_limits<double>::quiet_NaN());
+  std::copy_n(sample.values.begin(), std::min(sample.values.size(), row.values.size()),
+              row.values.begin());
+  if (!log_.push(row)) {
+    ++no_room_;
+  } else if (no_room_ > 0) {
+    note(Incident::kDropped, static_cast<double>(std::exchange(no_room_, 0)), "");
+  }
+  state_.values = row.values;
+  show(true);
+}
+
+void Channel::run() {
+  while (!over_.load(std::memory_order_relaxed)) {
+    if (source_ == nullptr && !open()) {
+      for (milliseconds waited{0}; waited < kRetry && !over_.load(std::memory_order_relaxed);
+           waited += kLook) {
+        std::this_thread::sleep_for(kLook);
+      }
+    } else {
+      read();
+    }
+  }
+  source_.reset();
+}
+
+bool Channel::open() {
+  std::string why;
+  try {
+    source_ = options_.plan.open();
+    clock_.restart();
+    heard_ns_ = now_();
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  const bool first = [&] {
+    const std::lock_guard lock(mutex_);
+    error_ = why;
+    return !std::exchange(tried_, true);
+  }();
+  if (source_ != nullptr && first) {
+    note(Incident::kOpened, options_.plan.rate, "");
+  } else if (source_ == nullptr && first) {
+    lost_ns_ = now_();
+    note(Incident::kLost, 0.0, why);
+  }
+  changed_.notify_all();
+  return source_ != nullptr;
+}
+
+void Channel::read() {
+  const std::int64_t before = heard_ns_;
+  try {
+    source_->read(*this, kLook);
+  } catch (const std::exception& error) {
+    lose(error.what());
+    source_.reset();
+    return;
+  }
+  const std::int64_t now = now_();
+  if (heard_ns_ != before) {
+    if (lost_ns_ >= 0) {
+      note(Incident::kBack, 1e-9 * static_cast<double>(now - std::exchange(lost_ns_, -1)), "");
+    }
+  } else if (lost_ns_ < 0 && !options_.plan.quantities.empty() &&
+             1e-9 * static_cast<double>(now - heard_ns_) > options_.plan.patience) {
+    lose("no data come any more");
+  }
+}
+
+void Channel::lose(const std::string& why) {
+  show(false);
+  if (lost_ns_ < 0) {
+    lost_ns_ = now_();
+    note(Incident::kLost, 0.0, why);
+  }
+}
+
+}  // namespace haptrial::channel

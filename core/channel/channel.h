@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/channel/channel_options.h"
+#include "core/channel/channel_source.h"
+#include "core/channel/sample_clock.h"
+#include "core/realtime/block_log.h"
+#include "core/realtime/latest_value.h"
+
+namespace haptrial::channel {
+
+/// Newest values of a channel.
+struct ChannelState {
+  bool live{false};  // data come
+  std::array<double, kMostQuantities> values{};
+};
+
+/// A channel of a running session. A thread of its own opens the instrument, reads it and gives
+/// each sample its time; one that is lost is opened anew twice a second. Samples go to the session
+/// through a block log, their newest values to the servo thread, and neither side ever waits.
+class Channel final : private ChannelInbox {
+ public:
+  /// Time since the session's first tick [ns]; any thread.
+  using Now = std::function<std::int64_t()>;
+
+  /// Starts the thread. @param first  number of the first sample: of those that an earlier run of
+  /// the session has
+  Channel(ChannelOptions options, Now now, std::uint64_t first = 0);
+  ~Channel() override;
+  Channel(const Channel&) = delete;
+  Channel& operator=(const Channel&) = delete;
+
+  const ChannelOptions& options() const noexcept { return options_; }
+  /// Waits until the instrument has answered or could not be opened. Session's thread.
+  /// @returns why it could not, in a sentence; empty if it is open
+  std::string wait_until_open();
+
+  /// The newest values; a channel that is lost has `live` false. Servo thread: wait-free.
+  const ChannelState& newest() noexcept;
+  /// The same for another thread, with a lock: for a console.
+  ChannelState seen() const;
+
+  using Log = realtime::BlockLog<ChannelRow>;
+  /// Samples that have come; the session's thread is their consumer.
+  Log& log() noexcept { return log_; }
+  /// Incidents since the last call. Any thread but the servo thread.
+  std::vector<IncidentRow> take_incidents();
+
+ private:
+  void take(const Measured& sample) override;
+  void note(Incident what, double amount, const std::string& text) override;
+  void run();
+  bool open();
+  void read();
+  void lose(const std::string& why);
+  void show(bool live);
+
+  ChannelOptions options_;
+  Now now_;
+  Log log_;
+  realtime::LatestValue<ChannelState> latest_;
+  ChannelState newest_;  // servo thread
+
+  // The channel's thread.
+  std::unique_ptr<ChannelSource> source_;
+  SampleClock clock_;
+  std::uint64_t next_;
+  std::int64_t heard_ns_{0};  // when data came last
+  std::int64_t lost_ns_{-1};  // since when the channel is lost; -1: it is not
+  ChannelState state_;
+  std::uint64_t no_room_{0};  // samples for which the log had no room
+
+  mutable std::mutex mutex_;  // of what follows
+  std::condition_variable changed_;
+  std::vector<IncidentRow> incidents_;
+  ChannelState seen_;
+  bool tried_{false};
+  std::string error_;
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+}  // namespace haptrial::channel

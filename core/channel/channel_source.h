@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "core/channel/channel_row.h"
+
+namespace haptrial::channel {
+
+/// One sample as an instrument gave it.
+struct Measured {
+  std::span<const double> values;  // in the order of the channel's quantities; NaN: not measured
+  /// When it was measured, by the instrument's own clock; NaN: it has none [s]
+  double device_time{std::numeric_limits<double>::quiet_NaN()};
+  double waited{0.0};     // longest time that it may have lain there before it was read >= 0 [s]
+  std::uint64_t lost{0};  // samples before it that the instrument counted and that never came
+};
+
+/// Takes what a source reads. The source's thread.
+class ChannelInbox {
+ public:
+  virtual ~ChannelInbox() = default;
+  /// A sample that has come just now.
+  virtual void take(const Measured& sample) = 0;
+  virtual void note(Incident what, double amount = 0.0, const std::string& text = "") = 0;
+};
+
+/// An instrument that is open. All members are called on the channel's own thread, so that they may
+/// wait and allocate; a session waits for none of them. It closes when it is destroyed.
+class ChannelSource {
+ public:
+  virtual ~ChannelSource() = default;
+  /// Reads what comes within `patience`, and returns at once if something came.
+  /// @throws RunError in one sentence if the instrument is lost; it is then opened anew
+  virtual void read(ChannelInbox& into, std::chrono::milliseconds patience) = 0;
+};
+
+}  // namespace haptrial::channel
