@@ -238,7 +238,8 @@ function(haptrial_test_needs)
   target_link_libraries(test_render_flat PRIVATE PkgConfig::harfbuzz)
   target_link_libraries(test_render_gl PRIVATE haptrial_render_flat)
   target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_rows  # tables to try
-                                            haptrial_bone_nerve haptrial_bone_hint PkgConfig::hdf5)
+                                            haptrial_bone_nerve haptrial_bone_hint haptrial_channel
+                                            PkgConfig::hdf5)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score)
   file(GLOB truth CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/contact_truth/*.cpp)

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/error.h"
+#include "core/base/exception_words.h"
 
 namespace haptrial::channel {
 namespace {
@@ -128,7 +128,7 @@ bool Channel::open() {
     clock_.restart();
     heard_ns_ = now_();
   } catch (const std::exception& error) {
-    why = error.what();
+    why = sentence_of(error);
   }
   const bool first = [&] {
     const std::lock_guard lock(mutex_);
@@ -150,7 +150,7 @@ void Channel::read() {
   try {
     source_->read(*this, kLook);
   } catch (const std::exception& error) {
-    lose(error.what());
+    lose(sentence_of(error));
     source_.reset();
     return;
   }

@@ -82,15 +82,14 @@ ChannelOptions read_channel(Table& table, const std::string& name) {
   options.name = name;
   table.describe({"kind", "Kind of instrument or protocol", "", true});
   options.kind = table.choice("kind", words());
+  table.check();  // what the other keys mean depends on it
   channel_schema().read(table, options);
   const auto& kinds = kinds_of_channel();
   const auto kind = std::find_if(kinds.begin(), kinds.end(),
                                  [&](const ChannelKind& each) { return each.word == options.kind; });
-  if (kind != kinds.end()) {
-    options.plan = kind->read(table);
-    plan_schema().read(table, options.plan);
-    clock_schema().read(table, options.plan.clock);
-  }
+  options.plan = kind->read(table);
+  plan_schema().read(table, options.plan);
+  clock_schema().read(table, options.plan.clock);
   return options;
 }
 

@@ -30,7 +30,8 @@ struct ChannelOptions {
 };
 
 /// The channels of a definition, in the order of its text. @param root  of the definition
-/// Problems are noted.
+/// Problems are noted. @throws InputError for an unknown kind, alone: what the other keys mean
+/// depends on it
 std::vector<ChannelOptions> read_channels(Table& root);
 
 }  // namespace haptrial::channel

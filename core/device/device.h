@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "core/base/point_state.h"
@@ -30,6 +31,8 @@ struct DeviceReading {
   std::uint32_t keys{0};  // bit i: function i of the definition is held by a key of the window
   char32_t typed{0};      // character that was typed in the window since the last reading; 0: none
   double pedal{0.0};      // how far an analog pedal is down, 0 to 1
+  /// Newest values of the session's channels (channel::place_of); NaN: none. Valid for the tick.
+  std::span<const double> channels{};
   control::GainShares shares{};  // of the gains of all laws, which the handle carries now
 };
 

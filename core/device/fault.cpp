@@ -43,6 +43,10 @@ const char* describe(Fault fault) noexcept {
       return "the force gave the hand more energy than the protocol intended";
     case Fault::kOtherDevice:
       return "another device of the session has a fault";
+    case Fault::kChannelLost:
+      return "a channel that the session needs is lost";
+    case Fault::kBeyondLimit:
+      return "a measured value is beyond the limit of its channel";
   }
   return "unknown fault";
 }

@@ -25,8 +25,10 @@ enum class Fault : std::uint8_t {
   kSaturation,
   kEnergy,
   kOtherDevice,
+  kChannelLost,
+  kBeyondLimit,
 };
-constexpr int kFaults = static_cast<int>(Fault::kOtherDevice) + 1;
+constexpr int kFaults = static_cast<int>(Fault::kBeyondLimit) + 1;
 
 /// One sentence, such as "the tool left the workspace".
 const char* describe(Fault fault) noexcept;

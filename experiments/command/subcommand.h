@@ -57,6 +57,7 @@ void add_run(CLI::App& app, int& status);
 void add_secret(CLI::App& app, int& status);
 void add_roster(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
+void add_record(CLI::App& app, int& status);
 void add_recover(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_validate(CLI::App& app, int& status);

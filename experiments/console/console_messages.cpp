@@ -79,6 +79,14 @@ json figures_json(const std::optional<record::LiveState>& state) {
           {"title", state->title}, {"figures", figures}};
 }
 
+json channels_json(const std::vector<ChannelStatus>& channels) {
+  json all = json::array();
+  for (const ChannelStatus& channel : channels) {
+    all.push_back({{"name", channel.name}, {"values", channel.values}});
+  }
+  return all;
+}
+
 /// Null in a session without a partner.
 json partner_json(const std::optional<record::PartnerState>& partner) {
   if (!partner) {
@@ -205,6 +213,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"notices", s.notices},
       {"figures", figures_json(s.figures)},
       {"partner", partner_json(s.partner)},
+      {"channels", channels_json(s.channels)},
       {"asked", asked_json(s.asked)},
       {"has_target", s.has_target},
   };

@@ -33,6 +33,12 @@ enum class Request : std::uint8_t {
   kBack,           // to the item of a page before the present one
 };
 
+/// The newest values of a channel, for the console.
+struct ChannelStatus {
+  std::string name;
+  std::string values;  // "fx 1.20 N, fy 0.03 N"; empty while it is lost
+};
+
 /// Status of a session, sent about 20 times a second.
 struct SessionStatus {
   std::string subject;
@@ -76,6 +82,7 @@ struct SessionStatus {
   bool has_target{true};                        // there is a force to follow
   std::optional<record::LiveState> figures;     // of the present trial, if the study has some
   std::optional<record::PartnerState> partner;  // in a linked session
+  std::vector<ChannelStatus> channels;          // those that the definition shows
 };
 
 /// The only way from a person at a console to a session: messages in, a picture of the state out.

@@ -67,6 +67,8 @@ class Session {
 
   void watch_flashes();
   void hear_inputs();
+  void open_channels();
+  std::vector<ChannelStatus> channel_status() const;
   void note_warnings();
   void note_time_left(double trial_seconds);
   void show_trial();
@@ -101,6 +103,7 @@ class Session {
   std::unique_ptr<Screen> screen_;
   std::optional<ScreenMirror> mirror_;  // of a screen
   std::unique_ptr<record::LiveFigures> live_;
+  channel::ChannelSet channels_;
   SessionRecord record_;  // opened when everything else is there
   SessionController controller_;
   SessionServo servo_;
@@ -164,7 +167,8 @@ Session::Session(const SessionRequest& request)
              }),
       screen_(open_screen(request, *rig_, input_, [this] { return loop_.elapsed_ns(); })),
       live_(open_live(request)),
-      record_(request, rig_->device().info(), loop_, *trials_, onsets_, live_.get()),
+      channels_(make_channels(request)),
+      record_(request, rig_->device().info(), loop_, *trials_, onsets_, channels_, live_.get()),
       controller_(request.control, controller_actions()),
       servo_(loop_,
              {.devices = rig_->arms(d_.envelope),
@@ -175,6 +179,7 @@ Session::Session(const SessionRequest& request)
               .observers = observers(),
               .window = &input_.window,
               .pedal = input_.pedal.pedal(),
+              .channels = d_.channels.empty() ? nullptr : &channels_,
               .onsets = d_.markers.used ? &onsets_ : nullptr},
              real_, record_.origin()),
       pacing_({request, loop_, record_, controller_, servo_.task, rig_->felt(), screen_.get(),
@@ -183,6 +188,7 @@ Session::Session(const SessionRequest& request)
                  hear_inputs();
                  note_warnings();
                  controller_.status().partner = trials_->partner();
+                 controller_.status().channels = channel_status();
                  if (live_ == nullptr) {
                    controller_.status().figures = trials_->live();
                  }
@@ -231,9 +237,33 @@ void Session::hear_inputs() {
     record_.event(news.event, news.text);
     notices_.note(news.notice);
   }
+  for (const std::string& news : channels_.take_news()) {
+    notices_.note(news);
+  }
   if (!record_.in_pass()) {  // else its end shows whether it was answered before
     input_.mistakes.see_to(record_.pass());
   }
+}
+
+void Session::open_channels() {
+  const auto now = [this] { return record_.session_time(loop_.elapsed_ns()); };
+  for (const std::string& notice : channels_.start(now, next_samples(request_, channels_))) {
+    notices_.note(notice);
+  }
+}
+
+std::vector<ChannelStatus> Session::channel_status() const {
+  std::vector<ChannelStatus> all;
+  for (const auto& [options, state] : channels_.seen()) {
+    ChannelStatus status{options->name, ""};
+    const auto& quantities = options->plan.quantities;
+    for (std::size_t i = 0; state.live && i < quantities.size(); ++i) {
+      status.values += fmt::format("{}{} {:.4g} {}", i > 0 ? ", " : "", quantities[i].name,
+                                   state.values[i], quantities[i].unit);
+    }
+    all.push_back(std::move(status));
+  }
+  return all;
 }
 
 void Session::note_warnings() {
@@ -279,6 +309,7 @@ SessionSummary Session::run() {
     if (real_) {
       servo_.thread.start();
     }
+    open_channels();
     notices_.note(record_.notice());
     if (screen_) {
       notices_.note(screen_->summary().notice);

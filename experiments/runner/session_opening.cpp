@@ -110,8 +110,9 @@ std::string tutor_text(const SessionRequest& request) {
 }
 
 /// Tables of the protocol, of outcomes of trials, of further devices and of markers.
-static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials) {
-  record::TableList tables = trials.tables();
+static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials,
+                                   const channel::ChannelSet& channels) {
+  record::TableList tables = record::with_tables(trials.tables(), channels.tables());
   tables.push_back(&record::table_of<record::SkippedRow>());
   tables.push_back(&record::table_of<record::DampingRow>());
   if (!request.definition->pages.empty()) {
@@ -131,18 +132,67 @@ static record::TableList possible_tables(const SessionRequest& request) {
   return record::with_tables(request.protocol->tables(), record::common_tables());
 }
 
+channel::ChannelSet make_channels(const SessionRequest& request) {
+  return {request.definition->channels, possible_tables(request),
+          request.clock == realtime::ClockKind::kReal};
+}
+
+std::vector<std::uint64_t> next_samples(const SessionRequest& request,
+                                        const channel::ChannelSet& channels) {
+  if (!request.resume || !record::SessionWriter::can_resume(request.file)) {
+    return {};
+  }
+  const record::SessionReader file(resumed_file(request));
+  std::vector<std::uint64_t> next;
+  for (const record::TableDescription* table : channels.tables()) {
+    const std::uint64_t rows = file.has(*table) ? file.count(*table) : 0;
+    const bool samples = table != &record::table_of<channel::IncidentRow>();
+    if (samples) {
+      next.push_back(
+          rows == 0 ? 0
+                    : static_cast<std::uint64_t>(
+                          file.integers(*table, "sample", rows - 1, 1).front()) + 1);
+    }
+  }
+  return next;
+}
+
+/// @throws InputError if a channel had other quantities when the session was recorded
+static void check_same_quantities(const SessionRequest& request, const record::SessionReader& file,
+                                  const channel::ChannelSet& channels) {
+  const auto columns = [](const record::TableDescription& table) {
+    std::vector<std::string> names;
+    for (const record::Field& field : table.fields()) {
+      names.emplace_back(field.column.name);
+    }
+    return names;
+  };
+  const std::vector<std::string> there = file.table_names();
+  for (const record::TableDescription* table : channels.tables()) {
+    const bool has = std::find(there.begin(), there.end(), table->name()) != there.end();
+    if (has && columns(*file.description(table->name())) != columns(*table)) {
+      throw InputError(fmt::format(
+          "{}: was recorded with other quantities of /{}; resume it with the same ones",
+          request.file.string() + ".partial", table->name()));
+    }
+  }
+}
+
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
-                                  record::Resumed& before, const protocols::Trials& trials) {
+                                  record::Resumed& before, const protocols::Trials& trials,
+                                  const channel::ChannelSet& channels) {
   if (!request.resume || !record::SessionWriter::can_resume(request.file)) {
     const record::SessionInfo info = session_info(request, device);
-    return record::SessionWriter(request.file, info, tables_of(request, trials),
+    return record::SessionWriter(request.file, info, tables_of(request, trials, channels),
                                  trials.first_rows());
   }
   record::SessionWriter writer = record::SessionWriter::resume(
-      request.file, before, possible_tables(request), tables_of(request, trials));
+      request.file, before, record::with_tables(possible_tables(request), channels.tables()),
+      tables_of(request, trials, channels));
   check_same_session(request, before.info);
   const record::SessionReader file(request.file.string() + ".partial");
   check_same_tutor(request, file);
+  check_same_quantities(request, file, channels);
   trials.check_resumed(file);
   return writer;
 }
@@ -162,7 +212,9 @@ bool close_what_had_ended(const SessionRequest& request) {
   }
   record::Resumed found;
   record::SessionWriter writer =
-      record::SessionWriter::resume(file, found, possible_tables(request));
+      record::SessionWriter::resume(file, found,
+                                    record::with_tables(possible_tables(request),
+                                                        make_channels(request).tables()));
   if (found.ended) {
     writer.close();
   }

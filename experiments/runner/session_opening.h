@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/definition/definition_changes.h"
+#include "core/channel/channel_set.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/recovery/session_resume.h"
 #include "core/record/rows/live_figures.h"
@@ -40,7 +41,15 @@ std::string tutor_text(const SessionRequest& request);
 /// @throws InputError as SessionWriter does, and where the file is of another study, seed or kind,
 /// or cannot be gone on with for a reason of the protocol.
 record::SessionWriter open_writer(const SessionRequest& request, const device::DeviceInfo& device,
-                                  record::Resumed& before, const protocols::Trials& trials);
+                                  record::Resumed& before, const protocols::Trials& trials,
+                                  const channel::ChannelSet& channels);
+
+/// The channels of the session, none of them open yet.
+channel::ChannelSet make_channels(const SessionRequest& request);
+
+/// Numbers from which the samples of each channel go on in a resumed file; empty for a new one.
+std::vector<std::uint64_t> next_samples(const SessionRequest& request,
+                                        const channel::ChannelSet& channels);
 
 /// Gives FILE.partial its name where the session in it had come to its end: it was killed on the
 /// last steps. @returns whether it had; else nothing is changed

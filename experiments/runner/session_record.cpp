@@ -36,18 +36,20 @@ record::PassRow row_of(const PlannedTrial& trial, const record::Phase& phase, in
 
 SessionRecord::SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
                              const realtime::ServoLoop& loop, protocols::Trials& trials,
-                             markers::OnsetLog& onsets, record::LiveFigures* live)
+                             markers::OnsetLog& onsets, channel::ChannelSet& channels,
+                             record::LiveFigures* live)
     : request_(request),
       loop_(loop),
       real_(request.clock == realtime::ClockKind::kReal),
       outlet_(open_outlet(
           request, device.simulated, [this] { return now_ns(); }, notice_)),
       markers_(request, onsets, outlet_.get(), [this] { return now_ns(); }),
-      writer_(open_writer(request, device, before_, trials)),
+      writer_(open_writer(request, device, before_, trials, channels)),
       file_(writer_),
       stream_(outlet_.get(), request.definition->side_streams()),
       sinks_{&file_},
       trials_(trials),
+      channels_(channels),
       blocks_(before_.blocks),
       passes_(static_cast<std::int32_t>(before_.passes.size() + before_.open_passes.size())) {
   start_ns_ = last_time(before_) + 1;
@@ -209,6 +211,7 @@ std::size_t SessionRecord::collect(const Follower& follow) {
     follow(samples);
   };
   const std::size_t count = real_ ? log_.flush(take) : log_.drain(take);
+  keep_channels();
   if (!real_) {
     trials_.empty_logs(*this);  // it may wait for that, and the next full block is a second away
   }
@@ -272,6 +275,11 @@ void SessionRecord::keep_markers(bool last) {
 
 void SessionRecord::append_rest() {
   log_.flush([this](std::span<const record::Sample> samples) { append(samples); });
+  keep_channels();
+}
+
+void SessionRecord::keep_channels() {
+  channels_.collect(now_ns(), [this](const record::Rows& rows) { put(rows); });
 }
 
 void SessionRecord::event(const std::string& kind, const std::string& text) {

@@ -32,10 +32,12 @@ class SessionRecord final : public protocols::SessionFile {
   /// @param loop    whose ticks are recorded and give events their time; outlives the record
   /// @param trials  of the session; outlive the record
   /// @param onsets  of the servo thread; outlive the record
+  /// @param channels  of the session; outlive the record
   /// @param live    gets what is recorded, or null; outlives the record
   SessionRecord(const SessionRequest& request, const device::DeviceInfo& device,
                 const realtime::ServoLoop& loop, protocols::Trials& trials,
-                markers::OnsetLog& onsets, record::LiveFigures* live);
+                markers::OnsetLog& onsets, channel::ChannelSet& channels,
+                record::LiveFigures* live);
 
   /// Log in which the servo thread leaves its records.
   protocols::SessionTask::Log& log() { return log_; }
@@ -109,6 +111,7 @@ class SessionRecord final : public protocols::SessionFile {
   void keep_definition();
   void append(std::span<const record::Sample> samples);
   void append_rest();
+  void keep_channels();
   void keep_markers(bool last);
   void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
   void tell_notices();
@@ -130,6 +133,7 @@ class SessionRecord final : public protocols::SessionFile {
   StreamSink stream_;
   std::vector<record::Sink*> sinks_;
   protocols::Trials& trials_;
+  channel::ChannelSet& channels_;
   protocols::SessionTask::Log log_;
   protocols::SessionTask::DeviceLog device_log_;
   std::vector<std::int32_t> blocks_;  // whose stimuli are in the file

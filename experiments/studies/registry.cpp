@@ -8,6 +8,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/channel/channel_row.h"
 #include "core/record/rows/common_tables.h"
 
 namespace haptrial::experiments {
@@ -62,7 +63,8 @@ void add_study(const Study& study) {
 }
 
 record::TableList known_tables() {
-  record::TableList tables = record::common_tables();
+  record::TableList tables = record::with_tables(
+      record::common_tables(), {&record::table_of<channel::IncidentRow>()});
   for (const Study* study : all()) {
     tables = record::with_tables(std::move(tables), study->protocol().tables());
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/channel/channel_options.h"
 #include "core/device/envelope.h"
 #include "core/device/force_dimension.h"
 #include "core/device/gamepad.h"
@@ -67,6 +68,7 @@ struct Definition {
   device::MouseParameters mouse{};
   device::GamepadParameters gamepad{};
   device::PedalParameters pedal{};  // beside any of them
+  std::vector<channel::ChannelOptions> channels{};  // other instruments
   markers::MarkerOptions markers{};
   TutoringOptions tutoring{};
 

@@ -76,7 +76,8 @@ std::string without_mark(std::string text) {
 
 const std::vector<std::string>& machine_tables() {
   static const std::vector<std::string> kTables{
-      "device", "force_dimension", "mouse", "gamepad", "open_haptics", "pedal", "screen"};
+      "channels", "device", "force_dimension", "mouse",
+      "gamepad",  "open_haptics", "pedal",     "screen"};
   return kTables;
 }
 

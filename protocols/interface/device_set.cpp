@@ -26,13 +26,13 @@ DeviceSet::DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& lo
   stimuli_.resize(arms.size(), Eigen::Vector3d::Zero());
 }
 
-void DeviceSet::read(std::uint32_t keys, char32_t typed, std::optional<double> pedal,
-                     double dt) noexcept {
+void DeviceSet::read(const SessionInputs& inputs, double dt) noexcept {
   for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
     const bool read_ok = devices_[arm]->read(readings_[arm]);
-    readings_[arm].keys = keys;
-    readings_[arm].typed = typed;
-    readings_[arm].pedal = pedal.value_or(readings_[arm].pedal);
+    readings_[arm].keys = inputs.keys;
+    readings_[arm].typed = inputs.typed;
+    readings_[arm].pedal = inputs.pedal.value_or(readings_[arm].pedal);
+    readings_[arm].channels = inputs.channels;
     envelopes_[arm].check(read_ok, readings_[arm]);
     readings_[arm].shares =
         guards_[arm].watch(readings_[arm].tool.velocity, forces_[arm], stimuli_[arm], dt);
@@ -110,7 +110,11 @@ bool DeviceSet::without_force() const noexcept {
                      [](const Eigen::Vector3d& force) { return force.isZero(0.0); });
 }
 
-void DeviceSet::trip(Fault fault) noexcept {
+void DeviceSet::trip(Fault fault, const char* trouble) noexcept {
+  if (*trouble != '\0' && this->fault() == Fault::kNone) {
+    trouble_ = trouble;
+    noted_ = true;
+  }
   for (device::Envelope& envelope : envelopes_) {
     envelope.trip(fault);
   }

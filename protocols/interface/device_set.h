@@ -14,6 +14,14 @@
 
 namespace haptrial::protocols {
 
+/// What the readings of all devices have in common on a tick.
+struct SessionInputs {
+  std::uint32_t keys{0};               // of the participant's window
+  char32_t typed{0};                   // there
+  std::optional<double> pedal;         // how far it is down; nothing: the session has none
+  std::span<const double> channels{};  // newest values (channel::ChannelSet)
+};
+
 /// The devices of a session, each with its reading, the guard that keeps its handle calm, and its
 /// envelope. One for whom something is wrong stops all of them in the same tick. Servo thread,
 /// unless a function says otherwise.
@@ -32,10 +40,9 @@ class DeviceSet {
   std::size_t size() const noexcept { return devices_.size(); }
   device::Device& device(std::size_t arm) noexcept { return *devices_[arm]; }
 
-  /// Reads every device and judges what it said. @param keys  of the window; all devices get them
-  /// @param pedal  how far the session's pedal is down; nothing if it has none
-  /// @param dt     since the tick before [s]
-  void read(std::uint32_t keys, char32_t typed, std::optional<double> pedal, double dt) noexcept;
+  /// Reads every device and judges what it said. @param inputs  all readings get them
+  /// @param dt  since the tick before [s]
+  void read(const SessionInputs& inputs, double dt) noexcept;
   Readings readings() const noexcept { return Readings(readings_); }
 
   /// The forces of this tick, from what a pass wants of each device.
@@ -49,7 +56,8 @@ class DeviceSet {
   bool without_force() const noexcept;
 
   /// The functions of Envelope, for all devices.
-  void trip(device::Fault fault) noexcept;
+  /// @param trouble  about the fault, a text that lasts as long as the set; "": what a device says
+  void trip(device::Fault fault, const char* trouble = "") noexcept;
   void reset() noexcept;
   void release() noexcept;
   void engage() noexcept;

@@ -25,6 +25,7 @@ SessionTask::SessionTask(const Parts& parts, Leave leave, Origin origin)
       tick_log_(parts.tick_log),
       window_(parts.window),
       pedal_(parts.pedal),
+      channels_(parts.channels),
       onsets_(parts.onsets),
       observers_(parts.observers),
       leave_(leave),
@@ -56,13 +57,33 @@ bool SessionTask::stopped() const noexcept {
          force_gone_.load(std::memory_order_acquire);
 }
 
+/// Takes what comes in beside the devices; an alarm of a channel stops them.
+SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
+  SessionInputs inputs;
+  if (window_ != nullptr) {
+    inputs.keys = window_->held();
+    inputs.typed = window_->take_typed();
+  }
+  if (pedal_ != nullptr) {
+    inputs.pedal = pedal_->depth();
+  }
+  if (channels_ != nullptr) {
+    channels_->take(time_ns);
+    inputs.channels = channels_->values();
+    if (channels_->alarm() != channel::Alarm::kNone) {
+      devices_.trip(channels_->alarm() == channel::Alarm::kLost ? device::Fault::kChannelLost
+                                                                : device::Fault::kBeyondLimit,
+                    channels_->sentence());
+    }
+  }
+  return inputs;
+}
+
 bool SessionTask::tick(const realtime::Tick& tick) noexcept {
   take_requests(tick.index);
   resume_after_gap(tick.time_ns);
 
-  devices_.read(window_ != nullptr ? window_->held() : 0,
-                window_ != nullptr ? window_->take_typed() : 0,
-                pedal_ != nullptr ? std::optional(pedal_->depth()) : std::nullopt, tick.dt);
+  devices_.read(inputs(tick.time_ns), tick.dt);
   const bool runs = pass_ != nullptr && !broken_off_ && devices_.fault() == device::Fault::kNone;
   const PassOutput out = runs ? pass_->tick(devices_.readings(), tick.dt) : nothing();
   note_gains(out);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/channel/channel_set.h"
 #include "core/device/pedal.h"
 #include "core/realtime/block_log.h"
 #include "core/realtime/servo_loop.h"
@@ -66,6 +67,7 @@ class SessionTask final : public realtime::ServoTask {
     std::vector<stimulus::Observer*> observers{};
     WindowInput* window{nullptr};        // of the participant; null: there is none
     device::Pedal* pedal{nullptr};       // of all devices; null: as each says
+    channel::ChannelSet* channels{nullptr};  // beside the devices; null: none
     markers::OnsetLog* onsets{nullptr};  // null: nobody is told what begins when
   };
   explicit SessionTask(const Parts& parts, Leave leave, Origin origin = Origin{});
@@ -102,6 +104,7 @@ class SessionTask final : public realtime::ServoTask {
 
  private:
   void take_requests(std::uint64_t sequence) noexcept;
+  SessionInputs inputs(std::int64_t time_ns) noexcept;
   bool take_stop() noexcept;
   void break_off_row(std::int32_t row, std::uint64_t sequence) noexcept;
   void begin(std::uint64_t sequence) noexcept;
@@ -121,6 +124,7 @@ class SessionTask final : public realtime::ServoTask {
   TickLog* tick_log_;
   WindowInput* window_;
   device::Pedal* pedal_;
+  channel::ChannelSet* channels_;
   markers::OnsetLog* onsets_;
   std::vector<stimulus::Observer*> observers_;
   Leave leave_;

@@ -19,6 +19,7 @@ DefinitionRules of_every_study() {
                 "mouse",
                 "gamepad",
                 "pedal",
+                "channels",
                 "markers.serial",
                 "markers.baud",
                 "markers.pulse",

@@ -309,7 +309,7 @@ TEST_F(TwoDevicesTest, ARefusedForceIsTakenBackFromTheOther) {
   set.engage();
   bool taken = true;
   for (int tick = 0; tick < 400 && taken; ++tick) {
-    set.read(0, 0, std::nullopt, 1e-3);
+    set.read({}, 1e-3);
     set.limit(wanted, {&other, 1}, 1e-3);
     taken = set.write();
   }

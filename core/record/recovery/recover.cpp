@@ -104,15 +104,19 @@ void write(const fs::path& file, const fs::path& out, const RecoveredRows& rows,
 
 }  // namespace
 
-Recovery recover_session(const fs::path& file, const fs::path& out, const TableList& tables) {
+Recovery recover_session(const fs::path& file, const fs::path& out, const TableList& tables,
+                         const std::function<TableList(const SessionInfo&)>& more) {
   const std::vector<std::uint8_t> bytes = contents_of(file);
   if (FileLock::taken(file)) {
     throw InputError(file.string() +
                      ": another haptrial records into it; wait until its session ends");
   }
   check_target(out);
-  const RecoveredRows rows = rows_in(file, bytes, tables);
+  RecoveredRows rows = rows_in(file, bytes, tables);
   const std::optional<SessionInfo> info = find_info(file, rows);
+  if (const TableList own = info && more ? more(*info) : TableList{}; !own.empty()) {
+    rows = rows_in(file, bytes, own);
+  }
   Recovery found;
   found.file_bytes = bytes.size();
   found.passes = rows.passes.size();

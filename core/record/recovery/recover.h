@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "core/record/rows/common_tables.h"
@@ -35,9 +36,12 @@ struct Recovery {
 /// written again stand in for a damaged one. Where samples are missing the sequence numbers have a
 /// gap; an event "recovered" says how the file came to be.
 /// @param tables  beside those of every session, some of which the file may have
+/// @param more    further tables that a session's definition states, as its channels; they outlive
+/// the call
 /// @throws InputError when `file` is absent, not a regular file, or being written by another
 /// process, or `out` exists; RunError when `out` cannot be written.
 Recovery recover_session(const std::filesystem::path& file, const std::filesystem::path& out,
-                         const TableList& tables = common_tables());
+                         const TableList& tables = common_tables(),
+                         const std::function<TableList(const SessionInfo&)>& more = {});
 
 }  // namespace haptrial::record

@@ -45,6 +45,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_compare(app, status);
   add_statistics(app, status);
   add_info(app, status);
+  add_record(app, status);
   add_recover(app, status);
   add_replay(app, status);
   add_validate(app, status);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/quality/channel_quality.h"
 #include "analysis/quality/timing.h"
 #include "core/base/counted.h"
 #include "core/record/hdf5/file_lock.h"
@@ -53,6 +54,16 @@ void print_loop(const record::SessionReader& reader) {
     const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
     fmt::print("lateness    median {:.2f}, 99 % {:.2f}, 99.9 % {:.2f}, worst {:.2f} µs\n",
                us(late.median_ns), us(late.p99_ns), us(late.p999_ns), us(late.highest_ns));
+  }
+}
+
+void print_channels(const record::SessionReader& reader) {
+  for (const analysis::ChannelQuality& c : analysis::channel_quality(reader)) {
+    fmt::print("channel     {}: {}, {:.1f} a second, times within {:.2f} ms (median), {} missing, "
+               "{}, {} of its clock\n",
+               c.name, counted(c.samples, "sample", "samples"), c.rate(), 1e3 * c.uncertainty,
+               c.missing, counted(c.losses, "loss", "losses"),
+               counted(c.clock_steps, "step", "steps"));
   }
 }
 
@@ -140,6 +151,7 @@ int info(const std::string& file) {
   print_loop(reader);
   print_frames(reader.frames());
   print_markers(reader);
+  print_channels(reader);
   for (const record::EventRow& event : reader.events()) {
     if (is_told(event.kind)) {
       fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),

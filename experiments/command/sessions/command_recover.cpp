@@ -2,8 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
+#include <vector>
 
 #include "core/base/counted.h"
+#include "core/channel/channel_set.h"
 #include "core/record/recovery/recover.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/registry.h"
@@ -24,12 +27,36 @@ std::filesystem::path default_output(std::filesystem::path file) {
   return file.replace_extension(".recovered.h5");
 }
 
+/// The tables of a session with channels, which only its definition knows.
+class ChannelTables {
+ public:
+  /// @returns none for a session without channels
+  record::TableList of(const record::SessionInfo& info) {
+    Table root = Table::parse(info.definition, info.definition_name);
+    const std::vector<channel::ChannelOptions> options = channel::read_channels(root);
+    if (options.empty()) {
+      return {};
+    }
+    const record::TableList tables =
+        record::with_tables(study_of(root).protocol().tables(), record::common_tables());
+    channels_.emplace(options, tables, false);
+    return record::with_tables(tables, channels_->tables());
+  }
+
+ private:
+  std::optional<channel::ChannelSet> channels_;
+};
+
 /// @returns 0 when something was recovered, else 1.
 int recover(const RecoverOptions& options) {
   const std::string& file = options.file;
   const std::filesystem::path to =
       options.out.empty() ? default_output(file) : std::filesystem::path(options.out);
-  const record::Recovery found = record::recover_session(file, to, known_tables());
+  ChannelTables channels;
+  const record::Recovery found =
+      record::recover_session(file, to, known_tables(), [&](const record::SessionInfo& info) {
+        return channels.of(info);
+      });
   if (!found.anything()) {
     fmt::print("{}: nothing of a session is left in its {} bytes; nothing was written\n", file,
                found.file_bytes);

@@ -108,7 +108,8 @@ Presented read_presented(Table& document, const Names& names, const TrialsDefini
       sights,
       [&d](Table& table, const std::string& key) {
         return d.keys.bits_of(read_window_keys(table, key));
-      }};
+      },
+      d.channels};
   presented.stages = read_stages(root, source);
   return presented;
 }

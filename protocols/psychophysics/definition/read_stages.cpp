@@ -9,6 +9,7 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/random.h"
+#include "core/channel/channel_set.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -72,6 +73,7 @@ std::uint64_t read_mask(Table& table, const std::string& key, const Reading& rea
 }
 
 constexpr const char* kNoCondition = "no such condition";
+constexpr Bounds kMeasured{-1e9, 1e9};  // in the channel's own unit
 
 const Schema<Until>& until_schema() {
   using U = Until;
@@ -85,6 +87,14 @@ const Schema<Until>& until_schema() {
           .otherwise(kNoCondition)
           .bits("buttons", &U::buttons,
                 "Buttons of the device of which one must be pressed for the stage to end")
+          .otherwise(kNoCondition)
+          .number("above", &U::above, kMeasured, "",
+                  "Value that the channel must exceed for the stage to end, in its own unit")
+          .only_if([](const U& until) { return until.channel.has_value(); })
+          .otherwise(kNoCondition)
+          .number("below", &U::below, kMeasured, "",
+                  "Value that the channel must stay below for the stage to end, in its own unit")
+          .only_if([](const U& until) { return until.channel.has_value(); })
           .otherwise(kNoCondition)
           .number("time", &U::time, kDuration, "s",
                   "Time that must have passed since the stage began for it to end")
@@ -137,6 +147,22 @@ const Schema<Reading>& condition_schema() {
                     reading.stage().until.keys = keys ? keys(table, key) : 0;
                   })
           .otherwise(kNoCondition)
+          .custom("channel",
+                  "Quantity of a channel, \"CHANNEL.QUANTITY\", or \"CHANNEL\" for its first, that "
+                  "must be `above` or `below` a value for the stage to end",
+                  [](Table& table, const std::string& key, R& reading) {
+                    const auto& channels = reading.source->channels;
+                    const std::string name = reading.word(table.text(key));
+                    const auto place = channel::place_of(channels, name);
+                    reading.stage().until.channel = place.value_or(0);
+                    if (!place) {
+                      table.reject(key, fmt::format("\"{}\"", name),
+                                   channels.empty()
+                                       ? "no channel: the definition states none"
+                                       : "a quantity: " + channel::names_of(channels));
+                    }
+                  })
+          .otherwise(kNoCondition)
           .custom("for",
                   "Time for which every condition of the stage's end must hold; [shortest, "
                   "longest] is drawn in every trial",
@@ -151,13 +177,20 @@ void read_until(Table& table, const std::string& key, Reading& reading) {
   condition_schema().read(inner, reading);
   until_schema().read(inner, until);
   for (const char* condition :
-       {"inside", "contact", "speed_below", "speed_above", "buttons", "keys"}) {
+       {"inside", "contact", "speed_below", "speed_above", "buttons", "keys", "channel"}) {
     reading.waits = inner.has(condition) || reading.waits;
   }
   if (!reading.waits && !inner.has("time")) {
     table.reject(key,
                  "names no end of the stage; state a time, a place, a contact, a speed, "
-                 "buttons or keys");
+                 "buttons, keys or a channel");
+  }
+  if (until.channel && !inner.has("above") && !inner.has("below")) {
+    inner.reject("channel", "stands without a value; add above or below");
+  }
+  if (until.channel && until.above >= until.below) {
+    inner.reject("above", fmt::format("{:g}", until.above),
+                 fmt::format("less than below, {:g}", until.below));
   }
   if (until.speed_above >= until.speed_below) {
     inner.reject("speed_above", fmt::format("{:g} [m/s]", until.speed_above),

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/channel/channel_options.h"
 #include "protocols/psychophysics/definition/stage.h"
 
 namespace haptrial {
@@ -35,6 +36,7 @@ struct StageSource {
   std::vector<std::string> sights{};  // what can be shown; empty: anything
   /// The bits of a list of keys of the window by their names. Null: no keys are known.
   std::function<std::uint32_t(Table&, const std::string&)> keys{};
+  std::vector<channel::ChannelOptions> channels{};  // whose values stages may wait for
 };
 
 /// Reads the tables [[stages]]. Problems are noted in the table; keys in brackets are optional.
@@ -43,9 +45,9 @@ struct StageSource {
 ///     [fields]  names; together they act, the others do not
 ///     [show]    names, or texts such as "$seen"; "null" is nothing
 ///     until     one or more of: time [s], inside (a region, or several), contact (a field, or
-///               several), speed_below,
-///               speed_above [m/s], buttons (numbers from 0), keys (of the window, names); [for] =
-///               time for which they hold [s], or [shortest, longest]
+///               several), speed_below, speed_above [m/s], buttons (numbers from 0), keys (of the
+///               window, names), channel (a quantity) with above or below; [for] = time for which
+///               they hold [s], or [shortest, longest]
 ///     [timeout] after [s], then = "abort", "repeat" or "go on"
 ///     [require] max_of = "depth", "force" (with field) or "speed", at_least, else = as then
 ///     [onset]   speed_above [m/s]

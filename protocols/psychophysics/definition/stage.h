@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -15,7 +16,10 @@ struct Until {
   double speed_above{-1.0};                                     // [m/s]
   std::uint32_t buttons{0};  // any of these was pressed since the stage began; 0: not asked
   std::uint32_t keys{0};     // the same of the window's keys
-  double hold{0.0};          // >= 0 [s]
+  std::optional<std::size_t> channel;  // place of a channel's quantity among the readings' values
+  double above{-std::numeric_limits<double>::infinity()};  // its value is, in its own unit
+  double below{std::numeric_limits<double>::infinity()};   // likewise
+  double hold{0.0};                                        // >= 0 [s]
 };
 
 /// Consequence of a stage that takes too long, or in which too little was felt.

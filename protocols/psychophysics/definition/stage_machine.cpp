@@ -163,12 +163,22 @@ bool StageMachine::all_touch(std::uint64_t fields, Scenes scenes) const noexcept
   return true;
 }
 
+/// Whether a channel's value is as asked; one that is not there never is.
+bool StageMachine::measures(const Until& until, Readings readings) const noexcept {
+  if (!until.channel) {
+    return true;
+  }
+  const std::span<const double> values = readings.front().channels;
+  const bool there = *until.channel < values.size();
+  return there && values[*until.channel] > until.above && values[*until.channel] < until.below;
+}
+
 bool StageMachine::holds(const Until& until, Readings readings, Scenes scenes,
                          double speed) const noexcept {
   return first_outside(until.inside, readings).region < 0 && all_touch(until.contact, scenes) &&
          speed < until.speed_below && speed > until.speed_above &&
          (until.buttons == 0 || (until.buttons & buttons_pressed_) != 0) &&
-         (until.keys == 0 || (until.keys & keys_pressed_) != 0);
+         (until.keys == 0 || (until.keys & keys_pressed_) != 0) && measures(until, readings);
 }
 
 void StageMachine::measure(const Stage& stage, double speed, Scenes scenes) noexcept {

@@ -79,6 +79,7 @@ class StageMachine {
  private:
   void leave(StageEnd how, Consequence what, Scenes scenes) noexcept;
   bool holds(const Until& until, Readings readings, Scenes scenes, double speed) const noexcept;
+  bool measures(const Until& until, Readings readings) const noexcept;
   Outside first_outside(std::uint64_t regions, Readings readings) const noexcept;
   bool all_touch(std::uint64_t fields, Scenes scenes) const noexcept;
   void measure(const Stage& stage, double speed, Scenes scenes) noexcept;

@@ -14,6 +14,7 @@
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
+#include "core/channel/channel_row.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/late_window_row.h"
 #include "core/record/rows/moving_body_row.h"
@@ -56,6 +57,9 @@ void expect_described(const std::string& name, const TableList& tables) {
 
 TEST(SessionPageTest, TablesOfEverySession) { expect_described("session", session_tables()); }
 TEST(SessionPageTest, TablesOfAnyProtocol) { expect_described("responses", common_tables()); }
+TEST(SessionPageTest, TablesOfChannels) {
+  expect_described("channels", {&table_of<channel::IncidentRow>()});
+}
 TEST(SessionPageTest, TablesOfTrials) {
   TableList tables = trial_tables();
   tables.insert(tables.end(), adaptation_tables().begin(), adaptation_tables().end());

@@ -69,6 +69,25 @@ TEST_F(StageMachineTest, AStageOfATimeLastsAsManyTicks) {
   EXPECT_EQ(m.times()[1].how, StageEnd::kReached);
 }
 
+TEST_F(StageMachineTest, AMeasuredValueEndsAStageAndOneThatIsMissingNever) {
+  Stage stage;
+  stage.until.channel = 1;
+  stage.until.above = 2.0;
+  stage.timeout = 0.5;
+  StageMachine m = machine({stage});
+  std::array<double, 2> values{9.0, 0.0};
+  const auto with_values = [&](double t) {
+    values[1] = t < 0.3 - 1e-9 ? NAN : 2.5;
+    device::DeviceReading reading = at_height(1.0);
+    reading.channels = values;
+    return reading;
+  };
+  EXPECT_EQ(run(m, with_values), 301);
+  EXPECT_EQ(m.times()[0].how, StageEnd::kReached);
+  EXPECT_EQ(run(m, [](double) { return at_height(1.0); }), 500) << "there is no channel";
+  EXPECT_EQ(m.times()[0].how, StageEnd::kLate);
+}
+
 TEST_F(StageMachineTest, WhatHasToHoldHoldsWithoutABreak) {
   Stage stage;
   stage.until.inside = 0b1;

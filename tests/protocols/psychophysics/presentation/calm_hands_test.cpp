@@ -157,7 +157,7 @@ TEST_P(CalmHandsTest, NothingThatAHandDoesIsTakenForAFault) {
     if (person.tick()) {
       devices.resume();
     }
-    devices.read(0, 0, {}, 1.0 / kRate);
+    devices.read({}, 1.0 / kRate);
     devices.limit(feel(scene, devices.readings()[0], feeling.gives_way), {}, 1.0 / kRate);
     ASSERT_EQ(devices.fault(), device::Fault::kNone)
         << device::describe(devices.fault()) << ", after " << tick << " ms";

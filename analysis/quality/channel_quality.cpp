@@ -1,0 +1,76 @@
+#include "analysis/quality/channel_quality.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "core/channel/channel_row.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::analysis {
+namespace {
+
+constexpr std::string_view kPrefix = "channel_";
+
+std::size_t field_of(const record::TableDescription& table, std::string_view column) {
+  const auto found = std::ranges::find_if(table.fields(), [&](const record::Field& field) {
+    return field.column.name == column;
+  });
+  return static_cast<std::size_t>(found - table.fields().begin());
+}
+
+ChannelQuality quality_of(const record::SessionReader& reader, const std::string& table_name) {
+  const auto table = reader.description(table_name);
+  ChannelQuality quality;
+  quality.name = table_name.substr(kPrefix.size());
+  quality.samples = reader.count(*table);
+  if (quality.samples == 0) {
+    return quality;
+  }
+  const std::uint64_t last = quality.samples - 1;
+  const auto at = [&](const char* column, std::uint64_t row) {
+    return reader.integers(*table, column, row, 1).front();
+  };
+  const auto numbered = static_cast<std::uint64_t>(at("sample", last) - at("sample", 0)) + 1;
+  quality.missing = numbered - quality.samples;
+  quality.seconds = 1e-9 * static_cast<double>(at("time_ns", last) - at("time_ns", 0));
+  std::vector<double> all(quality.samples);
+  const std::array<record::ColumnTarget, 1> targets{
+      {{field_of(*table, "uncertainty"), reinterpret_cast<std::uint8_t*>(all.data())}}};
+  reader.columns(*table, 0, quality.samples, targets);
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::nth_element(all.begin(), middle, all.end());
+  quality.uncertainty = *middle;
+  quality.largest_uncertainty = *std::max_element(all.begin(), all.end());
+  return quality;
+}
+
+}  // namespace
+
+double ChannelQuality::rate() const {
+  return seconds > 0.0 ? static_cast<double>(samples - 1) / seconds : 0.0;
+}
+
+std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader) {
+  const record::TableDescription& incidents = record::table_of<channel::IncidentRow>();
+  std::vector<ChannelQuality> all;
+  if (!reader.has(incidents)) {
+    return all;
+  }
+  for (const std::string& name : reader.table_names()) {
+    if (name.starts_with(kPrefix) && name != incidents.name()) {
+      all.push_back(quality_of(reader, name));
+    }
+  }
+  std::ranges::sort(all, {}, &ChannelQuality::name);
+  for (const channel::IncidentRow& row : reader.rows<channel::IncidentRow>()) {
+    const auto found = std::ranges::find(all, row.channel, &ChannelQuality::name);
+    if (found != all.end()) {
+      found->losses += row.what == channel::Incident::kLost ? 1 : 0;
+      found->clock_steps += row.what == channel::Incident::kClockStep ? 1 : 0;
+    }
+  }
+  return all;
+}
+
+}  // namespace haptrial::analysis

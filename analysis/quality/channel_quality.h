@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haptrial::record {
+class SessionReader;
+}
+
+namespace haptrial::analysis {
+
+/// How well a session recorded one of its channels.
+struct ChannelQuality {
+  std::string name;
+  std::uint64_t samples{0};
+  std::uint64_t missing{0};      // that the instrument counted and that never came
+  std::uint64_t losses{0};       // times that no data came any more
+  std::uint64_t clock_steps{0};  // of the instrument's clock
+  double seconds{0.0};           // from the first sample to the last
+  double uncertainty{0.0};       // of the samples' times, median [s]
+  double largest_uncertainty{0.0};  // [s]
+
+  /// Samples a second; 0 where there are less than two [Hz]
+  double rate() const;
+};
+
+/// The channels of a session, in the order of their names; none without.
+/// @throws InputError when the file is damaged.
+std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader);
+
+}  // namespace haptrial::analysis

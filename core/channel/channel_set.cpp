@@ -1,0 +1,230 @@
+#include "core/channel/channel_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/base/error.h"
+#include "core/record/rows/common_tables.h"
+
+namespace haptrial::channel {
+namespace {
+
+constexpr double kSimulatedRate = 100.0;  // where a plan states none [Hz]
+constexpr double kChunk = 0.5;            // of a table, so that no more is lost in a kill [s]
+constexpr std::size_t kLeastChunk = 16;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+double rate_of(const ChannelPlan& plan) { return plan.rate > 0.0 ? plan.rate : kSimulatedRate; }
+
+/// A table whose chunks are about half a second long, and no other table's.
+std::unique_ptr<ChannelTable> table_beside(const ChannelOptions& options,
+                                           const record::TableList& others) {
+  const auto wanted = static_cast<std::size_t>(kChunk * rate_of(options.plan));
+  std::size_t rows = std::clamp(wanted, kLeastChunk, record::kLongestChunk);
+  for (;; ++rows) {
+    auto table = std::make_unique<ChannelTable>(options.name, options.plan.quantities, rows);
+    record::TableList all = others;
+    all.push_back(&table->table());
+    try {
+      record::check_chunk_sizes(all);
+      return table;
+    } catch (const std::invalid_argument&) {
+      continue;  // another table has chunks of this size
+    }
+  }
+}
+
+double simulated(const SimulatedInput& input, double time) {
+  return input.mean +
+         input.amplitude * std::sin(2.0 * std::numbers::pi * input.frequency * time);
+}
+
+}  // namespace
+
+ChannelSet::ChannelSet(const std::vector<ChannelOptions>& options,
+                       const record::TableList& tables, bool real)
+    : real_(real) {
+  record::TableList others = tables;
+  if (!options.empty()) {
+    others = record::with_tables(others, {&record::table_of<IncidentRow>()});
+    record::check_chunk_sizes(others);
+  }
+  for (const ChannelOptions& each : options) {
+    Part part;
+    part.options = each;
+    part.table = table_beside(each, others);
+    others.push_back(&part.table->table());
+    part.at = values_.size();
+    part.lost = fmt::format("channel {} is lost", each.name);
+    for (const Quantity& quantity : each.plan.quantities) {
+      part.beyond.push_back(fmt::format("channel {}: {} is beyond the limit of {:g} {}", each.name,
+                                        quantity.name, each.limit.value_or(0.0), quantity.unit));
+      values_.push_back(kNone);
+    }
+    parts_.push_back(std::move(part));
+  }
+}
+
+record::TableList ChannelSet::tables() const {
+  record::TableList tables;
+  for (const Part& part : parts_) {
+    tables.push_back(&part.table->table());
+  }
+  if (!parts_.empty()) {
+    tables.push_back(&record::table_of<IncidentRow>());
+  }
+  return tables;
+}
+
+std::vector<std::string> ChannelSet::start(const Channel::Now& now,
+                                           const std::vector<std::uint64_t>& first) {
+  std::vector<std::string> notices;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    Part& part = parts_[i];
+    part.next = i < first.size() ? first[i] : 0;
+    if (real_) {
+      part.channel = std::make_unique<Channel>(part.options, now, part.next);
+    }
+  }
+  for (Part& part : parts_) {
+    const std::string why = part.channel ? part.channel->wait_until_open() : "";
+    if (!why.empty() && part.options.required) {
+      throw RunError(fmt::format("channel {}: {}; the session needs it (required = true)",
+                                 part.options.name, why));
+    }
+    if (!why.empty()) {
+      notices.push_back(fmt::format("channel {}: {}; the session goes on without it, and looks "
+                                    "for it twice a second",
+                                    part.options.name, why));
+    }
+  }
+  return notices;
+}
+
+void ChannelSet::collect(std::int64_t now_ns,
+                         const std::function<void(const record::Rows&)>& put) {
+  std::vector<IncidentRow> incidents;
+  for (Part& part : parts_) {
+    if (!part.channel) {
+      simulate(part, now_ns, put);
+      continue;
+    }
+    part.channel->log().flush([&](std::span<const ChannelRow> rows) {
+      put(record::Rows(part.table->table(), rows.data(), rows.size()));
+    });
+    for (IncidentRow& row : part.channel->take_incidents()) {
+      if (row.what == Incident::kLost || row.what == Incident::kBack) {
+        news_.push_back(row.what == Incident::kBack
+                            ? fmt::format("channel {} is back after {:.1f} s", row.channel, row.amount)
+                            : fmt::format("channel {} is lost: {}", row.channel, row.text));
+      }
+      incidents.push_back(std::move(row));
+    }
+  }
+  if (!incidents.empty()) {
+    put(record::Rows(std::span<const IncidentRow>(incidents)));
+  }
+}
+
+/// The samples up to now, as an instrument of the stated rate would have given them.
+void ChannelSet::simulate(Part& part, std::int64_t now_ns,
+                          const std::function<void(const record::Rows&)>& put) {
+  std::vector<ChannelRow> rows;
+  const double rate = rate_of(part.options.plan);
+  for (;; ++part.next) {
+    ChannelRow row;
+    row.sample = part.next;
+    row.device_time = static_cast<double>(part.next) / rate;
+    row.time_ns = row.received_ns = std::llround(1e9 * row.device_time);
+    if (row.time_ns >= now_ns) {
+      break;
+    }
+    std::fill_n(row.values.begin(), part.options.plan.quantities.size(),
+                simulated(part.options.simulated, row.device_time));
+    rows.push_back(row);
+  }
+  if (!rows.empty()) {
+    put(record::Rows(part.table->table(), rows.data(), rows.size()));
+  }
+}
+
+std::vector<std::string> ChannelSet::take_news() { return std::exchange(news_, {}); }
+
+void ChannelSet::take(std::int64_t time_ns) noexcept {
+  alarm_ = Alarm::kNone;
+  sentence_ = "";
+  for (Part& part : parts_) {
+    const std::size_t count = part.options.plan.quantities.size();
+    bool live = !real_;
+    if (part.channel) {
+      const ChannelState& state = part.channel->newest();
+      live = state.live;
+      for (std::size_t i = 0; i < count; ++i) {
+        values_[part.at + i] = live ? state.values[i] : kNone;
+      }
+    } else if (live) {
+      std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(part.at), count,
+                  simulated(part.options.simulated, 1e-9 * static_cast<double>(time_ns)));
+    }
+    judge(part, live);
+  }
+}
+
+/// A value beyond its limit weighs more than a channel that is lost.
+void ChannelSet::judge(const Part& part, bool live) noexcept {
+  if (!live && part.options.required && alarm_ == Alarm::kNone) {
+    alarm_ = Alarm::kLost;
+    sentence_ = part.lost.c_str();
+  }
+  if (!part.options.limit || alarm_ == Alarm::kBeyond) {
+    return;
+  }
+  for (std::size_t i = 0; i < part.beyond.size(); ++i) {
+    if (std::abs(values_[part.at + i]) > *part.options.limit) {
+      alarm_ = Alarm::kBeyond;
+      sentence_ = part.beyond[i].c_str();
+      return;
+    }
+  }
+}
+
+std::vector<ChannelSet::Seen> ChannelSet::seen() const {
+  std::vector<Seen> all;
+  for (const Part& part : parts_) {
+    if (part.options.console) {
+      all.push_back({&part.options, part.channel ? part.channel->seen() : ChannelState{}});
+    }
+  }
+  return all;
+}
+
+std::optional<std::size_t> place_of(const std::vector<ChannelOptions>& channels,
+                                    std::string_view name) {
+  std::size_t at = 0;
+  for (const ChannelOptions& channel : channels) {
+    const auto& quantities = channel.plan.quantities;
+    for (std::size_t i = 0; i < quantities.size(); ++i) {
+      if ((i == 0 && name == channel.name) || name == channel.name + "." + quantities[i].name) {
+        return at + i;
+      }
+    }
+    at += quantities.size();
+  }
+  return std::nullopt;
+}
+
+std::string names_of(const std::vector<ChannelOptions>& channels) {
+  std::vector<std::string> names;
+  for (const ChannelOptions& channel : channels) {
+    for (const Quantity& quantity : channel.plan.quantities) {
+      names.push_back(channel.name + "." + quantity.name);
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace haptrial::channel
