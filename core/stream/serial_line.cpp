@@ -1,36 +1,18 @@
 #include "core/stream/serial_line.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/serial_port.h"
 
 namespace haptrial::markers {
 namespace {
-
-constexpr std::array<std::pair<int, speed_t>, 8> kRates{{{9600, B9600},
-                                                         {19200, B19200},
-                                                         {38400, B38400},
-                                                         {57600, B57600},
-                                                         {115200, B115200},
-                                                         {230400, B230400},
-                                                         {460800, B460800},
-                                                         {921600, B921600}}};
-
-const std::pair<int, speed_t>* rate_of(int baud) noexcept {
-  const auto* found = std::find_if(kRates.begin(), kRates.end(),
-                                   [baud](const auto& rate) { return rate.first == baud; });
-  return found == kRates.end() ? nullptr : found;
-}
 
 [[noreturn]] void refuse(const std::string& device, const char* why) {
   throw InputError(
@@ -39,40 +21,17 @@ const std::pair<int, speed_t>* rate_of(int baud) noexcept {
                   device, why));
 }
 
-bool make_raw(int file, speed_t rate) {
-  termios settings{};
-  if (tcgetattr(file, &settings) != 0) {
-    return false;
-  }
-  cfmakeraw(&settings);
-  settings.c_cflag |= CLOCAL | CREAD;
-  settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
-  cfsetispeed(&settings, rate);
-  cfsetospeed(&settings, rate);
-  return tcsetattr(file, TCSANOW, &settings) == 0;
-}
-
-int open_line(const std::string& device) noexcept {
-  return open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-}
-
 }  // namespace
 
-bool SerialLine::has_rate(int baud) noexcept { return rate_of(baud) != nullptr; }
+bool SerialLine::has_rate(int baud) noexcept { return has_serial_rate(baud); }
 
 SerialLine::SerialLine(std::string device, int baud) : device_(std::move(device)), baud_(baud) {
-  const auto* rate = rate_of(baud);
-  if (rate == nullptr) {
+  if (!has_rate(baud)) {
     throw std::invalid_argument("SerialLine: baud is none of the common rates");
   }
-  file_ = open_line(device_);
+  file_ = open_serial_port(device_, baud);
   if (file_ < 0) {
-    refuse(device_, std::strerror(errno));
-  }
-  if (!make_raw(file_, rate->second)) {
-    const int error = errno;
-    close(file_);
-    refuse(device_, error == ENOTTY ? "is no serial line" : std::strerror(error));
+    refuse(device_, errno == ENOTTY ? "is no serial line" : std::strerror(errno));
   }
 }
 
@@ -113,15 +72,8 @@ void SerialLine::reopen() noexcept {
     return;
   }
   tried_ = now;
-  const int file = open_line(device_);
-  if (file < 0 || !make_raw(file, rate_of(baud_)->second)) {
-    if (file >= 0) {
-      close(file);
-    }
-    return;
-  }
-  file_ = file;
-  ++reopened_;
+  file_ = open_serial_port(device_, baud_);
+  reopened_ += file_ >= 0 ? 1 : 0;
 }
 
 }  // namespace haptrial::markers
