@@ -5,11 +5,19 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/channel/labjack_channel.h"
+#include "core/channel/rdt_channel.h"
+#include "core/channel/robotiq_channel.h"
+
 namespace haptrial::channel {
 namespace {
 
 std::vector<ChannelKind>& all_kinds() {
-  static std::vector<ChannelKind> kinds{};
+  static std::vector<ChannelKind> kinds{
+      labjack_channel(),
+      rdt_channel(),
+      robotiq_channel(),
+  };
   return kinds;
 }
 

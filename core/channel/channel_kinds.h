@@ -41,5 +41,7 @@ void add_kind_of_channel(const ChannelKind& kind);
 /// Quantities that a definition names: `quantities = { force = "N", time = "s" }`, in the order of
 /// the text.
 std::vector<Quantity> read_quantities(Table& table, std::string_view key);
+/// Notes the problems of quantities that stand under `key`: their names, and how many there are.
+void check_quantities(Table& table, std::string_view key, std::vector<Quantity>& quantities);
 
 }  // namespace haptrial::channel

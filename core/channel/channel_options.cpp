@@ -95,13 +95,10 @@ ChannelOptions read_channel(Table& table, const std::string& name) {
 
 }  // namespace
 
-std::vector<Quantity> read_quantities(Table& table, std::string_view key) {
-  std::vector<Quantity> quantities;
-  Table inner = table.table(key);
-  for (const std::string& name : inner.keys_as_written()) {
-    quantities.push_back({name, inner.text(name)});
-    if (!is_name(name)) {
-      table.reject(key, fmt::format("'{}'", name), kNameForm);
+void check_quantities(Table& table, std::string_view key, std::vector<Quantity>& quantities) {
+  for (const Quantity& each : quantities) {
+    if (!is_name(each.name)) {
+      table.reject(key, fmt::format("'{}'", each.name), kNameForm);
     }
   }
   if (quantities.empty() || quantities.size() > kMostQuantities) {
@@ -109,6 +106,15 @@ std::vector<Quantity> read_quantities(Table& table, std::string_view key) {
                  fmt::format("1 to {}, each with its unit: {{ force = \"N\" }}", kMostQuantities));
     quantities.resize(1);
   }
+}
+
+std::vector<Quantity> read_quantities(Table& table, std::string_view key) {
+  std::vector<Quantity> quantities;
+  Table inner = table.table(key);
+  for (const std::string& name : inner.keys_as_written()) {
+    quantities.push_back({name, inner.text(name)});
+  }
+  check_quantities(table, key, quantities);
   return quantities;
 }
 
