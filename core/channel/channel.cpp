@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/exception_words.h"
+#include "core/base/utf8.h"
 
 namespace haptrial::channel {
 namespace {
@@ -19,6 +20,14 @@ constexpr std::size_t kBlock = 256;  // samples in a block of the log
 constexpr double kKept = 10.0;       // for which the log has room [s]
 constexpr std::size_t kLeastBlocks = 16;
 constexpr std::size_t kMostIncidents = 10000;  // that wait for the session
+
+/// What an instrument said, as a column of the session file can hold it.
+std::string readable(std::string text) {
+  const bool known = is_utf8(text);
+  std::ranges::replace_if(
+      text, [known](char byte) { return byte == '\0' || (!known && (byte & 0x80) != 0); }, '?');
+  return text;
+}
 
 std::size_t blocks_of(double rate) {
   return std::max(kLeastBlocks, static_cast<std::size_t>(kKept * rate) / kBlock + 1);
@@ -63,11 +72,19 @@ std::vector<IncidentRow> Channel::take_incidents() {
   return std::exchange(incidents_, {});
 }
 
-void Channel::note(Incident what, double amount, const std::string& text) {
+/// A long text fills several rows.
+void Channel::note(Incident what, double amount, const std::string& text,
+                   std::optional<std::int64_t> time_ns) {
+  const std::int64_t time = time_ns ? *time_ns : now_();
+  std::string rest = readable(text);
   const std::lock_guard lock(mutex_);
-  if (incidents_.size() < kMostIncidents) {
-    incidents_.push_back({now_(), options_.name, what, amount, text});
-  }
+  do {
+    const std::size_t size = whole_characters(rest, record::kTextBytes);
+    if (incidents_.size() < kMostIncidents) {
+      incidents_.push_back({time, options_.name, what, amount, rest.substr(0, size)});
+    }
+    rest.erase(0, size);
+  } while (!rest.empty());
 }
 
 void Channel::show(bool live) {
@@ -81,14 +98,16 @@ void Channel::take(const Measured& sample) {
   ChannelRow row;
   row.received_ns = now_();
   heard_ns_ = row.received_ns;
+  heard_ = true;
   const bool timed = std::isfinite(sample.device_time);
-  const SampleTime time = timed ? clock_.time_of(sample.device_time, row.received_ns)
-                                : std::as_const(clock_).time_of(row.received_ns, sample.waited);
+  const SampleTime time = sample.time ? *sample.time
+                          : timed ? clock_.time_of(sample.device_time, row.received_ns)
+                                  : std::as_const(clock_).time_of(row.received_ns, sample.waited);
   if (time.step != 0.0) {
-    note(Incident::kClockStep, time.step, "");
+    note(Incident::kClockStep, time.step);
   }
   if (sample.lost > 0) {
-    note(Incident::kGap, static_cast<double>(sample.lost), "");
+    note(Incident::kGap, static_cast<double>(sample.lost));
     next_ += sample.lost;
   }
   row.sample = next_++;
@@ -101,7 +120,7 @@ void Channel::take(const Measured& sample) {
   if (!log_.push(row)) {
     ++no_room_;
   } else if (no_room_ > 0) {
-    note(Incident::kDropped, static_cast<double>(std::exchange(no_room_, 0)), "");
+    note(Incident::kDropped, static_cast<double>(std::exchange(no_room_, 0)));
   }
   state_.values = row.values;
   show(true);
@@ -136,17 +155,21 @@ bool Channel::open() {
     return !std::exchange(tried_, true);
   }();
   if (source_ != nullptr && first) {
-    note(Incident::kOpened, options_.plan.rate, "");
+    note(Incident::kOpened, options_.plan.rate);
   } else if (source_ == nullptr && first) {
     lost_ns_ = now_();
     note(Incident::kLost, 0.0, why);
+  }
+  if (source_ != nullptr && options_.plan.quantities.empty()) {  // messages may take their time
+    come_back();
+    show(true);
   }
   changed_.notify_all();
   return source_ != nullptr;
 }
 
 void Channel::read() {
-  const std::int64_t before = heard_ns_;
+  heard_ = false;
   try {
     source_->read(*this, kLook);
   } catch (const std::exception& error) {
@@ -154,14 +177,17 @@ void Channel::read() {
     source_.reset();
     return;
   }
-  const std::int64_t now = now_();
-  if (heard_ns_ != before) {
-    if (lost_ns_ >= 0) {
-      note(Incident::kBack, 1e-9 * static_cast<double>(now - std::exchange(lost_ns_, -1)), "");
-    }
+  if (heard_) {
+    come_back();
   } else if (lost_ns_ < 0 && !options_.plan.quantities.empty() &&
-             1e-9 * static_cast<double>(now - heard_ns_) > options_.plan.patience) {
+             1e-9 * static_cast<double>(now_() - heard_ns_) > options_.plan.patience) {
     lose("no data come any more");
+  }
+}
+
+void Channel::come_back() {
+  if (lost_ns_ >= 0) {
+    note(Incident::kBack, 1e-9 * static_cast<double>(now_() - std::exchange(lost_ns_, -1)));
   }
 }
 

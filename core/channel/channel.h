@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -58,11 +59,17 @@ class Channel final : private ChannelInbox {
 
  private:
   void take(const Measured& sample) override;
-  void note(Incident what, double amount, const std::string& text) override;
+  void note(Incident what, double amount, const std::string& text,
+            std::optional<std::int64_t> time_ns) override;
+  void note(Incident what, double amount = 0.0, const std::string& text = "") {
+    note(what, amount, text, std::nullopt);
+  }
+  std::int64_t now() const override { return now_(); }
   void run();
   bool open();
   void read();
   void lose(const std::string& why);
+  void come_back();
   void show(bool live);
 
   ChannelOptions options_;
@@ -76,6 +83,7 @@ class Channel final : private ChannelInbox {
   SampleClock clock_;
   std::uint64_t next_;
   std::int64_t heard_ns_{0};  // when data came last
+  bool heard_{false};         // data came in this reading; the session's clock may stand
   std::int64_t lost_ns_{-1};  // since when the channel is lost; -1: it is not
   ChannelState state_;
   std::uint64_t no_room_{0};  // samples for which the log had no room

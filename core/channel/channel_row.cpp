@@ -5,7 +5,7 @@ namespace {
 
 record::EnumText incidents() {
   std::vector<record::EnumText::Entry> entries;
-  for (int i = 0; i <= static_cast<int>(Incident::kMessage); ++i) {
+  for (int i = 0; i <= static_cast<int>(Incident::kClockOffset); ++i) {
     const auto what = static_cast<Incident>(i);
     entries.push_back({static_cast<std::uint8_t>(what), name_of(what)});
   }
@@ -36,6 +36,8 @@ const char* name_of(Incident what) noexcept {
       return "dropped";
     case Incident::kMessage:
       return "message";
+    case Incident::kClockOffset:
+      return "clock_offset";
   }
   return "";
 }

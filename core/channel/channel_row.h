@@ -55,7 +55,10 @@ enum class Incident : std::uint8_t {
   kClockStep,  // amount: seconds by which the instrument's clock stepped against the session's
   kStatus,     // amount: a status of the instrument; the text says what it means
   kDropped,    // amount: samples for which the program had no room
-  kMessage,    // the text is what the instrument said
+  kMessage,    // the text is what the instrument said; amount: the time is within this of the truth,
+               // 0 for the time at which it came [s]
+  kClockOffset,  // amount: seconds to add to the instrument's times, as measured just now; the text
+                 // has their uncertainty
 };
 const char* name_of(Incident what) noexcept;
 

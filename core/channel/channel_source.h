@@ -3,10 +3,12 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "core/channel/channel_row.h"
+#include "core/channel/sample_clock.h"
 
 namespace haptrial::channel {
 
@@ -17,6 +19,9 @@ struct Measured {
   double device_time{std::numeric_limits<double>::quiet_NaN()};
   double waited{0.0};     // longest time that it may have lain there before it was read >= 0 [s]
   std::uint64_t lost{0};  // samples before it that the instrument counted and that never came
+  /// When it was measured, if the source itself knows that on the session's clock; `waited` and the
+  /// estimate from `device_time` are then not used.
+  std::optional<SampleTime> time{};
 };
 
 /// Takes what a source reads. The source's thread.
@@ -25,7 +30,11 @@ class ChannelInbox {
   virtual ~ChannelInbox() = default;
   /// A sample that has come just now.
   virtual void take(const Measured& sample) = 0;
-  virtual void note(Incident what, double amount = 0.0, const std::string& text = "") = 0;
+  /// @param time_ns  when it happened, since the session's first tick; nothing: just now
+  virtual void note(Incident what, double amount = 0.0, const std::string& text = "",
+                    std::optional<std::int64_t> time_ns = {}) = 0;
+  /// Time since the session's first tick [ns].
+  virtual std::int64_t now() const = 0;
 };
 
 /// An instrument that is open. All members are called on the channel's own thread, so that they may

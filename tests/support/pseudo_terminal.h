@@ -13,6 +13,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -57,6 +58,16 @@ class PseudoTerminal {
       all.push_back(each.byte);
     }
     return all;
+  }
+  /// The device sends these bytes.
+  void send(std::string_view text) const {
+    while (!text.empty()) {
+      const ssize_t count = write(master_, text.data(), text.size());
+      if (count <= 0) {
+        throw std::runtime_error("the pseudo-terminal takes nothing");
+      }
+      text.remove_prefix(static_cast<std::size_t>(count));
+    }
   }
   /// The device is unplugged.
   void unplug() {
