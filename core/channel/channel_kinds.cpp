@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/channel/labjack_channel.h"
+#include "core/channel/line_channel.h"
 #include "core/channel/rdt_channel.h"
 #include "core/channel/robotiq_channel.h"
 
@@ -17,6 +18,7 @@ std::vector<ChannelKind>& all_kinds() {
       labjack_channel(),
       rdt_channel(),
       robotiq_channel(),
+      line_kind(),
   };
   return kinds;
 }

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/channel/channel_kinds.h"
+
+namespace haptrial::channel {
+
+/// Kind `line`: an instrument that prints a line of numbers for each sample, over a serial line or
+/// a named pipe. Boards with a program of one's own, load cells and grip sensors do.
+/// docs/channels.md has its keys.
+ChannelKind line_kind();
+
+}  // namespace haptrial::channel
