@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "analysis/document/finding_json_internal.h"
+#include "analysis/exchange/channel_findings.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 
@@ -15,7 +16,7 @@ namespace haptrial::analysis {
 namespace {
 
 std::vector<FindingSource>& sources() {
-  static std::vector<FindingSource> all;
+  static std::vector<FindingSource> all{{"channels", channel_findings}};
   return all;
 }
 
@@ -30,6 +31,11 @@ void complete(const std::string& list, FindingRow& row) {
     }
   }
   row.insert(row.begin(), Finding{.name = "findings", .value = list, .form = JsonForm::kAbsent});
+}
+
+/// The first of its own findings is its name.
+bool has_something(const FindingList& list) {
+  return list.findings.size() > 1 || !list.tables.empty() || !list.figures.empty();
 }
 
 FindingList found_by(const FindingSource& source,
@@ -75,14 +81,14 @@ void add_finding_source(FindingSource source) {
 
 std::vector<FindingList> own_findings(const std::vector<std::filesystem::path>& sessions) {
   std::vector<FindingList> lists;
-  if (sources().empty()) {
-    return lists;
-  }
   const bool simulated = std::ranges::any_of(sessions, [](const std::filesystem::path& file) {
     return record::SessionReader(file).info().simulated;
   });
   for (const FindingSource& source : sources()) {
-    lists.push_back(found_by(source, sessions, simulated));
+    FindingList list = found_by(source, sessions, simulated);
+    if (has_something(list)) {
+      lists.push_back(std::move(list));
+    }
   }
   return lists;
 }

@@ -18,7 +18,7 @@ struct FindingSource {
   std::function<FindingList(const std::vector<std::filesystem::path>& sessions)> find;
 };
 
-/// Adds a source. Call before threads are started.
+/// Adds a source; that of the sessions' channels is there. Call before threads are started.
 /// @throws std::invalid_argument for a name with another character, or one that is empty or taken
 void add_finding_source(FindingSource source);
 
