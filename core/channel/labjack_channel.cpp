@@ -74,12 +74,7 @@ const Schema<LabJackOptions>& labjack_schema() {
                       into.inputs.push_back(labjack_input_schema().read(inner));
                     }
                   })
-          .required()
-          .check([](Table& table, L& options) {
-            if (options.host.empty()) {
-              table.reject("host", "empty", "a name or address");
-            }
-          });
+          .required();
   return schema;
 }
 
@@ -122,14 +117,6 @@ const char* exception_text(int code) {
   return kTexts.at(code > 0 && code < static_cast<int>(kTexts.size()) ? code : 0);
 }
 
-/// Takes no samples: for the reading that shows whether an instrument answers.
-class NoInbox final : public ChannelInbox {
- public:
-  void take(const Measured& /*sample*/) override { answered = true; }
-  void note(Incident /*what*/, double /*amount*/, const std::string& /*text*/) override {}
-  bool answered{false};
-};
-
 class LabJackSource final : public ChannelSource {
  public:
   explicit LabJackSource(const LabJackOptions& options)
@@ -139,23 +126,30 @@ class LabJackSource final : public ChannelSource {
         values_(options.inputs.size()),
         connection_(Connection::stream("LabJack", options.host, options.port)),
         bytes_(4 * (kModbusHead + kModbusRest)) {
-    NoInbox first;
-    while (!first.answered) {
-      read(first, kLabJackSilence);
+    while (!poll(nullptr, kLabJackSilence)) {  // shows that the instrument answers
     }
-    absent_ = 0;  // is said with the first sample
   }
 
   void read(ChannelInbox& into, milliseconds patience) override {
+    if (poll(&into, patience)) {
+      take_sample(into);
+    }
+  }
+
+ private:
+  /// Asks for all inputs when that is due, and takes what comes. @param into  null: nobody is told
+  /// @returns whether the last of the inputs has come
+  bool poll(ChannelInbox* into, milliseconds patience) {
     const auto until = steady_clock::now() + patience;
     if (!asked_) {
       std::this_thread::sleep_until(std::min(due_, until));
       if (steady_clock::now() < due_) {
-        return;
+        return false;
       }
       run_ = 0;
       asked_ = true;
       asked_at_ = steady_clock::now();
+      asked_ns_ = into == nullptr ? 0 : into->now();
       ask();
     }
     while (asked_) {
@@ -171,9 +165,9 @@ class LabJackSource final : public ChannelSource {
     if (asked_ && steady_clock::now() - asked_at_ > kLabJackSilence) {
       throw RunError(connection_.name() + ": does not answer");
     }
+    return !asked_;
   }
 
- private:
   void ask() {
     const InputRun& run = runs_[run_];
     ++transaction_;
@@ -193,7 +187,7 @@ class LabJackSource final : public ChannelSource {
     connection_.send(request);
   }
 
-  void take_answers(ChannelInbox& into) {
+  void take_answers(ChannelInbox* into) {
     const std::span<const std::uint8_t> bytes = bytes_;
     std::size_t at = 0;
     while (at + kModbusHead <= filled_) {
@@ -205,7 +199,7 @@ class LabJackSource final : public ChannelSource {
         break;
       }
       if (!asked_ || high_first(bytes, at) != transaction_) {
-        into.note(Incident::kRepeated, 1.0);
+        note(into, Incident::kRepeated, 1.0);
       } else {
         take_answer(into, bytes.subspan(at + kModbusHead, rest));
       }
@@ -217,13 +211,13 @@ class LabJackSource final : public ChannelSource {
   }
 
   /// Nothing shows at which of the bytes an answer begins, so that the connection is given up.
-  [[noreturn]] void refuse_bytes(ChannelInbox& into, std::size_t count) {
-    into.note(Incident::kMalformed, static_cast<double>(count));
+  [[noreturn]] void refuse_bytes(ChannelInbox* into, std::size_t count) {
+    note(into, Incident::kMalformed, static_cast<double>(count));
     throw RunError(connection_.name() + ": sends what is no answer of Modbus");
   }
 
   /// @param answer  unit, function and what follows
-  void take_answer(ChannelInbox& into, std::span<const std::uint8_t> answer) {
+  void take_answer(ChannelInbox* into, std::span<const std::uint8_t> answer) {
     const InputRun& run = runs_[run_];
     if (answer[1] == (kReadRegisters | 0x80)) {
       const std::string last =
@@ -241,13 +235,22 @@ class LabJackSource final : public ChannelSource {
     }
     if (++run_ < runs_.size()) {
       ask();
-    } else {
-      take_sample(into);
+      return;
+    }
+    asked_ = false;
+    const auto now = steady_clock::now();
+    const auto period = std::chrono::duration_cast<steady_clock::duration>(
+        std::chrono::duration<double>(1.0 / options_.rate));
+    due_ = std::max(due_ + period, now - period);
+  }
+
+  static void note(ChannelInbox* into, Incident what, double amount) {
+    if (into != nullptr) {
+      into->note(what, amount);
     }
   }
 
   void take_sample(ChannelInbox& into) {
-    const auto now = steady_clock::now();
     std::uint32_t absent = 0;  // a bit for each input without a reading
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const LabJackInput& input = options_.inputs[i];
@@ -261,12 +264,8 @@ class LabJackSource final : public ChannelSource {
     // The reading lies between request and answer: half of that before now, and as far to each
     // side.
     Measured sample{values_};
-    sample.waited = std::chrono::duration<double>(now - asked_at_).count();
+    sample.waited = 1e-9 * static_cast<double>(into.now() - asked_ns_);
     into.take(sample);
-    asked_ = false;
-    const auto period = std::chrono::duration_cast<steady_clock::duration>(
-        std::chrono::duration<double>(1.0 / options_.rate));
-    due_ = std::max(due_ + period, now - period);
   }
 
   void note_absent(ChannelInbox& into, std::uint32_t absent) {
@@ -296,6 +295,7 @@ class LabJackSource final : public ChannelSource {
   std::size_t run_{0};  // of the request that waits for its answer
   bool asked_{false};
   std::uint32_t absent_{0};
+  std::int64_t asked_ns_{0};  // when the first request of a sample went out, by the session's clock
   steady_clock::time_point asked_at_{};
   steady_clock::time_point due_{steady_clock::now()};
 };

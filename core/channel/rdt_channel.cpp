@@ -72,9 +72,6 @@ const Schema<RdtOptions>& rdt_schema() {
           .flag("bias", &R::bias,
                 "Whether the load at the start of a session counts as zero from then on")
           .check([](Table& table, R& options) {
-            if (options.host.empty()) {
-              table.reject("host", "empty", "a name or address");
-            }
             if (options.counts_per_force.has_value() != options.counts_per_torque.has_value()) {
               table.reject(
                   options.counts_per_force ? "counts_per_force" : "counts_per_torque",
