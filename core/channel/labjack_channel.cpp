@@ -22,6 +22,7 @@ using std::chrono::steady_clock;
 
 constexpr long kMostInput = 254;
 constexpr milliseconds kLabJackSilence{2000};  // without an answer the instrument is lost
+constexpr milliseconds kLabJackLook{20};       // for that
 constexpr float kNoReading = -9999.0F;         // that the instrument gives for an input without one
 constexpr std::size_t kModbusHead = 6;         // bytes: transaction, protocol, length of the rest
 constexpr std::size_t kModbusRest = 254;       // bytes at most
@@ -126,7 +127,7 @@ class LabJackSource final : public ChannelSource {
         values_(options.inputs.size()),
         connection_(Connection::stream("LabJack", options.host, options.port)),
         bytes_(4 * (kModbusHead + kModbusRest)) {
-    while (!poll(nullptr, kLabJackSilence)) {  // shows that the instrument answers
+    while (!poll(nullptr, kLabJackLook)) {  // shows that the instrument answers
     }
   }
 
