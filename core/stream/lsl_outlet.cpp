@@ -12,14 +12,11 @@
 
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
-#include "core/device/dynamic_library.h"
+#include "core/stream/lsl_library.h"
 
 namespace haptrial::stream {
 namespace {
 
-constexpr const char* kLayer = "the Lab Streaming Layer, https://labstreaminglayer.org";
-constexpr std::int32_t kDouble = 2;  // channel formats
-constexpr std::int32_t kText = 3;
 constexpr double kIrregular = 0.0;          // rate of a stream without one
 constexpr std::int32_t kChunkAsPushed = 0;  // samples are sent on as they were pushed
 constexpr std::int32_t kBuffered = 360;     // kept for who listens late or slowly [s]
@@ -42,42 +39,6 @@ constexpr std::array<LslOutlet::Channel, 15> kChannels{{
     {"saturated", "1", "State"},
 }};
 
-/// The functions of the library, as its interface documents them.
-struct Functions {
-  using Info = void*;
-  using Xml = void*;
-  using Outlet = void*;
-  Info (*create_streaminfo)(const char* name, const char* type, std::int32_t channels, double rate,
-                            std::int32_t format, const char* source_id);
-  Xml (*get_desc)(Info);
-  Xml (*append_child)(Xml, const char* name);
-  Xml (*append_child_value)(Xml, const char* name, const char* value);
-  Outlet (*create_outlet)(Info, std::int32_t chunk, std::int32_t max_buffered);
-  std::int32_t (*push_chunk)(Outlet, const double* values, unsigned long count,
-                             const double* timestamps);
-  std::int32_t (*push_text)(Outlet, const char** text, double timestamp);
-  double (*local_clock)();
-  const char* (*last_error)();
-  void (*destroy_outlet)(Outlet);
-  void (*destroy_streaminfo)(Info);
-};
-
-Functions load(const device::DynamicLibrary& library) {
-  Functions f{};
-  library.get(f.create_streaminfo, "lsl_create_streaminfo");
-  library.get(f.get_desc, "lsl_get_desc");
-  library.get(f.append_child, "lsl_append_child");
-  library.get(f.append_child_value, "lsl_append_child_value");
-  library.get(f.create_outlet, "lsl_create_outlet");
-  library.get(f.push_chunk, "lsl_push_chunk_dtn");
-  library.get(f.push_text, "lsl_push_sample_strt");
-  library.get(f.local_clock, "lsl_local_clock");
-  library.get(f.last_error, "lsl_last_error");
-  library.get(f.destroy_outlet, "lsl_destroy_outlet");
-  library.get(f.destroy_streaminfo, "lsl_destroy_streaminfo");
-  return f;
-}
-
 void append(const record::Sample& s, std::vector<double>& values) {
   values.push_back(static_cast<double>(s.sequence));
   for (const Eigen::Vector3d* vector : {&s.position, &s.velocity, &s.force}) {
@@ -93,11 +54,11 @@ double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 struct LslOutlet::Impl {
   Impl(const LslOptions& o, SessionClock clock)
-      : options(o), now(std::move(clock)), library(o.library, kLayer), lsl(load(library)) {}
+      : options(o), now(std::move(clock)), lsl(o.library) {}
   ~Impl() {
-    std::vector<Functions::Outlet> all{samples, markers};
+    std::vector<LslLibrary::Outlet> all{samples, markers};
     all.insert(all.end(), sides.begin(), sides.end());
-    for (const Functions::Outlet outlet : all) {
+    for (const LslLibrary::Outlet outlet : all) {
       if (outlet != nullptr) {
         lsl.destroy_outlet(outlet);
       }
@@ -106,21 +67,20 @@ struct LslOutlet::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  Functions::Outlet open_samples();
-  Functions::Outlet open_markers();
-  Functions::Outlet open_side(const SideStream& side);
-  Functions::Outlet opened(Functions::Info info, const std::string& name);
-  void describe(Functions::Info info);
+  LslLibrary::Outlet open_samples();
+  LslLibrary::Outlet open_markers();
+  LslLibrary::Outlet open_side(const SideStream& side);
+  LslLibrary::Outlet opened(LslLibrary::Info info, const std::string& name);
+  void describe(LslLibrary::Info info);
   void synchronise();
   void note(std::int32_t result, std::size_t count);
 
   LslOptions options;
   SessionClock now;
-  device::DynamicLibrary library;
-  Functions lsl;
-  Functions::Outlet samples{nullptr};
-  Functions::Outlet markers{nullptr};
-  std::vector<Functions::Outlet> sides;
+  LslLibrary lsl;
+  LslLibrary::Outlet samples{nullptr};
+  LslLibrary::Outlet markers{nullptr};
+  std::vector<LslLibrary::Outlet> sides;
   double offset{0.0};                    // of the layer's clock from the session's [s]
   std::optional<std::int64_t> measured;  // when the samples' offset was, on the session's clock
   std::vector<double> values;
@@ -145,8 +105,8 @@ void LslOutlet::Impl::synchronise() {
   }
 }
 
-void LslOutlet::Impl::describe(Functions::Info info) {
-  const Functions::Xml about = lsl.get_desc(info);
+void LslOutlet::Impl::describe(LslLibrary::Info info) {
+  const LslLibrary::Xml about = lsl.get_desc(info);
   lsl.append_child_value(about, "study", options.study.c_str());
   lsl.append_child_value(about, "subject", options.subject.c_str());
   lsl.append_child_value(about, "device", options.device.c_str());
@@ -154,8 +114,8 @@ void LslOutlet::Impl::describe(Functions::Info info) {
 }
 
 /// An outlet keeps a copy of its description, which is ours to destroy.
-Functions::Outlet LslOutlet::Impl::opened(Functions::Info info, const std::string& name) {
-  const Functions::Outlet outlet = lsl.create_outlet(info, kChunkAsPushed, kBuffered);
+LslLibrary::Outlet LslOutlet::Impl::opened(LslLibrary::Info info, const std::string& name) {
+  const LslLibrary::Outlet outlet = lsl.create_outlet(info, kChunkAsPushed, kBuffered);
   lsl.destroy_streaminfo(info);
   if (outlet == nullptr) {
     throw RunError(
@@ -164,19 +124,19 @@ Functions::Outlet LslOutlet::Impl::opened(Functions::Info info, const std::strin
   return outlet;
 }
 
-Functions::Outlet LslOutlet::Impl::open_samples() {
+LslLibrary::Outlet LslOutlet::Impl::open_samples() {
   const std::string name = "haptrial " + options.subject;
-  const Functions::Info info = lsl.create_streaminfo(
-      name.c_str(), "Haptics", static_cast<std::int32_t>(kChannels.size()), options.rate, kDouble,
-      fmt::format("haptrial-{}-{}-samples", options.study, options.subject).c_str());
+  const LslLibrary::Info info = lsl.create_streaminfo(
+      name.c_str(), "Haptics", static_cast<std::int32_t>(kChannels.size()), options.rate,
+      kLslDouble, fmt::format("haptrial-{}-{}-samples", options.study, options.subject).c_str());
   if (info == nullptr) {
     throw RunError(fmt::format("the Lab Streaming Layer takes no description of '{}': {}", name,
                                lsl.last_error()));
   }
   describe(info);
-  const Functions::Xml list = lsl.append_child(lsl.get_desc(info), "channels");
+  const LslLibrary::Xml list = lsl.append_child(lsl.get_desc(info), "channels");
   for (const Channel& channel : kChannels) {
-    const Functions::Xml one = lsl.append_child(list, "channel");
+    const LslLibrary::Xml one = lsl.append_child(list, "channel");
     lsl.append_child_value(one, "label", channel.label);
     lsl.append_child_value(one, "unit", channel.unit);
     lsl.append_child_value(one, "type", channel.type);
@@ -184,10 +144,10 @@ Functions::Outlet LslOutlet::Impl::open_samples() {
   return opened(info, name);
 }
 
-Functions::Outlet LslOutlet::Impl::open_markers() {
+LslLibrary::Outlet LslOutlet::Impl::open_markers() {
   const std::string name = "haptrial " + options.subject + " markers";
-  const Functions::Info info = lsl.create_streaminfo(
-      name.c_str(), "Markers", 1, kIrregular, kText,
+  const LslLibrary::Info info = lsl.create_streaminfo(
+      name.c_str(), "Markers", 1, kIrregular, kLslText,
       fmt::format("haptrial-{}-{}-markers", options.study, options.subject).c_str());
   if (info == nullptr) {
     throw RunError(fmt::format("the Lab Streaming Layer takes no description of '{}': {}", name,
@@ -197,11 +157,11 @@ Functions::Outlet LslOutlet::Impl::open_markers() {
   return opened(info, name);
 }
 
-Functions::Outlet LslOutlet::Impl::open_side(const SideStream& side) {
+LslLibrary::Outlet LslOutlet::Impl::open_side(const SideStream& side) {
   const std::string name = fmt::format("haptrial {} {}", options.subject, side.name);
-  const Functions::Info info = lsl.create_streaminfo(
+  const LslLibrary::Info info = lsl.create_streaminfo(
       name.c_str(), side.type.c_str(), static_cast<std::int32_t>(side.channels.size()),
-      side.rate > 0.0 ? side.rate : kIrregular, kDouble,
+      side.rate > 0.0 ? side.rate : kIrregular, kLslDouble,
       fmt::format("haptrial-{}-{}-{}", options.study, options.subject, side.name).c_str());
   if (info == nullptr) {
     throw RunError(fmt::format("the Lab Streaming Layer takes no description of '{}': {}", name,
@@ -211,9 +171,9 @@ Functions::Outlet LslOutlet::Impl::open_side(const SideStream& side) {
   for (const auto& [line, value] : side.about) {
     lsl.append_child_value(lsl.get_desc(info), line.c_str(), value.c_str());
   }
-  const Functions::Xml list = lsl.append_child(lsl.get_desc(info), "channels");
+  const LslLibrary::Xml list = lsl.append_child(lsl.get_desc(info), "channels");
   for (const std::string& channel : side.channels) {
-    const Functions::Xml one = lsl.append_child(list, "channel");
+    const LslLibrary::Xml one = lsl.append_child(list, "channel");
     lsl.append_child_value(one, "label", channel.c_str());
     lsl.append_child_value(one, "unit", side.unit.c_str());
     lsl.append_child_value(one, "type", side.type.c_str());
@@ -232,9 +192,7 @@ void LslOutlet::Impl::note(std::int32_t result, std::size_t count) {
 
 std::span<const LslOutlet::Channel> LslOutlet::channels() { return kChannels; }
 
-void LslOutlet::check_library(const std::string& library) {
-  load(device::DynamicLibrary(library, kLayer));
-}
+void LslOutlet::check_library(const std::string& library) { const LslLibrary needed(library); }
 
 LslOutlet::LslOutlet(const LslOptions& options, SessionClock now)
     : impl_(std::make_unique<Impl>(options, std::move(now))) {
