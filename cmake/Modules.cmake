@@ -255,6 +255,7 @@ function(haptrial_test_needs)
   target_sources(test_force_analysis
                  PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/exchange/small_session.cpp)
   add_dependencies(test_stream stand_in_lsl)
+  add_dependencies(test_channel stand_in_lsl)
   add_dependencies(test_device stand_in_dhd stand_in_dhd_only stand_in_hd)
 endfunction()
 

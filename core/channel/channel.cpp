@@ -29,6 +29,13 @@ std::string readable(std::string text) {
   return text;
 }
 
+/// The time of a sample that was stamped `latency` after its measurement.
+SampleTime stamped(SampleTime time, const ClockOptions& options) {
+  time.time_ns -= std::llround(1e9 * options.latency);
+  time.uncertainty = std::hypot(time.uncertainty, options.latency_uncertainty);
+  return time;
+}
+
 std::size_t blocks_of(double rate) {
   return std::max(kLeastBlocks, static_cast<std::size_t>(kKept * rate) / kBlock + 1);
 }
@@ -100,9 +107,10 @@ void Channel::take(const Measured& sample) {
   heard_ns_ = row.received_ns;
   heard_ = true;
   const bool timed = std::isfinite(sample.device_time);
-  const SampleTime time = sample.time ? *sample.time
-                          : timed ? clock_.time_of(sample.device_time, row.received_ns)
-                                  : std::as_const(clock_).time_of(row.received_ns, sample.waited);
+  const SampleTime time =
+      sample.time ? stamped(*sample.time, options_.plan.clock)
+      : timed     ? clock_.time_of(sample.device_time, row.received_ns)
+                  : std::as_const(clock_).time_of(row.received_ns, sample.waited);
   if (time.step != 0.0) {
     note(Incident::kClockStep, time.step);
   }
@@ -160,7 +168,7 @@ bool Channel::open() {
     lost_ns_ = now_();
     note(Incident::kLost, 0.0, why);
   }
-  if (source_ != nullptr && options_.plan.quantities.empty()) {  // messages may take their time
+  if (source_ != nullptr && source_->may_be_silent()) {
     come_back();
     show(true);
   }
@@ -179,7 +187,7 @@ void Channel::read() {
   }
   if (heard_) {
     come_back();
-  } else if (lost_ns_ < 0 && !options_.plan.quantities.empty() &&
+  } else if (lost_ns_ < 0 && !source_->may_be_silent() &&
              1e-9 * static_cast<double>(now_() - heard_ns_) > options_.plan.patience) {
     lose("no data come any more");
   }

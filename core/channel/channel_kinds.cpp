@@ -7,6 +7,7 @@
 
 #include "core/channel/labjack_channel.h"
 #include "core/channel/line_channel.h"
+#include "core/channel/lsl_channel.h"
 #include "core/channel/rdt_channel.h"
 #include "core/channel/robotiq_channel.h"
 
@@ -16,9 +17,10 @@ namespace {
 std::vector<ChannelKind>& all_kinds() {
   static std::vector<ChannelKind> kinds{
       labjack_channel(),
+      line_channel(),
+      lsl_channel(),
       rdt_channel(),
       robotiq_channel(),
-      line_kind(),
   };
   return kinds;
 }

@@ -19,7 +19,7 @@ struct Measured {
   double device_time{std::numeric_limits<double>::quiet_NaN()};
   double waited{0.0};     // longest time that it may have lain there before it was read >= 0 [s]
   std::uint64_t lost{0};  // samples before it that the instrument counted and that never came
-  /// When it was measured, if the source itself knows that on the session's clock; `waited` and the
+  /// When it was stamped, if the source itself knows that on the session's clock; `waited` and the
   /// estimate from `device_time` are then not used.
   std::optional<SampleTime> time{};
 };
@@ -45,6 +45,8 @@ class ChannelSource {
   /// Reads what comes within `patience`, and returns at once if something came.
   /// @throws RunError in one sentence if the instrument is lost; it is then opened anew
   virtual void read(ChannelInbox& into, std::chrono::milliseconds patience) = 0;
+  /// Whether silence is no loss, as of events; read() then throws when the instrument is lost.
+  virtual bool may_be_silent() const { return false; }
 };
 
 }  // namespace haptrial::channel

@@ -441,7 +441,7 @@ class LineSource final : public ChannelSource {
 
 }  // namespace
 
-ChannelKind line_kind() {
+ChannelKind line_channel() {
   return {"line", "a board or sensor that prints a line of numbers for each sample",
           [](Table& table) {
             const LineOptions options = line_schema().read(table);

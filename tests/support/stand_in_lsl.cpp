@@ -1,29 +1,40 @@
-// A stand-in for liblsl: the same C functions, which keep what was pushed. For a test in another
-// process, STAND_IN_LSL_FILE names a file to which each outlet writes what it got when it closes;
-// the layer's clock then goes as the real one does.
+// A stand-in for liblsl: the same C functions, which keep what was pushed, and inlets of streams
+// that a test offers. For a test in another process, STAND_IN_LSL_FILE names a file to which each
+// outlet writes what it got when it closes; the layer's clock then goes as the real one does.
 #include "tests/support/stand_in_lsl.h"
 
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iomanip>
 #include <memory>
 
+using haptrial::test::LslNetwork;
+using haptrial::test::LslOffer;
 using haptrial::test::LslRecord;
 using haptrial::test::LslStream;
 
 namespace {
 
 LslRecord record;
+LslNetwork network;
 
 struct Info;
 struct Node {
   Info* info;
   std::string path;
+  std::size_t index{0};  // among nodes of this path
 };
 struct Info {
   LslStream stream;
   std::vector<std::unique_ptr<Node>> nodes;
+  std::shared_ptr<LslOffer> offer{};  // of a stream that was found
+};
+struct Inlet {
+  std::shared_ptr<LslOffer> offer;
+  bool processes{true};    // until it is told not to
+  bool has_offset{false};  // which it then keeps
 };
 
 Node* child(Node* parent, const char* name) {
@@ -60,7 +71,54 @@ void tell(const LslStream& s) {
   }
 }
 
+/// Whether an offer has each NAME='VALUE' of a predicate, between which " and " stands.
+bool fits(const LslOffer& offer, std::string predicate) {
+  const std::pair<const char*, const std::string*> all[]{
+      {"name", &offer.name}, {"type", &offer.type}, {"source_id", &offer.source_id}};
+  predicate += " and ";
+  for (std::size_t end = 0; (end = predicate.find(" and ")) != std::string::npos;) {
+    bool holds = false;
+    for (const auto& [property, value] : all) {
+      holds = holds || predicate.substr(0, end) == std::string(property) + "='" + *value + "'";
+    }
+    if (!holds) {
+      return false;
+    }
+    predicate.erase(0, end + 5);
+  }
+  return true;
+}
+
+void* info_of(const std::shared_ptr<LslOffer>& offer) {
+  auto* info = new Info;
+  info->offer = offer;
+  info->nodes.push_back(std::make_unique<Node>(Node{info, ""}));
+  return info;
+}
+
+/// Waits for a sample. @param take  of it, under the mutex @returns its stamp; 0: none came
+template <class Take>
+double pulled(void* inlet, double timeout, std::int32_t* error, Take take) {
+  const auto* from = static_cast<Inlet*>(inlet);
+  LslOffer& offer = *from->offer;
+  std::unique_lock lock(network.mutex);
+  network.came.wait_for(lock, std::chrono::duration<double>(timeout),
+                        [&] { return offer.gone || !offer.sent.empty(); });
+  *error = 0;
+  if (offer.sent.empty()) {
+    *error = offer.gone ? -2 : 0;
+    return 0.0;
+  }
+  const LslOffer::Sent sample = offer.sent.front();
+  offer.sent.pop_front();
+  take(sample);
+  return sample.stamp + (from->processes ? offer.offset : 0.0);
+}
+
 double layer_clock() {
+  if (network.has_clock) {
+    return network.clock;
+  }
   if (std::getenv("STAND_IN_LSL_FILE") == nullptr) {
     return record.clock;
   }
@@ -127,6 +185,90 @@ const char* lsl_last_error() { return "the stand-in was told to fail"; }
 void lsl_destroy_outlet(void* outlet) {
   stream(outlet).open = false;
   tell(stream(outlet));
+}
+LslNetwork* stand_in_lsl_network() { return &network; }
+
+std::int32_t lsl_resolve_bypred(void** found, std::uint32_t room, const char* predicate,
+                                std::int32_t, double) {
+  const std::lock_guard lock(network.mutex);
+  std::int32_t count = 0;
+  for (const auto& offer : network.offers) {
+    if (!offer->gone && count < static_cast<std::int32_t>(room) && fits(*offer, predicate)) {
+      ++record.infos;
+      found[count++] = info_of(offer);
+    }
+  }
+  return count;
+}
+void* lsl_create_inlet(void* info, std::int32_t, std::int32_t, std::int32_t) {
+  const std::lock_guard lock(network.mutex);
+  const auto& offer = static_cast<Info*>(info)->offer;
+  ++offer->inlets;
+  return new Inlet{offer};
+}
+void lsl_destroy_inlet(void* inlet) {
+  const std::lock_guard lock(network.mutex);
+  --static_cast<Inlet*>(inlet)->offer->inlets;
+  delete static_cast<Inlet*>(inlet);
+}
+void* lsl_get_fullinfo(void* inlet, double, std::int32_t* error) {
+  const std::lock_guard lock(network.mutex);
+  *error = 0;
+  ++record.infos;
+  return info_of(static_cast<Inlet*>(inlet)->offer);
+}
+void lsl_open_stream(void*, double, std::int32_t* error) { *error = 0; }
+std::int32_t lsl_set_postprocessing(void* inlet, std::uint32_t flags) {
+  static_cast<Inlet*>(inlet)->processes = flags != 0;
+  return 0;
+}
+double lsl_time_correction_ex(void* inlet, double* remote, double* uncertainty, double,
+                              std::int32_t* error) {
+  const std::lock_guard lock(network.mutex);
+  auto* const to = static_cast<Inlet*>(inlet);
+  const LslOffer& offer = *to->offer;
+  to->has_offset = to->has_offset || (offer.measured_at != 0.0 && !offer.silent);
+  *error = to->has_offset ? 0 : -1;
+  *remote = offer.measured_at;
+  *uncertainty = offer.uncertainty;
+  return offer.offset;
+}
+double lsl_pull_sample_d(void* inlet, double* values, std::int32_t room, double timeout,
+                         std::int32_t* error) {
+  return pulled(inlet, timeout, error, [&](const LslOffer::Sent& sample) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(room) && i < sample.values.size(); ++i) {
+      values[i] = sample.values[i];
+    }
+  });
+}
+double lsl_pull_sample_str(void* inlet, char** texts, std::int32_t room, double timeout,
+                           std::int32_t* error) {
+  return pulled(inlet, timeout, error, [&](const LslOffer::Sent& sample) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(room); ++i) {
+      texts[i] = strdup(i < sample.texts.size() ? sample.texts[i].c_str() : "");
+    }
+  });
+}
+void lsl_destroy_string(char* text) { std::free(text); }
+std::int32_t lsl_get_channel_count(void* info) { return static_cast<Info*>(info)->offer->channels; }
+std::int32_t lsl_get_channel_format(void* info) { return static_cast<Info*>(info)->offer->format; }
+double lsl_get_nominal_srate(void* info) { return static_cast<Info*>(info)->offer->rate; }
+const char* lsl_get_name(void* info) { return static_cast<Info*>(info)->offer->name.c_str(); }
+const char* lsl_get_hostname(void* info) { return static_cast<Info*>(info)->offer->host.c_str(); }
+void* lsl_child(void* node, const char* name) { return child(static_cast<Node*>(node), name); }
+void* lsl_next_sibling_n(void* node, const char*) {
+  auto* next = static_cast<Node*>(node);
+  ++next->index;
+  return next;
+}
+const char* lsl_child_value_n(void* node, const char* name) {
+  const auto* one = static_cast<Node*>(node);
+  const auto& label = one->info->offer->labels.at(one->index);
+  return (std::strcmp(name, "label") == 0 ? label.first : label.second).c_str();
+}
+std::int32_t lsl_empty(void* node) {
+  const auto* one = static_cast<Node*>(node);
+  return one->path == "channels/channel" && one->index < one->info->offer->labels.size() ? 0 : 1;
 }
 void lsl_destroy_streaminfo(void* info) {
   --record.infos;
