@@ -7,22 +7,20 @@ namespace haptrial::analysis {
 namespace {
 
 FindingRow row_of(const record::SessionInfo& info, const ChannelQuality& c) {
-  return {{.name = "participant", .title = "Participant", .value = info.subject},
-          {.name = "session", .title = "Session", .value = info.session},
-          {.name = "channel", .title = "Channel", .value = c.name},
-          {.name = "samples", .title = "Samples", .value = c.samples},
-          {.name = "rate", .title = "A second", .value = c.rate(), .unit = "Hz"},
-          {.name = "uncertainty",
-           .title = "Times within, median",
-           .value = c.uncertainty,
-           .unit = "s"},
-          {.name = "largest_uncertainty",
-           .title = "at most",
-           .value = c.largest_uncertainty,
-           .unit = "s"},
-          {.name = "missing", .title = "Missing", .value = c.missing},
-          {.name = "losses", .title = "Times lost", .value = c.losses},
-          {.name = "clock_steps", .title = "Steps of its clock", .value = c.clock_steps}};
+  return {
+      {.name = "participant", .title = "Participant", .value = info.subject},
+      {.name = "session", .title = "Session", .value = info.session},
+      {.name = "channel", .title = "Channel", .value = c.name},
+      {.name = "samples", .title = "Samples", .value = c.samples},
+      {.name = "rate", .title = "A second", .value = c.rate(), .unit = "Hz"},
+      {.name = "uncertainty", .title = "Times within, median", .value = c.uncertainty, .unit = "s"},
+      {.name = "largest_uncertainty",
+       .title = "at most",
+       .value = c.largest_uncertainty,
+       .unit = "s"},
+      {.name = "missing", .title = "Missing", .value = c.missing},
+      {.name = "losses", .title = "Times lost", .value = c.losses},
+      {.name = "clock_steps", .title = "Steps of its clock", .value = c.clock_steps}};
 }
 
 }  // namespace

@@ -13,9 +13,8 @@ namespace {
 constexpr std::string_view kPrefix = "channel_";
 
 std::size_t field_of(const record::TableDescription& table, std::string_view column) {
-  const auto found = std::ranges::find_if(table.fields(), [&](const record::Field& field) {
-    return field.column.name == column;
-  });
+  const auto found = std::ranges::find_if(
+      table.fields(), [&](const record::Field& field) { return field.column.name == column; });
   return static_cast<std::size_t>(found - table.fields().begin());
 }
 

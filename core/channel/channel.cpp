@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLook{20};    // for the end of the session, and for silence
 constexpr milliseconds kRetry{500};  // until a lost instrument is opened again
 constexpr std::size_t kBlock = 256;  // samples in a block of the log
-constexpr double kKept = 10.0;       // for which the log has room [s]
+constexpr double kKept = 4.0;        // for which the log has room [s]
 constexpr std::size_t kLeastBlocks = 16;
 constexpr std::size_t kMostIncidents = 10000;  // that wait for the session
 
@@ -107,10 +107,9 @@ void Channel::take(const Measured& sample) {
   heard_ns_ = row.received_ns;
   heard_ = true;
   const bool timed = std::isfinite(sample.device_time);
-  const SampleTime time =
-      sample.time ? stamped(*sample.time, options_.plan.clock)
-      : timed     ? clock_.time_of(sample.device_time, row.received_ns)
-                  : std::as_const(clock_).time_of(row.received_ns, sample.waited);
+  const SampleTime time = sample.time ? stamped(*sample.time, options_.plan.clock)
+                          : timed     ? clock_.time_of(sample.device_time, row.received_ns)
+                                  : std::as_const(clock_).time_of(row.received_ns, sample.waited);
   if (time.step != 0.0) {
     note(Incident::kClockStep, time.step);
   }

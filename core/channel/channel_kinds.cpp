@@ -16,11 +16,7 @@ namespace {
 
 std::vector<ChannelKind>& all_kinds() {
   static std::vector<ChannelKind> kinds{
-      labjack_channel(),
-      line_channel(),
-      lsl_channel(),
-      rdt_channel(),
-      robotiq_channel(),
+      labjack_channel(), line_channel(), lsl_channel(), rdt_channel(), robotiq_channel(),
   };
   return kinds;
 }

@@ -1,6 +1,7 @@
 #include "core/channel/channel_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -26,9 +27,10 @@ const Schema<ChannelOptions>& channel_schema() {
   using C = ChannelOptions;
   static const auto schema =
       Schema<C>()
-          .flag("required", &C::required,
-                "Whether a pass is ended by a fault when the channel is lost; else the session goes "
-                "on without it")
+          .flag(
+              "required", &C::required,
+              "Whether a pass is ended by a fault when the channel is lost; else the session goes "
+              "on without it")
           .number("limit", &C::limit, {0.0, 1e9, true}, "",
                   "Amount of any quantity above which the device is stopped, such as that of a "
                   "measured force")
@@ -62,9 +64,8 @@ const Schema<ClockOptions>& clock_schema() {
 
 bool is_name(std::string_view text) {
   return !text.empty() && text.size() <= 40 &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) {
-           return std::isalnum(c) != 0 || c == '_';
-         });
+         std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
 constexpr const char* kNameForm = "a name of up to 40 letters, digits and '_'";
@@ -85,8 +86,9 @@ ChannelOptions read_channel(Table& table, const std::string& name) {
   table.check();  // what the other keys mean depends on it
   channel_schema().read(table, options);
   const auto& kinds = kinds_of_channel();
-  const auto kind = std::find_if(kinds.begin(), kinds.end(),
-                                 [&](const ChannelKind& each) { return each.word == options.kind; });
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const ChannelKind& each) {
+    return each.word == options.kind;
+  });
   options.plan = kind->read(table);
   plan_schema().read(table, options.plan);
   clock_schema().read(table, options.plan.clock);
@@ -116,6 +118,36 @@ std::vector<Quantity> read_quantities(Table& table, std::string_view key) {
   }
   check_quantities(table, key, quantities);
   return quantities;
+}
+
+std::vector<std::string> names_of_values(const std::vector<ChannelOptions>& channels) {
+  std::vector<std::string> names;
+  for (const ChannelOptions& channel : channels) {
+    for (const Quantity& quantity : channel.plan.quantities) {
+      names.push_back(channel.name + "." + quantity.name);
+    }
+  }
+  return names;
+}
+
+std::optional<std::size_t> place_of(const std::vector<std::string>& values, std::string_view name) {
+  const std::string first = std::string(name) + ".";
+  const auto found = std::find_if(values.begin(), values.end(), [&](const std::string& value) {
+    return value == name || value.starts_with(first);
+  });
+  return found == values.end() ? std::nullopt
+                               : std::optional(static_cast<std::size_t>(found - values.begin()));
+}
+
+std::size_t read_value_name(Table& table, std::string_view key,
+                            const std::vector<std::string>& values, std::string_view name) {
+  const auto place = place_of(values, name);
+  if (!place) {
+    table.reject(key, fmt::format("\"{}\"", name),
+                 values.empty() ? "no channel: the definition states none"
+                                : fmt::format("a value of a channel: {}", fmt::join(values, ", ")));
+  }
+  return place.value_or(0);
 }
 
 std::vector<ChannelOptions> read_channels(Table& root) {

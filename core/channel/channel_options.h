@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/definition/schema.h"
@@ -33,5 +34,18 @@ struct ChannelOptions {
 /// Problems are noted. @throws InputError for an unknown kind, alone: what the other keys mean
 /// depends on it
 std::vector<ChannelOptions> read_channels(Table& root);
+
+/// Names of the values of these channels, "CHANNEL.QUANTITY", in the order in which a session has
+/// them (DeviceReading::channels).
+std::vector<std::string> names_of_values(const std::vector<ChannelOptions>& channels);
+
+/// Place of a value among them. @param name  one of them, or "CHANNEL" for the first of a channel
+/// @returns nothing if there is none of this name
+std::optional<std::size_t> place_of(const std::vector<std::string>& values, std::string_view name);
+
+/// Reads the name of a value under `key`, and notes one that is not there. @returns its place; 0
+/// then
+std::size_t read_value_name(Table& table, std::string_view key,
+                            const std::vector<std::string>& values, std::string_view name);
 
 }  // namespace haptrial::channel

@@ -86,17 +86,10 @@ const Table<channel::IncidentRow>& table_of<channel::IncidentRow>() {
   using R = channel::IncidentRow;
   using T = Table<R>;
   static const T table(
-      {"channel_events",
-       "what befell the channels",
-       72,
-       RowsOf::kSession,
-       {"time_ns"},
-       "",
-       5},
+      {"channel_events", "what befell the channels", 72, RowsOf::kSession, {"time_ns"}, "", 5},
       {T::column("time_ns", &R::time_ns, "ns", "since the first tick of the session"),
        T::text("channel", &R::channel, kNameBytes, "its name in [channels]"),
-       T::word("what", &R::what, kStatusBytes, channel::incidents(),
-               "what happened, in one word"),
+       T::word("what", &R::what, kStatusBytes, channel::incidents(), "what happened, in one word"),
        T::column("amount", &R::amount, "1", "how much of it, as docs/channels.md says"),
        T::text("text", &R::text, kTextBytes, "details")});
   return table;

@@ -12,7 +12,7 @@
 
 namespace haptrial::channel {
 
-inline constexpr std::size_t kMostQuantities = 16;  // of one channel
+inline constexpr std::size_t kMostQuantities = 64;  // of one channel
 
 /// One thing that an instrument measures.
 struct Quantity {
@@ -23,12 +23,13 @@ struct Quantity {
 /// A sample of a channel. Its time is an estimate (SampleClock), so that it comes with what it may
 /// be wrong by.
 struct ChannelRow {
-  std::uint64_t sample{0};    // number from 0; what the instrument says it lost is left out
-  std::int64_t time_ns{0};    // when it was measured, since the first tick of the session
+  std::uint64_t sample{0};      // number from 0; what the instrument says it lost is left out
+  std::int64_t time_ns{0};      // when it was measured, since the first tick of the session
   std::int64_t received_ns{0};  // when it had come, on the same clock
-  double uncertainty{0.0};    // the time is within this of the truth in 95 % [s]
-  double device_time{std::numeric_limits<double>::quiet_NaN()};  // by the instrument's own clock [s]
-  std::array<double, kMostQuantities> values{};                  // NaN: not measured
+  double uncertainty{0.0};      // the time is within this of the truth in 95 % [s]
+  double device_time{
+      std::numeric_limits<double>::quiet_NaN()};  // by the instrument's own clock [s]
+  std::array<double, kMostQuantities> values{};   // NaN: not measured
 };
 
 /// The table of one channel: /channel_NAME, with a column for each of its quantities.
@@ -55,8 +56,8 @@ enum class Incident : std::uint8_t {
   kClockStep,  // amount: seconds by which the instrument's clock stepped against the session's
   kStatus,     // amount: a status of the instrument; the text says what it means
   kDropped,    // amount: samples for which the program had no room
-  kMessage,    // the text is what the instrument said; amount: the time is within this of the truth,
-               // 0 for the time at which it came [s]
+  kMessage,  // the text is what the instrument said; amount: the time is within this of the truth,
+             // 0 for the time at which it came [s]
   kClockOffset,  // amount: seconds to add to the instrument's times, as measured just now; the text
                  // has their uncertainty
 };

@@ -39,14 +39,13 @@ std::unique_ptr<ChannelTable> table_beside(const ChannelOptions& options,
 }
 
 double simulated(const SimulatedInput& input, double time) {
-  return input.mean +
-         input.amplitude * std::sin(2.0 * std::numbers::pi * input.frequency * time);
+  return input.mean + input.amplitude * std::sin(2.0 * std::numbers::pi * input.frequency * time);
 }
 
 }  // namespace
 
-ChannelSet::ChannelSet(const std::vector<ChannelOptions>& options,
-                       const record::TableList& tables, bool real)
+ChannelSet::ChannelSet(const std::vector<ChannelOptions>& options, const record::TableList& tables,
+                       bool real)
     : real_(real) {
   record::TableList others = tables;
   if (!options.empty()) {
@@ -97,16 +96,16 @@ std::vector<std::string> ChannelSet::start(const Channel::Now& now,
                                  part.options.name, why));
     }
     if (!why.empty()) {
-      notices.push_back(fmt::format("channel {}: {}; the session goes on without it, and looks "
-                                    "for it twice a second",
-                                    part.options.name, why));
+      notices.push_back(
+          fmt::format("channel {}: {}; the session goes on without it, and looks "
+                      "for it twice a second",
+                      part.options.name, why));
     }
   }
   return notices;
 }
 
-void ChannelSet::collect(std::int64_t now_ns,
-                         const std::function<void(const record::Rows&)>& put) {
+void ChannelSet::collect(std::int64_t now_ns, const std::function<void(const record::Rows&)>& put) {
   std::vector<IncidentRow> incidents;
   for (Part& part : parts_) {
     if (!part.channel) {
@@ -118,9 +117,10 @@ void ChannelSet::collect(std::int64_t now_ns,
     });
     for (IncidentRow& row : part.channel->take_incidents()) {
       if (row.what == Incident::kLost || row.what == Incident::kBack) {
-        news_.push_back(row.what == Incident::kBack
-                            ? fmt::format("channel {} is back after {:.1f} s", row.channel, row.amount)
-                            : fmt::format("channel {} is lost: {}", row.channel, row.text));
+        news_.push_back(
+            row.what == Incident::kBack
+                ? fmt::format("channel {} is back after {:.1f} s", row.channel, row.amount)
+                : fmt::format("channel {} is lost: {}", row.channel, row.text));
       }
       incidents.push_back(std::move(row));
     }
@@ -202,29 +202,17 @@ std::vector<ChannelSet::Seen> ChannelSet::seen() const {
   return all;
 }
 
-std::optional<std::size_t> place_of(const std::vector<ChannelOptions>& channels,
-                                    std::string_view name) {
-  std::size_t at = 0;
-  for (const ChannelOptions& channel : channels) {
-    const auto& quantities = channel.plan.quantities;
-    for (std::size_t i = 0; i < quantities.size(); ++i) {
-      if ((i == 0 && name == channel.name) || name == channel.name + "." + quantities[i].name) {
-        return at + i;
+std::vector<ChannelOptions> asked(std::vector<ChannelOptions> channels) {
+  for (ChannelOptions& channel : channels) {
+    if (channel.plan.ask && channel.plan.quantities.empty()) {
+      try {
+        channel.plan.quantities = channel.plan.ask();
+      } catch (const RunError& error) {
+        throw RunError(fmt::format("channel {}: {}", channel.name, error.what()));
       }
     }
-    at += quantities.size();
   }
-  return std::nullopt;
-}
-
-std::string names_of(const std::vector<ChannelOptions>& channels) {
-  std::vector<std::string> names;
-  for (const ChannelOptions& channel : channels) {
-    for (const Quantity& quantity : channel.plan.quantities) {
-      names.push_back(channel.name + "." + quantity.name);
-    }
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
+  return channels;
 }
 
 }  // namespace haptrial::channel

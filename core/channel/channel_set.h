@@ -4,10 +4,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/channel/channel.h"
@@ -38,8 +36,8 @@ class ChannelSet {
   /// The channels' own tables, and that of their incidents; none without channels.
   record::TableList tables() const;
 
-  /// Opens the instruments and waits for each to answer. @param first  number of the first sample of
-  /// each channel, that is, those of an earlier run; empty: from 0. Session's thread.
+  /// Opens the instruments and waits for each to answer. @param first  number of the first sample
+  /// of each channel, that is, those of an earlier run; empty: from 0. Session's thread.
   /// @returns a sentence for each that does not answer
   /// @throws RunError if the session needs it
   std::vector<std::string> start(const Channel::Now& now, const std::vector<std::uint64_t>& first);
@@ -68,11 +66,11 @@ class ChannelSet {
   struct Part {
     ChannelOptions options;
     std::unique_ptr<ChannelTable> table;
-    std::unique_ptr<Channel> channel;   // null on a simulated clock
-    std::size_t at{0};                  // of its first value in values_
-    std::uint64_t next{0};              // simulated samples so far
-    std::string lost;                   // sentences of its alarms
-    std::vector<std::string> beyond;    // of each quantity
+    std::unique_ptr<Channel> channel;  // null on a simulated clock
+    std::size_t at{0};                 // of its first value in values_
+    std::uint64_t next{0};             // simulated samples so far
+    std::string lost;                  // sentences of its alarms
+    std::vector<std::string> beyond;   // of each quantity
   };
   void simulate(Part& part, std::int64_t now_ns,
                 const std::function<void(const record::Rows&)>& put);
@@ -86,11 +84,9 @@ class ChannelSet {
   std::vector<std::string> news_;
 };
 
-/// Place of a quantity among the values of a set. @param name  "CHANNEL.QUANTITY", or "CHANNEL" for
-/// its first one @returns nothing if there is none of this name
-std::optional<std::size_t> place_of(const std::vector<ChannelOptions>& channels,
-                                    std::string_view name);
-/// The names that place_of() knows, for sentences about mistakes.
-std::string names_of(const std::vector<ChannelOptions>& channels);
+/// The channels as a session has them: an instrument that knows its quantities, and for which the
+/// definition states none, is asked for them. May wait for seconds.
+/// @throws RunError if one does not answer
+std::vector<ChannelOptions> asked(std::vector<ChannelOptions> channels);
 
 }  // namespace haptrial::channel

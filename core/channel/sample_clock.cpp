@@ -53,7 +53,8 @@ SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns) {
     device_origin_ = device_time;
     received_origin_ = received_ns;
   }
-  Point point{device_time - device_origin_, 1e-9 * static_cast<double>(received_ns - received_origin_)};
+  Point point{device_time - device_origin_,
+              1e-9 * static_cast<double>(received_ns - received_origin_)};
   if (!lowest_.empty()) {
     const double excess = point.received - line_at(point.device);
     const bool backwards = excess < -std::max(kLeastStep, 4.0 * spread_);
@@ -68,8 +69,9 @@ SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns) {
   }
   keep(point);
   const double span = point.device - lowest_.front().device;
-  const double drift =
-      lowest_.size() < kForRate ? kUnknownDrift * span : 2.0 * spread_ * kQuarter / std::max(span, kQuarter);
+  const double drift = lowest_.size() < kForRate
+                           ? kUnknownDrift * span
+                           : 2.0 * spread_ * kQuarter / std::max(span, kQuarter);
   const double arrived = point.received;
   const double measured = std::min(line_at(point.device), arrived) - options_.latency;
   SampleTime time;

@@ -16,13 +16,13 @@ struct SampleTime {
 
 /// How an instrument's data come in.
 struct ClockOptions {
-  double latency{0.0};              // from a measurement to its arrival, at least >= 0 [s]
+  double latency{0.0};               // from a measurement to its arrival, at least >= 0 [s]
   double latency_uncertainty{1e-3};  // of that, 95 % >= 0 [s]
 };
 
 /// Follows the clock of an instrument from the times at which its samples came. A sample is
-/// measured at t = offset + rate * d by its own clock d, and comes at r = t + latency + delay with a
-/// delay that is never below 0. So offset and rate are those of the highest line below all points
+/// measured at t = offset + rate * d by its own clock d, and comes at r = t + latency + delay with
+/// a delay that is never below 0. So offset and rate are those of the highest line below all points
 /// (d, r) of the last twenty seconds (Moon, Skelly and Towsley 1999, "Estimation and removal of
 /// clock skew"), of which each quarter of a second keeps the lowest. A clock that steps is seen by
 /// samples that come before they were measured, or all too late for half a second; the line then
@@ -36,8 +36,8 @@ class SampleClock {
   /// @param device_time  by the instrument's clock, in ascending order but for steps [s]
   /// @param received_ns  when it came, by the session's clock
   SampleTime time_of(double device_time, std::int64_t received_ns);
-  /// Time of a sample of an instrument without a clock. @param waited  longest time that it may have
-  /// lain there before it was read [s]
+  /// Time of a sample of an instrument without a clock. @param waited  longest time that it may
+  /// have lain there before it was read [s]
   SampleTime time_of(std::int64_t received_ns, double waited) const;
   /// Forgets everything: the instrument was opened anew.
   void restart();
@@ -56,13 +56,13 @@ class SampleClock {
   bool has_origin_{false};
   double device_origin_{0.0};
   std::int64_t received_origin_{0};
-  std::deque<Point> lowest_;   // of each quarter of a second
-  double quarter_{0.0};        // at which the last of them began [s]
-  double offset_{0.0};         // of the line [s]
-  double rate_{1.0};           // seconds of the session in one of the instrument
-  double spread_{0.0};         // of the lowest points above the line [s]
-  double late_since_{-1.0};    // all samples have been late since then [s]; -1: they are not
-  double least_late_{0.0};     // of these, by how much [s]
+  std::deque<Point> lowest_;  // of each quarter of a second
+  double quarter_{0.0};       // at which the last of them began [s]
+  double offset_{0.0};        // of the line [s]
+  double rate_{1.0};          // seconds of the session in one of the instrument
+  double spread_{0.0};        // of the lowest points above the line [s]
+  double late_since_{-1.0};   // all samples have been late since then [s]; -1: they are not
+  double least_late_{0.0};    // of these, by how much [s]
 };
 
 }  // namespace haptrial::channel

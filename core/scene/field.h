@@ -23,7 +23,8 @@ namespace haptrial::scene {
 
 /// The parameters of every kind of field; each struct's header has its law, units and bounds.
 using FieldKind =
-    std::variant<ConstantParameters, RampParameters, PulseParameters, SpringParameters,
+    std::variant<ConstantParameters, RampParameters, PulseParameters, MeasuredParameters,
+                 SpringParameters,
                  LineChannelParameters, AxisChannelParameters, PlaneParameters, SurfaceParameters,
                  GratingParameters, TextureParameters, ViscousParameters, MatrixViscousParameters,
                  InertiaParameters, FrictionParameters, SineVibrationParameters,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "core/base/point_state.h"
 #include "core/control/gain_shares.h"
@@ -27,6 +28,7 @@ struct Felt {
   double time{0.0};                      // since the field was switched on [s]
   const SurfaceTouch* surface{nullptr};  // of the surface it lies on; null in free space
   control::GainShares shares{};          // of its gains, which the law uses
+  std::span<const double> channels{};    // values of channels (DeviceReading::channels)
 };
 
 /// State of a field after a tick that a protocol can read, to end a stage or to know what was felt.

@@ -53,4 +53,16 @@ Vector3d Pulse::force(const Felt& felt, FieldState& state) noexcept {
   return state.stimulus = risen * parameters_.force;
 }
 
+Measured::Measured(const MeasuredParameters& parameters, const Setting&) : parameters_(parameters) {
+  require(std::isfinite(parameters.zero), "Measured: zero must be finite");
+  require(parameters.gain.allFinite(), "Measured: gain must be finite");
+}
+
+Vector3d Measured::force(const Felt& felt, FieldState&) noexcept {
+  const std::size_t at = parameters_.channel;
+  const bool there = at < felt.channels.size() && std::isfinite(felt.channels[at]);
+  return there ? Vector3d((felt.channels[at] - parameters_.zero) * parameters_.gain)
+               : Vector3d::Zero();
+}
+
 }  // namespace haptrial::scene

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstddef>
 
 #include "core/scene/field_state.h"
 
@@ -10,6 +11,7 @@ namespace haptrial::scene {
 class Constant;
 class Ramp;
 class Pulse;
+class Measured;
 
 struct ConstantParameters {
   using Law = Constant;
@@ -72,6 +74,26 @@ class Pulse {
 
  private:
   PulseParameters parameters_;
+};
+
+struct MeasuredParameters {
+  using Law = Measured;
+  std::size_t channel{0};                         // place of the value among those of channels
+  double zero{0.0};                               // value without force, in its own unit
+  Eigen::Vector3d gain{Eigen::Vector3d::Zero()};  // force for each unit above it, in W [N]
+
+  StiffnessBound bound() const { return {}; }
+  FieldTraits traits() const { return {}; }
+};
+
+/// f = gain (x - zero), where x is the newest value of a channel; 0 while there is none. Active.
+class Measured {
+ public:
+  Measured(const MeasuredParameters& parameters, const Setting& setting);
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+
+ private:
+  MeasuredParameters parameters_;
 };
 
 }  // namespace haptrial::scene

@@ -15,9 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-using Law = std::variant<Constant, Ramp, Pulse, Hold, Surface, Grating, Texture, Viscous, Inertia,
-                         Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover,
-                         PathGuide, RigidObject, DeformableObject, RegisteredField>;
+using Law = std::variant<Constant, Ramp, Pulse, Measured, Hold, Surface, Grating, Texture, Viscous,
+                         Inertia, Friction, SineVibration, NoiseVibration, Tap, Detent, Click,
+                         Mover, PathGuide, RigidObject, DeformableObject, RegisteredField>;
 
 template <class Each>
 concept SurfaceLaw = requires(Each& law) {
@@ -198,9 +198,11 @@ void Scene::lay_reliefs(const Vector3d& p) noexcept {
   }
 }
 
-void Scene::feel(Part& part, const PointState& hand, const control::GainShares& shares) noexcept {
+/// @param common  to all fields
+void Scene::feel(Part& part, const Felt& common) noexcept {
   SurfaceTouch touch;
-  Felt felt{hand, part.time, nullptr, shares};
+  Felt felt = common;
+  felt.time = part.time;
   if (part.on != kFreeSpace) {
     const Part& surface = parts_[part.on];
     if (surface.acts()) {
@@ -230,7 +232,7 @@ void Scene::feel(Part& part, const PointState& hand, const control::GainShares& 
   state.force = passed * force;
   state.stimulus *= passed;
   state.max_force = std::max(state.max_force, part.fade.weight() * std::min(size, part.limit));
-  store(part, shares.stiffness);
+  store(part, felt.shares.stiffness);
 }
 
 /// The energy of the springs that the hand loads, and what of it comes from their stiffness alone.
@@ -246,7 +248,8 @@ void Scene::store(Part& part, double share) noexcept {
       part.law);
 }
 
-Vector3d Scene::force(const PointState& hand, const control::GainShares& shares) noexcept {
+Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
+                      std::span<const double> channels) noexcept {
   if (!hand.position.allFinite() || !hand.velocity.allFinite()) {
     return Vector3d::Zero();
   }
@@ -265,10 +268,11 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares)
   }
   before_ = hand.position;
   lay_reliefs(hand.position);
+  const Felt common{hand, 0.0, nullptr, shares, channels};
   Vector3d sum = Vector3d::Zero();
   for (const std::size_t i : forces_) {
     if (parts_[i].acts()) {
-      feel(parts_[i], hand, shares);
+      feel(parts_[i], common);
       sum += parts_[i].state.force;
     }
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/point_state.h"
@@ -46,8 +47,10 @@ class Scene {
   void start_from(const Scene& before) noexcept;
   /// One tick later. @param hand  position [m] and velocity [m/s] in W
   /// @param shares  of the fields' gains that the handle carries now
+  /// @param channels  values that laws may follow (DeviceReading::channels)
   /// @returns the force on the hand [N]; zero, with nothing changed, if the hand is not finite.
-  Eigen::Vector3d force(const PointState& hand, const control::GainShares& shares = {}) noexcept;
+  Eigen::Vector3d force(const PointState& hand, const control::GainShares& shares = {},
+                        std::span<const double> channels = {}) noexcept;
   /// Whether a field is switched on, or still fades out.
   bool acts() const noexcept;
   /// Begins max_depth, max_force and work of every field anew: at a stage's beginning.
@@ -66,7 +69,7 @@ class Scene {
 
  private:
   struct Part;
-  void feel(Part& part, const PointState& hand, const control::GainShares& shares) noexcept;
+  void feel(Part& part, const Felt& felt) noexcept;
   void store(Part& part, double share) noexcept;
   void lay_reliefs(const Eigen::Vector3d& p) noexcept;
 

@@ -133,8 +133,9 @@ static record::TableList possible_tables(const SessionRequest& request) {
 }
 
 channel::ChannelSet make_channels(const SessionRequest& request) {
-  return {request.definition->channels, possible_tables(request),
-          request.clock == realtime::ClockKind::kReal};
+  const bool real = request.clock == realtime::ClockKind::kReal;
+  const auto& stated = request.definition->channels;
+  return {real ? channel::asked(stated) : stated, possible_tables(request), real};
 }
 
 std::vector<std::uint64_t> next_samples(const SessionRequest& request,
@@ -148,10 +149,10 @@ std::vector<std::uint64_t> next_samples(const SessionRequest& request,
     const std::uint64_t rows = file.has(*table) ? file.count(*table) : 0;
     const bool samples = table != &record::table_of<channel::IncidentRow>();
     if (samples) {
-      next.push_back(
-          rows == 0 ? 0
-                    : static_cast<std::uint64_t>(
-                          file.integers(*table, "sample", rows - 1, 1).front()) + 1);
+      next.push_back(rows == 0 ? 0
+                               : static_cast<std::uint64_t>(
+                                     file.integers(*table, "sample", rows - 1, 1).front()) +
+                                     1);
     }
   }
   return next;
@@ -171,9 +172,9 @@ static void check_same_quantities(const SessionRequest& request, const record::S
   for (const record::TableDescription* table : channels.tables()) {
     const bool has = std::find(there.begin(), there.end(), table->name()) != there.end();
     if (has && columns(*file.description(table->name())) != columns(*table)) {
-      throw InputError(fmt::format(
-          "{}: was recorded with other quantities of /{}; resume it with the same ones",
-          request.file.string() + ".partial", table->name()));
+      throw InputError(
+          fmt::format("{}: was recorded with other quantities of /{}; resume it with the same ones",
+                      request.file.string() + ".partial", table->name()));
     }
   }
 }
@@ -211,10 +212,8 @@ bool close_what_had_ended(const SessionRequest& request) {
     // The file is damaged: a resume repairs it, and says what it holds.
   }
   record::Resumed found;
-  record::SessionWriter writer =
-      record::SessionWriter::resume(file, found,
-                                    record::with_tables(possible_tables(request),
-                                                        make_channels(request).tables()));
+  record::SessionWriter writer = record::SessionWriter::resume(
+      file, found, record::with_tables(possible_tables(request), make_channels(request).tables()));
   if (found.ended) {
     writer.close();
   }

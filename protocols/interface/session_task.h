@@ -65,10 +65,10 @@ class SessionTask final : public realtime::ServoTask {
     DeviceLog* device_log{nullptr};  // of the devices after the first
     TickLog* tick_log{nullptr};      // the protocol's own
     std::vector<stimulus::Observer*> observers{};
-    WindowInput* window{nullptr};        // of the participant; null: there is none
-    device::Pedal* pedal{nullptr};       // of all devices; null: as each says
+    WindowInput* window{nullptr};            // of the participant; null: there is none
+    device::Pedal* pedal{nullptr};           // of all devices; null: as each says
     channel::ChannelSet* channels{nullptr};  // beside the devices; null: none
-    markers::OnsetLog* onsets{nullptr};  // null: nobody is told what begins when
+    markers::OnsetLog* onsets{nullptr};      // null: nobody is told what begins when
   };
   explicit SessionTask(const Parts& parts, Leave leave, Origin origin = Origin{});
   /// A task with one device.

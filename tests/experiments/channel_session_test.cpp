@@ -104,14 +104,16 @@ TEST_F(ChannelSessionTest, InADryRunAStageEndsOnTheTickOnWhichTheSineExceedsTheV
   const auto stages = reader.rows<record::StageRow>();
   ASSERT_EQ(stages.size(), 6u);
   for (const record::StageRow& stage : stages) {
-    const auto ticks = reader.samples(stage.first_sample, stage.last_sample - stage.first_sample + 1);
+    const auto ticks =
+        reader.samples(stage.first_sample, stage.last_sample - stage.first_sample + 1);
     EXPECT_GT(value(1e-9 * static_cast<double>(ticks.back().time_ns)), 2.0);
     for (std::size_t i = 0; i + 1 < ticks.size(); ++i) {
       ASSERT_LE(value(1e-9 * static_cast<double>(ticks[i].time_ns)), 2.0);
     }
   }
   const std::vector<GripRow> grip = grip_of(reader);
-  const double end = 1e-9 * static_cast<double>(reader.samples(reader.sample_count() - 1, 1)[0].time_ns);
+  const double end =
+      1e-9 * static_cast<double>(reader.samples(reader.sample_count() - 1, 1)[0].time_ns);
   EXPECT_NEAR(static_cast<double>(grip.size()), 50.0 * end, 2.0) << "fifty a second";
   for (std::size_t i = 0; i < grip.size(); ++i) {
     ASSERT_EQ(grip[i].sample, i);
@@ -134,10 +136,14 @@ TEST_F(ChannelSessionTest, EveryCommandShowsTheChannel) {
 TEST_F(ChannelSessionTest, AValueBeyondTheLimitEndsThePassWithItsSentence) {
   const auto run = dry_run(study(kSine + std::string("limit = 1.5\n")), "b", "--trials 1");
   const auto events = session("b").events();
-  EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const record::EventRow& event) {
-    return event.kind == "aborted" &&
-           event.text.find("channel grip: force is beyond the limit of 1.5 N") != std::string::npos;
-  })) << run.output << run.errors;
+  EXPECT_TRUE(std::any_of(events.begin(), events.end(),
+                          [](const record::EventRow& event) {
+                            return event.kind == "aborted" &&
+                                   event.text.find(
+                                       "channel grip: force is beyond the limit of 1.5 N") !=
+                                       std::string::npos;
+                          }))
+      << run.output << run.errors;
 }
 
 TEST_F(ChannelSessionTest, MistakesAreNamedBeforeASession) {
@@ -167,8 +173,8 @@ TEST_F(ChannelSessionTest, ADamagedFileGivesItsSamplesBack) {
   EXPECT_EQ(grip_of(record::SessionReader(out)).size(), rows);
 }
 
-/// A grip sensor on a pipe: a hand that squeezes and lets go, a hundred lines a second. Each line is
-/// unlike all others, so that one that is doubled or lost is seen.
+/// A grip sensor on a pipe: a hand that squeezes and lets go, a hundred lines a second. Each line
+/// is unlike all others, so that one that is doubled or lost is seen.
 class GripOnAPipe {
  public:
   explicit GripOnAPipe(std::string pipe) : pipe_(std::move(pipe)), thread_([this] { run(); }) {}

@@ -15,6 +15,7 @@ namespace haptrial::scene {
 struct FieldSetting {
   double rate{1000.0};  // of the servo loop [Hz]
   double limit{10.0};   // of the field [N]
+  std::vector<std::string> values{};  // of channels, which it may follow
 };
 
 /// One kind of [fields]: what its `type` says, and how its keys are read.

@@ -11,6 +11,7 @@ namespace haptrial::scene {
 KindOfField constant_field();
 KindOfField ramp_field();
 KindOfField pulse_field();
+KindOfField measured_field();
 KindOfField spring_field();
 KindOfField wall_field();
 KindOfField box_field();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/channel/channel_options.h"
+
 namespace haptrial::scene {
 namespace {
 
@@ -51,7 +53,33 @@ const Schema<PulseParameters>& pulse_schema() {
   return schema;
 }
 
+const Schema<MeasuredParameters>& measured_schema() {
+  using P = MeasuredParameters;
+  constexpr Bounds kValue{-1e9, 1e9};
+  static const auto schema =
+      Schema<P>()
+          .vector("gain", &P::gain, {-1e6, 1e6}, "",
+                  "Force in the world frame for each unit of the value that the field follows, in "
+                  "newtons")
+          .required()
+          .number("zero", &P::zero, kValue, "",
+                  "Value at which the field gives no force, in the value's own unit");
+  return schema;
+}
+
+FieldKind read_measured(Table& table, const FieldSetting& setting) {
+  MeasuredParameters p = measured_schema().read(table);
+  table.describe({"channel",
+                  "Value that the force of the field follows: \"CHANNEL.QUANTITY\", or \"CHANNEL\" "
+                  "for the first of a channel",
+                  "", true});
+  p.channel = channel::read_value_name(table, "channel", setting.values, table.text("channel"));
+  return p;
+}
+
 }  // namespace
+
+KindOfField measured_field() { return {"measured", read_measured}; }
 
 KindOfField constant_field() { return {"constant", read_by<ConstantParameters, constant_schema>}; }
 

@@ -30,7 +30,8 @@ const KindOfField* kind_of(Table& table) {
 
 }  // namespace
 
-Field read_field(Table& table, std::string name, double rate) {
+Field read_field(Table& table, std::string name, double rate,
+                 const std::vector<std::string>& values) {
   Field field;
   field.name = std::move(name);
   const KindOfField* kind = kind_of(table);
@@ -42,16 +43,17 @@ Field read_field(Table& table, std::string name, double rate) {
   }
   field.fade_in = field.fade_out = kind->fade;
   field_fade_schema().read(table, field);
-  field.kind = kind->read(table, {rate, field.limit});
+  field.kind = kind->read(table, {rate, field.limit, values});
   return field;
 }
 
-std::vector<Field> read_fields(Table& fields, double rate, const std::vector<Field>& objects) {
+std::vector<Field> read_fields(Table& fields, double rate, const std::vector<Field>& objects,
+                               const std::vector<std::string>& values) {
   std::vector<Field> found;
   std::vector<Table> tables;
   for (const std::string& name : fields.keys()) {
     tables.push_back(fields.table(name));
-    found.push_back(read_field(tables.back(), name, rate));
+    found.push_back(read_field(tables.back(), name, rate, values));
   }
   std::vector<std::string> surfaces;
   for (const std::vector<Field>* some : {&std::as_const(found), &objects}) {

@@ -1,11 +1,13 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <ctime>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/channel/channel_set.h"
@@ -63,21 +65,21 @@ int record(const RecordOptions& options) {
   const Experiment experiment = load_experiment(options.definition);
   const protocols::Definition& d = *experiment.definition;
   if (d.channels.empty()) {
-    throw InputError(
-        fmt::format("{}: has no channels; state an instrument in [channels.NAME]",
-                    options.definition));
+    throw InputError(fmt::format("{}: has no channels; state an instrument in [channels.NAME]",
+                                 options.definition));
   }
   const record::TableList tables =
       record::with_tables(experiment.study->protocol().tables(), record::common_tables());
-  channel::ChannelSet channels(d.channels, tables, true);
+  const std::vector<channel::ChannelOptions> instruments = channel::asked(d.channels);
+  channel::ChannelSet channels(instruments, tables, true);
   record::SessionWriter writer(options.file, info_of(d, options), channels.tables());
   const Stopwatch watch;
   writer.add_event({0, "session_start", "channels alone"});
   for (const std::string& notice : channels.start([&] { return watch.ns(); }, {})) {
     note(writer, watch.ns(), notice);
   }
-  fmt::print("recording {} into {}; Ctrl-C ends it\n", channel::names_of(d.channels),
-             options.file);
+  fmt::print("recording {} into {}; Ctrl-C ends it\n",
+             fmt::join(channel::names_of_values(instruments), ", "), options.file);
   const auto keep = [&] {
     channels.collect(watch.ns(), [&](const record::Rows& rows) { writer.add(rows); });
     for (const std::string& news : channels.take_news()) {

@@ -53,10 +53,8 @@ int recover(const RecoverOptions& options) {
   const std::filesystem::path to =
       options.out.empty() ? default_output(file) : std::filesystem::path(options.out);
   ChannelTables channels;
-  const record::Recovery found =
-      record::recover_session(file, to, known_tables(), [&](const record::SessionInfo& info) {
-        return channels.of(info);
-      });
+  const record::Recovery found = record::recover_session(
+      file, to, known_tables(), [&](const record::SessionInfo& info) { return channels.of(info); });
   if (!found.anything()) {
     fmt::print("{}: nothing of a session is left in its {} bytes; nothing was written\n", file,
                found.file_bytes);

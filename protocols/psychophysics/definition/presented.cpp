@@ -43,7 +43,8 @@ void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presen
   if (root.has("fields")) {
     Table table = root.table("fields");
     devices.merge(devices_of(table, d.hands, "Device that feels the field", "all devices"));
-    presented.fields = scene::read_fields(table, d.rate, objects);
+    presented.fields =
+        scene::read_fields(table, d.rate, objects, channel::names_of_values(d.channels));
   }
   presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
   presented.felt = felt_by(presented.fields, devices, d.hands);
@@ -109,7 +110,7 @@ Presented read_presented(Table& document, const Names& names, const TrialsDefini
       [&d](Table& table, const std::string& key) {
         return d.keys.bits_of(read_window_keys(table, key));
       },
-      d.channels};
+      channel::names_of_values(d.channels)};
   presented.stages = read_stages(root, source);
   return presented;
 }

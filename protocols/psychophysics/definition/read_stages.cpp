@@ -9,7 +9,7 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/random.h"
-#include "core/channel/channel_set.h"
+#include "core/channel/channel_options.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -151,16 +151,8 @@ const Schema<Reading>& condition_schema() {
                   "Quantity of a channel, \"CHANNEL.QUANTITY\", or \"CHANNEL\" for its first, that "
                   "must be `above` or `below` a value for the stage to end",
                   [](Table& table, const std::string& key, R& reading) {
-                    const auto& channels = reading.source->channels;
-                    const std::string name = reading.word(table.text(key));
-                    const auto place = channel::place_of(channels, name);
-                    reading.stage().until.channel = place.value_or(0);
-                    if (!place) {
-                      table.reject(key, fmt::format("\"{}\"", name),
-                                   channels.empty()
-                                       ? "no channel: the definition states none"
-                                       : "a quantity: " + channel::names_of(channels));
-                    }
+                    reading.stage().until.channel = channel::read_value_name(
+                        table, key, reading.source->values, reading.word(table.text(key)));
                   })
           .otherwise(kNoCondition)
           .custom("for",

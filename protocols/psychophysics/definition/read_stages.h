@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/channel/channel_options.h"
 #include "protocols/psychophysics/definition/stage.h"
 
 namespace haptrial {
@@ -36,7 +35,7 @@ struct StageSource {
   std::vector<std::string> sights{};  // what can be shown; empty: anything
   /// The bits of a list of keys of the window by their names. Null: no keys are known.
   std::function<std::uint32_t(Table&, const std::string&)> keys{};
-  std::vector<channel::ChannelOptions> channels{};  // whose values stages may wait for
+  std::vector<std::string> values{};  // of channels, for which stages may wait
 };
 
 /// Reads the tables [[stages]]. Problems are noted in the table; keys in brackets are optional.

@@ -182,7 +182,8 @@ void TrialPass::feel(const Readings& readings) noexcept {
   for (std::size_t device = 0; device < devices; ++device) {
     if (run.scenes[device].acts()) {
       const device::DeviceReading& reading = readings[device];
-      drives_[device] = drive(run, device, run.scenes[device].force(reading.tool, reading.shares));
+      drives_[device] = drive(
+          run, device, run.scenes[device].force(reading.tool, reading.shares, reading.channels));
     }
   }
 }

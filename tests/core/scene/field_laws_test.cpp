@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -133,6 +134,19 @@ TEST(PushTest, APulseHasItsDelayDurationAndImpulse) {
   }
   EXPECT_NEAR(impulse, 2.0 * (0.3 - 0.05), 1e-8) << "each edge is worth half its duration";
   EXPECT_NEAR(pulse.force(at_time(0.125), state).y(), 1.0, 1e-12);
+}
+
+TEST(PushTest, AMeasuredValueIsFollowedAndAMissingOneGivesNoForce) {
+  Measured measured({1, 0.5, {0.0, 4.0, 0.0}}, kSetting);
+  FieldState state;
+  Felt felt = at_time(0.0);
+  const std::array<double, 2> values{9.0, 2.0};
+  EXPECT_EQ(measured.force(felt, state), Vector3d::Zero()) << "there is no channel";
+  felt.channels = values;
+  EXPECT_EQ(measured.force(felt, state), Vector3d(0.0, 6.0, 0.0));
+  const std::array<double, 2> lost{9.0, NAN};
+  felt.channels = lost;
+  EXPECT_EQ(measured.force(felt, state), Vector3d::Zero());
 }
 
 // --- inertia ----------------------------------------------------------------------------------

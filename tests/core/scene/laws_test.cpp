@@ -251,7 +251,8 @@ TEST(NeededDampingTest, SaysWhatColgateAndSchenkelSay) {
 TEST(NeededDampingTest, FieldsOfTimeAndLateAccelerationAreNotPassive) {
   const std::vector<FieldKind> active{
       RampParameters{},           PulseParameters{}, InertiaParameters{}, SineVibrationParameters{},
-      NoiseVibrationParameters{}, TapParameters{},   MoverParameters{},   PathParameters{}};
+      NoiseVibrationParameters{}, TapParameters{},   MoverParameters{},   PathParameters{},
+      MeasuredParameters{}};
   for (const FieldKind& kind : active) {
     EXPECT_FALSE(stiffness_bound({test::field("active", kind)}, 0).passive) << kind.index();
   }

@@ -403,10 +403,9 @@ TEST(TrialMistakesTest, AFieldThatTheHandDoesNotCarryGetsAWarningAndOneThatNoHan
 /// A mass m on a spring k swings at sqrt(k / m) / 2 pi, which is 9 Hz for 5000 N/m and 1.5 kg.
 TEST(TrialMistakesTest, AWallThatSwingsAsSlowlyAsATremorIsRefused) {
   const auto problems = [](const char* rate, const char* delay) {
-    return problems_of_trials(
-        with(with(kSmall, "\"$stiffness\"", "5000.0"), "[experiment]\n",
-             fmt::format("[experiment]\nrate = {}\n", rate)) +
-        fmt::format("[device]\nforce_delay = {}\n", delay));
+    return problems_of_trials(with(with(kSmall, "\"$stiffness\"", "5000.0"), "[experiment]\n",
+                                   fmt::format("[experiment]\nrate = {}\n", rate)) +
+                              fmt::format("[device]\nforce_delay = {}\n", delay));
   };
   EXPECT_THAT(problems("1000.0", "1"), IsEmpty());
   EXPECT_THAT(problems("500.0", "3"),

@@ -110,14 +110,12 @@ TEST(ReadStagesTest, AWordOfTheBlockNamesItsField) {
 
 TEST(ReadStagesTest, AStageMayWaitForAChannel) {
   StageSource with = source();
-  channel::ChannelOptions grip;
-  grip.name = "grip";
-  grip.plan.quantities = {{"force", "N"}, {"angle", "1"}};
-  with.channels = {grip};
+  with.values = {"grip.force", "grip.angle"};
   const std::string head = "[[stages]]\nname = \"a\"\nuntil = { channel = \"";
   const std::string end = " }\ntimeout = { after = 5.0, then = \"abort\" }\n";
   std::vector<std::string> problems;
-  const Until until = stages_of(head + "grip.angle\", above = 2.0" + end, problems, with)[0].stage.until;
+  const Until until =
+      stages_of(head + "grip.angle\", above = 2.0" + end, problems, with)[0].stage.until;
   EXPECT_THAT(problems, ElementsAre());
   EXPECT_EQ(until.channel, 1u);
   EXPECT_EQ(until.above, 2.0);
@@ -127,9 +125,10 @@ TEST(ReadStagesTest, AStageMayWaitForAChannel) {
     return found;
   };
   EXPECT_THAT(problem("grap\", above = 2.0"),
-              ElementsAre("f.toml:3: stages[1].until.channel is \"grap\"; allowed: a quantity: "
-                          "grip.force, grip.angle"));
-  EXPECT_THAT(problem("grip\""), ElementsAre(HasSubstr("stands without a value; add above or below")));
+              ElementsAre("f.toml:3: stages[1].until.channel is \"grap\"; allowed: a value "
+                          "of a channel: grip.force, grip.angle"));
+  EXPECT_THAT(problem("grip\""),
+              ElementsAre(HasSubstr("stands without a value; add above or below")));
   EXPECT_THAT(problem("grip\", above = 2.0, below = 1.0"),
               ElementsAre(HasSubstr("above is 2; allowed: less than below, 1")));
 }
