@@ -4,37 +4,20 @@
 #include <fmt/ranges.h>
 
 #include "core/base/error.h"
-#include "core/device/force_dimension.h"
 #include "core/device/gamepad.h"
-#include "core/device/open_haptics.h"
 #include "core/device/registered_devices.h"
+#include "core/device/vendor_devices.h"
 
 namespace haptrial::device {
 namespace {
 
-DeviceListing force_dimension(const std::string& library) {
-  const char* const name = "force-dimension";
+DeviceListing listing_of(const VendorDevice& device, const std::string& library) {
   try {
-    const int count = count_force_dimension_devices(library);
-    if (count <= 0) {
-      return {name, false,
-              "the library is installed, but no device answers; check cable and power"};
-    }
-    return {name, true, fmt::format("{} connected (omega, delta, sigma, Falcon)", count)};
+    return {device.name, true, device.look(library)};
   } catch (const InputError& error) {
-    return {name, false, error.what()};
-  }
-}
-
-DeviceListing open_haptics(const std::string& library) {
-  const char* const name = "open-haptics";
-  try {
-    check_open_haptics_library(library);
-    return {name, true,
-            "the library is installed (Phantom, Touch); whether a device answers shows when it is "
-            "opened"};
-  } catch (const InputError& error) {
-    return {name, false, error.what()};
+    return {device.name, false, error.what()};
+  } catch (const RunError& error) {
+    return {device.name, false, error.what()};
   }
 }
 
@@ -52,14 +35,16 @@ DeviceListing gamepad() {
 
 }  // namespace
 
-std::vector<DeviceListing> list_devices(const VendorLibraries& libraries) {
+std::vector<DeviceListing> list_devices(const std::map<std::string, std::string>& libraries) {
   std::vector<DeviceListing> list{
       {"virtual", true, "simulated 3-DOF impedance device with a virtual subject's hand"},
       {"replay", true, "the hand of a recorded session, played back"},
       {"mouse", true, "the pointer stands for the hand; forces are seen, not felt"},
-      gamepad(),
-      force_dimension(libraries.force_dimension),
-      open_haptics(libraries.open_haptics)};
+      gamepad()};
+  for (const VendorDevice& device : vendor_devices()) {
+    const auto library = libraries.find(device.name);
+    list.push_back(listing_of(device, library != libraries.end() ? library->second : ""));
+  }
   for (const RegisteredDevice& device : registered_devices()) {
     list.push_back({device.name, true, device.what});
   }

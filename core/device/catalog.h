@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,9 @@ struct DeviceListing {
   std::string what;  // one line: what it is, or what is missing and where to get it
 };
 
-/// Paths in place of the search for the vendors' libraries; empty: search.
-struct VendorLibraries {
-  std::string force_dimension;
-  std::string open_haptics;
-};
-
-/// Every device, those that are always there first. Loads the vendors' libraries for as long as it
-/// takes; opens no device.
-std::vector<DeviceListing> list_devices(const VendorLibraries& libraries = {});
+/// Every device, those that are always there first. Loads the makers' libraries, or asks their
+/// services, for as long as it takes; opens no device.
+/// @param libraries  paths in place of the search for a device's library
+std::vector<DeviceListing> list_devices(const std::map<std::string, std::string>& libraries = {});
 
 }  // namespace haptrial::device

@@ -7,10 +7,12 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "core/device/vendor_devices.h"
+
 namespace haptrial::device {
 namespace {
 
-constexpr std::array kBuiltIn{"virtual", "mouse", "gamepad", "force-dimension", "open-haptics"};
+constexpr std::array kBuiltIn{"virtual", "mouse", "gamepad"};
 constexpr const char* kReplay = "replay";  // with a file
 
 std::vector<RegisteredDevice>& all_registered() {
@@ -43,6 +45,8 @@ void register_device(const RegisteredDevice& device) {
 
 std::vector<std::string> device_names() {
   std::vector<std::string> names(kBuiltIn.begin(), kBuiltIn.end());
+  const std::vector<std::string> vendors = vendor_names();
+  names.insert(names.end(), vendors.begin(), vendors.end());
   for (const RegisteredDevice& each : all_registered()) {
     names.push_back(each.name);
   }

@@ -1,17 +1,17 @@
 #include "experiments/runner/devices.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "core/base/error.h"
 #include "core/base/nearest.h"
-#include "core/device/force_dimension.h"
 #include "core/device/gamepad.h"
 #include "core/device/mouse.h"
-#include "core/device/open_haptics.h"
 #include "core/device/registered_devices.h"
 #include "core/device/replay.h"
+#include "core/device/vendor_devices.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::experiments {
@@ -124,14 +124,8 @@ std::unique_ptr<protocols::Rig> open_rig(
     }
     return std::make_unique<GamepadRig>(d);
   }
-  if (choice.name == "force-dimension") {
-    device::ForceDimensionParameters parameters = d.force_dimension;
-    parameters.index += choice.number;
-    return with(std::make_unique<device::ForceDimensionDevice>(parameters, d.rate, choice.library));
-  }
-  if (choice.name == "open-haptics") {
-    return with(
-        std::make_unique<device::OpenHapticsDevice>(d.open_haptics, d.rate, choice.library));
+  if (const device::VendorDevice* vendor = device::vendor_device(choice.name)) {
+    return with(vendor->open(d.vendor, choice.number, d.rate, choice.library));
   }
   if (const auto file = replayed_file(choice.name)) {
     return with(replayed(*file, d.rate));
@@ -173,15 +167,18 @@ void check_device_name(const std::string& name) {
 }
 
 bool takes_library(const std::string& device) {
-  return device == "force-dimension" || device == "open-haptics";
+  const device::VendorDevice* const vendor = device::vendor_device(device);
+  return vendor != nullptr && vendor->takes_library;
 }
 
 void check_library(const std::string& device, const std::string& library) {
   if (!library.empty() && !takes_library(device)) {
+    std::vector<std::string> others = device::vendor_names();
+    std::erase_if(others, [](const std::string& name) { return !takes_library(name); });
     throw InputError(
         fmt::format("--library is given with device {}, which uses no vendor's library; leave it "
-                    "out, or choose force-dimension or open-haptics",
-                    device));
+                    "out, or choose {}",
+                    device, fmt::join(others, " or ")));
   }
 }
 

@@ -13,7 +13,7 @@ namespace haptrial::experiments {
 
 /// Which device, and where its vendor's library is.
 struct DeviceChoice {
-  std::string name{"virtual"};  // or mouse, force-dimension, open-haptics, replay:FILE
+  std::string name{"virtual"};  // or another of device_names(), or replay:FILE
   std::string library{};        // a path in place of the search
   int number{0};                // of several with this name, from 0: added to their index
 };

@@ -19,8 +19,12 @@ void read_devices(Table& root, Definition& setup) {
       schema.read(table, into);
     }
   };
-  read("force_dimension", setup.force_dimension, device::force_dimension_schema());
-  read("open_haptics", setup.open_haptics, device::open_haptics_schema());
+  for (const device::VendorDevice& vendor : device::vendor_devices()) {
+    if (root.has(vendor.table)) {
+      Table table = root.table(vendor.table);
+      vendor.read(table, setup.vendor);
+    }
+  }
   read("mouse", setup.mouse, device::mouse_schema());
   read("gamepad", setup.gamepad, device::gamepad_schema());
   read("pedal", setup.pedal, device::pedal_schema());

@@ -7,11 +7,10 @@
 
 #include "core/channel/channel_options.h"
 #include "core/device/envelope.h"
-#include "core/device/force_dimension.h"
 #include "core/device/gamepad.h"
 #include "core/device/mouse.h"
-#include "core/device/open_haptics.h"
 #include "core/device/pedal.h"
+#include "core/device/vendor_devices.h"
 #include "core/device/virtual_device.h"
 #include "core/pages/page.h"
 #include "core/render/flat/trial_display_style.h"
@@ -63,8 +62,7 @@ struct Definition {
   std::string language;             // of the texts; empty: the definition's own
   // Parameters of the devices that may take the virtual one's place; a table that is left out has
   // its defaults.
-  device::ForceDimensionParameters force_dimension{};
-  device::OpenHapticsParameters open_haptics{};
+  device::VendorSetups vendor{};
   device::MouseParameters mouse{};
   device::GamepadParameters gamepad{};
   device::PedalParameters pedal{};  // beside any of them

@@ -14,7 +14,7 @@ control::HandleLoop handle_loop(const Definition& d) {
   loop.force_delay = d.device.force_delay;
   loop.velocity_window =
       std::max({device::readings_in_window(d.device.velocity_window, d.rate),
-                static_cast<int>(std::lround(d.force_dimension.velocity_window * d.rate))});
+                static_cast<int>(std::lround(d.vendor.force_dimension.velocity_window * d.rate))});
   return loop;
 }
 

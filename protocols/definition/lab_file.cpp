@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest.h"
+#include "core/device/vendor_devices.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -75,9 +76,14 @@ std::string without_mark(std::string text) {
 }  // namespace
 
 const std::vector<std::string>& machine_tables() {
-  static const std::vector<std::string> kTables{
-      "channels", "device", "force_dimension", "mouse",
-      "gamepad",  "open_haptics", "pedal",     "screen"};
+  static const std::vector<std::string> kTables = [] {
+    std::vector<std::string> tables{"channels", "device", "mouse", "gamepad", "pedal", "screen"};
+    for (const device::VendorDevice& vendor : device::vendor_devices()) {
+      tables.emplace_back(vendor.table);
+    }
+    std::ranges::sort(tables);
+    return tables;
+  }();
   return kTables;
 }
 

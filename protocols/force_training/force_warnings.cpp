@@ -88,8 +88,10 @@ void warn_of_devices(const ForceDefinition& d, double reach, Warnings& warnings)
                       table, workspace, reach));
     }
   };
-  check("force_dimension", d.force_dimension.max_force, d.force_dimension.workspace_radius);
-  check("open_haptics", d.open_haptics.max_force, d.open_haptics.workspace_radius);
+  for (const device::VendorDevice& vendor : device::vendor_devices()) {
+    const device::VendorDevice::Limits limits = vendor.limits(d.vendor);
+    check(vendor.table, limits.max_force, limits.workspace_radius);
+  }
 }
 
 /// A tenth of what the rate carries: from there on a tick is a step that is felt.

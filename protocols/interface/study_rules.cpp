@@ -1,5 +1,6 @@
 #include "protocols/interface/study_rules.h"
 
+#include "core/device/vendor_devices.h"
 #include "protocols/interface/protocol.h"
 
 namespace haptrial::protocols {
@@ -14,8 +15,6 @@ DefinitionRules of_every_study() {
   rules.free = {"texts",
                 "lab",
                 "screen",
-                "force_dimension",
-                "open_haptics",
                 "mouse",
                 "gamepad",
                 "pedal",
@@ -28,6 +27,9 @@ DefinitionRules of_every_study() {
                 "design.participants",
                 "analysis.planned",
                 "analysis.reference"};
+  for (const device::VendorDevice& vendor : device::vendor_devices()) {
+    rules.free.emplace_back(vendor.table);
+  }
   rules.ordered = {"groups"};  // the first participants belong to the first group
   return rules;
 }

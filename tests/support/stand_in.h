@@ -19,9 +19,17 @@ enum class Failure : int {
   kSlowCall,   // 5 ms in every read
   kSaturated,  // these two are return values above zero: no error
   kTimeGuard,
-  kHang,    // a read that never comes back
-  kCrash,   // a read that kills the program
-  kButton,  // the handle's button 0 is pressed
+  kHang,          // a read that never comes back
+  kCrash,         // a read that kills the program
+  kButton,        // the handle's button 0 is pressed
+  kMalformed,     // these are of a service that sends states as text: half a state,
+  kMissingField,  // a state without velocity,
+  kOtherDevice,   // a state of another device,
+  kNoGrip,        // one without the grip,
+  kNoPower,       // a device whose power supply was unplugged,
+  kLate,          // a state that comes 8 ms late,
+  kDoubled,       // that comes twice,
+  kMissing,       // or, one in ten, not at all
 };
 
 /// State of a stand-in, in the vendor's axes and units.

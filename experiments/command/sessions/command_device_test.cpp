@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -13,10 +14,9 @@
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/device/coupled_mass.h"
-#include "core/device/force_dimension.h"
 #include "core/device/mouse.h"
-#include "core/device/open_haptics.h"
 #include "core/device/registered_devices.h"
+#include "core/device/vendor_devices.h"
 #include "experiments/command/sessions/device_check.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/fatal_stop_handler.h"
@@ -67,8 +67,7 @@ Eigen::Vector3d sweep(CheckPart part, double share, double radius) {
 struct DeviceSetup {
   device::VirtualDeviceParameters electronics;
   device::MouseParameters mouse;
-  device::ForceDimensionParameters force_dimension;
-  device::OpenHapticsParameters open_haptics;
+  device::VendorSetups vendor;
   double holding_force{
       device::EnvelopeLimits{}.holding_force};  // a device may have more friction [N]
   std::vector<std::string> margins;             // of the definition, or the published ones
@@ -79,7 +78,7 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
   if (!options.definition.empty()) {
     const Experiment experiment = load_experiment(options.definition);
     const protocols::Definition& d = *experiment.definition;
-    setup = {d.device, d.mouse, d.force_dimension, d.open_haptics, d.envelope.holding_force, {}};
+    setup = {d.device, d.mouse, d.vendor, d.envelope.holding_force, {}};
     setup.margins = d.margins();
   } else {
     for (const Study* study : studies()) {
@@ -90,8 +89,9 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
   setup.mouse.stop_button = -1;
   setup.mouse.in_space = false;
   setup.mouse.start.setZero();
-  setup.force_dimension.stop_button = -1;
-  setup.open_haptics.stop_button = -1;
+  for (const device::VendorDevice& vendor : device::vendor_devices()) {
+    vendor.free_stop_button(setup.vendor);
+  }
   return setup;
 }
 
@@ -123,12 +123,8 @@ DeviceUnderTest mouse_bench(device::MouseParameters parameters) {
 
 DeviceUnderTest vendor_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   DeviceUnderTest bench;
-  if (options.name == "force-dimension") {
-    bench.device = std::make_unique<device::ForceDimensionDevice>(setup.force_dimension, kRate,
-                                                                  options.library);
-  } else if (options.name == "open-haptics") {
-    bench.device =
-        std::make_unique<device::OpenHapticsDevice>(setup.open_haptics, kRate, options.library);
+  if (const device::VendorDevice* vendor = device::vendor_device(options.name)) {
+    bench.device = vendor->open(setup.vendor, 0, kRate, options.library);
   } else if (const device::RegisteredDevice* own = device::registered_device(options.name)) {
     bench.device = own->open(device::setting_of(options.name), 0, kRate);
   } else {
@@ -258,9 +254,9 @@ void add_device_test(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "device-test", "Check whether a device is fit for experiments",
                              "haptrial device-test force-dimension", {"", "devices.md"});
   auto& o = options_of<DeviceTestOptions>(*sub, status, device_test);
-  sub->add_option(
-         "NAME", o.name,
-         "Device: virtual, mouse, force-dimension, open-haptics or one of this program's own")
+  sub->add_option("NAME", o.name,
+                  fmt::format("Device: virtual, mouse, {} or one of this program's own",
+                              fmt::join(device::vendor_names(), ", ")))
       ->required();
   sub->add_option(
       "--definition", o.definition,

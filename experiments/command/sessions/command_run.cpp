@@ -13,6 +13,7 @@
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
+#include "core/device/registered_devices.h"
 #include "core/record/read/overruns.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
@@ -273,8 +274,8 @@ void add_run(CLI::App& app, int& status) {
                   "Number of the participant's session, of a study on several days (default: the "
                   "first that is left)");
   sub->add_option("--device", o.devices,
-                  with_default("Device: virtual, mouse, gamepad, force-dimension, open-haptics, "
-                               "replay:FILE or one of this program's own",
+                  with_default(fmt::format("Device: {} or replay:FILE",
+                                           fmt::join(device::device_names(), ", ")),
                                o.devices.front()) +
                       "; repeated for each device of an experiment with several")
       ->allow_extra_args(false);

@@ -55,8 +55,9 @@ void warn_of_devices(const BoneDefinition& d, std::vector<std::string>& warnings
                       table, max_force, d.drilling.force_limit));
     }
   };
-  check("force_dimension", d.force_dimension.max_force);
-  check("open_haptics", d.open_haptics.max_force);
+  for (const device::VendorDevice& vendor : device::vendor_devices()) {
+    check(vendor.table, vendor.limits(d.vendor).max_force);
+  }
 }
 
 std::string describe_nerves(const BoneDefinition& d) {

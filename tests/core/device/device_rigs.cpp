@@ -6,10 +6,12 @@
 
 #include "core/device/coupled_mass.h"
 #include "core/device/force_dimension.h"
+#include "core/device/haply.h"
 #include "core/device/mouse.h"
 #include "core/device/open_haptics.h"
 #include "core/device/replay.h"
 #include "core/device/virtual_device.h"
+#include "tests/support/haply_service.h"
 
 namespace haptrial::test {
 
@@ -239,6 +241,59 @@ class OpenHapticsRig final : public Rig {
   std::optional<device::OpenHapticsDevice> device_;
 };
 
+/// An Inverse3 whose service is stepped by hand.
+class HaplyRig final : public Rig {
+ public:
+  HaplyRig() { open(1.0); }  // a busy machine may be slow to step
+  ~HaplyRig() override { device_.reset(); }
+  device::Device& device() override { return *device_; }
+  void period() override { service_.step(); }
+  double compliance() const override { return 1.0 / StandInHandle::kStiffness; }
+  void place(const Vector3d& p) override {
+    const double theirs[3] = {p.x(), -p.z(), p.y()};  // to the right, away from the user, up
+    service_.with_handle([&](StandInHandle& handle) { handle.place(theirs); });
+  }
+  bool press_button() override {
+    service_.with_handle([](StandInHandle& handle) { handle.buttons = 1; });
+    return true;
+  }
+  std::vector<RigFailure> failures() const override {
+    return {{Failure::kLostLink, "lost link"},
+            {Failure::kMalformed, "half a state"},
+            {Failure::kMissingField, "missing field"},
+            {Failure::kNotFinite, "not a number"},
+            {Failure::kOtherDevice, "state of another device"},
+            {Failure::kNoGrip, "lost grip"},
+            {Failure::kNoPower, "no power"},
+            {Failure::kJump, "jump"},
+            {Failure::kButton, "stop button"},
+            {Failure::kStall, "stall", false, 21},
+            {Failure::kLate, "late states", true},
+            {Failure::kDoubled, "doubled states", true},
+            {Failure::kMissing, "missing states", true}};
+  }
+  void fail(Failure failure, long tick) override {
+    open(0.02);
+    service_.fail(failure, tick);
+  }
+  double force_after_close() override {
+    device_.reset();
+    service_.step();  // nobody is connected
+    return service_.has_client() ? kNan : service_.force_size();
+  }
+
+ private:
+  void open(double patience) {
+    device::HaplyParameters parameters;
+    parameters.port = service_.port();
+    parameters.patience = patience;
+    device_.reset();
+    device_.emplace(parameters, kRigRate);
+  }
+  HaplyService service_{{.rate = 0.0}};
+  std::optional<device::HaplyDevice> device_;
+};
+
 }  // namespace
 
 std::vector<RigKind> every_rig() {
@@ -254,8 +309,8 @@ std::vector<RigKind> every_rig() {
        []() -> std::unique_ptr<Rig> {
          return std::make_unique<ForceDimensionRig>("stand_in_dhd_only");
        }},
-      {"open_haptics",
-       []() -> std::unique_ptr<Rig> { return std::make_unique<OpenHapticsRig>(); }}};
+      {"open_haptics", []() -> std::unique_ptr<Rig> { return std::make_unique<OpenHapticsRig>(); }},
+      {"haply", []() -> std::unique_ptr<Rig> { return std::make_unique<HaplyRig>(); }}};
 }
 
 }  // namespace haptrial::test

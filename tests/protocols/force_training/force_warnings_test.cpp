@@ -241,7 +241,7 @@ TEST(BoneWarningsTest, ContactVibrationAndDeviceEachGetASentence) {
   d.rate = 500.0;
   EXPECT_THAT(d.warnings(), ElementsAre(HasSubstr("lines of up to 341 Hz; those at 250 Hz")));
   d = dynamic_cast<const protocols::BoneDefinition&>(*shipped.definition);
-  d.force_dimension.max_force = 5.0;
+  d.vendor.force_dimension.max_force = 5.0;
   EXPECT_THAT(d.warnings(), ElementsAre(HasSubstr("forces above 5 N will be cut off")));
 }
 

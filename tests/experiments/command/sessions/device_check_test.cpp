@@ -197,7 +197,7 @@ TEST(DeviceTestCommandTest, DevicesListsAll) {
   const test::CommandResult result = run_command("haptrial devices");
   EXPECT_EQ(result.status, 0);
   for (const char* name :
-       {"virtual", "replay", "mouse", "gamepad", "force-dimension", "open-haptics"}) {
+       {"virtual", "replay", "mouse", "gamepad", "force-dimension", "open-haptics", "haply"}) {
     EXPECT_THAT(result.output, HasSubstr(name));
   }
 }

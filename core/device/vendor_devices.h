@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/device/force_dimension.h"
+#include "core/device/haply.h"
+#include "core/device/open_haptics.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::device {
+
+/// How the makers' devices are set up; a table that a definition leaves out has its defaults.
+struct VendorSetups {
+  ForceDimensionParameters force_dimension;
+  OpenHapticsParameters open_haptics;
+  HaplyParameters haply;
+};
+
+/// A maker's device, as everything that is not its driver knows it. One more device is a member
+/// above and an entry of vendor_devices().
+struct VendorDevice {
+  struct Limits {
+    double max_force;         // that its set-up allows [N]
+    double workspace_radius;  // likewise [m]
+  };
+  const char* name;    // as --device takes it
+  const char* table;   // of a definition or a lab file
+  bool takes_library;  // is driven through a library of the maker
+  /// Reads the table. Problems are noted there.
+  void (*read)(Table& table, VendorSetups& setups);
+  Limits (*limits)(const VendorSetups& setups);
+  /// Makes its stop button a button like any other, for a check of the device.
+  void (*free_stop_button)(VendorSetups& setups);
+  /// @param number   of several with this name, from 0
+  /// @param rate     of the servo loop [Hz]
+  /// @param library  a path in place of the search; empty if takes_library is false
+  /// @throws InputError or RunError as the device's constructor does
+  std::unique_ptr<Device> (*open)(const VendorSetups& setups, int number, double rate,
+                                  const std::string& library);
+  /// What is there, in one line, without opening a device.
+  /// @throws InputError or RunError that says what is missing
+  std::string (*look)(const std::string& library);
+};
+
+/// Every maker's device, in the order of lists.
+std::span<const VendorDevice> vendor_devices();
+
+/// Their names, as --device takes them.
+std::vector<std::string> vendor_names();
+
+/// The one of this name; null if there is none.
+const VendorDevice* vendor_device(const std::string& name);
+
+}  // namespace haptrial::device
