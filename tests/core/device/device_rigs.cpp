@@ -278,8 +278,10 @@ class HaplyRig final : public Rig {
   }
   double force_after_close() override {
     device_.reset();
-    service_.step();  // nobody is connected
-    return service_.has_client() ? kNan : service_.force_size();
+    while (service_.has_client()) {  // it answers what was sent before the end
+      service_.step();
+    }
+    return service_.force_size();
   }
 
  private:
