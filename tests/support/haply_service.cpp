@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -33,9 +34,11 @@ asio::io_context& context() {
 
 /// One connection, on a thread of its own that reads a message, waits for a tick and answers.
 struct HaplyService::Client {
-  explicit Client(tcp::socket socket) : stream(std::move(socket)) {}
-  int descriptor() { return stream.next_layer().native_handle(); }
+  explicit Client(tcp::socket socket)
+      : descriptor(::dup(socket.native_handle())), stream(std::move(socket)) {}
+  ~Client() { ::close(descriptor); }
 
+  const int descriptor;  // to shut it down from other threads: the stream may close its own
   beast::websocket::stream<tcp::socket> stream;
   bool open{false};     // of mutex_
   bool waiting{false};  // for a tick; of mutex_
@@ -89,7 +92,7 @@ void HaplyService::kill() {
   dead_ = true;
   ::shutdown(listener_, SHUT_RDWR);
   for (const auto& client : clients_) {
-    ::shutdown(client->descriptor(), SHUT_RDWR);
+    ::shutdown(client->descriptor, SHUT_RDWR);
   }
   changed_.notify_all();
 }
@@ -162,7 +165,7 @@ void HaplyService::listen() {
     clients_.push_back(std::make_unique<Client>(std::move(socket)));
     Client& client = *clients_.back();
     if (dead_) {
-      ::shutdown(client.descriptor(), SHUT_RDWR);
+      ::shutdown(client.descriptor, SHUT_RDWR);
     }
     client.thread = std::thread([this, &client] {
       try {
@@ -172,7 +175,7 @@ void HaplyService::listen() {
       const std::lock_guard end(mutex_);
       client.open = false;
       client.waiting = false;
-      ::shutdown(client.descriptor(), SHUT_RDWR);
+      ::shutdown(client.descriptor, SHUT_RDWR);
       changed_.notify_all();
     });
   }
