@@ -7,6 +7,7 @@
 
 #include "experiments/command/start/examples.h"
 #include "experiments/command/start/machine_checks.h"
+#include "experiments/command/start/touch_checks.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 
@@ -73,6 +74,11 @@ int doctor(const DoctorOptions& options) {
                                    check_disk(folder)};
   for (MachineCheck& device : check_devices()) {
     checks.push_back(std::move(device));
+  }
+  const TouchSearch here = this_machine(
+      experiment ? std::optional(experiment->definition->open_haptics.name) : std::nullopt);
+  for (MachineCheck& touch : check_touch(here)) {
+    checks.push_back(std::move(touch));
   }
   if (experiment) {
     mark_unused(*experiment->definition, checks);
