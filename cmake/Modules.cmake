@@ -213,6 +213,7 @@ function(haptrial_layer_tests)
   # A protocol that only the tests and a page of the documents have.
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)
+  target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/tests/support/boards/simulated_board.cpp)
   add_dependencies(test_experiments stand_in_dhd stand_in_hd stand_in_lsl)
 endfunction()
 
@@ -256,6 +257,7 @@ function(haptrial_test_needs)
                  PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/exchange/small_session.cpp)
   add_dependencies(test_stream stand_in_lsl)
   add_dependencies(test_channel stand_in_lsl)
+  target_sources(test_device PRIVATE ${CMAKE_SOURCE_DIR}/tests/support/boards/simulated_board.cpp)
   add_dependencies(test_device stand_in_dhd stand_in_dhd_only stand_in_hd)
 endfunction()
 

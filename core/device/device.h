@@ -17,6 +17,9 @@ struct DeviceInfo {
   double workspace_radius{0.075};  // about the origin [m]
   bool simulated{false};           // no hardware and no person behind it
   bool senses_orientation{false};  // else every reading has the identity
+  /// 1 along each axis of W along which it moves and gives forces, 0 along the others; forces along
+  /// these are left out before they are limited and recorded.
+  Eigen::Vector3d force_axes{Eigen::Vector3d::Ones()};
 };
 
 /// One reading of a device, in the world frame W (docs/conventions.md).

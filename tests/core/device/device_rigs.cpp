@@ -2,15 +2,21 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/device/coupled_mass.h"
 #include "core/device/force_dimension.h"
 #include "core/device/haply.h"
+#include "core/device/hapi_board.h"
 #include "core/device/mouse.h"
 #include "core/device/open_haptics.h"
+#include "core/device/paddle_board.h"
 #include "core/device/replay.h"
 #include "core/device/virtual_device.h"
+#include "tests/support/boards/simulated_board.h"
 #include "tests/support/haply_service.h"
 
 namespace haptrial::test {
@@ -296,7 +302,90 @@ class HaplyRig final : public Rig {
   std::optional<device::HaplyDevice> device_;
 };
 
+/// A board on a pseudo-terminal, whose time the suite lets pass.
+class BoardRig final : public Rig {
+ public:
+  using Open = std::unique_ptr<device::SerialBoard>(const std::string& port);
+  BoardRig(std::unique_ptr<BoardFirmware> firmware, const Vector3d& free, Open* open)
+      : board_(std::move(firmware), free) {
+    board_.start();
+    device_ = open(board_.port());
+    board_.stop();
+  }
+  device::Device& device() override { return *device_; }
+  void period() override {
+    board_.step([this] { return device_->readings(); });
+  }
+  bool period_is_the_drivers() const override { return false; }
+  double compliance() const override { return 1.0 / 400.0; }
+  void place(const Vector3d& p) override { board_.mass.set_anchor(p); }
+  bool press_button() override {
+    board_.buttons = 1;
+    return !board_.firmware().answers();
+  }
+  std::vector<RigFailure> failures() const override {
+    return {{Failure::kLostLink, "lost link", false, 21},
+            {Failure::kTimeout, "silent", false, 21},
+            {Failure::kNotFinite, "not finite", false, 21},
+            {Failure::kStall, "torn", false, 21},
+            {Failure::kHang, "noise", false, 21},
+            {Failure::kJump, "jump", false, 1},
+            {Failure::kSlowCall, "late", true},
+            {Failure::kSaturated, "doubled", true},
+            {Failure::kTimeGuard, "every other is missing", true}};
+  }
+  void fail(Failure failure, long tick) override {
+    static const std::map<Failure, BoardFailure> kOfBoards{
+        {Failure::kLostLink, BoardFailure::kUnplugged},
+        {Failure::kTimeout, BoardFailure::kSilent},
+        {Failure::kNotFinite, BoardFailure::kNotFinite},
+        {Failure::kStall, BoardFailure::kTorn},
+        {Failure::kHang, BoardFailure::kNoise},
+        {Failure::kJump, BoardFailure::kJump},
+        {Failure::kSlowCall, BoardFailure::kLate},
+        {Failure::kSaturated, BoardFailure::kDoubled},
+        {Failure::kTimeGuard, BoardFailure::kEveryOther}};
+    board_.fail(kOfBoards.at(failure), tick);
+  }
+  double force_after_close() override {
+    device_.reset();
+    board_.drain();
+    return board_.force().norm();
+  }
+
+ private:
+  SimulatedBoard board_;
+  std::unique_ptr<device::SerialBoard> device_;
+};
+
+std::unique_ptr<Rig> pantograph_rig() {
+  return std::make_unique<BoardRig>(std::make_unique<HapiFirmware>(), Vector3d(1.0, 0.0, 1.0),
+                                    [](const std::string& port) {
+                                      device::HapiParameters parameters;
+                                      parameters.line.port = port;
+                                      return device::open_hapi_board(parameters, kRigRate);
+                                    });
+}
+
+std::unique_ptr<Rig> paddle_rig() {
+  return std::make_unique<BoardRig>(
+      std::make_unique<PaddleFirmware>(), Vector3d::UnitX(), [](const std::string& port) {
+        return device::open_paddle_board(example_paddle(port), kRigRate);
+      });
+}
+
 }  // namespace
+
+device::PaddleParameters example_paddle(const std::string& port) {
+  device::PaddleParameters parameters;
+  parameters.line.port = port;
+  parameters.columns = {"-", "x", "buttons"};
+  parameters.position_scale = -1e-3;
+  parameters.position_zero = 100.0;
+  parameters.command = "T{x}";
+  parameters.force_scale = 0.08;
+  return parameters;
+}
 
 std::vector<RigKind> every_rig() {
   return {
@@ -312,7 +401,9 @@ std::vector<RigKind> every_rig() {
          return std::make_unique<ForceDimensionRig>("stand_in_dhd_only");
        }},
       {"open_haptics", []() -> std::unique_ptr<Rig> { return std::make_unique<OpenHapticsRig>(); }},
-      {"haply", []() -> std::unique_ptr<Rig> { return std::make_unique<HaplyRig>(); }}};
+      {"haply", []() -> std::unique_ptr<Rig> { return std::make_unique<HaplyRig>(); }},
+      {"hapi", pantograph_rig},
+      {"paddle", paddle_rig}};
 }
 
 }  // namespace haptrial::test

@@ -6,6 +6,7 @@
 
 #include "core/device/device.h"
 #include "core/device/dynamic_library.h"
+#include "core/device/paddle_board.h"
 #include "tests/support/stand_in.h"
 
 namespace haptrial::test {
@@ -27,6 +28,8 @@ class Rig {
   virtual device::Device& device() = 0;
   /// One period passes behind the device, where its write() does not do that by itself.
   virtual void period() {}
+  /// Whether period() runs the driver's own code, which must not allocate, and not that of a board.
+  virtual bool period_is_the_drivers() const { return true; }
   /// How far a held force of 1 N moves the tool in the end [m].
   virtual double compliance() const { return 0.0; }
   /// Has the tool go to p by what stands behind the device [m].
@@ -43,6 +46,9 @@ struct RigKind {
   std::unique_ptr<Rig> (*make)();
 };
 std::vector<RigKind> every_rig();
+
+/// Set-up for the lines of PaddleFirmware with one axis.
+device::PaddleParameters example_paddle(const std::string& port);
 
 /// The controls of a stand-in library, which stays loaded while this lives.
 struct StandIn {

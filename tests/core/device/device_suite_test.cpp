@@ -65,9 +65,10 @@ TEST_P(DeviceSuiteTest, AForceMovesTheToolAlongItsOwnAxisByItsOwnMeasure) {
       hold(Vector3d::Zero(), 1000);
       const Vector3d before = tick(Vector3d::Zero()).tool.position;
       const DeviceReading early = hold(force * Vector3d::Unit(axis), 30);
-      EXPECT_EQ(early.tool.velocity[axis] * force > 0.0, rig_->compliance() > 0.0) << axis;
+      const double compliance = rig_->compliance() * rig_->device().info().force_axes[axis];
+      EXPECT_EQ(early.tool.velocity[axis] * force > 0.0, compliance > 0.0) << axis;
       const Vector3d moved = hold(force * Vector3d::Unit(axis), 1500).tool.position - before;
-      EXPECT_LT((moved - force * rig_->compliance() * Vector3d::Unit(axis)).norm(), 2e-6)
+      EXPECT_LT((moved - force * compliance * Vector3d::Unit(axis)).norm(), 2e-6)
           << "axis " << axis << ": " << moved.transpose();
     }
   }
@@ -76,7 +77,8 @@ TEST_P(DeviceSuiteTest, AForceMovesTheToolAlongItsOwnAxisByItsOwnMeasure) {
 TEST_P(DeviceSuiteTest, EveryAxisAndUnitIsThatOfTheWorld) {
   const Vector3d where{0.01, -0.02, 0.03};
   rig_->place(where);
-  EXPECT_LT((hold(Vector3d::Zero(), 2000).tool.position - where).norm(), 2e-7);
+  const Vector3d expected = where.cwiseProduct(rig_->device().info().force_axes);
+  EXPECT_LT((hold(Vector3d::Zero(), 2000).tool.position - expected).norm(), 2e-7);
 }
 
 TEST_P(DeviceSuiteTest, VelocityIsTheRateOfPosition) {
@@ -106,13 +108,16 @@ TEST_P(DeviceSuiteTest, TellsItsButtons) {
 TEST_P(DeviceSuiteTest, ATickDoesNotAllocate) {
   tick(Vector3d::Zero());
   DeviceReading reading;
-  const test::AllocationGuard guard;
+  std::size_t allocations = 0;
   for (int i = 0; i < 1000; ++i) {
+    const test::AllocationGuard guard;
     rig_->device().read(reading);
     rig_->device().write({0.1, 0.0, 0.0});
+    const std::size_t before = guard.count();
     rig_->period();
+    allocations += rig_->period_is_the_drivers() ? guard.count() : before;
   }
-  EXPECT_EQ(guard.count(), 0u);
+  EXPECT_EQ(allocations, 0u);
 }
 
 TEST_P(DeviceSuiteTest, ClosingLeavesNoForce) {
