@@ -26,6 +26,7 @@ constexpr milliseconds kLabJackLook{20};       // for that
 constexpr float kNoReading = -9999.0F;         // that the instrument gives for an input without one
 constexpr std::size_t kModbusHead = 6;         // bytes: transaction, protocol, length of the rest
 constexpr std::size_t kModbusRest = 254;       // bytes at most
+constexpr int kMostOfRun = 62;                 // inputs in an answer of Modbus
 constexpr std::uint8_t kReadRegisters = 3;     // function of Modbus
 
 /// One input and the quantity that it measures: scale * voltage + offset.
@@ -79,7 +80,7 @@ const Schema<LabJackOptions>& labjack_schema() {
   return schema;
 }
 
-/// Inputs one after the other, which one request reads.
+/// Inputs one after the other, which one request reads; kMostOfRun at most.
 struct InputRun {
   int first{0};
   int count{0};
@@ -93,10 +94,11 @@ std::vector<InputRun> runs_of(const std::vector<LabJackInput>& inputs) {
   std::ranges::sort(numbers);
   std::vector<InputRun> runs;
   for (const int number : numbers) {
-    if (runs.empty() || number > runs.back().first + runs.back().count) {
-      runs.push_back({number, 1});
-    } else if (number == runs.back().first + runs.back().count) {
+    const int next = runs.empty() ? -1 : runs.back().first + runs.back().count;
+    if (number == next && runs.back().count < kMostOfRun) {
       ++runs.back().count;
+    } else if (number >= next) {
+      runs.push_back({number, 1});
     }
   }
   return runs;
@@ -117,6 +119,8 @@ const char* exception_text(int code) {
                                               "busy"};
   return kTexts.at(code > 0 && code < static_cast<int>(kTexts.size()) ? code : 0);
 }
+
+static_assert(kMostQuantities <= 64, "a bit of absent_ for each");
 
 class LabJackSource final : public ChannelSource {
  public:
@@ -252,14 +256,14 @@ class LabJackSource final : public ChannelSource {
   }
 
   void take_sample(ChannelInbox& into) {
-    std::uint32_t absent = 0;  // a bit for each input without a reading
+    std::uint64_t absent = 0;  // a bit for each input without a reading
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const LabJackInput& input = options_.inputs[i];
       const double voltage = voltages_[static_cast<std::size_t>(input.input)];
       const bool is_there = std::isfinite(voltage) && voltage != kNoReading;
       values_[i] = is_there ? input.scale * voltage + input.offset
                             : std::numeric_limits<double>::quiet_NaN();
-      absent |= is_there ? 0u : 1u << i;
+      absent |= std::uint64_t{is_there ? 0u : 1u} << i;
     }
     note_absent(into, absent);
     // The reading lies between request and answer: half of that before now, and as far to each
@@ -269,7 +273,7 @@ class LabJackSource final : public ChannelSource {
     into.take(sample);
   }
 
-  void note_absent(ChannelInbox& into, std::uint32_t absent) {
+  void note_absent(ChannelInbox& into, std::uint64_t absent) {
     if (absent == absent_) {
       return;
     }
@@ -295,7 +299,7 @@ class LabJackSource final : public ChannelSource {
   std::uint16_t transaction_{0};
   std::size_t run_{0};  // of the request that waits for its answer
   bool asked_{false};
-  std::uint32_t absent_{0};
+  std::uint64_t absent_{0};
   std::int64_t asked_ns_{0};  // when the first request of a sample went out, by the session's clock
   steady_clock::time_point asked_at_{};
   steady_clock::time_point due_{steady_clock::now()};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/channel/channel_kinds.h"
+#include "core/channel/channel_kind.h"
 
 namespace haptrial::channel {
 
