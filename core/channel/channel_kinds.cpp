@@ -8,6 +8,7 @@
 #include "core/channel/labjack_channel.h"
 #include "core/channel/line_channel.h"
 #include "core/channel/lsl_channel.h"
+#include "core/channel/neon_channel.h"
 #include "core/channel/rdt_channel.h"
 #include "core/channel/robotiq_channel.h"
 
@@ -16,7 +17,12 @@ namespace {
 
 std::vector<ChannelKind>& all_kinds() {
   static std::vector<ChannelKind> kinds{
-      labjack_channel(), line_channel(), lsl_channel(), rdt_channel(), robotiq_channel(),
+      labjack_channel(),
+      line_channel(),
+      lsl_channel(),
+      neon_channel(),
+      rdt_channel(),
+      robotiq_channel(),
   };
   return kinds;
 }
