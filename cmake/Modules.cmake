@@ -208,6 +208,10 @@ function(haptrial_layer_tests)
     add_dependencies(test_${layer} haptrial)  # its tests run the command
   endforeach()
   target_link_libraries(test_experiments PRIVATE nlohmann_json::nlohmann_json)
+  # A program with kinds of its own, as a page of the documents shows it.
+  add_executable(own_kinds ${CMAKE_SOURCE_DIR}/docs/worked/own/own.cpp)
+  target_link_libraries(own_kinds PRIVATE haptrial_command_line)
+  add_dependencies(test_experiments own_kinds)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/protocols/psychophysics/*.cpp)
   haptrial_test(psychophysics psychophysics ${sources})  # needs no other protocol
   # A protocol that only the tests and a page of the documents have.

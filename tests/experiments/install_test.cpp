@@ -74,19 +74,18 @@ TEST_F(InstallTest, AProgramWithAProtocolOfItsOwnRunsStudies) {
   EXPECT_EQ(ran.status, 0) << "it has the others' as well: " << ran.errors;
 }
 
-/// Programs with a device, a field, a shape, a renderer, a procedure or a score of their own, with
-/// nothing of the source tree.
-TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
+/// A program with a kind of its own of everything, with nothing of the source tree.
+TEST_F(InstallTest, AProgramWithKindsOfItsOwnUsesThem) {
   const test::CommandResult built = build("own");
   ASSERT_EQ(built.status, 0) << built.output << built.errors;
   const std::string folder = root_ + "/build/";
-  test::CommandResult ran = test::run_command(folder + "circle devices");
+  test::CommandResult ran = test::run_command(folder + "own devices");
   EXPECT_NE(ran.output.find("circle           ready"), std::string::npos) << ran.output;
-  ran = test::run_command(folder + "circle device-test circle:0.5");
+  ran = test::run_command(folder + "own device-test circle:0.5");
   EXPECT_EQ(ran.status, 2) << ran.output;
   EXPECT_NE(ran.errors.find("a radius up to 0.07"), std::string::npos) << ran.errors;
 
-  const std::string valley = "cd '" + root_ + "' && " + folder + "valley ";
+  const std::string valley = "cd '" + root_ + "' && " + folder + "own ";
   ran = test::run_command("cd '" + root_ +
                           "' && cp " HAPTRIAL_SOURCE_DIR
                           "/experiments/first_experiment.toml valley.toml && printf "
@@ -113,7 +112,7 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
     EXPECT_EQ(ran.errors.find('\n'), ran.errors.size() - 1) << ran.errors;
   }
 
-  const std::string ring = "cd '" + root_ + "' && " + folder + "ring ";
+  const std::string ring = "cd '" + root_ + "' && " + folder + "own ";
   ran = test::run_command(
       "cd '" + root_ +
       "' && cp " HAPTRIAL_SOURCE_DIR
@@ -139,7 +138,7 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
   EXPECT_NE(ran.errors.find("fields.valley.type is 'valley'; allowed: "), std::string::npos)
       << ran.errors;
 
-  ran = test::run_command(folder + "robbins_monro keys trials");
+  ran = test::run_command(folder + "own keys trials");
   EXPECT_NE(
       ran.output.find("later ones are divided by the number of trials (kind: robbins_monro) |"),
       std::string::npos)
@@ -149,7 +148,7 @@ TEST_F(InstallTest, ProgramsWithKindsOfTheirOwnUseThem) {
                           "' && haptrial dry-run " HAPTRIAL_SOURCE_DIR
                           "/experiments/first_experiment.toml --subjects 1 --trials 2 --out first");
   ASSERT_EQ(ran.status, 0) << ran.errors;
-  ran = test::run_command(folder + "way_of_hand analyze " + root_ + "/first");
+  ran = test::run_command(folder + "own analyze " + root_ + "/first");
   ASSERT_EQ(ran.status, 0) << ran.errors;
   EXPECT_NE(ran.output.find("2 own scores: "), std::string::npos) << ran.output;
   const test::CommandResult table = test::run_command("cat " + root_ + "/first/own_scores.csv");

@@ -28,6 +28,7 @@
 #include "core/scene/read/field_bounds.h"
 #include "core/scene/read/field_kinds.h"
 #include "core/scene/read/shape_kinds.h"
+#include "docs/worked/own/ring.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
@@ -48,82 +49,10 @@ constexpr double kTop = 0.004;        // of the block, along z [m]
 constexpr double kGivenBack = 0.5;    // share of the force when the hand leaves the block
 constexpr int kTrials = 4;
 
-/// A ring around z: its tube has the radius `tube` about a circle of the radius `radius`.
-struct Ring {
-  Vector3d centre{Vector3d::Zero()};  // [m]
-  double radius{0.03};                // > tube [m]
-  double tube{0.01};                  // > 0 [m]
-};
-
-class RingLaw final : public scene::ShapeLaw {
- public:
-  explicit RingLaw(const Ring& ring) : ring_(ring) {}
-  scene::SurfaceDistance distance(const Vector3d& p) const noexcept override {
-    const Vector3d from = p - ring_.centre;
-    const double aside = std::hypot(from.x(), from.y());
-    const Vector3d outward =
-        aside > 0.0 ? Vector3d(from.x() / aside, from.y() / aside, 0.0) : Vector3d::UnitX();
-    const Vector3d off = from - ring_.radius * outward;
-    const double size = off.norm();
-    return {size - ring_.tube, size > 0.0 ? Vector3d(off / size) : Vector3d::UnitZ()};
-  }
-  double deepest() const noexcept override { return ring_.tube; }
-  scene::ShapeBall ball() const override { return {ring_.centre, ring_.radius + ring_.tube}; }
-  Vector3d inside() const override { return ring_.centre + ring_.radius * Vector3d::UnitX(); }
-
- private:
-  Ring ring_;
-};
-
-scene::Shape read_ring(Table& table) {
-  static const auto schema =
-      Schema<Ring>()
-          .vector("centre", &Ring::centre, scene::kPlaceBounds, "m", "Centre of the shape")
-          .required()
-          .number("radius", &Ring::radius, scene::kLengthBounds, "m", "Radius of the shape")
-          .required()
-          .number("tube", &Ring::tube, scene::kLengthBounds, "m", "Radius of a ring's tube")
-          .required();
-  return scene::RegisteredShape{std::make_shared<RingLaw>(schema.read(table))};
-}
-
-/// A spring to the nearest triangle that gives back only a share of its force.
-class LossyRenderer final : public contact::Renderer {
- public:
-  LossyRenderer(const geometry::Mesh& mesh, const contact::ContactSurface& surface,
-                const contact::RendererOptions& options)
-      : spring_(mesh, surface, options) {}
-  void start(const Vector3d& tool) noexcept override {
-    spring_.start(tool);
-    before_ = 0.0;
-  }
-  const contact::Contact& tick(const Vector3d& tool, double period) noexcept override {
-    contact_ = spring_.tick(tool, period);
-    if (contact_.depth < before_) {
-      contact_.force *= kGivenBack;
-    }
-    before_ = contact_.depth;
-    return contact_;
-  }
-  const contact::Operations& operations() const noexcept override { return spring_.operations(); }
-
- private:
-  contact::PenaltyRenderer spring_;
-  contact::Contact contact_;
-  double before_{0.0};  // depth a tick ago [m]
-};
-
-std::unique_ptr<contact::Renderer> make_lossy(const geometry::Mesh& mesh,
-                                              const contact::ContactSurface& surface,
-                                              const contact::RendererOptions& options) {
-  return std::make_unique<LossyRenderer>(mesh, surface, options);
-}
-
 /// Adds both, once in this program.
 void add_own_kinds() {
   static const bool added = [] {
-    scene::add_kind_of_shape({"ring", read_ring});
-    contact::add_kind_of_renderer({.word = "lossy", .make = make_lossy});
+    own::add_ring();
     return true;
   }();
   static_cast<void>(added);
@@ -344,11 +273,11 @@ TEST_F(OwnShapeTest, MistakesInItsKeysGetTheirSentences) {
 }
 
 TEST_F(OwnShapeTest, WordsThatAreTakenAreRefused) {
-  EXPECT_THROW(scene::add_kind_of_shape({"ring", read_ring}), std::invalid_argument);
-  EXPECT_THROW(scene::add_kind_of_shape({"grating", read_ring}), std::invalid_argument)
+  EXPECT_THROW(scene::add_kind_of_shape({"ring", own::read_ring}), std::invalid_argument);
+  EXPECT_THROW(scene::add_kind_of_shape({"grating", own::read_ring}), std::invalid_argument)
       << "a field has it";
   EXPECT_EQ(std::ranges::count(scene::kinds_of_shape(), "grating", &scene::KindOfShape::word), 0);
-  EXPECT_THROW(contact::add_kind_of_renderer({.word = "voxel", .make = make_lossy}),
+  EXPECT_THROW(contact::add_kind_of_renderer({.word = "voxel", .make = own::make_lossy}),
                std::invalid_argument);
 }
 

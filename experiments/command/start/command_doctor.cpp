@@ -76,7 +76,7 @@ int doctor(const DoctorOptions& options) {
     checks.push_back(std::move(device));
   }
   const TouchSearch here = this_machine(
-      experiment ? std::optional(experiment->definition->open_haptics.name) : std::nullopt);
+      experiment ? std::optional(experiment->definition->vendor.open_haptics.name) : std::nullopt);
   for (MachineCheck& touch : check_touch(here)) {
     checks.push_back(std::move(touch));
   }

@@ -1,11 +1,11 @@
-// haptrial with one kind of field more: a valley along x, whose walls grow with the cube of the
-// distance.
+#pragma once
+
 #include <cmath>
 
 #include "core/scene/read/field_kinds.h"
-#include "experiments/command/line/whole_command.h"
 
-namespace {
+/// A kind of field: a valley along x, whose walls grow with the cube of the distance.
+namespace own {
 
 using namespace haptrial::scene;
 
@@ -14,7 +14,7 @@ struct ValleyParameters {
   double width{0.01};    // w > 0 [m]
 };
 
-const haptrial::Schema<ValleyParameters>& valley_schema() {
+inline const haptrial::Schema<ValleyParameters>& valley_schema() {
   using P = ValleyParameters;
   static const auto schema = haptrial::Schema<P>()
                                  .number("strength", &P::strength, kStrengthBounds, "N",
@@ -52,14 +52,11 @@ class ValleyNumbers final : public RegisteredNumbers {
 };
 
 /// [fields.NAME] type = "valley": strength [N] at the distance width [m]. Formulas may stand there.
-FieldKind read_valley(haptrial::Table& table, const FieldSetting&) {
+inline FieldKind read_valley(haptrial::Table& table, const FieldSetting&) {
   const ValleyParameters p = valley_schema().read(table);
   return RegisteredParameters{"valley", std::make_shared<ValleyNumbers>(p)};
 }
 
-}  // namespace
+inline void add_valley() { add_kind_of_field({"valley", read_valley}); }
 
-int main(int argc, char** argv) {
-  using namespace haptrial::experiments;
-  return whole_command(argc, argv, [] { add_kind_of_field({"valley", read_valley}); });
-}
+}  // namespace own

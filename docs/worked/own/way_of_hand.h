@@ -1,10 +1,11 @@
-// haptrial with one score and one finding more: how far the hand went in each pass, and on average.
+#pragma once
+
 #include "analysis/exchange/own_findings.h"
 #include "analysis/exchange/score.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/line/whole_command.h"
 
-namespace {
+/// A score and a finding: how far the hand went in each pass, and on average.
+namespace own {
 
 using namespace haptrial;
 
@@ -28,10 +29,10 @@ class WayOfHand final : public analysis::Score {
   }
 };
 
-const WayOfHand kWay;
+inline const WayOfHand kWay;
 
 /// The mean over all passes, and a table with the mean of each session.
-analysis::FindingList mean_way(const std::vector<std::filesystem::path>& sessions) {
+inline analysis::FindingList mean_way(const std::vector<std::filesystem::path>& sessions) {
   analysis::FindingList list;
   list.heading = "Way of the hand";
   analysis::FindingTable table{"sessions", "Way of each session"};
@@ -60,11 +61,9 @@ analysis::FindingList mean_way(const std::vector<std::filesystem::path>& session
   return list;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  return experiments::whole_command(argc, argv, [] {
-    analysis::add_score(kWay);
-    analysis::add_finding_source({"way", mean_way});
-  });
+inline void add_way_of_hand() {
+  analysis::add_score(kWay);
+  analysis::add_finding_source({"way", mean_way});
 }
+
+}  // namespace own

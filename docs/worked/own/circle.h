@@ -1,14 +1,15 @@
-// haptrial with one device more, which needs no hardware: its handle goes round in a circle.
-// --device circle, or circle:RADIUS.
+#pragma once
+
 #include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "core/base/error.h"
 #include "core/device/registered_devices.h"
-#include "experiments/command/line/whole_command.h"
 
-namespace {
+/// A device that needs no hardware: its handle goes round in a circle. --device circle, or
+/// circle:RADIUS.
+namespace own {
 
 using namespace haptrial;
 
@@ -37,7 +38,7 @@ class Circle final : public device::Device {
   double time_{0.0};
 };
 
-std::unique_ptr<device::Device> open(const std::string& setting, int, double rate) {
+inline std::unique_ptr<device::Device> open_circle(const std::string& setting, int, double rate) {
   double radius = 0.02;
   const char* const end = setting.data() + setting.size();
   const auto [at, error] = std::from_chars(setting.data(), end, radius);
@@ -48,10 +49,9 @@ std::unique_ptr<device::Device> open(const std::string& setting, int, double rat
   return std::make_unique<Circle>(radius, rate);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  return experiments::whole_command(argc, argv, [] {
-    device::register_device({"circle", "a handle that goes round by itself, once a second", open});
-  });
+inline void add_circle() {
+  device::register_device(
+      {"circle", "a handle that goes round by itself, once a second", open_circle});
 }
+
+}  // namespace own

@@ -1,5 +1,5 @@
-// haptrial with one shape and one renderer more: a ring, for regions and fields, and a spring to
-// the nearest triangle of a mesh that gives back only half of its force.
+#pragma once
+
 #include <cmath>
 
 #include "core/base/definition/schema.h"
@@ -7,9 +7,10 @@
 #include "core/contact/renderer_kinds.h"
 #include "core/scene/read/field_bounds.h"
 #include "core/scene/read/shape_kinds.h"
-#include "experiments/command/line/whole_command.h"
 
-namespace {
+/// A shape, a ring for regions and fields, and a renderer, a spring to the nearest triangle of a
+/// mesh that gives back only half of its force.
+namespace own {
 
 using namespace haptrial;
 using Eigen::Vector3d;
@@ -41,7 +42,7 @@ class RingLaw final : public scene::ShapeLaw {
 };
 
 /// type = "ring": centre, radius, tube [m]. Formulas may stand there.
-scene::Shape read_ring(Table& table) {
+inline scene::Shape read_ring(Table& table) {
   static const auto schema =
       Schema<Ring>()
           .vector("centre", &Ring::centre, scene::kPlaceBounds, "m", "Centre of the shape")
@@ -78,17 +79,15 @@ class LossyRenderer final : public contact::Renderer {
   double before_{0.0};  // depth a tick ago [m]
 };
 
-std::unique_ptr<contact::Renderer> make_lossy(const geometry::Mesh& mesh,
-                                              const contact::ContactSurface& surface,
-                                              const contact::RendererOptions& options) {
+inline std::unique_ptr<contact::Renderer> make_lossy(const geometry::Mesh& mesh,
+                                                     const contact::ContactSurface& surface,
+                                                     const contact::RendererOptions& options) {
   return std::make_unique<LossyRenderer>(mesh, surface, options);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  return experiments::whole_command(argc, argv, [] {
-    scene::add_kind_of_shape({"ring", read_ring});
-    contact::add_kind_of_renderer({.word = "lossy", .make = make_lossy});
-  });
+inline void add_ring() {
+  scene::add_kind_of_shape({"ring", read_ring});
+  contact::add_kind_of_renderer({.word = "lossy", .make = make_lossy});
 }
+
+}  // namespace own
