@@ -59,7 +59,7 @@ SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns) {
     const double excess = point.received - line_at(point.device);
     const bool backwards = excess < -std::max(kLeastStep, 4.0 * spread_);
     if (backwards || all_late(excess, point)) {
-      step = backwards ? excess : least_late_;
+      step = -(backwards ? excess : least_late_);
       restart();
       has_origin_ = true;
       device_origin_ = device_time;

@@ -26,6 +26,7 @@ struct Followed {
   double worst{0.0};   // error of the last quarter [s]
   double mean_uncertainty{0.0};
   int steps{0};
+  double step{0.0};  // the last of them [s]
 };
 
 Followed follow(const PlantedClock& planted, double seconds, std::uint64_t seed) {
@@ -47,6 +48,7 @@ Followed follow(const PlantedClock& planted, double seconds, std::uint64_t seed)
     result.within += error <= time.uncertainty ? 1.0 / count : 0.0;
     result.mean_uncertainty += time.uncertainty / count;
     result.steps += time.step != 0.0 ? 1 : 0;
+    result.step = time.step != 0.0 ? time.step : result.step;
     if (4 * i > 3 * count) {
       result.worst = std::max(result.worst, error);
     }
@@ -77,6 +79,7 @@ TEST(SampleClockTest, AClockThatStepsIsSeenOnceAndFollowedAnew) {
   for (const double step : {-0.5, -0.02, 0.02, 0.5}) {
     const Followed followed = follow({.step = step}, 60.0, 5);
     EXPECT_EQ(followed.steps, 1) << step;
+    EXPECT_NEAR(followed.step, step, 2e-3) << "forward is above 0";
     EXPECT_GT(followed.within, 0.95) << step;
     EXPECT_LT(followed.worst, 1e-3) << step;
   }
