@@ -21,9 +21,6 @@ struct ChannelPlan {
   /// Opens the instrument; may wait for seconds. @throws RunError in one sentence if it does not
   /// answer
   std::function<std::unique_ptr<ChannelSource>()> open;
-  /// Asks the instrument for its quantities, if the definition states none and the instrument knows
-  /// them; may wait for seconds. @throws RunError as open() does
-  std::function<std::vector<Quantity>()> ask;
 };
 
 /// One kind of [channels]: what its `kind` says, and how its keys are read.

@@ -133,6 +133,9 @@ void ChannelSet::collect(std::int64_t now_ns, const std::function<void(const rec
 /// The samples up to now, as an instrument of the stated rate would have given them.
 void ChannelSet::simulate(Part& part, std::int64_t now_ns,
                           const std::function<void(const record::Rows&)>& put) {
+  if (part.options.plan.quantities.empty()) {
+    return;  // messages alone
+  }
   std::vector<ChannelRow> rows;
   const double rate = rate_of(part.options.plan);
   for (;; ++part.next) {

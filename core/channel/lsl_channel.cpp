@@ -37,7 +37,7 @@ struct LslInletOptions {
   std::string name{};
   std::string type{};
   std::string source_id{};
-  std::vector<Quantity> quantities{};  // none: those of the stream
+  std::vector<Quantity> quantities{};  // none: the stream sends texts
   double rate{0.0};                    // 0: unknown [Hz]
   std::string library{"liblsl.so"};
 };
@@ -70,7 +70,7 @@ const Schema<LslInletOptions>& lsl_inlet_schema() {
                   [](Table& table, const std::string& key, O& o) {
                     o.quantities = read_quantities(table, key);
                   })
-          .otherwise("labels and units of the stream's own description")
+          .otherwise("none: the stream sends texts, which become messages")
           .number("rate", &O::rate, {0.0, 20000.0}, "Hz",
                   "Samples a second, as far as known; above 1000 the buffers need it")
           .text("library", &O::library, "File or path of the Lab Streaming Layer's library")
@@ -131,16 +131,12 @@ std::string name_of_label(std::string label, std::size_t number,
 /// An open stream, and its clock against this machine's.
 class LslSource final : public ChannelSource {
  public:
-  /// @param expected  quantities that a sample must have; nothing: they are asked for
-  LslSource(const LslInletOptions& options,
-            const std::optional<std::vector<Quantity>>& expected = std::nullopt)
+  explicit LslSource(const LslInletOptions& options)
       : lsl_(loaded(options.library)), name_(predicate_of(options)) {
     open_inlet();
     try {
       describe();
-      if (expected) {
-        check(*expected);
-      }
+      check(options.quantities);
       measure_offset(kAnswerFor);
     } catch (...) {
       lsl_.destroy_inlet(inlet_);
@@ -150,8 +146,6 @@ class LslSource final : public ChannelSource {
   ~LslSource() override { lsl_.destroy_inlet(inlet_); }
   LslSource(const LslSource&) = delete;
   LslSource& operator=(const LslSource&) = delete;
-
-  const std::vector<Quantity>& quantities() const { return quantities_; }
 
   bool may_be_silent() const override { return text_ || rate_ == 0.0; }
 
@@ -364,8 +358,8 @@ class LslSource final : public ChannelSource {
   LslLibrary::Inlet inlet_{nullptr};
   std::size_t channels_{1};
   bool text_{false};
-  double rate_{0.0};  // 0: irregular [Hz]
-  std::vector<Quantity> quantities_;
+  double rate_{0.0};                  // 0: irregular [Hz]
+  std::vector<Quantity> quantities_;  // by the stream's own description
   std::vector<double> values_;
   std::vector<char*> texts_;
 
@@ -383,18 +377,10 @@ class LslSource final : public ChannelSource {
 ChannelKind lsl_channel() {
   return {"lsl", "a stream of the Lab Streaming Layer", [](Table& table) {
             const LslInletOptions options = lsl_inlet_schema().read(table);
-            // ask() sets what the stream has; a definition that states it needs nobody to ask.
-            const auto known = std::make_shared<std::vector<Quantity>>(options.quantities);
             ChannelPlan plan;
             plan.quantities = options.quantities;
             plan.rate = options.rate;
-            plan.open = [options, known] { return std::make_unique<LslSource>(options, *known); };
-            if (options.quantities.empty()) {
-              plan.ask = [options, known] {
-                *known = LslSource(options).quantities();
-                return *known;
-              };
-            }
+            plan.open = [options] { return std::make_unique<LslSource>(options); };
             return plan;
           }};
 }

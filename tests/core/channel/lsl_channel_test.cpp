@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/channel/channel_set.h"
 #include "tests/support/channel_run.h"
 #include "tests/support/message_of.h"
 #include "tests/support/stand_in_lsl.h"
@@ -229,26 +230,25 @@ TEST_F(LslChannelTest, TextsAreMessagesAtTheirOwnTime) {
   EXPECT_TRUE(channel.channel().seen().live);
 }
 
-TEST_F(LslChannelTest, QuantitiesAreThoseOfTheStreamIfNoneAreStated) {
-  const auto many = offer({"Hand",
-                           "Force",
-                           "",
-                           "lab",
-                           4,
-                           4,
-                           100.0,
-                           {{"thumb", "N"}, {"thumb", ""}, {"index finger", "microvolts"}}});
-  measure(many);
-  auto options = test::channels_of(definition("name = \"Hand\"")).at(0);
-  ASSERT_TRUE(options.plan.ask);
-  std::vector<std::string> found;
-  for (const Quantity& each : options.plan.ask()) {
-    found.push_back(each.name + " " + each.unit);
-  }
-  EXPECT_THAT(found, ElementsAre("thumb N", "thumb_2 1", "index_finger microvolts", "channel_4 1"));
-  EXPECT_NE(options.plan.open(), nullptr) << "it knows now";
-  EXPECT_FALSE(
-      test::channels_of(definition("name = \"Hand\"\nquantities = { a = \"N\" }")).at(0).plan.ask);
+TEST_F(LslChannelTest, WhatAStreamSaysOfItsQuantitiesIsInTheSentenceToCopy) {
+  measure(offer({"Hand",
+                 "Force",
+                 "",
+                 "lab",
+                 4,
+                 4,
+                 100.0,
+                 {{"thumb", "N"}, {"thumb", ""}, {"index finger", "microvolts"}}}));
+  EXPECT_THAT(run("name = \"Hand\"").channel().wait_until_open(),
+              HasSubstr("quantities = { thumb = \"N\", thumb_2 = \"1\", index_finger = "
+                        "\"microvolts\", channel_4 = \"1\" }"));
+}
+
+TEST_F(LslChannelTest, AStreamOfTextsHasNoSamplesInADryRun) {
+  ChannelSet set(test::channels_of(definition("type = \"Markers\"")), {}, false);
+  int batches = 0;
+  set.collect(2'000'000'000, [&](const record::Rows&) { ++batches; });
+  EXPECT_EQ(batches, 0);
 }
 
 TEST_F(LslChannelTest, AStreamThatDoesNotFitIsASentence) {
