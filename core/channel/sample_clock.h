@@ -11,7 +11,7 @@ namespace haptrial::channel {
 struct SampleTime {
   std::int64_t time_ns{0};
   double uncertainty{0.0};  // 95 % [s]
-  double step{0.0};         // by which the instrument's clock has jumped ahead since the last one [s]
+  double step{0.0};         // by which its clock has jumped ahead since the last one [s]
 };
 
 /// How an instrument's data come in.
