@@ -205,17 +205,4 @@ std::vector<ChannelSet::Seen> ChannelSet::seen() const {
   return all;
 }
 
-std::vector<ChannelOptions> asked(std::vector<ChannelOptions> channels) {
-  for (ChannelOptions& channel : channels) {
-    if (channel.plan.ask && channel.plan.quantities.empty()) {
-      try {
-        channel.plan.quantities = channel.plan.ask();
-      } catch (const RunError& error) {
-        throw RunError(fmt::format("channel {}: {}", channel.name, error.what()));
-      }
-    }
-  }
-  return channels;
-}
-
 }  // namespace haptrial::channel

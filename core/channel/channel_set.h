@@ -84,9 +84,4 @@ class ChannelSet {
   std::vector<std::string> news_;
 };
 
-/// The channels as a session has them: an instrument that knows its quantities, and for which the
-/// definition states none, is asked for them. May wait for seconds.
-/// @throws RunError if one does not answer
-std::vector<ChannelOptions> asked(std::vector<ChannelOptions> channels);
-
 }  // namespace haptrial::channel

@@ -133,9 +133,8 @@ static record::TableList possible_tables(const SessionRequest& request) {
 }
 
 channel::ChannelSet make_channels(const SessionRequest& request) {
-  const bool real = request.clock == realtime::ClockKind::kReal;
-  const auto& stated = request.definition->channels;
-  return {real ? channel::asked(stated) : stated, possible_tables(request), real};
+  return {request.definition->channels, possible_tables(request),
+          request.clock == realtime::ClockKind::kReal};
 }
 
 std::vector<std::uint64_t> next_samples(const SessionRequest& request,

@@ -70,8 +70,7 @@ int record(const RecordOptions& options) {
   }
   const record::TableList tables =
       record::with_tables(experiment.study->protocol().tables(), record::common_tables());
-  const std::vector<channel::ChannelOptions> instruments = channel::asked(d.channels);
-  channel::ChannelSet channels(instruments, tables, true);
+  channel::ChannelSet channels(d.channels, tables, true);
   record::SessionWriter writer(options.file, info_of(d, options), channels.tables());
   const Stopwatch watch;
   writer.add_event({0, "session_start", "channels alone"});
@@ -79,7 +78,7 @@ int record(const RecordOptions& options) {
     note(writer, watch.ns(), notice);
   }
   fmt::print("recording {} into {}; Ctrl-C ends it\n",
-             fmt::join(channel::names_of_values(instruments), ", "), options.file);
+             fmt::join(channel::names_of_values(d.channels), ", "), options.file);
   const auto keep = [&] {
     channels.collect(watch.ns(), [&](const record::Rows& rows) { writer.add(rows); });
     for (const std::string& news : channels.take_news()) {
