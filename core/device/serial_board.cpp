@@ -1,6 +1,7 @@
 #include "core/device/serial_board.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
@@ -8,8 +9,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "core/base/definition/schema.h"
@@ -21,13 +25,23 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLineLook{5};          // for silence and the end
+constexpr milliseconds kLineLook{5};      // for silence and the end
 constexpr milliseconds kAnswerTime{5};    // then a board is asked again
 constexpr milliseconds kStartAgain{250};  // likewise one that may be restarting
 constexpr milliseconds kLastWord{50};     // for the zero force at the end
 
 constexpr const char* kSilent = "the board gives no readings; check its power and firmware";
 constexpr const char* kLost = "the board's serial line was lost; check its cable and power";
+
+/// The thread goes on while a signal's handler on another one takes the force away.
+void block_signals() {
+  sigset_t all;
+  sigfillset(&all);
+  for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
+    sigdelset(&all, crash);
+  }
+  pthread_sigmask(SIG_BLOCK, &all, nullptr);
+}
 
 std::chrono::duration<double> seconds(double value) { return std::chrono::duration<double>(value); }
 
@@ -39,6 +53,29 @@ void check_setup(const SerialBoardSetup& s, double rate) {
 }
 
 }  // namespace
+
+std::vector<std::string> find_serial_lines() {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/serial/by-id", error)) {
+    files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string missing_axes_sentence(const std::string& name, const Eigen::Vector3d& axes) {
+  std::vector<std::string> has;
+  std::vector<std::string> lacks;
+  for (int axis = 0; axis < 3; ++axis) {
+    (axes[axis] > 0.0 ? has : lacks).emplace_back(1, "xyz"[axis]);
+  }
+  return lacks.empty() ? ""
+                       : fmt::format(
+                             "the {} moves and gives forces along {} alone; forces along {} "
+                             "are left out, and the hand does not move there",
+                             name, fmt::join(has, " and "), fmt::join(lacks, " and "));
+}
 
 const Schema<SerialBoardSetup>& serial_board_schema() {
   using S = SerialBoardSetup;
@@ -195,6 +232,7 @@ bool SerialBoard::write(const Eigen::Vector3d& force) noexcept {
 }
 
 void SerialBoard::run() {
+  block_signals();
   auto next = Clock::now();
   while (!over_.load(std::memory_order_acquire) && readings() == 0 && !lost_) {
     if (Clock::now() >= next) {
@@ -228,9 +266,9 @@ void SerialBoard::exchange() {
   if (silent) {
     force_.setZero();
   }
-  const bool unanswered = asked_ && now - asked_at_ > kAnswerTime;
-  if (protocol_->answers() && (wanted_ || silent || unanswered) && (!asked_ || unanswered)) {
-    if (unanswered) {
+  const bool late = now - asked_at_ > kAnswerTime;
+  if (protocol_->answers() && (asked_ ? late : wanted_ || (silent && late))) {
+    if (asked_) {
       protocol_->forget();
     }
     ask();
@@ -239,10 +277,10 @@ void SerialBoard::exchange() {
   }
 }
 
-/// @returns whether something came before the time was over
-bool SerialBoard::wait(milliseconds most) {
+/// Until something comes, at most for that time.
+void SerialBoard::wait(milliseconds most) {
   std::array<pollfd, 2> ready{pollfd{line_, POLLIN, 0}, pollfd{wake_, POLLIN, 0}};
-  return poll(ready.data(), ready.size(), static_cast<int>(most.count())) > 0;
+  poll(ready.data(), ready.size(), static_cast<int>(most.count()));
 }
 
 void SerialBoard::take_command() {
@@ -286,17 +324,21 @@ void SerialBoard::ask() {
 }
 
 void SerialBoard::command(const Eigen::Vector3d& force) {
-  sent_ = force;
-  send(protocol_->force_message(force));
+  if (send(protocol_->force_message(force))) {
+    sent_ = force;
+  }
 }
 
 /// A message that the line does not take whole is finished before another is begun.
-void SerialBoard::send(std::string_view bytes) {
+/// @returns whether this one was begun
+bool SerialBoard::send(std::string_view bytes) {
   flush();
-  if (unsent_.empty()) {
-    unsent_ = bytes;
-    flush();
+  if (!unsent_.empty()) {
+    return false;
   }
+  unsent_ = bytes;
+  flush();
+  return true;
 }
 
 void SerialBoard::flush() {

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "core/device/device.h"
 #include "core/realtime/latest_value.h"
@@ -61,6 +62,13 @@ struct SerialBoardSetup {
   int stop_button{-1};                                  // emergency stop; -1: none
 };
 
+/// Serial lines that are connected, by names that stay: /dev/serial/by-id/…
+std::vector<std::string> find_serial_lines();
+
+/// A sentence on the axes along which a device gives no force; empty if there are none.
+/// @param name  of the device; @param axes  as in DeviceInfo
+std::string missing_axes_sentence(const std::string& name, const Eigen::Vector3d& axes);
+
 /// The keys that the tables of all boards have.
 const Schema<SerialBoardSetup>& serial_board_schema();
 
@@ -108,11 +116,11 @@ class SerialBoard final : public Device {
   void run();
   void exchange();
   void take_command();
-  bool wait(std::chrono::milliseconds most);
+  void wait(std::chrono::milliseconds most);
   void hear();
   void ask();
   void command(const Eigen::Vector3d& force);
-  void send(std::string_view bytes);
+  bool send(std::string_view bytes);
   void flush();
   void lose();
   // Servo thread.

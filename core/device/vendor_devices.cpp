@@ -1,6 +1,7 @@
 #include "core/device/vendor_devices.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -34,6 +35,31 @@ std::string look_for_haply(const std::string& /*library*/) {
   return fmt::format("{} connected (Inverse3, Inverse3x, Minverse)", count);
 }
 
+/// The serial lines on which a board may be.
+std::string look_for_boards(const std::string& /*library*/) {
+  const std::vector<std::string> found = find_serial_lines();
+  if (found.empty()) {
+    throw RunError("no serial line is connected (/dev/serial/by-id has none)");
+  }
+  return fmt::format("port of its table is one of: {}", fmt::join(found, ", "));
+}
+
+/// A board has the serial line that its table names, and no other.
+void check_line(const char* table, const SerialBoardSetup& line, int number) {
+  if (line.port.empty()) {
+    throw InputError(
+        fmt::format("{}: no table [{}] says by its port which serial line that is; "
+                    "/dev/serial/by-id names what is connected",
+                    table, table));
+  }
+  if (number > 0) {
+    throw InputError(
+        fmt::format("{}: is asked for twice, but [{}] has the port of one board", table, table));
+  }
+}
+
+bool always(const VendorSetups& /*setups*/) { return true; }
+
 /// An entry of a device that is opened from its set-up, the rate and a library.
 template <auto member, auto schema>
 void read_table(Table& table, VendorSetups& setups) {
@@ -42,6 +68,10 @@ void read_table(Table& table, VendorSetups& setups) {
 template <auto member>
 VendorDevice::Limits limits_of(const VendorSetups& setups) {
   return {(setups.*member).max_force, (setups.*member).workspace_radius};
+}
+template <auto member>
+VendorDevice::Limits limits_of_board(const VendorSetups& setups) {
+  return {(setups.*member).line.max_force, (setups.*member).line.workspace_radius};
 }
 template <auto member>
 void without_stop_button(VendorSetups& setups) {
@@ -60,7 +90,7 @@ constexpr std::array kDevices{
                    parameters.index += number;
                    return std::make_unique<ForceDimensionDevice>(parameters, rate, library);
                  },
-                 look_for_force_dimension},
+                 always, look_for_force_dimension},
     VendorDevice{"open-haptics", "open_haptics", true,
                  read_table<&S::open_haptics, open_haptics_schema>, limits_of<&S::open_haptics>,
                  without_stop_button<&S::open_haptics>,
@@ -68,14 +98,30 @@ constexpr std::array kDevices{
                     const std::string& library) -> std::unique_ptr<Device> {
                    return std::make_unique<OpenHapticsDevice>(setups.open_haptics, rate, library);
                  },
-                 look_for_open_haptics},
+                 always, look_for_open_haptics},
     VendorDevice{"haply", "haply", false, read_table<&S::haply, haply_schema>, limits_of<&S::haply>,
                  without_stop_button<&S::haply>,
                  [](const S& setups, int number, double rate,
                     const std::string& /*library*/) -> std::unique_ptr<Device> {
                    return std::make_unique<HaplyDevice>(setups.haply, rate, number);
                  },
-                 look_for_haply},
+                 always, look_for_haply},
+    VendorDevice{"hapi", "hapi", false, read_table<&S::hapi, hapi_schema>,
+                 limits_of_board<&S::hapi>, [](S& /*setups*/) {},
+                 [](const S& setups, int number, double rate,
+                    const std::string& /*library*/) -> std::unique_ptr<Device> {
+                   check_line("hapi", setups.hapi.line, number);
+                   return open_hapi_board(setups.hapi, rate);
+                 },
+                 [](const S& /*setups*/) { return false; }, look_for_boards},
+    VendorDevice{"paddle", "paddle", false, read_table<&S::paddle, paddle_schema>,
+                 limits_of_board<&S::paddle>, without_stop_button<&S::paddle>,
+                 [](const S& setups, int number, double rate,
+                    const std::string& /*library*/) -> std::unique_ptr<Device> {
+                   check_line("paddle", setups.paddle.line, number);
+                   return open_paddle_board(setups.paddle, rate);
+                 },
+                 [](const S& setups) { return has_buttons(setups.paddle); }, look_for_boards},
 };
 
 }  // namespace

@@ -7,7 +7,9 @@
 
 #include "core/device/force_dimension.h"
 #include "core/device/haply.h"
+#include "core/device/hapi_board.h"
 #include "core/device/open_haptics.h"
+#include "core/device/paddle_board.h"
 
 namespace haptrial {
 class Table;
@@ -20,6 +22,8 @@ struct VendorSetups {
   ForceDimensionParameters force_dimension;
   OpenHapticsParameters open_haptics;
   HaplyParameters haply;
+  HapiParameters hapi;
+  PaddleParameters paddle;
 };
 
 /// A maker's device, as everything that is not its driver knows it. One more device is a member
@@ -43,6 +47,7 @@ struct VendorDevice {
   /// @throws InputError or RunError as the device's constructor does
   std::unique_ptr<Device> (*open)(const VendorSetups& setups, int number, double rate,
                                   const std::string& library);
+  bool (*has_buttons)(const VendorSetups& setups);
   /// What is there, in one line, without opening a device.
   /// @throws InputError or RunError that says what is missing
   std::string (*look)(const std::string& library);

@@ -60,14 +60,16 @@ WatchedStop::~WatchedStop() {
 
 void take_force_away() noexcept {
   FatalStopHandler* const stop = registered.load();
-  if (stop == nullptr || stopped_by_servo(*stop)) {
+  if (stop == nullptr) {
     return;
   }
   constexpr unsigned kLongest = 2;  // [s]
   ::signal(SIGALRM, SIG_DFL);
   ::alarm(kLongest);
-  stop->write_zero();
-  constexpr long kHandOver = 3'000'000;  // to a library that commands from a thread of its own [ns]
+  if (!stopped_by_servo(*stop)) {
+    stop->write_zero();
+  }
+  constexpr long kHandOver = 5'000'000;  // to a driver that commands from a thread of its own [ns]
   pause_for(kHandOver);
   ::alarm(0);
 }

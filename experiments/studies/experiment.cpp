@@ -110,8 +110,27 @@ Experiment parse_experiment(const std::vector<NamedText>& parts) {
   return read(root, parts.front().file_name, nullptr);
 }
 
+namespace {
+
+/// Sentences on boards, which the definition has a table for, that give no force along some axes.
+void warn_of_missing_axes(const protocols::Definition& d, std::vector<std::string>& warnings) {
+  const auto warn = [&](const char* name, const auto& board) {
+    const std::string missing =
+        board.line.port.empty() ? ""
+                                : device::missing_axes_sentence(name, device::force_axes(board));
+    if (!missing.empty()) {
+      warnings.push_back(missing);
+    }
+  };
+  warn("hapi", d.vendor.hapi);
+  warn("paddle", d.vendor.paddle);
+}
+
+}  // namespace
+
 std::vector<std::string> warnings_of(const Experiment& experiment) {
   std::vector<std::string> warnings = experiment.definition->warnings();
+  warn_of_missing_axes(*experiment.definition, warnings);
   for (std::string& warning : protocols::tutoring_warnings(*experiment.definition)) {
     warnings.push_back(std::move(warning));
   }

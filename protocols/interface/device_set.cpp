@@ -50,13 +50,18 @@ void DeviceSet::limit(const PassOutput& wanted, std::span<const Drive> others, d
   stop_together();
 }
 
-/// The guard's damper never makes a force too large that the protocol keeps within the limit.
+/// Forces along axes that the device lacks are left out, before they count as given. The guard's
+/// damper never makes a force too large that the protocol keeps within the limit.
 void DeviceSet::limit(std::size_t arm, const Drive& drive, double dt) noexcept {
   device::Envelope& envelope = envelopes_[arm];
-  const double most = std::max(envelope.limits().max_force, drive.force.norm());
-  const Eigen::Vector3d calm = control::saturate(drive.force + guards_[arm].calming(), most);
-  forces_[arm] = envelope.limit(calm, dt, drive.intent);
-  stimuli_[arm] = drive.intent.stimulus;
+  const Eigen::Vector3d& axes = devices_[arm]->info().force_axes;
+  const Eigen::Vector3d force = drive.force.cwiseProduct(axes);
+  device::ForceIntent intent = drive.intent;
+  intent.stimulus = intent.stimulus.cwiseProduct(axes);
+  const double most = std::max(envelope.limits().max_force, force.norm());
+  const Eigen::Vector3d calm = control::saturate(force + guards_[arm].calming(), most);
+  forces_[arm] = envelope.limit(calm, dt, intent);
+  stimuli_[arm] = intent.stimulus;
 }
 
 /// A fault of one device is one of all: none of them goes on with its force.

@@ -49,6 +49,8 @@ std::vector<BoundKey> felt_with_every_device() {
   return {{"device.velocity_window"},
           {"device.force_delay", "1"},
           {"force_dimension.velocity_window", "0.008"},
+          {"hapi.velocity_window", "0.01"},
+          {"paddle.velocity_window", "0.01"},
           {"hand.handle_mass"},
           {"hand.coulomb_friction"}};
 }

@@ -125,6 +125,7 @@ DeviceUnderTest vendor_bench(const DeviceTestOptions& options, const DeviceSetup
   DeviceUnderTest bench;
   if (const device::VendorDevice* vendor = device::vendor_device(options.name)) {
     bench.device = vendor->open(setup.vendor, 0, kRate, options.library);
+    bench.has_button = vendor->has_buttons(setup.vendor);
   } else if (const device::RegisteredDevice* own = device::registered_device(options.name)) {
     bench.device = own->open(device::setting_of(options.name), 0, kRate);
   } else {
@@ -140,7 +141,8 @@ DeviceUnderTest make_bench(const DeviceTestOptions& options, const DeviceSetup& 
                           : options.name == "mouse" ? mouse_bench(setup.mouse)
                                                     : vendor_bench(options, setup);
   const double reach = kReachShare * bench.device->info().workspace_radius;
-  bench.reach = {reach, options.name == "mouse" ? 0.0 : reach, reach};  // a pointer has no height
+  bench.reach = reach * bench.device->info().force_axes;
+  bench.reach.y() *= options.name == "mouse" ? 0.0 : 1.0;  // a pointer has no height
   return bench;
 }
 

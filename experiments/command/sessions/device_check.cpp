@@ -27,6 +27,7 @@ DeviceCheck::DeviceCheck(device::Device& device, const device::EnvelopeLimits& l
   if (ticks < 100) {
     throw std::invalid_argument("DeviceCheck: ticks must be at least 100");
   }
+  findings_.force_axes = device.info().force_axes;
   findings_.push_force = std::min(kPushForce, 0.3 * device.info().max_force);
 }
 
@@ -118,8 +119,9 @@ Eigen::Vector3d DeviceCheck::push(double share, const Eigen::Vector3d& position)
   double& yielded = findings_.yielded[static_cast<std::size_t>(step)];
   const double now = direction(step).dot(position - before_);
   yielded = std::max(yielded, now);
-  return now > kFarthestYield ? Eigen::Vector3d::Zero().eval()
-                              : Eigen::Vector3d(findings_.push_force * direction(step));
+  return now > kFarthestYield
+             ? Eigen::Vector3d::Zero().eval()
+             : (findings_.push_force * direction(step)).cwiseProduct(findings_.force_axes).eval();
 }
 
 namespace {
@@ -157,8 +159,11 @@ Verdict judge_workspace(const DeviceFindings& f, const Eigen::Vector3d& reach) {
 
 Verdict judge_pushes(const DeviceFindings& f) {
   const auto& y = f.yielded;
-  const bool good =
-      f.pushed && std::all_of(y.begin(), y.end(), [](double d) { return d >= kLeastYield; });
+  bool good = f.pushed;
+  for (int step = 0; step < kSteps; ++step) {
+    const bool gives_force = f.force_axes[step / 2] > 0.0;
+    good = good && (!gives_force || y[static_cast<std::size_t>(step)] >= kLeastYield);
+  }
   return {
       good, "force steps",
       fmt::format("{:.2f} N moved the tool by {:.2f} {:.2f} (x) {:.2f} {:.2f} (y) {:.2f} {:.2f} "

@@ -23,9 +23,10 @@ struct DeviceFindings {
   Eigen::Vector3d lowest{Eigen::Vector3d::Zero()};   // reached while moved [m]
   Eigen::Vector3d highest{Eigen::Vector3d::Zero()};  // [m]
   double push_force{0.0};                            // of each step [N]
-  std::array<double, 6> yielded{};                   // along the push, +x -x +y -y +z -z [m]
-  bool pushed{false};                                // every step was made
-  std::uint32_t buttons{0};                          // seen in the last part
+  Eigen::Vector3d force_axes{Eigen::Vector3d::Ones()};  // of the device (DeviceInfo)
+  std::array<double, 6> yielded{};                      // along the push, +x -x +y -y +z -z [m]
+  bool pushed{false};                                   // every step was made
+  std::uint32_t buttons{0};                             // seen in the last part
 };
 
 /// A participant's worth of ticks against a device, behind the envelope like any protocol:

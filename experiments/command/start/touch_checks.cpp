@@ -254,13 +254,14 @@ MachineCheck check_name(const TouchSearch& search) {
   }
   const bool has_default = known(kDefaultDevice) || known(kDefaultPhantom);
   if (search.definition || !has_default) {
-    return {what, State::kLimited,
-            fmt::format("{}; write name = \"{}\" in [open_haptics]; set up is {}",
-                        has_default ? "[open_haptics] has no name, and on some systems OpenHaptics "
-                                      "opens no device without one"
-                                    : "no device has the default name, so that none opens without "
-                                      "its name",
-                        names.front(), list)};
+    return {
+        what, State::kLimited,
+        fmt::format("{}; write name = \"{}\" in [open_haptics]; set up is {}",
+                    has_default ? "the definition gives no name, and on some systems OpenHaptics "
+                                  "opens no device without one"
+                                : "no device has the default name, so that none opens without "
+                                  "its name",
+                    names.front(), list)};
   }
   return {what, State::kReady,
           fmt::format("set up is {}; give it as name in [open_haptics], because on some systems "

@@ -13,6 +13,7 @@
 #include "core/device/force_dimension.h"
 #include "core/device/gamepad.h"
 #include "core/device/open_haptics.h"
+#include "core/device/serial_board.h"
 #include "tests/core/device/device_rigs.h"
 #include "tests/support/message_of.h"
 
@@ -334,9 +335,12 @@ TEST(CatalogTest, SaysWhatIsThereAndWhatIsMissing) {
   const auto here =
       list_devices({{"force-dimension", std::string(HAPTRIAL_BINARY_DIR) + "/libstand_in_dhd.so"},
                     {"open-haptics", std::string(HAPTRIAL_BINARY_DIR) + "/libstand_in_hd.so"}});
-  ASSERT_EQ(here.size(), 7u);
+  ASSERT_EQ(here.size(), 9u);
   for (const DeviceListing& listing : here) {
-    const bool wanted = listing.name != "gamepad" || !find_gamepads().empty();
+    const bool board = listing.name == "hapi" || listing.name == "paddle";
+    const bool wanted = board                       ? !find_serial_lines().empty()
+                        : listing.name == "gamepad" ? !find_gamepads().empty()
+                                                    : true;
     EXPECT_TRUE(listing.available == wanted || listing.name == "haply")  // a computer may have it
         << listing.name << ": " << listing.what;
   }

@@ -156,10 +156,11 @@ TEST_F(StagedTouch, ADeviceWithoutTheDefaultNameNeedsItsName) {
   EXPECT_THAT(to_do(wanted), IsEmpty());
   write("usr/share/3DSystems/config/Default PHANToM.config", "");
   wanted.definition = "";
-  EXPECT_THAT(to_do(wanted),
-              ElementsAre("touch name: [open_haptics] has no name, and on some systems OpenHaptics "
-                          "opens no device without one; write name = \"Default PHANToM\" in "
-                          "[open_haptics]; set up is \"Default PHANToM\", \"Left\""));
+  EXPECT_THAT(
+      to_do(wanted),
+      ElementsAre("touch name: the definition gives no name, and on some systems OpenHaptics "
+                  "opens no device without one; write name = \"Default PHANToM\" in "
+                  "[open_haptics]; set up is \"Default PHANToM\", \"Left\""));
 }
 
 TEST_F(StagedTouch, APluggedInDeviceWithoutAnySoftwareIsToldAllThatIsMissing) {
