@@ -26,7 +26,10 @@ const Schema<VirtualDeviceParameters>& virtual_device_schema() {
                    "Milliseconds of readings over which velocity is estimated")
           .required()
           .integer("force_delay", &P::force_delay, 1, 8,
-                   "Ticks from a command to the force that the hand feels");
+                   "Ticks from a command to the force that the hand feels")
+          .table(
+              "faults", &P::faults, motor_faults_schema(),
+              "Faults of the virtual device's motors, with which a certificate can be rehearsed");
   return schema;
 }
 
@@ -40,7 +43,8 @@ VirtualDevice::VirtualDevice(const VirtualDeviceParameters& parameters, HandlePh
       parameters_(parameters),
       info_{"virtual", parameters.max_force, parameters.workspace_radius, true},
       physics_(physics),
-      period_(1.0 / rate) {
+      period_(1.0 / rate),
+      motors_(parameters.faults, rate > 0.0 ? period_ : 1.0) {
   const int n = readings_;
   if (parameters.velocity_window < 2 || parameters.velocity_window > 64 || n > kMaxWindow ||
       !(rate > 0.0) || !(parameters.max_force > 0.0) || !(parameters.position_quantum >= 0.0) ||
@@ -86,7 +90,9 @@ bool VirtualDevice::write(const Eigen::Vector3d& force) noexcept {
   if (longer(arrived, parameters_.max_force)) {
     arrived *= parameters_.max_force / arrived.norm();
   }
-  sense(physics_.step(arrived, period_).position);
+  const PointState now = physics_.state();
+  const Eigen::Vector3d soon = now.position + period_ * now.velocity;
+  sense(physics_.step(motors_.force(arrived, soon), period_).position);
   arrived = force;
   oldest_ = oldest_ + 1 < parameters_.force_delay ? oldest_ + 1 : 0;
   return true;

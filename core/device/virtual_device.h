@@ -4,6 +4,7 @@
 
 #include "core/device/device.h"
 #include "core/device/handle_physics.h"
+#include "core/device/motor_faults.h"
 
 namespace haptrial {
 template <class T>
@@ -19,6 +20,7 @@ struct VirtualDeviceParameters {
   double position_quantum{1e-5};   // resolution of the encoders >= 0 [m]
   int velocity_window{8};          // time of the slope that estimates velocity, 2 to 64 [ms]
   int force_delay{1};              // ticks from write() to the force, 1 to 8
+  MotorFaults faults{};            // none by default
 };
 
 /// How many readings a window of velocity has: two at least.
@@ -28,7 +30,8 @@ int readings_in_window(int milliseconds, double rate) noexcept;
 const Schema<VirtualDeviceParameters>& virtual_device_schema();
 
 /// A device without hardware. Each write() advances the physics by one period; the force of a tick
-/// acts force_delay ticks later, by default during the next one, as it does through a bus.
+/// acts force_delay ticks later, by default during the next one, as it does through a bus, and as
+/// the planted faults of the motors say.
 /// Velocity is the least-squares slope over the last readings, as drivers estimate it: over those
 /// within velocity_window at any rate, and over at least two.
 class VirtualDevice final : public Device {
@@ -61,6 +64,7 @@ class VirtualDevice final : public Device {
   DeviceInfo info_;
   HandlePhysics& physics_;
   double period_;
+  FaultyMotors motors_;
   double slope_gain_;                               // of the least-squares slope [1/s]
   DeviceReading held_;                              // but for the tool itself
   std::array<Eigen::Vector3d, kMaxDelay> pending_;  // ring of forces on their way

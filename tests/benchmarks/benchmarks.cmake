@@ -33,6 +33,13 @@ foreach(source ${benchmarks})
     target_link_libraries(bench_${name} PRIVATE haptrial_psychometric haptrial_psychometric_models)
     continue()
   endif()
+  if(name STREQUAL device_certificate)
+    target_sources(bench_device_certificate
+                   PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/device/device_coverage.cpp
+                           ${CMAKE_SOURCE_DIR}/tests/analysis/device/simulated_certificate.cpp)
+    target_link_libraries(bench_device_certificate PRIVATE haptrial_device_analysis)
+    continue()
+  endif()
   if(name STREQUAL null_trials)
     target_sources(bench_null_trials
                    PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychophysics/simulated_trials.cpp

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "analysis/device/excitation.h"
+
+namespace haptrial::analysis {
+
+/// One part of a certificate's measurement, a row a tick from its beginning, all of one length and
+/// in W.
+struct PartRecord {
+  std::vector<Eigen::Vector3d> command;   // written on the tick, after it was read [N]
+  std::vector<Eigen::Vector3d> position;  // [m]
+  std::vector<Eigen::Vector3d> velocity;  // as the device states it [m/s]
+  std::vector<Eigen::Vector3d> measured;  // force on the hand; empty without a sensor [N]
+};
+
+/// A wall that the handle was pressed against.
+struct WallStep {
+  double stiffness;  // [N/m]
+  bool passive;      // it neither swung on nor gave energy
+};
+
+/// What a certificate's measurement recorded.
+struct CertificateRecord {
+  std::string device;
+  bool simulated{false};
+  double sensor_age{0.0};    // mean age of a measured force [s]
+  double stated_noise{0.0};  // of the sensor; 0: not stated [N]
+  double mass{0.0};          // known mass on the handle in kLoaded; 0: none [kg]
+  std::array<PartRecord, static_cast<std::size_t>(CertificatePart::kDone)> parts;
+  std::vector<WallStep> walls;
+  std::vector<std::string> plant;  // faults of a virtual device, a line each
+
+  const PartRecord& part(CertificatePart which) const {
+    return parts[static_cast<std::size_t>(which)];
+  }
+  bool has_sensor(CertificatePart which) const { return !part(which).measured.empty(); }
+};
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/point_state.h"
+
+namespace haptrial::analysis {
+
+/// The parts of a certificate's measurement, in their order.
+enum class CertificatePart : std::uint8_t {
+  kRest,       // handle clamped, no force is commanded
+  kGrid,       // clamped, forces in all directions are held
+  kFrequency,  // clamped, a force of many frequencies along each axis
+  kMove,       // the handle is moved along each axis, no force is commanded
+  kFree,       // the handle is let go, forces move it along each axis
+  kLoaded,     // likewise, with a known mass on the handle
+  kWall,       // the handle is pressed against walls that grow stiffer
+  kDone,
+};
+
+/// A hold of the grid: a force, and the ticks over which its effect is averaged.
+struct GridHold {
+  int axis;      // of directions()
+  double level;  // along it, either sign [N]
+  long begin;    // first tick of the average, from the beginning of the part
+};
+
+/// Commands of a certificate's measurement, the same for whoever gives them and whoever evaluates
+/// them. Built before the loop; command() is for the servo thread.
+class Excitation {
+ public:
+  static constexpr long kHoldTicks = 70;  // of a hold's average, at 1 kHz
+
+  /// @param rate       of the servo loop, 500 to 20000 [Hz]
+  /// @param max_force  that is commanded > 0 [N]
+  Excitation(double rate, double max_force);
+
+  double rate() const noexcept { return rate_; }
+  double max_force() const noexcept { return max_force_; }
+  long ticks(CertificatePart part) const noexcept;
+  /// @param tick  from the beginning of the part.  @returns the force to command [N].
+  Eigen::Vector3d command(CertificatePart part, long tick) const noexcept;
+  /// What keeps a handle that was let go near the origin, along the axis that moves; added to the
+  /// command of kFree and kLoaded [N].
+  Eigen::Vector3d centring(CertificatePart part, long tick, const PointState& tool) const noexcept;
+  /// Where a machine that holds the handle takes it; the origin unless the part is kMove [m].
+  /// @param reach  to either side [m]
+  Eigen::Vector3d position(CertificatePart part, long tick, double reach) const noexcept;
+
+  /// Thirteen unit vectors; with their opposites, 26 directions.
+  const std::vector<Eigen::Vector3d>& directions() const noexcept { return directions_; }
+  const std::vector<GridHold>& holds() const noexcept { return holds_; }
+  long hold_ticks() const noexcept { return scaled(kHoldTicks); }
+  /// Frequencies of kFrequency, whole multiples of 1 Hz, which is its period [Hz].
+  const std::vector<int>& frequencies() const noexcept { return frequencies_; }
+  static constexpr int kPeriods = 6;  // after one that lets transients die away
+  long period_ticks() const noexcept { return period_; }
+  /// Ticks of kMove, and of kFree, along one axis.
+  long axis_ticks(CertificatePart part) const noexcept { return ticks(part) / 3; }
+
+ private:
+  long scaled(long at_1_khz) const noexcept;
+
+  double rate_;
+  double max_force_;
+  long period_;
+  std::vector<Eigen::Vector3d> directions_;
+  std::vector<double> grid_levels_;  // a level for each hold of an axis [N]
+  std::vector<GridHold> holds_;
+  std::vector<int> frequencies_;
+  std::vector<double> wave_;  // a period of the sum of sines, at most 1 in size
+};
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/device/certificate_record.h"
+#include "analysis/device/interval.h"
+
+namespace haptrial::analysis {
+
+/// What motion alone tells of a handle that commanded forces move along one axis:
+///
+///     a = mobility · (dead(f(t - delay)) - friction sgn v + offset)
+///
+/// with dead() the command behind a dead zone. Forces are in commanded newtons: how many real ones
+/// these are takes a force sensor or a known mass.
+struct FreeMotion {
+  Interval mobility;   // gain / inertia [1/kg]
+  Interval delay;      // from a command to its force, with the lag of the transmission [s]
+  Interval friction;   // [commanded N]
+  Interval dead_zone;  // [commanded N]
+  Interval offset;     // [commanded N]
+};
+
+/// Motion along x, y and z; empty if the handle did not move far enough.
+/// @param part  kFree or kLoaded
+std::vector<FreeMotion> identify_free_motion(const CertificateRecord& record,
+                                             const Excitation& excitation, CertificatePart part);
+
+/// Gain and inertia from motion without and with a known mass on the handle, along one axis.
+struct WeighedMotion {
+  Interval gain;
+  Interval inertia;  // [kg]
+};
+WeighedMotion weigh(const FreeMotion& free, const FreeMotion& loaded, double mass);
+
+}  // namespace haptrial::analysis

@@ -1,0 +1,45 @@
+#include "core/device/certificate.h"
+
+#include "core/base/definition/schema.h"
+
+namespace haptrial::device {
+
+const Schema<Certificate>& certificate_schema() {
+  using C = Certificate;
+  static const auto schema =
+      Schema<C>()
+          .text("file", &C::file, "File of the certificate that these figures are from")
+          .required()
+          .text("checksum", &C::checksum, "Checksum of that file (FNV-1a, hexadecimal)")
+          .required()
+          .text("device", &C::device, "Name of the device that was measured")
+          .required()
+          .flag("simulated", &C::simulated, "Whether that device was a virtual one")
+          .number("gain", &C::gain, {0.0, 10.0, true}, "1",
+                  "Force that the device gives per force commanded")
+          .number("gain_low", &C::gain_low, {0.0, 10.0, true}, "1",
+                  "Lower end of the gain's 95 % interval")
+          .number("gain_high", &C::gain_high, {0.0, 10.0, true}, "1",
+                  "Upper end of the gain's 95 % interval")
+          .number("dead_zone", &C::dead_zone, {0.0, 100.0}, "N",
+                  "Length of a commanded force up to which the device gives none")
+          .number("friction", &C::friction, {0.0, 100.0}, "N", "Friction of the device")
+          .number("force_noise", &C::force_noise, {0.0, 100.0}, "N",
+                  "Ripple of the device's force, root mean square")
+          .number("delay", &C::delay, {0.0, 1.0}, "s", "Time from a command to its force")
+          .number("stiffest_wall", &C::stiffest_wall, {0.0, 1e6, true}, "N/m",
+                  "Stiffness of the stiffest wall that stays passive on the device")
+          .check([](Table& table, C& c) {
+            if (c.gain.has_value() != c.gain_low.has_value() ||
+                c.gain.has_value() != c.gain_high.has_value()) {
+              table.reject("gain", "stands without one of gain_low and gain_high",
+                           "all three, or none of them");
+            } else if (c.gain && (*c.gain < *c.gain_low || *c.gain > *c.gain_high)) {
+              table.reject("gain", "is outside of gain_low to gain_high",
+                           "a gain within its interval");
+            }
+          });
+  return schema;
+}
+
+}  // namespace haptrial::device

@@ -1,0 +1,139 @@
+#include "tests/analysis/device/device_coverage.h"
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "analysis/device/certificate.h"
+#include "tests/analysis/device/simulated_certificate.h"
+
+namespace haptrial::test {
+namespace {
+
+using analysis::Interval;
+using Complex = std::complex<double>;
+
+constexpr double kRate = 1000.0;  // [Hz]
+constexpr double kForce = 4.8;    // [N]
+constexpr double kPi = std::numbers::pi;
+
+class Counts {
+ public:
+  void add(const std::string& figure, const Interval& interval, double truth) {
+    for (CoverageCount& count : counts_) {
+      if (count.figure == figure) {
+        count.held += holds(interval, truth);
+        ++count.of;
+        return;
+      }
+    }
+    counts_.push_back({figure, holds(interval, truth), 1});
+  }
+  void add(const std::string& figure, const std::optional<Interval>& interval, double truth) {
+    add(figure, interval.value_or(Interval{}), truth);  // not found: not held
+  }
+  std::vector<CoverageCount> counts() const { return counts_; }
+
+ private:
+  static int holds(const Interval& i, double truth) { return i.low <= truth && truth <= i.high; }
+  std::vector<CoverageCount> counts_;
+};
+
+/// Response of the planted motors by the two exponentials of the resonance, summed as a series.
+Complex planted_response(double frequency) {
+  const device::VirtualDeviceParameters p = faulty_electronics();
+  const double w = 2.0 * kPi * p.faults.resonance;
+  const Complex root(-p.faults.resonance_damping * w,
+                     w * std::sqrt(1.0 - std::pow(p.faults.resonance_damping, 2)));
+  const Complex z = std::polar(1.0, 2.0 * kPi * frequency / kRate);
+  // h(t) = w² / Im(root) · Im exp(root t), integrated over each held tick.
+  const auto half = [&](Complex r) {
+    const Complex step = std::exp(r / kRate);
+    return w * w / root.imag() * (step - 1.0) / r / (z - step);
+  };
+  const Complex held = (half(root) - half(std::conj(root))) / Complex(0.0, 2.0);
+  return p.faults.gain * held * std::polar(1.0, -2.0 * kPi * frequency * p.force_delay / kRate);
+}
+
+void add_response(const std::vector<analysis::AxisResponse>& axes, Counts& counts) {
+  const device::VirtualDeviceParameters p = faulty_electronics();
+  const double z = p.faults.resonance_damping;
+  const double c = 1.0 - 2.0 * z * z;
+  for (const analysis::AxisResponse& axis : axes) {
+    counts.add("gain of the response", axis.gain, p.faults.gain);
+    counts.add("delay", axis.delay, p.force_delay / kRate);
+    counts.add("resonance", axis.resonance, p.faults.resonance);
+    counts.add("damping", axis.damping, z);
+    counts.add("bandwidth", axis.bandwidth,
+               p.faults.resonance * std::sqrt(c + std::sqrt(c * c + 1.0)));
+    double phase = 0.0;
+    Complex before = 1.0;
+    for (const analysis::ToneResponse& tone : axis.tones) {
+      const Complex truth = planted_response(tone.frequency);
+      phase += std::arg(truth / before);
+      before = truth;
+      counts.add("gain at a frequency", tone.gain, std::abs(truth));
+      if (tone.frequency < 1.5 * p.faults.resonance) {  // beyond, noise turns the phase by rounds
+        counts.add("phase at a frequency", tone.phase, phase);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+device::VirtualDeviceParameters faulty_electronics() {
+  device::VirtualDeviceParameters p;
+  p.force_delay = 4;
+  p.faults.gain = 0.87;
+  p.faults.dead_zone = 0.15;
+  p.faults.resonance = 90.0;
+  p.faults.resonance_damping = 0.12;
+  p.faults.cogging = 0.08;
+  p.faults.cogging_period = 0.003;
+  p.faults.gravity_error = -0.12;
+  return p;
+}
+
+device::SensedMountParameters faulty_mount() {
+  device::SensedMountParameters p;
+  p.mass = 0.22;
+  p.friction = 0.3;
+  p.noise = 0.02;
+  return p;
+}
+
+std::vector<CoverageCount> count_coverage(int first, int count) {
+  using analysis::CertificatePart;
+  const analysis::Excitation excitation(kRate, kForce);
+  const device::VirtualDeviceParameters p = faulty_electronics();
+  const device::SensedMountParameters mount = faulty_mount();
+  Counts counts;
+  for (int seed = first; seed < first + count; ++seed) {
+    const auto record =
+        simulated_certificate(p, mount, excitation, static_cast<std::uint64_t>(seed),
+                              {CertificatePart::kRest, CertificatePart::kGrid,
+                               CertificatePart::kFrequency, CertificatePart::kMove});
+    const analysis::CertificateResult result = identify_device(record, excitation);
+    counts.add("noise of the sensor", result.rest.sensor, mount.noise);
+    counts.add("gain", result.statics->gain, p.faults.gain);
+    counts.add("dead zone", result.statics->dead_zone, p.faults.dead_zone);
+    for (const analysis::DirectionForce& direction : result.statics->directions) {
+      counts.add("gain in a direction", direction.gain, p.faults.gain);
+      counts.add("gain in a direction", direction.opposite_gain, p.faults.gain);
+      counts.add("dead zone in a direction", direction.dead_zone, p.faults.dead_zone);
+    }
+    add_response(result.response, counts);
+    for (std::size_t axis = 0; axis < result.motion.size(); ++axis) {
+      const analysis::AxisMotion& motion = result.motion[axis];
+      counts.add("friction", motion.friction, mount.friction);
+      counts.add("inertia", motion.inertia, mount.mass);
+      counts.add("gravity error", motion.offset, axis == 1 ? p.faults.gravity_error : 0.0);
+      counts.add("cogging", motion.cogging, p.faults.cogging);
+      counts.add("period of the cogging", motion.period, p.faults.cogging_period);
+    }
+  }
+  return counts.counts();
+}
+
+}  // namespace haptrial::test
