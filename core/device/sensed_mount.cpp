@@ -60,7 +60,7 @@ void SensedMount::follow(const Eigen::Vector3d& motor_force, double dt) noexcept
 }
 
 void SensedMount::move_freely(const Eigen::Vector3d& motor_force, double dt) noexcept {
-  const double mass = parameters_.mass + parameters_.added_mass;
+  const double mass = parameters_.mass + (carries_ ? parameters_.added_mass : 0.0);
   const double held_back = parameters_.friction / mass * dt;  // change of velocity [m/s]
   for (int axis = 0; axis < 3; ++axis) {
     const double before = state_.velocity[axis];

@@ -30,6 +30,8 @@ class SensedMount final : public HandlePhysics, public ForceSensor {
   /// Holds the handle; the next step ends there. Without jumps: velocity and acceleration follow
   /// from where it was. @param position  in W [m]
   void hold(const Eigen::Vector3d& position) noexcept;
+  /// Whether added_mass is on the handle; it is at first.
+  void carry(bool added) noexcept { carries_ = added; }
   /// Lets the handle go from where it is, at rest.
   void release() noexcept { held_ = false; }
 
@@ -48,6 +50,7 @@ class SensedMount final : public HandlePhysics, public ForceSensor {
   std::array<Eigen::Vector3d, 5> path_;  // the latest positions, the newest first [m]
   MeasuredForce measured_;
   bool held_{true};
+  bool carries_{true};
 };
 
 }  // namespace haptrial::device

@@ -1,0 +1,207 @@
+#include "experiments/command/sessions/certificate_task.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptrial::experiments {
+namespace {
+
+using analysis::CertificatePart;
+using Eigen::Vector3d;
+
+constexpr double kPress = 1.0;       // on a wall [N]
+constexpr double kBack = 0.003;      // in front of the wall, from which the handle is let go [m]
+constexpr double kReady = 0.6;       // time to take it there [s]
+constexpr double kAtWall = 1.2;      // [s]
+constexpr double kFar = 0.03;        // further than any swing that is watched [m]
+constexpr double kSwing = 3e-4;      // from peak to peak, which counts as one [m]
+constexpr double kDying = 0.7;       // a swing that falls to less in a third of the time dies away
+constexpr double kStep = 1.3;        // from one wall to the next
+constexpr double kClose = 1.08;      // of active and passive, which ends the search
+constexpr double kStiffest = 20000;  // that is tried [N/m]
+
+device::EnvelopeLimits limits_of(const device::DeviceInfo& info,
+                                 const analysis::Excitation& excitation) {
+  device::EnvelopeLimits limits;
+  limits.max_force = std::min(info.max_force, 1.25 * excitation.max_force());
+  limits.max_force_rate = 2.0 * limits.max_force * excitation.rate();  // each tick is commanded
+  limits.workspace_radius = 2.0 * info.workspace_radius;
+  limits.max_speed = 2.0;
+  limits.max_jump = 0.02;
+  limits.ramp_in = 0.0;
+  limits.max_saturation = 60.0;
+  limits.holding_force = 2.0 * excitation.max_force();  // a mount holds the handle
+  return limits;
+}
+
+bool is_free(CertificatePart part) {
+  return part == CertificatePart::kFree || part == CertificatePart::kLoaded;
+}
+
+std::size_t index(CertificatePart part) { return static_cast<std::size_t>(part); }
+
+}  // namespace
+
+Vector3d WallLadder::command(const PointState& tool) noexcept {
+  const double x = tool.position.x();
+  const auto ready = std::lround(kReady * rate_);
+  const auto at_wall = std::lround(kAtWall * rate_);
+  const long since = tick_++ - ready;
+  if (since >= at_wall) {
+    judge();
+  }
+  if (since < 0 || since >= at_wall) {
+    return {std::clamp(-80.0 * (x - kBack) - 4.0 * tool.velocity.x(), -2.0, 2.0), 0.0, 0.0};
+  }
+  if (lost_ || std::abs(x) > kFar) {
+    lost_ = true;
+    return Vector3d::Zero();
+  }
+  const auto third = static_cast<std::size_t>(std::min(3 * since / at_wall, 2L));
+  const bool first = since == 0 || 3 * (since - 1) / at_wall != static_cast<long>(third);
+  low_[third] = first ? x : std::min(low_[third], x);
+  high_[third] = first ? x : std::max(high_[third], x);
+  return {std::min(stiffness_ * std::max(-x, 0.0), 4.0) - kPress, 0.0, 0.0};
+}
+
+void WallLadder::judge() noexcept {
+  const double middle = high_[1] - low_[1];
+  const double last = high_[2] - low_[2];
+  const bool swings = lost_ || (last > kSwing && last > kDying * middle);
+  steps_[count_++] = {stiffness_, !swings};
+  (swings ? active_ : passive_) = stiffness_;
+  if (count_ == kMost || (swings && passive_ == 0.0) ||
+      (active_ > 0.0 && active_ < kClose * passive_) || stiffness_ >= kStiffest) {
+    done_ = true;
+  }
+  stiffness_ = active_ > 0.0 ? std::sqrt(active_ * passive_) : kStep * stiffness_;
+  tick_ = 0;
+  lost_ = false;
+}
+
+std::vector<analysis::WallStep> WallLadder::steps() const {
+  return {steps_.begin(), steps_.begin() + static_cast<long>(count_)};
+}
+
+CertificateTask::CertificateTask(device::Device& device, device::ForceSensor* sensor,
+                                 const analysis::Excitation& excitation,
+                                 std::vector<CertificatePart> parts, Mount mount)
+    : device_(device),
+      sensor_(sensor),
+      excitation_(excitation),
+      envelope_(limits_of(device.info(), excitation)),
+      parts_(std::move(parts)),
+      mount_(std::move(mount)),
+      walls_(excitation.rate()) {
+  record_.device = device.info().name;
+  record_.simulated = device.info().simulated;
+  for (const CertificatePart part : parts_) {
+    const auto ticks = static_cast<std::size_t>(excitation.ticks(part));
+    analysis::PartRecord& columns = record_.parts[index(part)];
+    columns.command.resize(ticks);
+    columns.position.resize(ticks);
+    columns.velocity.resize(ticks);
+    columns.measured.resize(sensor != nullptr && !is_free(part) ? ticks : 0);
+  }
+  shown_.store(parts_.empty() ? CertificatePart::kDone : parts_.front());
+}
+
+bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
+  device::DeviceReading reading;
+  const bool read_ok = device_.read(reading);
+  if (envelope_.check(read_ok, reading) != device::Fault::kNone) {
+    trouble_ = device_.trouble();
+  }
+  const bool waits = tick_ == 0 && !mount_ && !start_.load(std::memory_order_acquire);
+  Vector3d wanted = Vector3d::Zero();
+  if (envelope_.fault() == device::Fault::kNone && at_ < parts_.size() && !waits) {
+    wanted = command(reading);
+    if (mount_) {
+      mount_(parts_[at_], tick_);
+    }
+  }
+  if (stop_.load(std::memory_order_relaxed)) {
+    envelope_.trip(device::Fault::kEmergencyStop);
+  }
+  device::ForceIntent intent;
+  intent.push = wanted;
+  intent.stimulus = wanted;
+  const Vector3d given = envelope_.limit(wanted, tick.dt, intent);
+  if (!device_.write(given) && envelope_.fault() == device::Fault::kNone) {
+    envelope_.trip(device::Fault::kWriteFailed);
+    trouble_ = device_.trouble();
+  }
+  if (at_ < parts_.size() && !waits) {
+    keep(reading, given);
+    ++tick_;
+    const bool wall = parts_[at_] == CertificatePart::kWall;
+    if (wall ? walls_.done() : tick_ >= excitation_.ticks(parts_[at_])) {
+      end_part();
+    }
+  }
+  const bool more = at_ < parts_.size() && envelope_.fault() == device::Fault::kNone;
+  if (!more) {
+    device_.write(Vector3d::Zero());
+    stopped_.store(true, std::memory_order_release);
+    shown_.store(CertificatePart::kDone, std::memory_order_release);
+  }
+  return more;
+}
+
+Vector3d CertificateTask::command(const device::DeviceReading& reading) noexcept {
+  const CertificatePart part = parts_[at_];
+  if (part == CertificatePart::kWall) {
+    return walls_.command(reading.tool);
+  }
+  Vector3d wanted = excitation_.command(part, tick_);
+  if (is_free(part)) {
+    wanted += excitation_.centring(part, tick_, reading.tool);
+  }
+  const double most = envelope_.limits().max_force;
+  return wanted.norm() > most ? Vector3d(wanted * (most / wanted.norm())) : wanted;
+}
+
+void CertificateTask::keep(const device::DeviceReading& reading, const Vector3d& given) noexcept {
+  analysis::PartRecord& columns = record_.parts[index(parts_[at_])];
+  const auto row = static_cast<std::size_t>(tick_);
+  if (row >= columns.command.size()) {
+    return;
+  }
+  columns.command[row] = given;
+  columns.position[row] = reading.tool.position;
+  columns.velocity[row] = reading.tool.velocity;
+  if (row >= columns.measured.size()) {
+    return;
+  }
+  device::MeasuredForce measured;
+  if (sensor_->read(measured)) {
+    columns.measured[row] = measured.force;
+    record_.stated_noise = measured.noise;
+    age_sum_ += measured.age;
+    age_count_ += 1.0;
+  } else {
+    unmeasured_[index(parts_[at_])] = true;
+  }
+}
+
+void CertificateTask::end_part() noexcept {
+  tick_ = 0;
+  ++at_;
+  start_.store(false, std::memory_order_release);
+  shown_.store(at_ < parts_.size() ? parts_[at_] : CertificatePart::kDone,
+               std::memory_order_release);
+}
+
+analysis::CertificateRecord CertificateTask::record() const {
+  analysis::CertificateRecord record = record_;
+  record.walls = walls_.steps();
+  record.sensor_age = age_count_ > 0.0 ? age_sum_ / age_count_ : 0.0;
+  for (std::size_t part = 0; part < record.parts.size(); ++part) {
+    if (unmeasured_[part]) {
+      record.parts[part].measured.clear();  // a part with a gap says nothing
+    }
+  }
+  return record;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "analysis/device/certificate_record.h"
+#include "core/device/device.h"
+#include "core/device/envelope.h"
+#include "core/device/force_sensor.h"
+#include "core/realtime/servo_loop.h"
+
+namespace haptrial::experiments {
+
+/// Walls along x that grow stiffer until one swings on, then between the last two. The command
+/// itself presses the free handle against each, so that no hand damps it:
+///
+///     f = stiffness · max(-x, 0) - press        x along the axis
+class WallLadder {
+ public:
+  static constexpr std::size_t kMost = 40;  // walls
+
+  explicit WallLadder(double rate) noexcept : rate_(rate) {}
+  /// @returns the command for the tick. Servo thread.
+  Eigen::Vector3d command(const PointState& tool) noexcept;
+  bool done() const noexcept { return done_; }
+  std::vector<analysis::WallStep> steps() const;
+
+ private:
+  void judge() noexcept;
+
+  double rate_;
+  std::array<analysis::WallStep, kMost> steps_{};
+  std::size_t count_{0};
+  double stiffness_{50.0};                // of the wall now [N/m]
+  double passive_{0.0}, active_{0.0};     // [N/m]
+  long tick_{0};                          // since this wall began
+  std::array<double, 3> low_{}, high_{};  // of x in the thirds of the time at the wall [m]
+  bool lost_{false};                      // the handle went off
+  bool done_{false};
+};
+
+/// The measurement of a certificate behind the envelope: part after part, each recorded whole.
+/// Servo thread: tick(), which neither allocates, locks, waits nor throws. Any thread: part(),
+/// start(), stop().
+class CertificateTask final : public realtime::ServoTask {
+ public:
+  /// Takes a simulated handle to where it must be at the end of the tick. Servo thread.
+  using Mount = std::function<void(analysis::CertificatePart part, long tick)>;
+
+  /// @param device, sensor, excitation  outlive this; the sensor may be null
+  /// @param parts  in their order; each waits for start() unless there is a mount
+  CertificateTask(device::Device& device, device::ForceSensor* sensor,
+                  const analysis::Excitation& excitation,
+                  std::vector<analysis::CertificatePart> parts, Mount mount = {});
+
+  bool tick(const realtime::Tick& tick) noexcept override;
+  void start() noexcept { start_.store(true, std::memory_order_release); }
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  bool stopped() const noexcept { return stopped_.load(std::memory_order_acquire); }
+  /// The part that runs or waits to be started; kDone after the last.
+  analysis::CertificatePart part() const noexcept { return shown_.load(std::memory_order_acquire); }
+
+  /// After the loop.
+  device::Fault fault() const noexcept { return envelope_.fault(); }
+  const char* trouble() const noexcept { return trouble_; }
+  analysis::CertificateRecord record() const;
+
+ private:
+  Eigen::Vector3d command(const device::DeviceReading& reading) noexcept;
+  void keep(const device::DeviceReading& reading, const Eigen::Vector3d& command) noexcept;
+  void end_part() noexcept;
+
+  device::Device& device_;
+  device::ForceSensor* sensor_;
+  const analysis::Excitation& excitation_;
+  device::Envelope envelope_;
+  std::vector<analysis::CertificatePart> parts_;
+  Mount mount_;
+  analysis::CertificateRecord record_;  // its columns have their length from the beginning
+  WallLadder walls_;
+  std::size_t at_{0};  // of the parts
+  long tick_{0};       // of the part
+  double age_sum_{0.0}, age_count_{0.0};
+  const char* trouble_{""};
+  std::array<bool, static_cast<std::size_t>(analysis::CertificatePart::kDone)> unmeasured_{};
+  std::atomic<bool> start_{false};
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> stopped_{false};
+  std::atomic<analysis::CertificatePart> shown_{analysis::CertificatePart::kDone};
+};
+
+}  // namespace haptrial::experiments
