@@ -53,6 +53,17 @@ const Schema<Definition>& lab_schema() {
   return schema;
 }
 
+const Schema<Definition>& certified_schema() {
+  static const auto schema =
+      Schema<Definition>()
+          .text(
+              "certificate", &Definition::certificate_file,
+              "Certificate of the device (certificate.json of haptrial device-test --certificate), "
+              "relative to the file that names it; reports then give forces as measured, too")
+          .otherwise("none");
+  return schema;
+}
+
 const Schema<Definition>& integrator_schema() {
   static const auto schema =
       Schema<Definition>()
@@ -82,6 +93,11 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   experiment_schema().read(experiment, definition);
   definition.envelope = device::envelope_schema().read(envelope);
   definition.device = device::virtual_device_schema().read(device);
+  certified_schema().read(device, definition);
+  if (root.has("certificate")) {
+    Table certificate = root.table("certificate");
+    definition.certificate = device::certificate_schema().read(certificate);
+  }
   integrator_schema().read(hand, definition);
   definition.hand = subject::hand_schema().read(hand);
   if (!envelope.has("holding_force")) {  // friction holds on both sides of a standstill

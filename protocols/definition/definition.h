@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/channel/channel_options.h"
+#include "core/device/certificate.h"
 #include "core/device/envelope.h"
 #include "core/device/gamepad.h"
 #include "core/device/mouse.h"
@@ -53,6 +55,8 @@ struct Definition {
   double recovery{3.0};  // without force after an abort [s]
   device::EnvelopeLimits envelope;
   device::VirtualDeviceParameters device;
+  std::string certificate_file;                      // as [device] names it; empty: none
+  std::optional<device::Certificate> certificate{};  // its key figures
   subject::HandParameters hand;
   Integrator integrator{Integrator::kExact};
   render::TrialDisplayStyle display;

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/device/vendor_devices.h"
+#include "protocols/definition/certificate_file.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -73,11 +74,28 @@ std::string without_mark(std::string text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
+/// The certificate that [device] names; its figures must not stand beside it.
+std::optional<fs::path> certificate_of(Table& root, const fs::path& machines) {
+  if (!root.is_table("device")) {
+    return std::nullopt;
+  }
+  Table device = root.table("device");
+  if (!device.has("certificate")) {
+    return std::nullopt;
+  }
+  const std::string name = device.text("certificate");
+  if (root.has("certificate")) {
+    root.reject("certificate", "stands beside device.certificate; leave one of the two out");
+  }
+  root.check();
+  return machines.parent_path() / name;
+}
+
 }  // namespace
 
 const std::vector<std::string>& machine_tables() {
   static const std::vector<std::string> kTables = [] {
-    std::vector<std::string> tables{"channels", "device", "mouse", "gamepad", "pedal", "screen"};
+    std::vector<std::string> tables{"certificate", "channels", "device", "mouse", "gamepad", "pedal", "screen"};
     for (const device::VendorDevice& vendor : device::vendor_devices()) {
       tables.emplace_back(vendor.table);
     }
@@ -93,18 +111,26 @@ Table load_with_lab(const fs::path& definition, std::span<const GivenKey> given)
     root =
         Table::parse(with_values(root.source(), definition.string(), given), definition.string());
   }
-  if (!root.has("lab")) {
+  fs::path machines = definition;  // the file that has [device]
+  std::vector<NamedText> parts{{root.source(), definition.string()}};
+  if (root.has("lab")) {
+    const fs::path file = file_of(root, definition);
+    Table lab = Table::load(file);
+    const std::string text = without_mark(lab.source());
+    refuse_key_outside_tables(text, file.string());
+    check_tables(lab, root, definition.string());
+    machines = root.has("device") ? definition : file;
+    parts.front().text += fmt::format("\n# From the lab file {}:\n", file.filename().string());
+    parts.push_back({text + "\n", file.string()});
+    root = Table::parse(parts);
+  }
+  const std::optional<fs::path> certificate = certificate_of(root, machines);
+  if (!certificate) {
     return root;
   }
-  const fs::path file = file_of(root, definition);
-  Table lab = Table::load(file);
-  const std::string text = without_mark(lab.source());
-  refuse_key_outside_tables(text, file.string());
-  check_tables(lab, root, definition.string());
-  return Table::parse(
-      {{fmt::format("{}\n# From the lab file {}:\n", root.source(), file.filename().string()),
-        definition.string()},
-       {text + "\n", file.string()}});
+  parts.back().text += fmt::format("\n# From {}:\n", certificate->filename().string());
+  parts.push_back({certificate_table(read_certificate(*certificate)), certificate->string()});
+  return Table::parse(parts);
 }
 
 std::string lab_of(std::string_view definition) {

@@ -21,11 +21,13 @@ const std::vector<std::string>& machine_tables();
 ///     [lab]
 ///     use = "lab.toml"   # a path from the definition
 ///
-/// The lab file's text follows the definition's, so that source() is a definition that needs no
-/// other file: session files keep it so.
+/// The lab file's text follows the definition's, and then a table [certificate] with the key
+/// figures of the certificate that device.certificate names, so that source() is a definition that
+/// needs no other file: session files keep it so.
 /// @param given  keys of the definition that have these values instead; source() has them
 /// @throws InputError as Table::load() does for either file, and when the lab file holds another
-/// table, one that the definition has as well, or a key outside a table.
+/// table, one that the definition has as well, or a key outside a table, or the certificate is
+/// none.
 Table load_with_lab(const std::filesystem::path& definition, std::span<const GivenKey> given = {});
 
 /// The lab file that a definition's text names; empty if none, or if the text is not TOML.

@@ -15,6 +15,8 @@ DefinitionRules of_every_study() {
   rules.free = {"texts",
                 "lab",
                 "screen",
+                "certificate",
+                "device.certificate",
                 "mouse",
                 "gamepad",
                 "pedal",
