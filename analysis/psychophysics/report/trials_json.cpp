@@ -1,4 +1,5 @@
 #include "analysis/psychophysics/report/trials_json.h"
+#include "analysis/psychophysics/report/report_apparatus.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -145,6 +146,13 @@ class ResultsJson {
     add("kind", name_of(plan.kind));
     add("factors", plan.by);
     add_table(participant_findings(result_));
+    if (const FindingList apparatus = apparatus_findings(result_); !apparatus.findings.empty()) {
+      Json made = json_of(apparatus.findings);
+      for (const FindingTable& table : apparatus.tables) {
+        made[table.name] = json_of(table.rows);
+      }
+      add("apparatus", made);
+    }
     if (plan.functions) {
       add_functions();
     }

@@ -186,6 +186,7 @@ Document trials_report(const TrialsResult& result, const std::vector<Drawing>& d
   }
   document.points(summary_lines(result));
   add_design(document, result);
+  add_apparatus(document, result);
   add_pages(document, result);
   add_results(document, result, drawings);
   add_comparisons(document, result);

@@ -11,6 +11,7 @@ namespace haptrial::analysis::trials {
 Document trials_report(const TrialsResult& result, const std::vector<Drawing>& drawings);
 
 /// Parts of it, in their order.
+void add_apparatus(Document& document, const TrialsResult& result);
 void add_results(Document& document, const TrialsResult& result,
                  const std::vector<Drawing>& drawings);
 void add_cues(Document& document, const TrialsResult& result, const std::vector<Drawing>& drawings);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/base/random.h"
+#include "core/device/motor_faults.h"
 #include "core/subject/hand.h"
 #include "core/subject/motor_noise.h"
 #include "core/subject/perceiver/grip.h"
@@ -32,6 +33,14 @@ int index_of(const std::vector<std::string>& names, const std::string& name) {
   return -1;
 }
 
+/// Motors that give another force than commanded; nothing for perfect ones.
+std::optional<device::FaultyMotors> motors_of(const Definition& d) {
+  const device::MotorFaults& faults = d.device.faults;
+  const bool perfect = faults.gain == 1.0 && faults.dead_zone == 0.0 && faults.resonance == 0.0 &&
+                       faults.cogging == 0.0 && faults.gravity_error == 0.0;
+  return perfect ? std::nullopt : std::optional(device::FaultyMotors(faults, 1.0 / d.rate));
+}
+
 }  // namespace
 
 /// Servo thread, but for the constructor, recall() and carried_over().
@@ -46,6 +55,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
         seed_(derived_seed(session_seed, "subject")),
         hand_parameters_(briefing.definition->hand),
         step_(1.0 / briefing.definition->rate),
+        motors_(motors_of(*briefing.definition)),
         senses_(plan_.people->draw_senses(derived_seed(person_seed, "subject"))),
         sense_(senses_, plan_.senses),
         grip_(senses_),
@@ -248,12 +258,14 @@ class TrialsRig::Participant final : public stimulus::Observer {
   }
 
   void feel(const TrialView& view, const stimulus::Forces& forces, double dt) noexcept {
+    const PointState& hand = hands_.front().state;
+    const Eigen::Vector3d given =
+        motors_ ? motors_->force(forces[0], hand.position) : Eigen::Vector3d(forces[0]);
     if (view.interval == 0) {
       return;
     }
-    const PointState& hand = hands_.front().state;
     if (felt_in_ < 0 || stage_ == felt_in_) {
-      sense_.feel(forces[0], hand, dt);
+      sense_.feel(given, hand, dt);
       if (hands_.size() > 1 && forces.size() > 1) {
         grip_.feel({forces[0], hand}, {forces[1], hands_[1].state}, dt);
       }
@@ -382,7 +394,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
   bool thinks_{false};         // until the decision that was left is there
   std::uint64_t seed_;
   subject::HandParameters hand_parameters_;
-  double step_;  // [s]
+  double step_;                                 // [s]
+  std::optional<device::FaultyMotors> motors_;  // of the device in the first hand
   subject::SenseParameters senses_;
   subject::Sense sense_;
   subject::Grip grip_;
