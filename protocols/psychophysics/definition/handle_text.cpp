@@ -213,6 +213,9 @@ void HandleReport::keep(const Load& load) {
 void HandleReport::add(const Presented& presented) {
   for (std::size_t stage = 0; stage < presented.stages.size(); ++stage) {
     Load load = load_of(presented, stage);
+    if (load.stiffness > stiffest_.stiffness) {
+      stiffest_ = {load.stage, load.stiffness};
+    }
     if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
       continue;
     }
@@ -262,6 +265,9 @@ HandleText HandleReport::words() const {
           "Hz; the hand of [hand] has {:g} kg, so that they are reduced in most trials",
           load.stage, amount_of(load), load.lightest, d_.rate, d_.hand.hand_mass));
     }
+  }
+  for (const std::string& warning : certificate_warnings(d_, stiffest_)) {
+    words.warnings.push_back(warning);
   }
   return words;
 }

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "protocols/psychophysics/definition/certificate_words.h"
+
 namespace haptrial::control {
 struct HandleLoop;
 }
@@ -15,8 +17,9 @@ struct TrialsDefinition;
 /// Demands of the stages' fields on the handle and on the hand on it
 /// (docs/algorithms/every-hand.md).
 struct HandleText {
-  std::vector<std::string> lines;     // what lighter hands get less of; what begins around the hand
-  std::vector<std::string> warnings;  // what the hand of [hand] does not carry
+  std::vector<std::string> lines;  // what lighter hands get less of; what begins around the hand
+  /// What the hand of [hand] does not carry, and what the certified device cannot present.
+  std::vector<std::string> warnings;
 };
 
 /// Gathers these words over sets of values: of each stage it keeps the sum that asks for most.
@@ -49,6 +52,7 @@ class HandleReport {
   std::vector<Load> worst_;         // (stages that some hand does not carry)
   std::vector<std::string> begin_;  // what begins around the hand
   bool looked_{false};              // at what begins
+  StiffestStage stiffest_;
 };
 
 }  // namespace haptrial::protocols
