@@ -151,9 +151,11 @@ int certify_device(const DeviceTestOptions& options, const DeviceSetup& setup) {
   }
   parts.push_back(CertificatePart::kWall);
   const bool is_virtual = options.name == "virtual";
-  const double most = is_virtual                       ? setup.electronics.max_force
-                      : options.name == "open-haptics" ? setup.open_haptics.max_force
-                                                       : setup.force_dimension.max_force;
+  constexpr double kOwnForce = 3.0;  // of a device that another program added [N]
+  const device::VendorDevice* vendor = device::vendor_device(options.name);
+  const double most = is_virtual          ? setup.electronics.max_force
+                      : vendor != nullptr ? vendor->limits(setup.vendor).max_force
+                                          : kOwnForce;
   const analysis::Excitation excitation(kDeviceTestRate, kForceShare * most);
   analysis::CertificateRecord record = is_virtual
                                            ? virtual_record(options, setup, excitation, parts)
