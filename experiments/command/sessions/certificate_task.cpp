@@ -20,8 +20,8 @@ constexpr double kStep = 1.3;        // from one wall to the next
 constexpr double kClose = 1.08;      // of active and passive, which ends the search
 constexpr double kStiffest = 20000;  // that is tried [N/m]
 
-device::EnvelopeLimits limits_of(const device::DeviceInfo& info,
-                                 const analysis::Excitation& excitation) {
+device::EnvelopeLimits certificate_limits(const device::DeviceInfo& info,
+                                          const analysis::Excitation& excitation) {
   device::EnvelopeLimits limits;
   limits.max_force = std::min(info.max_force, 1.25 * excitation.max_force());
   limits.max_force_rate = 2.0 * limits.max_force * excitation.rate();  // each tick is commanded
@@ -89,7 +89,7 @@ CertificateTask::CertificateTask(device::Device& device, device::ForceSensor* se
     : device_(device),
       sensor_(sensor),
       excitation_(excitation),
-      envelope_(limits_of(device.info(), excitation)),
+      envelope_(certificate_limits(device.info(), excitation)),
       parts_(std::move(parts)),
       mount_(std::move(mount)),
       walls_(excitation.rate()) {

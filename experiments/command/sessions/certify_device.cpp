@@ -16,7 +16,7 @@
 namespace haptrial::experiments {
 namespace {
 
-const char* prompt(analysis::CertificatePart part) {
+const char* certificate_prompt(analysis::CertificatePart part) {
   switch (part) {
     case analysis::CertificatePart::kRest:
       return "keep the handle still: put it down, or clamp it";
@@ -50,7 +50,7 @@ void run_certificate(CertificateTask& task, device::Device& device, realtime::Se
     if (told != task.part()) {
       told = task.part();
       begin = std::chrono::steady_clock::now() + std::chrono::seconds(kCountdown);
-      fmt::print("-> {}; it begins in {} s\n", prompt(*told), kCountdown);
+      fmt::print("-> {}; it begins in {} s\n", certificate_prompt(*told), kCountdown);
       std::fflush(stdout);
     }
     if (std::chrono::steady_clock::now() >= begin) {

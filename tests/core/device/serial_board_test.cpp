@@ -49,7 +49,7 @@ HapiParameters hapi_on(const std::string& port) {
 
 /// Ticks of a loop until the condition holds.
 template <class Condition>
-void tick_until(SerialBoard& device, const Vector3d& force, const Condition& condition) {
+void tick_board_until(SerialBoard& device, const Vector3d& force, const Condition& condition) {
   test::wait_until([&] {
     DeviceReading reading;
     const bool read = device.read(reading);
@@ -153,13 +153,13 @@ TEST(HapiBoardTest, WithItsArmsInLineItGivesNoForceAndSaysWhy) {
   SimulatedBoard board(std::move(owned), {1.0, 0.0, 1.0});
   board.start();
   const auto device = open_hapi_board(hapi_on(board.port()), kRate);
-  tick_until(*device, {1.0, 0.0, 0.0}, [&](bool read, const DeviceReading& reading) {
+  tick_board_until(*device, {1.0, 0.0, 0.0}, [&](bool read, const DeviceReading& reading) {
     return read && reading.tool.position.x() > 1e-3;
   });
   board.stop();
   firmware.angles = {{74.0, 106.0}};
   board.start();
-  tick_until(*device, {1.0, 0.0, 0.0}, [](bool read, const DeviceReading&) { return !read; });
+  tick_board_until(*device, {1.0, 0.0, 0.0}, [](bool read, const DeviceReading&) { return !read; });
   EXPECT_THAT(device->trouble(), HasSubstr("in line"));
   for (const std::uint64_t seen = device->readings(); device->readings() < seen + 3;) {
     DeviceReading reading;
@@ -183,7 +183,7 @@ TEST(SerialBoardTest, WithoutCommandsTheBoardIsGivenNoForce) {
     board.start();
     const auto device = paddle ? open_paddle_board(test::example_paddle(board.port()), kRate)
                                : open_hapi_board(hapi_on(board.port()), kRate);
-    tick_until(*device, {1.0, 0.0, 0.0}, [](bool read, const DeviceReading& reading) {
+    tick_board_until(*device, {1.0, 0.0, 0.0}, [](bool read, const DeviceReading& reading) {
       return read && reading.tool.position.x() > 2e-3;
     });
     DeviceReading reading;
@@ -201,7 +201,7 @@ TEST(SerialBoardTest, ALostLineIsToldAtOnceAndStaysLost) {
   const auto device = open_hapi_board(hapi_on(board.port()), kRate);
   board.stop();
   board.unplug();
-  tick_until(*device, Vector3d::Zero(), [&](bool read, const DeviceReading&) {
+  tick_board_until(*device, Vector3d::Zero(), [&](bool read, const DeviceReading&) {
     return !read && std::string(device->trouble()).find("was lost") != std::string::npos;
   });
   DeviceReading reading;
@@ -275,7 +275,7 @@ TEST(PaddleBoardTest, APlanarBoardThatWaitsForItsStartMovesInItsPlane) {
   p.start = "go";
   const auto device = open_paddle_board(p, kRate);
   EXPECT_EQ(device->info().force_axes, Vector3d(1.0, 0.0, 1.0));
-  tick_until(*device, {0.4, 5.0, -0.8}, [](bool read, const DeviceReading& reading) {
+  tick_board_until(*device, {0.4, 5.0, -0.8}, [](bool read, const DeviceReading& reading) {
     return read && (reading.tool.position - Vector3d(0.001, 0.0, -0.002)).norm() < 1e-6;
   });
   board.stop();
@@ -291,7 +291,7 @@ TEST(PaddleBoardTest, ItsStopButtonIsTheOneThatIsNamed) {
   for (const unsigned pressed : {1u, 2u}) {
     board.buttons = pressed;
     bool stopped = false;
-    tick_until(*device, Vector3d::Zero(), [&](bool read, const DeviceReading& reading) {
+    tick_board_until(*device, Vector3d::Zero(), [&](bool read, const DeviceReading& reading) {
       stopped = reading.stop_pressed;
       return read && reading.buttons == pressed;
     });
