@@ -4,7 +4,7 @@ A virtual participant's session on the real clock has a force sensor at 7 kHz (R
 board at 100 Hz that prints lines with its own clock (a pseudo-terminal). Both clocks drift by 100
 millionths, the sensor loses records and sends some in bursts, the board's clock steps. Each sample
 carries the time at which it was measured, so that the session file says how far its time is wrong.
-Each session is killed after a random time, and resumed once more at the end.
+Each session is killed after a random time.
 
     /usr/bin/python3 tests/benchmarks/channel_session.py build/haptrial [--kills 40]
 """
@@ -152,10 +152,9 @@ def share_within(recorded, planted, received, uncertainty):
     return float(numpy.mean(error <= uncertainty)), float(numpy.max(error))
 
 
-def start(haptrial, definition, out, folder):
-    return subprocess.Popen([haptrial, "run", definition, "--subject", "S01", "--device", "virtual",
-                             "--out", out, "--resume"], cwd=folder, stdout=subprocess.DEVNULL,
-                            stderr=subprocess.DEVNULL)
+def start(haptrial, definition, out):
+    return subprocess.Popen([haptrial, "run", definition, "--subject", "S01", "--device", "virtual", "--out", out],
+                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def lateness_of(haptrial, file):
@@ -165,17 +164,14 @@ def lateness_of(haptrial, file):
 
 def killed_sessions(options, folder, definition):
     shares, worst, lost, number = [], [], [], random.Random(3)
-    out = os.path.join(folder, "S01.h5")
     for kill in range(options.kills):
-        for name in (out, out + ".partial"):
-            if os.path.exists(name):
-                os.remove(name)
-        process = start(options.haptrial, definition, out, folder)
+        out = os.path.join(folder, f"killed-{kill}")
+        process = start(options.haptrial, definition, out)
         time.sleep(number.uniform(2.5, 6.0))
         process.send_signal(signal.SIGKILL)
         killed = time.monotonic()
         process.wait()
-        with h5py.File(out + ".partial") as file:
+        with h5py.File(os.path.join(out, "S01.h5.partial"), "r", swmr=True) as file:
             for channel, seconds, micros in (("force", "fx", "fy"), ("grip", "seconds", "microseconds")):
                 rows = rows_of(file, channel, seconds, micros)
                 if len(rows[0]) == 0:
@@ -209,12 +205,11 @@ def main():
             with open(os.path.join(folder, name + ".toml"), "w", encoding="utf-8") as file:
                 file.write(STUDY.replace("TRIALS", str(trials)) + more)
         killed_sessions(options, folder, os.path.join(folder, "with.toml"))
-        for name in ("without", "short", "without", "short"):
-            out = os.path.join(folder, name + ".h5")
-            if os.path.exists(out):
-                os.remove(out)
-            start(options.haptrial, os.path.join(folder, name + ".toml"), out, folder).wait()
-            print(f"ticks {'with' if name == 'short' else 'without'} channels: {lateness_of(options.haptrial, out)}")
+        for turn, name in enumerate(("without", "short", "without", "short")):
+            out = os.path.join(folder, f"lateness-{turn}")
+            start(options.haptrial, os.path.join(folder, name + ".toml"), out).wait()
+            print(f"ticks {'with' if name == 'short' else 'without'} channels: "
+                  f"{lateness_of(options.haptrial, os.path.join(out, 'S01.h5'))}")
     sensor.over = board.over = True
 
 

@@ -217,14 +217,13 @@ class LiveChannelTest : public ChannelSessionTest {
 
 TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
   const std::string file = study(piped());
-  const std::string out = folder_ / "live.h5";
-  const std::string partial = out + ".partial";
+  const std::string out = folder_ / "live";
+  const std::string partial = out + "/S01.h5.partial";
   const GripOnAPipe grip((folder_ / "pipe").string());
-  const std::string run =
-      "run " + file + " --subject S01 --device virtual --out " + out + " --resume";
+  const std::string run = "run " + file + " --subject S01 --device virtual --out " + out;
   std::size_t before = 0;
   for (int kill = 0; kill < 3; ++kill) {
-    test::LiveCommand live(run);
+    test::LiveCommand live(kill == 0 ? run : run + " --resume");
     ASSERT_TRUE(live.reaches([&] {
       try {
         const record::SessionReader reader(partial);
@@ -237,8 +236,8 @@ TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
     live.wait();
     before = grip_of(record::SessionReader(partial)).size();
   }
-  EXPECT_EQ(test::run_command("haptrial " + run).status, 0);
-  const record::SessionReader reader(out);
+  EXPECT_EQ(test::run_command("haptrial " + run + " --resume").status, 0);
+  const record::SessionReader reader(out + "/S01.h5");
   const std::vector<GripRow> rows = grip_of(reader);
   EXPECT_GT(rows.size(), before);
   std::map<double, int> seen;
