@@ -7,8 +7,13 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"

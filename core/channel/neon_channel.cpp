@@ -1,7 +1,6 @@
 #include "core/channel/neon_channel.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,10 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
+
+// The C library's header of name servers, which this one includes, defines a macro _res; Eigen has
+// parameters of that name.
+#include <httplib.h>
 
 namespace haptrial::channel {
 namespace {

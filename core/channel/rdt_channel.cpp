@@ -1,17 +1,26 @@
 #include "core/channel/rdt_channel.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/channel/connection.h"
+
+// The C library's header of name servers, which this one includes, defines a macro _res; Eigen has
+// parameters of that name.
+#include <httplib.h>
 
 namespace haptrial::channel {
 namespace {
