@@ -19,7 +19,7 @@ TEST(ChannelExamplesTest, DefinitionsOfTheDocumentAreRead) {
     const std::size_t first = begin + opening.size();
     const std::string example = text.substr(first, text.find("```", first) - first);
     Table root = Table::parse(example, "docs/channels.md");
-    EXPECT_FALSE(read_channels(root).empty()) << example;
+    EXPECT_GE(read_channels(root).size(), 1u) << example;
     EXPECT_NO_THROW(root.finish()) << example;
     ++examples;
   }

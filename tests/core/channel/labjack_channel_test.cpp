@@ -200,7 +200,7 @@ TEST(LabJackChannelTest, MistakesInADefinitionGetASentence) {
   EXPECT_THAT(problem("host = 'a'\ninputs.'a b'.input = 2"), HasSubstr("'a b'"));
   EXPECT_THAT(problem("host = 'a'\nrate = 5000.0\ninputs.a.input = 2"), HasSubstr("rate is 5000"));
   std::string many = "host = 'a'\n";
-  for (int i = 0; i < 65; ++i) {
+  for (std::size_t i = 0; i < kMostQuantities + 1; ++i) {
     many += fmt::format("inputs.a{0}.input = {0}\n", i);
   }
   EXPECT_THAT(problem(many), HasSubstr("65 quantities"));

@@ -270,8 +270,8 @@ TEST_F(LslChannelTest, AStreamThatDoesNotFitIsASentence) {
     second->host = "lab-9";
   }
   EXPECT_THAT(why("name = \"Grip\""), HasSubstr("'Grip' of lab-2 and 'Grip' of lab-9"));
-  measure(offer({"Cap", "EEG", "", "lab", 17, 1, 500.0}));
-  EXPECT_THAT(why("name = \"Cap\""), HasSubstr("17 channels; allowed: at most 16"));
+  measure(offer({"Cap", "EEG", "", "lab", kMostQuantities + 1, 1, 500.0}));
+  EXPECT_THAT(why("name = \"Cap\""), HasSubstr("65 channels; allowed: at most 64"));
   measure(offer({"Log", "Markers", "", "lab", 1, 3, 0.0}));
   EXPECT_THAT(why("name = \"Log\"\nquantities = { a = \"1\" }"), HasSubstr("remove `quantities`"));
   offer({"Dumb", "EEG", "", "lab", 1, 1, 500.0});
