@@ -33,22 +33,25 @@ using test::HaplyService;
 using test::LiveCommand;
 using testing::HasSubstr;
 
-/// A hand that yields: its spring follows the handle, so that the device leads it.
-void yielding_hand(test::StandInHandle& handle, double /*seconds*/) {
-  for (std::size_t i = 0; i < 3; ++i) {
+/// A hand that lets itself be led to the sides and keeps its height, as in a haptic trial.
+void led_hand(test::StandInHandle& handle, double /*seconds*/) {
+  for (const std::size_t i : {0u, 1u}) {
     handle.anchor[i] += 0.02 * (handle.position[i] - handle.anchor[i]);
   }
+  handle.anchor[2] -= 0.01 * handle.position[2];  // the service's z is up
 }
 
 class LiveHaplyTest : public testing::Test {
  protected:
-  LiveHaplyTest() { service_->set_hand(yielding_hand); }
-  /// Two brisk trials of the force study.
+  LiveHaplyTest() { service_->set_hand(led_hand); }
+  /// Two brisk trials of the force study, led softly enough for a device that is some ticks away.
   void write_study(std::vector<std::pair<std::string, std::string>> more = {}) const {
     more.insert(more.end(), {{"conditions", "conditions = [\"haptic\"]"},
                              {"repetitions", "repetitions = 1"},
                              {"break_after", "break_after = 0"},
-                             {"settle_distance", "settle_distance = 0.02"}});
+                             {"settle_distance", "settle_distance = 0.02"},
+                             {"trajectory", "trajectory = { stiffness = 600.0, damping = 15.0 }"},
+                             {"plane", "plane = { stiffness = 600.0, damping = 15.0 }"}});
     test::write_text(folder_ / "study.toml", test::brisk_text(std::move(more)) + service_->table());
   }
   std::string run(const std::string& more = "--trials 2") const {
@@ -109,7 +112,7 @@ TEST_F(LiveHaplyTest, AServiceThatIsKilledEndsTheSessionAndAResumeFinishesIt) {
   EXPECT_EQ(alone.status, 1) << "nobody started the service";
   EXPECT_THAT(alone.errors, HasSubstr("no Haply Inverse Service answers on port"));
   service_ = std::make_unique<HaplyService>(HaplyService::Options{.rate = 1000.0, .port = port});
-  service_->set_hand(yielding_hand);
+  service_->set_hand(led_hand);
   const CommandResult resumed = LiveCommand(run("--trials 2 --resume")).wait();
   ASSERT_EQ(resumed.status, 0) << resumed.errors;
   const record::SessionReader reader(file());
@@ -145,6 +148,7 @@ void drilling_hand(test::StandInHandle& handle, double seconds) {
   const double way = 0.004 * std::sin(2.0 * seconds);  // to the right [m]
   const double depth = std::min(0.004 * seconds, 0.02);
   handle.anchor = {way, 0.0, 0.012 - depth};
+  handle.buttons = 1;  // power
 }
 
 TEST_F(LiveHaplyTest, ADrillingRunsToItsEnd) {
