@@ -98,7 +98,7 @@ bool is_plain(const Json* transform) {
          is_no_turn(member(transform, "rotation"));
 }
 
-HaplyListing haply_listing(const Json& entry) {
+HaplyListing read_listing(const Json& entry) {
   const Json* const config = member(&entry, "config");
   const std::string basis = text_of(member(member(config, "basis"), "permutation"));
   return {text_of(member(&entry, "device_id")), text_of(member(config, "type")),
@@ -110,7 +110,7 @@ HaplyListing haply_listing(const Json& entry) {
 void add_listings(const Json* list, std::vector<HaplyListing>& into) {
   if (list != nullptr && list->is_array()) {
     for (const Json& each : *list) {
-      into.push_back(haply_listing(each));
+      into.push_back(read_listing(each));
     }
   }
 }

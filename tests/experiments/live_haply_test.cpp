@@ -137,6 +137,8 @@ TEST_F(LiveHaplyTest, AFaultStaysUntilAPersonClearsIt) {
   EXPECT_EQ(service_->force_size(), 0.0);
   EXPECT_FALSE(person.sees_within(1.5, "running"));
   ASSERT_TRUE(person.ask("clear"));
+  ASSERT_TRUE(person.sees("paused")) << session.errors();
+  ASSERT_TRUE(person.ask("start"));
   ASSERT_TRUE(person.sees("running")) << session.errors();
   ASSERT_TRUE(session.reaches([&] { return service_->force_size() > 0.1; }));
   ASSERT_TRUE(person.ask("abort"));
