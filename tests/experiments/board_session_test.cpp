@@ -89,8 +89,10 @@ TEST_F(BoardSessionTest, AStudyOnAPaddleIsAnsweredWithItsButtons) {
                   "position_zero = 100.0\ncommand = \"T{x}\"\nforce_scale = 0.08\n");
   const auto result = run_command("haptrial " + run("paddle"));
   EXPECT_EQ(result.status, 0) << result.output << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("the paddle moves and gives forces along x alone; forces "
-                                       "along y and z are left out"));
+  EXPECT_THAT(
+      run_command("haptrial validate '" + (folder_ / "study.toml").string() + "'").output,
+      HasSubstr(
+          "the paddle moves and gives forces along x alone; forces along y and z are left out"));
   board.stop();
   EXPECT_EQ(board.force().norm(), 0.0);
   expect_whole("paddle");
