@@ -140,6 +140,9 @@ TEST_F(BoardSessionTest, ASessionThatIsKilledBySignalLeavesTheBoardWithoutForce)
     board.start(0, [&pull](SimulatedBoard& pulled, double) { pull = pulled.force().x(); });
     write_study("[{ value = \"felt\" }, { value = \"not\" }]",
                 "[hapi]\nport = \"" + board.port() + "\"\n");
+    std::string text = test::read_text(folder_ / "study.toml");
+    text.replace(text.find("levels = [0.02"), 14, "levels = [0.90");  // the first pull counts
+    test::write_text(folder_ / "study.toml", text);
     fs::remove_all(folder_ / "out");
     test::LiveCommand session(run("hapi"));
     ASSERT_TRUE(session.reaches([&] { return pull > 0.5; })) << session.errors();

@@ -31,6 +31,9 @@ SimulatedBoard::SimulatedBoard(std::unique_ptr<BoardFirmware> firmware, const Ve
     throw std::runtime_error("no pseudo-terminal can be opened");
   }
   fcntl(line_, F_SETFL, O_NONBLOCK);
+  for (const int file : {line_, other_end_}) {
+    fcntl(file, F_SETFD, FD_CLOEXEC);  // a command that kept it open would never see it unplugged
+  }
   name_ = name.data();
 }
 
