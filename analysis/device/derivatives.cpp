@@ -5,12 +5,12 @@
 
 namespace haptrial::analysis {
 
-Eigen::MatrixXd derivative_weights(long half, double rate) {
+Eigen::MatrixXd derivative_weights(long half, double rate, long degree) {
   const long n = 2 * half + 1;
-  Eigen::MatrixXd powers(n, 6);
+  Eigen::MatrixXd powers(n, degree + 1);
   for (long i = 0; i < n; ++i) {
     const double s = static_cast<double>(i - half) / static_cast<double>(half);
-    for (long p = 0; p < 6; ++p) {
+    for (long p = 0; p <= degree; ++p) {
       powers(i, p) = std::pow(s, p);
     }
   }

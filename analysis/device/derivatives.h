@@ -5,9 +5,10 @@
 namespace haptrial::analysis {
 
 /// Weights of the first and the second derivative in the middle of 2 half + 1 even samples, of the
-/// polynomial of degree 5 that fits them best; (2 half + 1 x 2) [1/s, 1/s²].
-/// @param half  at least 3.  @param rate  of the samples > 0 [Hz]
-Eigen::MatrixXd derivative_weights(long half, double rate);
+/// polynomial that fits them best; (2 half + 1 x 2) [1/s, 1/s²].
+/// @param half  more than degree / 2.  @param rate  of the samples > 0 [Hz]
+/// @param degree  of the polynomial, at least 2
+Eigen::MatrixXd derivative_weights(long half, double rate, long degree);
 
 /// The kernel K for which the second derivative above is K over the plain second differences; its
 /// sum is 1. (2 half - 1)

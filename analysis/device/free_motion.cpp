@@ -29,7 +29,7 @@ struct Signals {
 Signals signals_of(const PartRecord& part, const Excitation& excitation, long axis,
                    CertificatePart which) {
   const long half = std::max(3L, std::lround(kWindow * excitation.rate()));
-  const Eigen::MatrixXd weights = derivative_weights(half, excitation.rate());
+  const Eigen::MatrixXd weights = derivative_weights(half, excitation.rate(), 5);
   const long per_axis = excitation.axis_ticks(which);
   const auto begin = static_cast<std::size_t>(axis * per_axis);
   const std::size_t end =

@@ -15,11 +15,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
-constexpr double kDerivativeWindow = 0.02;  // half of that of the derivatives [s]
-constexpr double kSureSpeed = 0.01;         // at which the sign of a velocity is sure [m/s]
-constexpr double kBin = 1e-4;               // [m]
-constexpr double kLeastPeriod = 4e-4;       // of cogging [m]
-constexpr double kClearCogging = 30.0;      // F ratio above which cogging counts as found
+// Wide enough that steps of the encoders do not show in the acceleration; the degree keeps what a
+// hand does at 5 Hz to a few parts in ten thousand.
+constexpr double kDerivativeWindow = 0.05;  // half of that of the derivatives [s]
+constexpr long kDegree = 7;
+constexpr double kSureSpeed = 0.01;     // at which the sign of a velocity is sure [m/s]
+constexpr double kBin = 1e-4;           // [m]
+constexpr double kLeastPeriod = 4e-4;   // of cogging [m]
+constexpr double kClearCogging = 30.0;  // F ratio above which cogging counts as found
 constexpr long kLeastSamples = 500;
 
 struct Motion {
@@ -31,7 +34,7 @@ Motion motion_of(const PartRecord& part, const Excitation& excitation, long axis
   const long lag = std::lround(age * excitation.rate());
   const long per_axis = excitation.axis_ticks(CertificatePart::kMove);
   const long end = std::min((axis + 1) * per_axis, static_cast<long>(part.measured.size()));
-  const MatrixXd weights = derivative_weights(half, excitation.rate());
+  const MatrixXd weights = derivative_weights(half, excitation.rate(), kDegree);
   VectorXd window(2 * half + 1);
   Motion all;
   for (long t = axis * per_axis + half; t + half + lag < end; ++t) {

@@ -109,6 +109,8 @@ CertificateTask::CertificateTask(device::Device& device, device::ForceSensor* se
 bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
   device::DeviceReading reading;
   const bool read_ok = device_.read(reading);
+  device::MeasuredForce measured;  // at the same instant as the reading
+  const bool has_force = sensor_ != nullptr && sensor_->read(measured);
   if (envelope_.check(read_ok, reading) != device::Fault::kNone) {
     trouble_ = device_.trouble();
   }
@@ -132,7 +134,7 @@ bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
     trouble_ = device_.trouble();
   }
   if (at_ < parts_.size() && !waits) {
-    keep(reading, given);
+    keep(reading, given, has_force ? &measured : nullptr);
     ++tick_;
     const bool wall = parts_[at_] == CertificatePart::kWall;
     if (wall ? walls_.done() : tick_ >= excitation_.ticks(parts_[at_])) {
@@ -161,7 +163,8 @@ Vector3d CertificateTask::command(const device::DeviceReading& reading) noexcept
   return wanted.norm() > most ? Vector3d(wanted * (most / wanted.norm())) : wanted;
 }
 
-void CertificateTask::keep(const device::DeviceReading& reading, const Vector3d& given) noexcept {
+void CertificateTask::keep(const device::DeviceReading& reading, const Vector3d& given,
+                           const device::MeasuredForce* measured) noexcept {
   analysis::PartRecord& columns = record_.parts[index(parts_[at_])];
   const auto row = static_cast<std::size_t>(tick_);
   if (row >= columns.command.size()) {
@@ -173,11 +176,10 @@ void CertificateTask::keep(const device::DeviceReading& reading, const Vector3d&
   if (row >= columns.measured.size()) {
     return;
   }
-  device::MeasuredForce measured;
-  if (sensor_->read(measured)) {
-    columns.measured[row] = measured.force;
-    record_.stated_noise = measured.noise;
-    age_sum_ += measured.age;
+  if (measured != nullptr) {
+    columns.measured[row] = measured->force;
+    record_.stated_noise = measured->noise;
+    age_sum_ += measured->age;
     age_count_ += 1.0;
   } else {
     unmeasured_[index(parts_[at_])] = true;

@@ -33,7 +33,7 @@ class WallLadder {
   double rate_;
   std::array<analysis::WallStep, kMost> steps_{};
   std::size_t count_{0};
-  double stiffness_{50.0};                // of the wall now [N/m]
+  double stiffness_{200.0};               // of the wall now [N/m]
   double passive_{0.0}, active_{0.0};     // [N/m]
   long tick_{0};                          // since this wall began
   std::array<double, 3> low_{}, high_{};  // of x in the thirds of the time at the wall [m]
@@ -69,7 +69,9 @@ class CertificateTask final : public realtime::ServoTask {
 
  private:
   Eigen::Vector3d command(const device::DeviceReading& reading) noexcept;
-  void keep(const device::DeviceReading& reading, const Eigen::Vector3d& command) noexcept;
+  /// @param measured  null: the sensor gave nothing
+  void keep(const device::DeviceReading& reading, const Eigen::Vector3d& command,
+            const device::MeasuredForce* measured) noexcept;
   void end_part() noexcept;
 
   device::Device& device_;

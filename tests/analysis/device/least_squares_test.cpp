@@ -75,7 +75,7 @@ TEST(LeastSquaresTest, AnExponentialIsFoundFromAfar) {
 TEST(DerivativesTest, APolynomialOfDegreeFiveHasItsOwnDerivatives) {
   constexpr double kRate = 200.0;
   constexpr long kHalf = 7;
-  const Eigen::MatrixXd weights = derivative_weights(kHalf, kRate);
+  const Eigen::MatrixXd weights = derivative_weights(kHalf, kRate, 5);
   double first = 0.0, second = 0.0;
   for (long i = -kHalf; i <= kHalf; ++i) {
     const double t = static_cast<double>(i) / kRate;
@@ -90,7 +90,7 @@ TEST(DerivativesTest, APolynomialOfDegreeFiveHasItsOwnDerivatives) {
 TEST(DerivativesTest, SmoothedSecondDifferencesAreTheSecondDerivative) {
   constexpr double kRate = 200.0;
   constexpr long kHalf = 7;
-  const VectorXd weights = derivative_weights(kHalf, kRate).col(1);
+  const VectorXd weights = derivative_weights(kHalf, kRate, 5).col(1);
   const VectorXd kernel = smoothing_of(weights, kRate);
   RandomStream random(8, "path");
   VectorXd x(2 * kHalf + 1);
