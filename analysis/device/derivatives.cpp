@@ -15,10 +15,11 @@ Eigen::MatrixXd derivative_weights(long half, double rate, long degree) {
     }
   }
   const Eigen::MatrixXd inverse = powers.completeOrthogonalDecomposition().pseudoInverse();
-  Eigen::MatrixXd weights(n, 2);
+  Eigen::MatrixXd weights(n, 3);
   const double per_second = rate / static_cast<double>(half);
   weights.col(0) = per_second * inverse.row(1).transpose();
   weights.col(1) = 2.0 * per_second * per_second * inverse.row(2).transpose();
+  weights.col(2) = inverse.row(0).transpose();
   return weights;
 }
 

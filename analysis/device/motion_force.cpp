@@ -43,7 +43,7 @@ Motion motion_of(const PartRecord& part, const Excitation& excitation, long axis
     }
     const double v = weights.col(0).dot(window);
     if (std::abs(v) >= kSureSpeed) {
-      all.x.push_back(window[half]);
+      all.x.push_back(weights.col(2).dot(window));
       all.v.push_back(v);
       all.a.push_back(weights.col(1).dot(window));
       all.force.push_back(part.measured[static_cast<std::size_t>(t + lag)][axis]);

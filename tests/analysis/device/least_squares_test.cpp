@@ -76,13 +76,15 @@ TEST(DerivativesTest, APolynomialOfDegreeFiveHasItsOwnDerivatives) {
   constexpr double kRate = 200.0;
   constexpr long kHalf = 7;
   const Eigen::MatrixXd weights = derivative_weights(kHalf, kRate, 5);
-  double first = 0.0, second = 0.0;
+  double first = 0.0, second = 0.0, value = 0.0;
   for (long i = -kHalf; i <= kHalf; ++i) {
     const double t = static_cast<double>(i) / kRate;
     const double x = 1.0 + 2.0 * t - 3.0 * t * t + 40.0 * std::pow(t, 3) - 500.0 * std::pow(t, 5);
     first += weights(i + kHalf, 0) * x;
     second += weights(i + kHalf, 1) * x;
+    value += weights(i + kHalf, 2) * x;
   }
+  EXPECT_NEAR(value, 1.0, 1e-9);
   EXPECT_NEAR(first, 2.0, 1e-9);
   EXPECT_NEAR(second, -6.0, 1e-6);
 }

@@ -1,0 +1,177 @@
+// haptrial device-test --certificate, sessions that name a certificate, and what validate says.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/base/file_text.h"
+#include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::json;
+
+constexpr const char* kFaults =
+    "\n[device.faults]\ngain = 0.87\nresonance = 90.0\nresonance_damping = 0.12\n"
+    "cogging = 0.08\ncogging_period = 0.003\ndead_zone = 0.15\n";
+
+std::string shipped(const char* name) {
+  return file_text(std::filesystem::path(HAPTRIAL_SOURCE_DIR) / "experiments" / name);
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file) << text;
+}
+
+Json json_of(const std::filesystem::path& file) { return Json::parse(file_text(file)); }
+
+/// A certificate as the command writes it, with these findings.
+std::string certificate(const std::string& findings) {
+  return R"({"certificate": 1, "device": "virtual", "simulated": true, "summary": {"findings": {)" +
+         findings + "}}}";
+}
+
+/// A definition without [device], whose device then has this certificate.
+std::string naming(const std::string& text, const std::string& file) {
+  return fmt::format("{}\n[device]\ncertificate = \"{}\"\n", text, file);
+}
+
+class CertificateCommandTest : public testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  std::filesystem::path at(const char* name) const { return folder_.path() / name; }
+  test::CommandResult run(const std::string& arguments) const {
+    return test::run_command("cd '" + folder_.path().string() + "' && haptrial " + arguments);
+  }
+};
+
+TEST_F(CertificateCommandTest, TheVirtualArmGetsACertificateWithItsPlantedFaults) {
+  write(at("arm.toml"), shipped("stiffness_discrimination.toml") + kFaults);
+  const test::CommandResult result =
+      run("device-test virtual --definition arm.toml --certificate out --mass 0.2");
+  ASSERT_EQ(result.status, 0) << result.output << result.errors;
+  const Json root = json_of(at("out") / "certificate.json");
+  EXPECT_TRUE(root["simulated"].get<bool>());
+  const Json& found = root["summary"]["findings"];
+  const auto near = [&found](const char* name, double truth, double share) {
+    EXPECT_NEAR(found[name]["estimate"].get<double>(), truth, share * truth) << name;
+    EXPECT_LE(found[name]["low_95"].get<double>(), found[name]["estimate"].get<double>());
+  };
+  near("gain", 0.87, 0.005);
+  near("dead_zone", 0.15, 0.05);
+  near("cogging", 0.08, 0.03);
+  near("cogging_period", 0.003, 0.01);
+  near("resonance", 90.0, 0.02);
+  near("delay", 0.001, 0.1);
+  near("inertia", 0.22, 0.02);
+  near("friction", 0.1, 0.05);
+  EXPECT_THAT(file_text(at("out") / "certificate.html"),
+              AllOf(HasSubstr("rehearsal"), HasSubstr("gain 0.87"), HasSubstr("<svg")));
+}
+
+TEST_F(CertificateCommandTest, WithoutASensorItSaysWhatItTakes) {
+  const test::CommandResult result = run("device-test virtual --certificate out --without-sensor");
+  ASSERT_EQ(result.status, 0) << result.output << result.errors;
+  const Json root = json_of(at("out") / "certificate.json");
+  EXPECT_FALSE(root["with_sensor"].get<bool>());
+  const Json& found = root["summary"]["findings"];
+  EXPECT_THAT(found["gain"]["not_defined"].get<std::string>(), HasSubstr("known mass"));
+  EXPECT_THAT(found["cogging"]["not_defined"].get<std::string>(), HasSubstr("force sensor"));
+  EXPECT_NEAR(found["friction_commanded"]["estimate"].get<double>(), 0.1, 0.01);
+}
+
+TEST_F(CertificateCommandTest, OptionsThatDoNotFitAreRefused) {
+  const test::CommandResult alone = run("device-test virtual --mass 0.2");
+  EXPECT_EQ(alone.status, 2);
+  EXPECT_THAT(alone.errors, HasSubstr("--certificate FOLDER"));
+  const test::CommandResult heavy = run("device-test virtual --certificate out --mass 50");
+  EXPECT_EQ(heavy.status, 2);
+  EXPECT_THAT(heavy.errors, HasSubstr("allowed: a number from 0 to 5 [kg]"));
+  const test::CommandResult mouse = run("device-test mouse --certificate out");
+  EXPECT_EQ(mouse.status, 2);
+  EXPECT_THAT(mouse.errors, HasSubstr("a mouse gives no force"));
+}
+
+TEST_F(CertificateCommandTest, AThresholdOfAWeakArmIsRightAsMeasured) {
+  const std::string perfect = shipped("stiffness_discrimination.toml");
+  write(at("perfect.toml"), perfect);
+  write(at("weak.toml"), perfect + "\n[device.faults]\ngain = 0.87\n");
+  ASSERT_EQ(run("device-test virtual --definition weak.toml --certificate arm").status, 0);
+  write(at("named.toml"),
+        naming(perfect, "arm/certificate.json") + "\n[device.faults]\ngain = 0.87\n");
+  for (const char* name : {"perfect", "named"}) {
+    const test::CommandResult dry = run(fmt::format(
+        "dry-run {0}.toml --out {0} --participants 2 --seed 5 && haptrial analyze {0} --out "
+        "{0}_report",
+        name));
+    ASSERT_EQ(dry.status, 0) << dry.output << dry.errors;
+  }
+  const Json plain = json_of(at("perfect_report") / "results.json");
+  const Json made = json_of(at("named_report") / "results.json");
+  EXPECT_FALSE(plain.contains("apparatus"));
+  ASSERT_TRUE(made.contains("apparatus")) << made.dump(1).substr(0, 2000);
+  int rows = 0;
+  for (const Json& row : made["apparatus"]["thresholds"]) {
+    const double commanded = row["commanded"]["estimate"].get<double>();
+    const double measured = row["measured"]["estimate"].get<double>();
+    const double truth = 0.87 * commanded;  // what the planted arm gave
+    EXPECT_NEAR(commanded / truth, 1.0 / 0.87, 1e-9) << "13 % of it never reached the hand";
+    EXPECT_NEAR(measured / truth, 1.0, 0.01);
+    ++rows;
+  }
+  EXPECT_GE(rows, 2);
+  EXPECT_THAT(file_text(at("named_report") / "report.html"),
+              AllOf(HasSubstr("Apparatus"), HasSubstr("as measured"),
+                    HasSubstr("Force on the hand per force commanded")));
+}
+
+TEST_F(CertificateCommandTest, SessionsKeepTheCertificateTheyRanWith) {
+  write(at("arm.json"),
+        certificate(R"("gain": {"estimate": 0.9, "low_95": 0.89, "high_95": 0.91})"));
+  write(at("study.toml"), naming(shipped("stiffness_discrimination.toml"), "arm.json"));
+  const test::CommandResult dry = run("dry-run study.toml --out s --participants 1 --seed 5");
+  ASSERT_EQ(dry.status, 0) << dry.output << dry.errors;
+  std::filesystem::remove(at("arm.json"));
+  const test::CommandResult report = run("analyze s --out report");
+  ASSERT_EQ(report.status, 0) << report.errors;
+  const Json apparatus = json_of(at("report") / "results.json")["apparatus"];
+  EXPECT_NEAR(apparatus["gain"]["estimate"].get<double>(), 0.9, 1e-9);
+  EXPECT_EQ(apparatus["checksum"].dump().size(), 2 + 16u);
+}
+
+TEST_F(CertificateCommandTest, ValidateSaysWhatTheDeviceCannotPresent) {
+  write(at("arm.json"), certificate(R"("stiffest_wall": {"estimate": 400, "low_95": 400},
+      "dead_zone": {"estimate": 0.3}, "force_noise": {"estimate": 0.06})"));
+  write(at("study.toml"), naming(shipped("stiffness_discrimination.toml"), "arm.json"));
+  const test::CommandResult stiff = run("validate study.toml");
+  EXPECT_EQ(stiff.status, 0) << stiff.errors;
+  EXPECT_THAT(stiff.output, AllOf(HasSubstr("warning: stage press"), HasSubstr("600 N/m"),
+                                  HasSubstr("400 N/m is the stiffest wall")));
+  write(at("plain.toml"), shipped("stiffness_discrimination.toml"));
+  EXPECT_THAT(run("validate plain.toml").output, Not(HasSubstr("stiffest wall")));
+}
+
+TEST_F(CertificateCommandTest, AFileThatIsNoCertificateIsRefused) {
+  write(at("study.toml"), naming(shipped("stiffness_discrimination.toml"), "arm.json"));
+  const test::CommandResult missing = run("validate study.toml");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_THAT(missing.errors, HasSubstr("arm.json is not a file"));
+  write(at("arm.json"), R"({"gain": 0.87})");
+  const test::CommandResult other = run("validate study.toml");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.errors, HasSubstr("arm.json is no certificate"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
