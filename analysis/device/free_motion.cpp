@@ -93,7 +93,7 @@ std::vector<double> model(const Signals& s, const VectorXd& p) {
   return made;
 }
 
-FreeMotion fit_axis(const Signals& s) {
+FreeMotion fit_free_axis(const Signals& s) {
   const auto n = static_cast<long>(s.windows.size());
   const long reach = s.smoothing.size() / 2;
   const auto residuals = [&](const VectorXd& p, VectorXd& r) {
@@ -140,7 +140,7 @@ std::vector<FreeMotion> identify_free_motion(const CertificateRecord& record,
     if (static_cast<long>(signals.windows.size()) < kLeastWindows) {
       return {};
     }
-    axes.push_back(fit_axis(signals));
+    axes.push_back(fit_free_axis(signals));
   }
   return axes;
 }

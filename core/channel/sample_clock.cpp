@@ -77,6 +77,9 @@ SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns) {
   SampleTime time;
   time.time_ns = received_origin_ + std::llround(1e9 * measured);
   time.uncertainty = std::hypot(options_.latency_uncertainty, spread_ + drift);
+  if (late_since_ >= 0.0) {  // a delay, or a step that is not known yet
+    time.uncertainty = std::max(time.uncertainty, point.received - line_at(point.device));
+  }
   time.step = step;
   return time;
 }

@@ -25,8 +25,8 @@ struct ClockOptions {
 /// a delay that is never below 0. So offset and rate are those of the highest line below all points
 /// (d, r) of the last twenty seconds (Moon, Skelly and Towsley 1999, "Estimation and removal of
 /// clock skew"), of which each quarter of a second keeps the lowest. A clock that steps is seen by
-/// samples that come before they were measured, or all too late for half a second; the line then
-/// begins anew.
+/// samples that come before they were measured, or all too late for half a second, during which
+/// their uncertainty is how late they are; the line then begins anew.
 ///
 /// One thread; allocates.
 class SampleClock {

@@ -85,6 +85,18 @@ TEST(SampleClockTest, AClockThatStepsIsSeenOnceAndFollowedAnew) {
   }
 }
 
+/// A clock that stops for 0.3 s lags from then on; its samples come late as if they were delayed.
+TEST(SampleClockTest, BeforeAStepBackIsKnownTheUncertaintyCoversIt) {
+  SampleClock clock({0.0, 1e-4});
+  for (int i = 0; i < 6000; ++i) {
+    const double truth = 1e-3 * i;
+    const double device = truth - (i >= 5000 ? 0.3 : 0.0);
+    const SampleTime time = clock.time_of(device, std::llround(1e9 * truth));
+    EXPECT_LE(std::abs(1e-9 * static_cast<double>(time.time_ns) - truth), time.uncertainty + 1e-9)
+        << i;
+  }
+}
+
 TEST(SampleClockTest, WithoutAClockASampleLiesBetweenTwoReadings) {
   const SampleClock clock({2e-3, 1e-3});
   const SampleTime time = clock.time_of(1'000'000'000, 10e-3);
