@@ -80,6 +80,18 @@ std::vector<std::string> words() {
   return words;
 }
 
+/// A table has each column once.
+void reject_taken_columns(Table& table, const ChannelPlan& plan) {
+  std::vector<std::string> taken{"sample", "time_ns", "received_ns", "uncertainty", "device_time"};
+  for (const Quantity& quantity : plan.quantities) {
+    if (std::find(taken.begin(), taken.end(), quantity.name) != taken.end()) {
+      table.reject("kind", fmt::format("of a channel with a quantity called '{}'", quantity.name),
+                   fmt::format("names of quantities other than {}", fmt::join(taken, ", ")));
+    }
+    taken.push_back(quantity.name);
+  }
+}
+
 ChannelOptions read_channel(Table& table, const std::string& name) {
   ChannelOptions options;
   options.name = name;
@@ -94,6 +106,7 @@ ChannelOptions read_channel(Table& table, const std::string& name) {
   options.plan = kind->read(table);
   plan_schema().read(table, options.plan);
   clock_schema().read(table, options.plan.clock);
+  reject_taken_columns(table, options.plan);
   return options;
 }
 

@@ -230,6 +230,8 @@ TEST(ChannelOptionsTest, MistakesAreNamed) {
               StartsWith("lab.toml:2: channels.grip.kind is 'teletype'; allowed: "));
   EXPECT_THAT(problem("[channels.grip]\nkind = \"scripted\"\nquantities = {}\n"),
               HasSubstr("channels.grip.quantities is 0 quantities; allowed: 1 to 64"));
+  EXPECT_THAT(problem("[channels.grip]\nkind = \"scripted\"\nquantities = { time_ns = \"N\" }\n"),
+              HasSubstr("a quantity called 'time_ns'; allowed: names of quantities other than "));
   EXPECT_THAT(problem(kGrip + "limit = -1.0\n"), HasSubstr("channels.grip.limit is -1"));
   EXPECT_THAT(problem(kGrip + "requird = true\n"), HasSubstr("required"));
   EXPECT_THAT(problem("[channels.\"a b\"]\nkind = \"scripted\"\nquantities = { x = \"m\" }\n"),
