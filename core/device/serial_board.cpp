@@ -244,8 +244,7 @@ void SerialBoard::run() {
     wait(kLineLook);
     hear();
   }
-  commanded_at_ = Clock::now();
-  while (!over_.load(std::memory_order_acquire) && !lost_) {
+  while (!over_.load(std::memory_order_acquire) && !lost_) {  // silent until the first command
     exchange();
   }
   if (!lost_) {
