@@ -159,7 +159,8 @@ TEST_F(BoardSessionTest, ASessionThatIsKilledBySignalLeavesTheBoardWithoutForce)
 
 TEST_F(BoardSessionTest, ABoardWithoutATableIsRefused) {
   const auto refused =
-      run_command("haptrial run first_experiment --subject S01 --device hapi --out '" +
+      run_command("cd '" + folder_.path().string() +
+                  "'; haptrial run first_experiment --subject S01 --device hapi --out '" +
                   (folder_ / "out").string() + "'");
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.errors, HasSubstr("--device hapi needs a table [hapi] whose port says which "
