@@ -174,6 +174,7 @@ class HaplyLink::Connection {
     open(address);
     exchange_first();
     thread_ = std::thread([this] { run(); });
+    running_.wait(false);  // a busy computer may start an ordinary thread late
   }
   ~Connection() {
     asio::post(io_, [this] { end(); });
@@ -227,6 +228,7 @@ class HaplyLink::Connection {
   bool writing_{false};
   bool ending_{false};
   bool lost_{false};
+  std::atomic<bool> running_{false};
   std::thread thread_;
 };
 
@@ -282,6 +284,8 @@ void HaplyLink::Connection::exchange_first() {
 /// Runs below the servo thread, which it must not delay, and above everything else.
 void HaplyLink::Connection::run() noexcept {
   const realtime::RealTimeScope urgent(realtime::RealTimeScope::kPriority - 10);
+  running_.store(true);
+  running_.notify_one();
   try {
     io_.restart();
     receive();
