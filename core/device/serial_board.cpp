@@ -19,6 +19,7 @@
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/serial_port.h"
+#include "core/realtime/real_time.h"
 
 namespace haptrial::device {
 namespace {
@@ -233,6 +234,7 @@ bool SerialBoard::write(const Eigen::Vector3d& force) noexcept {
 
 void SerialBoard::run() {
   block_signals();
+  const realtime::RealTimeScope urgent(realtime::RealTimeScope::kPriority - 10);
   auto next = Clock::now();
   while (!over_.load(std::memory_order_acquire) && readings() == 0 && !lost_) {
     if (Clock::now() >= next) {
