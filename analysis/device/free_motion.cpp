@@ -72,7 +72,7 @@ double behind_dead_zone(double command, double zone) {
 /// Model of the acceleration without smoothing at each tick. A command is held for a tick, so that
 /// a second difference sees the mean of two.
 /// @param p  mobility, delay [ms], friction, dead zone, offset [commanded N]
-std::vector<double> model(const Signals& s, const VectorXd& p) {
+std::vector<double> modelled_acceleration(const Signals& s, const VectorXd& p) {
   const auto n = static_cast<long>(s.command.size());
   std::vector<double> zoned(s.command.size()), made(s.command.size());
   for (std::size_t t = 0; t < zoned.size(); ++t) {
@@ -97,7 +97,7 @@ FreeMotion fit_free_axis(const Signals& s) {
   const auto n = static_cast<long>(s.windows.size());
   const long reach = s.smoothing.size() / 2;
   const auto residuals = [&](const VectorXd& p, VectorXd& r) {
-    const std::vector<double> made = model(s, p);
+    const std::vector<double> made = modelled_acceleration(s, p);
     for (long i = 0; i < n; ++i) {
       const auto k = static_cast<std::size_t>(i);
       double sum = 0.0;

@@ -70,7 +70,7 @@ Complex second_order(double frequency, double resonance, double damping, double 
 }
 
 /// @param p  gain, delay [s], and logarithms of resonance [Hz] and damping if there is one
-Complex response_model(double frequency, const VectorXd& p, double rate) {
+Complex modelled_response(double frequency, const VectorXd& p, double rate) {
   const Complex late = std::polar(p[0], -2.0 * kHalfTurn * frequency * p[1]);
   return late * (p.size() > 2 ? second_order(frequency, std::exp(p[2]), std::exp(p[3]), rate)
                               : std::polar(1.0, -2.0 * kHalfTurn * frequency / rate));
@@ -82,7 +82,8 @@ FittedParameters fit_model(const MeanResponse& response, const VectorXd& start, 
   return fit_least_squares(
       start, scale, 2 * static_cast<long>(n), [&](const VectorXd& p, VectorXd& r) {
         for (std::size_t i = 0; i < n; ++i) {
-          const Complex error = response.mean[i] - response_model(response.frequency[i], p, rate);
+          const Complex error =
+              response.mean[i] - modelled_response(response.frequency[i], p, rate);
           r[static_cast<long>(2 * i)] = error.real();
           r[static_cast<long>(2 * i + 1)] = error.imag();
         }

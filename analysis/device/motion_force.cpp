@@ -156,7 +156,7 @@ void add_curves(const Motion& m, AxisMotion& axis) {
   }
 }
 
-AxisMotion fit_axis(const Motion& m) {
+AxisMotion fit_moved_axis(const Motion& m) {
   const auto [low, high] = std::minmax_element(m.x.begin(), m.x.end());
   const double span = *high - *low;
   const FittedParameters without = fit_plain(m);
@@ -190,7 +190,7 @@ std::vector<AxisMotion> identify_motion(const CertificateRecord& record,
     if (static_cast<long>(motion.x.size()) < kLeastSamples) {
       return {};
     }
-    axes.push_back(fit_axis(motion));
+    axes.push_back(fit_moved_axis(motion));
   }
   return axes;
 }

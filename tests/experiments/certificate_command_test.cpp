@@ -26,7 +26,7 @@ constexpr const char* kFaults =
     "\n[device.faults]\ngain = 0.87\nresonance = 90.0\nresonance_damping = 0.12\n"
     "cogging = 0.08\ncogging_period = 0.003\ndead_zone = 0.15\n";
 
-std::string shipped(const char* name) {
+std::string shipped_text(const char* name) {
   return file_text(std::filesystem::path(HAPTRIAL_SOURCE_DIR) / "experiments" / name);
 }
 
@@ -57,7 +57,7 @@ class CertificateCommandTest : public testing::Test {
 };
 
 TEST_F(CertificateCommandTest, TheVirtualArmGetsACertificateWithItsPlantedFaults) {
-  write(at("arm.toml"), shipped("stiffness_discrimination.toml") + kFaults);
+  write(at("arm.toml"), shipped_text("stiffness_discrimination.toml") + kFaults);
   const test::CommandResult result =
       run("device-test virtual --definition arm.toml --certificate out --mass 0.2");
   ASSERT_EQ(result.status, 0) << result.output << result.errors;
@@ -104,7 +104,7 @@ TEST_F(CertificateCommandTest, OptionsThatDoNotFitAreRefused) {
 }
 
 TEST_F(CertificateCommandTest, AThresholdOfAWeakArmIsRightAsMeasured) {
-  const std::string perfect = shipped("stiffness_discrimination.toml");
+  const std::string perfect = shipped_text("stiffness_discrimination.toml");
   write(at("perfect.toml"), perfect);
   write(at("weak.toml"), perfect + "\n[device.faults]\ngain = 0.87\n");
   ASSERT_EQ(run("device-test virtual --definition weak.toml --certificate arm").status, 0);
@@ -112,13 +112,11 @@ TEST_F(CertificateCommandTest, AThresholdOfAWeakArmIsRightAsMeasured) {
         naming(perfect, "arm/certificate.json") + "\n[device.faults]\ngain = 0.87\n");
   for (const char* name : {"perfect", "named"}) {
     const test::CommandResult dry = run(fmt::format(
-        "dry-run {0}.toml --out {0} --participants 2 --seed 5 && haptrial analyze {0} --out "
-        "{0}_report",
-        name));
+        "dry-run {0}.toml --out {0} --subjects 2 --seed 5 && haptrial analyze {0}", name));
     ASSERT_EQ(dry.status, 0) << dry.output << dry.errors;
   }
-  const Json plain = json_of(at("perfect_report") / "results.json");
-  const Json made = json_of(at("named_report") / "results.json");
+  const Json plain = json_of(at("perfect") / "results.json");
+  const Json made = json_of(at("named") / "results.json");
   EXPECT_FALSE(plain.contains("apparatus"));
   ASSERT_TRUE(made.contains("apparatus")) << made.dump(1).substr(0, 2000);
   int rows = 0;
@@ -131,7 +129,7 @@ TEST_F(CertificateCommandTest, AThresholdOfAWeakArmIsRightAsMeasured) {
     ++rows;
   }
   EXPECT_GE(rows, 2);
-  EXPECT_THAT(file_text(at("named_report") / "report.html"),
+  EXPECT_THAT(file_text(at("named") / "report.html"),
               AllOf(HasSubstr("Apparatus"), HasSubstr("as measured"),
                     HasSubstr("Force on the hand per force commanded")));
 }
@@ -139,13 +137,13 @@ TEST_F(CertificateCommandTest, AThresholdOfAWeakArmIsRightAsMeasured) {
 TEST_F(CertificateCommandTest, SessionsKeepTheCertificateTheyRanWith) {
   write(at("arm.json"),
         certificate(R"("gain": {"estimate": 0.9, "low_95": 0.89, "high_95": 0.91})"));
-  write(at("study.toml"), naming(shipped("stiffness_discrimination.toml"), "arm.json"));
-  const test::CommandResult dry = run("dry-run study.toml --out s --participants 1 --seed 5");
+  write(at("study.toml"), naming(shipped_text("stiffness_discrimination.toml"), "arm.json"));
+  const test::CommandResult dry = run("dry-run study.toml --out s --subjects 1 --seed 5");
   ASSERT_EQ(dry.status, 0) << dry.output << dry.errors;
   std::filesystem::remove(at("arm.json"));
-  const test::CommandResult report = run("analyze s --out report");
+  const test::CommandResult report = run("analyze s");
   ASSERT_EQ(report.status, 0) << report.errors;
-  const Json apparatus = json_of(at("report") / "results.json")["apparatus"];
+  const Json apparatus = json_of(at("s") / "results.json")["apparatus"];
   EXPECT_NEAR(apparatus["gain"]["estimate"].get<double>(), 0.9, 1e-9);
   EXPECT_EQ(apparatus["checksum"].dump().size(), 2 + 16u);
 }
@@ -153,17 +151,17 @@ TEST_F(CertificateCommandTest, SessionsKeepTheCertificateTheyRanWith) {
 TEST_F(CertificateCommandTest, ValidateSaysWhatTheDeviceCannotPresent) {
   write(at("arm.json"), certificate(R"("stiffest_wall": {"estimate": 400, "low_95": 400},
       "dead_zone": {"estimate": 0.3}, "force_noise": {"estimate": 0.06})"));
-  write(at("study.toml"), naming(shipped("stiffness_discrimination.toml"), "arm.json"));
+  write(at("study.toml"), naming(shipped_text("stiffness_discrimination.toml"), "arm.json"));
   const test::CommandResult stiff = run("validate study.toml");
   EXPECT_EQ(stiff.status, 0) << stiff.errors;
   EXPECT_THAT(stiff.output, AllOf(HasSubstr("warning: stage press"), HasSubstr("600 N/m"),
                                   HasSubstr("400 N/m is the stiffest wall")));
-  write(at("plain.toml"), shipped("stiffness_discrimination.toml"));
+  write(at("plain.toml"), shipped_text("stiffness_discrimination.toml"));
   EXPECT_THAT(run("validate plain.toml").output, Not(HasSubstr("stiffest wall")));
 }
 
 TEST_F(CertificateCommandTest, AFileThatIsNoCertificateIsRefused) {
-  write(at("study.toml"), naming(shipped("stiffness_discrimination.toml"), "arm.json"));
+  write(at("study.toml"), naming(shipped_text("stiffness_discrimination.toml"), "arm.json"));
   const test::CommandResult missing = run("validate study.toml");
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.errors, HasSubstr("arm.json is not a file"));

@@ -24,9 +24,9 @@ Finding level(const char* name, const char* title, const Estimated& e, const std
       .name = name, .title = title, .value = e.value, .low = e.low, .high = e.high, .unit = unit};
 }
 
-FindingRow apparatus_row(const std::string& who, const std::string& condition,
-                         const std::string& quantity, const Estimated& commanded,
-                         const std::string& unit, const device::Certificate& certificate) {
+FindingRow level_row(const std::string& who, const std::string& condition,
+                     const std::string& quantity, const Estimated& commanded,
+                     const std::string& unit, const device::Certificate& certificate) {
   return {{.name = "participant", .title = "participant", .value = who},
           {.name = "condition", .title = "condition", .value = condition},
           {.name = "quantity", .title = "quantity", .value = quantity},
@@ -39,15 +39,15 @@ FindingTable measured_table(const TrialsResult& result, const device::Certificat
   const std::string& unit = result.plan.function.axis.unit;
   for (const FunctionFit& fit : result.fits) {
     if (fit.stated && grows_with_force(unit)) {
-      table.rows.push_back(apparatus_row(fit.participant, fit.condition, "threshold",
-                                         fit.stated->threshold, unit, certificate));
+      table.rows.push_back(level_row(fit.participant, fit.condition, "threshold",
+                                     fit.stated->threshold, unit, certificate));
     }
   }
   for (const Quantity& q : result.quantities) {
     for (std::size_t cell = 0; cell < q.means.size(); ++cell) {
       if (q.means[cell] && grows_with_force(q.unit)) {
         const MeanInterval& mean = *q.means[cell];
-        table.rows.push_back(apparatus_row(
+        table.rows.push_back(level_row(
             "mean over participants", result.plan.by.empty() ? "all" : q.table.names[cell], q.title,
             {mean.mean, mean.low, mean.high}, q.unit, certificate));
       }
