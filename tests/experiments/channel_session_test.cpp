@@ -188,16 +188,16 @@ class GripOnAPipe {
     int file = -1;
     for (int i = 0; !over_; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      file = file >= 0 ? file : open(pipe_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+      file = file >= 0 ? file : ::open(pipe_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
       const double squeeze = i / 50 % 2 == 0 ? 3.0 : 1.0;
       const std::string line = std::to_string(squeeze + 1e-6 * i) + "\n";
-      if (file >= 0 && write(file, line.data(), line.size()) < 0) {
-        close(file);
+      if (file >= 0 && ::write(file, line.data(), line.size()) < 0) {
+        ::close(file);
         file = -1;
       }
     }
     if (file >= 0) {
-      close(file);
+      ::close(file);
     }
   }
 
