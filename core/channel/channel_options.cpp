@@ -97,7 +97,12 @@ ChannelOptions read_channel(Table& table, const std::string& name) {
   options.name = name;
   table.describe({"kind", "Kind of instrument or protocol", "", true});
   options.kind = table.choice("kind", words());
-  table.check();  // what the other keys mean depends on it
+  if (table.whole_text("kind") != options.kind) {
+    for (const std::string& key : table.keys()) {
+      table.leave(key);  // what it means is not known
+    }
+    return options;
+  }
   channel_schema().read(table, options);
   const auto& kinds = kinds_of_channel();
   const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const ChannelKind& each) {
@@ -129,6 +134,7 @@ std::vector<Quantity> read_quantities(Table& table, std::string_view key) {
   std::vector<Quantity> quantities;
   Table inner = table.table(key);
   for (const std::string& name : inner.keys_as_written()) {
+    inner.describe({name, "Unit of the quantity of this name; \"1\" for a pure number", "", true});
     quantities.push_back({name, inner.text(name)});
   }
   check_quantities(table, key, quantities);

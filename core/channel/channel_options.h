@@ -31,8 +31,8 @@ struct ChannelOptions {
 };
 
 /// The channels of a definition, in the order of its text. @param root  of the definition
-/// Problems are noted. @throws InputError for an unknown kind, alone: what the other keys mean
-/// depends on it
+/// Problems are noted; of an unknown kind the other keys are left, since what they mean depends on
+/// it.
 std::vector<ChannelOptions> read_channels(Table& root);
 
 /// Names of the values of these channels, "CHANNEL.QUANTITY", in the order in which a session has

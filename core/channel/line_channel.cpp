@@ -64,6 +64,7 @@ std::vector<double> read_for_each(Table& table, const std::string& key,
   std::vector<double> numbers(quantities.size(), otherwise);
   Table inner = table.table(key);
   for (std::size_t i = 0; i < quantities.size(); ++i) {
+    inner.describe({quantities[i].name, "Number of this quantity", fmt::format("{:g}", otherwise)});
     if (inner.has(quantities[i].name)) {
       numbers[i] = inner.number(quantities[i].name, {-1e12, 1e12}, quantities[i].unit);
     }

@@ -3,6 +3,11 @@
 #include "core/base/definition/schema.h"
 
 namespace haptrial::device {
+namespace {
+
+constexpr const char* kNotFound = "not identified";
+
+}  // namespace
 
 const Schema<Certificate>& certificate_schema() {
   using C = Certificate;
@@ -17,18 +22,26 @@ const Schema<Certificate>& certificate_schema() {
           .flag("simulated", &C::simulated, "Whether that device was a virtual one")
           .number("gain", &C::gain, {0.0, 10.0, true}, "1",
                   "Force that the device gives per force commanded")
+          .otherwise(kNotFound)
           .number("gain_low", &C::gain_low, {0.0, 10.0, true}, "1",
                   "Lower end of the gain's 95 % interval")
+          .otherwise(kNotFound)
           .number("gain_high", &C::gain_high, {0.0, 10.0, true}, "1",
                   "Upper end of the gain's 95 % interval")
+          .otherwise(kNotFound)
           .number("dead_zone", &C::dead_zone, {0.0, 100.0}, "N",
                   "Length of a commanded force up to which the device gives none")
+          .otherwise(kNotFound)
           .number("friction", &C::friction, {0.0, 100.0}, "N", "Friction of the device")
+          .otherwise(kNotFound)
           .number("force_noise", &C::force_noise, {0.0, 100.0}, "N",
                   "Ripple of the device's force, root mean square")
+          .otherwise(kNotFound)
           .number("delay", &C::delay, {0.0, 1.0}, "s", "Time from a command to its force")
+          .otherwise(kNotFound)
           .number("stiffest_wall", &C::stiffest_wall, {0.0, 1e6, true}, "N/m",
                   "Stiffness of the stiffest wall that stays passive on the device")
+          .otherwise(kNotFound)
           .check([](Table& table, C& c) {
             if (c.gain.has_value() != c.gain_low.has_value() ||
                 c.gain.has_value() != c.gain_high.has_value()) {

@@ -47,8 +47,10 @@ const Schema<HaplyParameters>& haply_schema() {
           .text("device_id", &P::device_id,
                 "Identifier of the device, as Haply Hub shows it; empty: the first one that the "
                 "service lists")
+          .otherwise("the first one")
           .text("grip_id", &P::grip_id,
                 "Identifier of the VerseGrip; empty: the first one that the service lists, or none")
+          .otherwise("the first one, or none")
           .number("max_force", &P::max_force, {0.0, 20.0, true}, "N",
                   "Force at which the driver saturates; at most what the device's data sheet gives")
           .required()
@@ -59,6 +61,7 @@ const Schema<HaplyParameters>& haply_schema() {
           .vector("origin", &P::origin, {-1.0, 1.0}, "m",
                   "Middle of the workspace from the middle of the device's mounting face, in the "
                   "device's axes: to the right, away from the user, up")
+          .otherwise("[0, -0.12, 0.15]")
           .number("patience", &P::patience, {0.002, 1.0}, "s",
                   "Silence between the loop and the Inverse Service after which the force is "
                   "switched off")
