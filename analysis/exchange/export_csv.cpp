@@ -11,7 +11,9 @@
 #include "analysis/files/delimited.h"
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
+#include "analysis/quality/channel_quality.h"
 #include "analysis/quality/quality_columns.h"
+#include "core/channel/channel_row.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
 #include "core/record/rows/session_tables.h"
@@ -171,12 +173,26 @@ struct ProtocolTable {
   std::string text;  // empty: no session has a row
 };
 
-Docs column_docs(const record::TableDescription& table) {
-  Docs docs{kSubject, kSession};
+Docs own_docs(const record::TableDescription& table) {
+  Docs docs;
   for (const record::Column& column : table.schema().columns) {
     docs.push_back(doc_of(table.schema(), column.name));
   }
   return docs;
+}
+
+Docs column_docs(const record::TableDescription& table) {
+  Docs docs{kSubject, kSession};
+  for (const ColumnDoc& doc : own_docs(table)) {
+    docs.push_back(doc);
+  }
+  return docs;
+}
+
+/// The columns that every channel has.
+Docs channel_docs() {
+  const channel::ChannelTable table("NAME", {}, 1);
+  return own_docs(table.table());
 }
 
 void add_rows(ProtocolTable& own, const ExportSession& session,
@@ -205,15 +221,16 @@ void add_rows(ProtocolTable& own, const ExportSession& session,
   });
 }
 
-/// Tables of passes, and of answers to pages; ticks and facts that a session has from the beginning
-/// are too much for a table.
+/// Tables of passes, of answers to pages and of what befell channels; ticks and facts that a
+/// session has from the beginning are too much for a table.
 std::vector<ProtocolTable> protocol_tables(const std::vector<ExportSession>& sessions,
                                            const record::TableList& tables) {
   std::vector<ProtocolTable> all;
   for (const record::TableDescription* table : tables) {
     const record::RowsOf of = table->of();
     if (of == record::RowsOf::kPass || of == record::RowsOf::kEndedPass ||
-        table == &record::table_of<record::AnswerRow>()) {
+        table == &record::table_of<record::AnswerRow>() ||
+        table == &record::table_of<channel::IncidentRow>()) {
       all.push_back({table, ""});
     }
   }
@@ -261,6 +278,9 @@ std::string dictionary(const CsvOptions& options, const std::vector<ProtocolTabl
     files["samples/*.csv.gz"] = described("a row for each tick of the servo loop", sample_docs());
     files["stimuli/*.csv.gz"] =
         described("the ideal movement and target force of each block", stimulus_docs());
+    files["channels/*.csv.gz"] =
+        described("a row for each sample of a channel; the columns after these are its quantities",
+                  channel_docs());
   }
   files["scores.csv"] =
       described("a row for each scored trial, which haptrial analyze writes", score_docs());
@@ -291,6 +311,34 @@ std::vector<std::string> file_stems(const std::vector<ExportSession>& sessions) 
   return stems;
 }
 
+/// The samples of a channel, a piece at a time.
+void write_channel(const record::SessionReader& reader, const record::TableDescription& table,
+                   GzipFile& file) {
+  constexpr std::size_t kPiece = std::size_t{1} << 20;  // [bytes]
+  std::string text = heading(own_docs(table), Delimited::kCsv);
+  RowText row(text, Delimited::kCsv);
+  reader.each_row(table, [&](const std::vector<record::Cell>& cells) {
+    for (const record::Cell& cell : cells) {
+      std::visit([&](const auto& value) { row.add(value); }, cell);
+    }
+    row.end();
+    if (text.size() >= kPiece) {
+      file.write(text);
+      text.clear();
+    }
+  });
+  file.write(text);
+}
+
+void write_channels(const NewFolder& out, const record::SessionReader& reader,
+                    const std::string& stem) {
+  for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
+    GzipFile file(out.place(fmt::format("channels/{}_{}.csv.gz", stem, channel.name)));
+    write_channel(reader, *reader.description("channel_" + channel.name), file);
+    file.close();
+  }
+}
+
 void write_ticks(const NewFolder& out, const ExportSession& session, const std::string& stem,
                  Counter& counter) {
   const record::SessionReader reader(session.file);
@@ -300,6 +348,7 @@ void write_ticks(const NewFolder& out, const ExportSession& session, const std::
   GzipFile stimuli(out.place("stimuli/" + stem + ".csv.gz"));
   stimuli.write(stimulus_text(reader.stimuli(), Delimited::kCsv));
   stimuli.close();
+  write_channels(out, reader, stem);
 }
 
 }  // namespace

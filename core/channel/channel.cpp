@@ -15,6 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kLook{20};    // for the end of the session, and for silence
+constexpr milliseconds kUntilBegin{1};
 constexpr milliseconds kRetry{500};  // until a lost instrument is opened again
 constexpr std::size_t kBlock = 256;  // samples in a block of the log
 constexpr double kKept = 4.0;        // for which the log has room [s]
@@ -140,8 +141,11 @@ void Channel::run() {
            waited += kLook) {
         std::this_thread::sleep_for(kLook);
       }
-    } else {
+    } else if (reading_.load(std::memory_order_relaxed)) {
       read();
+    } else {
+      heard_ns_ = now_();
+      std::this_thread::sleep_for(kUntilBegin);
     }
   }
   source_.reset();

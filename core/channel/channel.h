@@ -34,7 +34,7 @@ class Channel final : private ChannelInbox {
   /// Time since the session's first tick [ns]; any thread.
   using Now = std::function<std::int64_t()>;
 
-  /// Starts the thread. @param first  number of the first sample: of those that an earlier run of
+  /// Starts the thread, which opens the instrument and waits for begin(). @param first  number of the first sample: of those that an earlier run of
   /// the session has
   Channel(ChannelOptions options, Now now, std::uint64_t first = 0);
   ~Channel() override;
@@ -45,6 +45,9 @@ class Channel final : private ChannelInbox {
   /// Waits until the instrument has answered or could not be opened. Session's thread.
   /// @returns why it could not, in a sentence; empty if it is open
   std::string wait_until_open();
+
+  /// Lets data count from now on: the session's clock runs. Session's thread.
+  void begin() { reading_.store(true, std::memory_order_relaxed); }
 
   /// The newest values; a channel that is lost has `live` false. Servo thread: wait-free.
   const ChannelState& newest() noexcept;
@@ -94,6 +97,7 @@ class Channel final : private ChannelInbox {
   ChannelState seen_;
   bool tried_{false};
   std::string error_;
+  std::atomic<bool> reading_{false};  // begin() was called
   std::atomic<bool> over_{false};
   std::thread thread_;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/record/rows/common_tables.h"
@@ -95,7 +96,8 @@ std::vector<std::string> ChannelSet::start(const Channel::Now& now,
       throw RunError(fmt::format("channel {}: {}; the session needs it (required = true)",
                                  part.options.name, why));
     }
-    if (!why.empty()) {
+    part.missing = !why.empty();
+    if (part.missing) {
       notices.push_back(
           fmt::format("channel {}: {}; the session goes on without it, and looks "
                       "for it twice a second",
@@ -103,6 +105,14 @@ std::vector<std::string> ChannelSet::start(const Channel::Now& now,
     }
   }
   return notices;
+}
+
+void ChannelSet::begin() {
+  for (Part& part : parts_) {
+    if (part.channel) {
+      part.channel->begin();
+    }
+  }
 }
 
 void ChannelSet::collect(std::int64_t now_ns, const std::function<void(const record::Rows&)>& put) {
@@ -116,11 +126,11 @@ void ChannelSet::collect(std::int64_t now_ns, const std::function<void(const rec
       put(record::Rows(part.table->table(), rows.data(), rows.size()));
     });
     for (IncidentRow& row : part.channel->take_incidents()) {
-      if (row.what == Incident::kLost || row.what == Incident::kBack) {
-        news_.push_back(
-            row.what == Incident::kBack
-                ? fmt::format("channel {} is back after {:.1f} s", row.channel, row.amount)
-                : fmt::format("channel {} is lost: {}", row.channel, row.text));
+      const bool lost = row.what == Incident::kLost && !std::exchange(part.missing, false);
+      if (lost) {
+        news_.push_back(fmt::format("channel {} is lost: {}", row.channel, row.text));
+      } else if (row.what == Incident::kBack) {
+        news_.push_back(fmt::format("channel {} is back after {:.1f} s", row.channel, row.amount));
       }
       incidents.push_back(std::move(row));
     }

@@ -36,11 +36,14 @@ class ChannelSet {
   /// The channels' own tables, and that of their incidents; none without channels.
   record::TableList tables() const;
 
-  /// Opens the instruments and waits for each to answer. @param first  number of the first sample
+  /// Opens the instruments and waits for each to answer; their data count from begin() on. Call
+  /// before anything is recorded. @param first  number of the first sample
   /// of each channel, that is, those of an earlier run; empty: from 0. Session's thread.
   /// @returns a sentence for each that does not answer
   /// @throws RunError if the session needs it
   std::vector<std::string> start(const Channel::Now& now, const std::vector<std::uint64_t>& first);
+  /// The session's clock runs. Session's thread.
+  void begin();
   /// Gives the rows that have come to `put`. @param now_ns  time of the session. Session's thread.
   void collect(std::int64_t now_ns, const std::function<void(const record::Rows&)>& put);
   /// Losses and returns since the last call, in sentences. Session's thread.
@@ -68,6 +71,7 @@ class ChannelSet {
     std::unique_ptr<ChannelTable> table;
     std::unique_ptr<Channel> channel;  // null on a simulated clock
     std::size_t at{0};                 // of its first value in values_
+    bool missing{false};  // start() named it, and its loss is no news
     std::uint64_t next{0};             // simulated samples so far
     std::string lost;                  // sentences of its alarms
     std::vector<std::string> beyond;   // of each quantity

@@ -67,7 +67,7 @@ class Session {
 
   void watch_flashes();
   void hear_inputs();
-  void open_channels();
+  std::vector<std::string> open_channels();
   std::vector<ChannelStatus> channel_status() const;
   void note_warnings();
   void note_time_left(double trial_seconds);
@@ -245,11 +245,10 @@ void Session::hear_inputs() {
   }
 }
 
-void Session::open_channels() {
-  const auto now = [this] { return record_.session_time(loop_.elapsed_ns()); };
-  for (const std::string& notice : channels_.start(now, next_samples(request_, channels_))) {
-    notices_.note(notice);
-  }
+/// @returns sentences on those that do not answer
+std::vector<std::string> Session::open_channels() {
+  return channels_.start([this] { return record_.session_time(loop_.elapsed_ns()); },
+                         next_samples(request_, channels_));
 }
 
 std::vector<ChannelStatus> Session::channel_status() const {
@@ -304,12 +303,16 @@ std::vector<stimulus::Observer*> Session::observers() {
 SessionSummary Session::run() {
   const protocols::Extent extent = trials_->extent(request_.max_trials);
   try {
+    const std::vector<std::string> missing = open_channels();
     record_.set_planned(extent.trials);
     record_.open(planned_of(extent, trials_->extent(0).trials));
     if (real_) {
       servo_.thread.start();
     }
-    open_channels();
+    channels_.begin();
+    for (const std::string& notice : missing) {
+      notices_.note(notice);
+    }
     notices_.note(record_.notice());
     if (screen_) {
       notices_.note(screen_->summary().notice);

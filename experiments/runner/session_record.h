@@ -101,7 +101,8 @@ class SessionRecord final : public protocols::SessionFile {
   /// Ends the record after the loop's end with the last event and the timing; the file is complete.
   void close(const std::string& text);
   /// Ends the record after the loop's end, if the session did not come to its own: a simulated
-  /// session leaves nothing, another leaves FILE.partial, with its open pass as aborted.
+  /// session, or one without a tick, leaves nothing, another leaves FILE.partial, with its open
+  /// pass as aborted.
   void give_up(const protocols::SessionTask& task);
 
  private:

@@ -128,9 +128,11 @@ TEST_F(ChannelSessionTest, EveryCommandShowsTheChannel) {
               AllOf(HasSubstr("channel     grip: "), HasSubstr("50.0 a second"),
                     HasSubstr("0 missing, 0 losses")));
   const std::string out = (folder_ / "csv").string();
-  const auto exported = test::run_command("haptrial export " + file + " --format csv --out " + out);
+  const auto exported = test::run_command("haptrial export " + file + " --samples --csv " + out);
   ASSERT_EQ(exported.status, 0) << exported.errors;
-  EXPECT_THAT(test::run_command("find " + out).output, HasSubstr("channel_grip"));
+  EXPECT_THAT(test::run_command("find " + out).output, HasSubstr("channels/S01_grip.csv.gz"));
+  EXPECT_THAT(test::run_command("zcat " + out + "/channels/S01_grip.csv.gz | head -n 1").output,
+              HasSubstr("sample,time_ns,received_ns,uncertainty,device_time,force"));
 }
 
 TEST_F(ChannelSessionTest, AValueBeyondTheLimitEndsThePassWithItsSentence) {
@@ -247,6 +249,20 @@ TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
   }
   EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end(),
                              [](const GripRow& a, const GripRow& b) { return a.time < b.time; }));
+}
+
+/// A session that cannot begin leaves nothing behind that the next one would have to resume.
+TEST_F(LiveChannelTest, ASessionThatNeedsAMissingInstrumentDoesNotBegin) {
+  const std::string file = study("path = \"/dev/nowhere\"\nrequired = true\n");
+  const std::string out = folder_ / "missing";
+  const auto run = test::run_command("haptrial run " + file + " --subject S01 --out " + out);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_THAT(run.errors, AllOf(HasSubstr("channel grip: /dev/nowhere: No such file"),
+                                HasSubstr("the session needs it (required = true)")));
+  EXPECT_EQ(test::run_command("ls " + out).output, "");
+  const auto recorded = test::run_command("haptrial record " + file + " " + out + ".h5");
+  EXPECT_EQ(recorded.status, 1);
+  EXPECT_NE(test::run_command("ls " + out + ".h5.partial").status, 0);
 }
 
 TEST_F(LiveChannelTest, RecordKeepsAChannelWithoutTrials) {

@@ -85,6 +85,7 @@ class ChannelRun {
  private:
   void start() {
     channel_ = std::make_unique<channel::Channel>(options_, [this] { return now_ns_.load(); });
+    channel_->begin();
   }
 
   std::atomic<std::int64_t> now_ns_{0};

@@ -71,12 +71,14 @@ int record(const RecordOptions& options) {
   const record::TableList tables =
       record::with_tables(experiment.study->protocol().tables(), record::common_tables());
   channel::ChannelSet channels(d.channels, tables, true);
-  record::SessionWriter writer(options.file, info_of(d, options), channels.tables());
   const Stopwatch watch;
+  const std::vector<std::string> missing = channels.start([&] { return watch.ns(); }, {});
+  record::SessionWriter writer(options.file, info_of(d, options), channels.tables());
   writer.add_event({0, "session_start", "channels alone"});
-  for (const std::string& notice : channels.start([&] { return watch.ns(); }, {})) {
+  for (const std::string& notice : missing) {
     note(writer, watch.ns(), notice);
   }
+  channels.begin();
   fmt::print("recording {} into {}; Ctrl-C ends it\n",
              fmt::join(channel::names_of_values(d.channels), ", "), options.file);
   const auto keep = [&] {
@@ -109,7 +111,7 @@ void add_record(CLI::App& app, int& status) {
   sub->add_option("FILE", o.file, "New session file (.h5)")->required();
   sub->add_option("--subject", o.subject, "Whom the recording is of")->capture_default_str();
   sub->add_option("--seconds", o.seconds, "End by itself after this time [s]")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(0.1, 1e6));
 }
 
 }  // namespace haptrial::experiments

@@ -80,6 +80,7 @@ TEST(ChannelTest, SamplesComeWithTheirNumbersAndTheNewestReachesATick) {
   ChannelSet set(read(kGrip), {}, true);
   std::atomic<std::int64_t> now{5'000'000};
   EXPECT_THAT(set.start([&] { return now.load(); }, {100}), IsEmpty());
+  set.begin();
   set.take(0);
   EXPECT_TRUE(std::isnan(set.values()[0])) << "nothing has come yet";
   instrument->give({{1.5, 2.5}});
@@ -110,6 +111,7 @@ TEST(ChannelTest, ALostInstrumentIsOpenedAnewAndAnAlarmWhereItIsNeeded) {
   ChannelSet set(read(kGrip + "required = true\n"), {}, true);
   std::atomic<std::int64_t> now{1};
   EXPECT_THAT(set.start([&] { return now.load(); }, {}), IsEmpty());
+  set.begin();
   instrument->give({{1.0, 1.0}});
   wait_until([&] {
     set.take(0);
@@ -143,6 +145,7 @@ TEST(ChannelTest, SilenceIsALoss) {
   ChannelSet set(read(kGrip + "patience = 0.1\n"), {}, true);
   std::atomic<std::int64_t> now{0};
   set.start([&] { return now.load(); }, {});
+  set.begin();
   instrument->give({{1.0, 1.0}});
   Kept kept;
   wait_until([&] {
@@ -161,6 +164,7 @@ TEST(ChannelTest, AMeasuredValueBeyondItsLimitIsAnAlarm) {
   const auto instrument = play();
   ChannelSet set(read(kGrip + "limit = 5.0\n"), {}, true);
   set.start([] { return std::int64_t{0}; }, {});
+  set.begin();
   instrument->give({{-4.9, 0.0}});
   wait_until([&] {
     set.take(0);
