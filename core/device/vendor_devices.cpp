@@ -48,9 +48,9 @@ std::string look_for_boards(const std::string& /*library*/) {
 void check_line(const char* table, const SerialBoardSetup& line, int number) {
   if (line.port.empty()) {
     throw InputError(
-        fmt::format("{}: no table [{}] says by its port which serial line that is; "
-                    "/dev/serial/by-id names what is connected",
-                    table, table));
+        fmt::format("device {0}: needs a definition or lab file with a table [{0}] whose port says "
+                    "which serial line that is; /dev/serial/by-id names what is connected",
+                    table));
   }
   if (number > 0) {
     throw InputError(

@@ -28,9 +28,9 @@ void refuse_key_outside_tables(const std::string& text, const std::string& file)
   if (at != std::string::npos && text[at] != '[') {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
     throw InputError(
-        fmt::format("{}:{}: a key stands before the first table; write a header such as [{}] above "
-                    "it",
-                    file, line, machine_tables().front()));
+        fmt::format("{}:{}: a key stands before the first table; write a header such as [device] "
+                    "above it",
+                    file, line));
   }
 }
 
@@ -95,7 +95,8 @@ std::optional<fs::path> certificate_of(Table& root, const fs::path& machines) {
 
 const std::vector<std::string>& machine_tables() {
   static const std::vector<std::string> kTables = [] {
-    std::vector<std::string> tables{"certificate", "channels", "device", "mouse", "gamepad", "pedal", "screen"};
+    std::vector<std::string> tables{"certificate", "channels", "device", "mouse",
+                                    "gamepad",     "pedal",    "screen"};
     for (const device::VendorDevice& vendor : device::vendor_devices()) {
       tables.emplace_back(vendor.table);
     }

@@ -163,11 +163,11 @@ TEST_F(BoardSessionTest, ABoardWithoutATableIsRefused) {
                   "'; haptrial run first_experiment --subject S01 --device hapi --out '" +
                   (folder_ / "out").string() + "'");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.errors, HasSubstr("--device hapi needs a table [hapi] whose port says which "
-                                        "serial line that is"));
+  EXPECT_THAT(refused.errors, HasSubstr("with a table [hapi] whose port says which serial line"));
   const auto untested = run_command("haptrial device-test paddle");
   EXPECT_EQ(untested.status, 2);
-  EXPECT_THAT(untested.errors, HasSubstr("give a --definition with port in its [paddle]"));
+  EXPECT_THAT(untested.errors,
+              HasSubstr("with a table [paddle] whose port says which serial line"));
 }
 
 TEST_F(BoardSessionTest, ADeviceTestTriesTheAxesThatThereAre) {
