@@ -38,7 +38,7 @@ class ChannelSet {
 
   /// Opens the instruments and waits for each to answer; their data count from begin() on. Call
   /// before anything is recorded. @param first  number of the first sample
-  /// of each channel, that is, those of an earlier run; empty: from 0. Session's thread.
+  /// of each channel: it goes on from an earlier run; empty: from 0. Session's thread.
   /// @returns a sentence for each that does not answer
   /// @throws RunError if the session needs it
   std::vector<std::string> start(const Channel::Now& now, const std::vector<std::uint64_t>& first);

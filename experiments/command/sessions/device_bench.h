@@ -53,7 +53,8 @@ struct DeviceSetup {
 /// @throws InputError for a definition that cannot be read
 DeviceSetup setup_of(const DeviceTestOptions& options);
 
-/// Opens the device to test. @throws InputError for a name that is none, RunError if it fails
+/// Opens the device to test. @throws InputError for a name that no device has, RunError if it does
+/// not open
 DeviceUnderTest make_bench(const DeviceTestOptions& options, const DeviceSetup& setup);
 
 /// Takes the force away when the program is interrupted or dies.
