@@ -24,7 +24,7 @@ struct WallBracket {
   double active{0.0};   // 0: all were passive [N/m]
 };
 
-/// What a certificate says of a device; a part is empty if its measurement is missing.
+/// The figures of a certificate; a part is empty if its measurement is missing.
 struct CertificateResult {
   std::optional<StaticForce> statics;
   std::vector<AxisResponse> response;  // x, y, z

@@ -24,7 +24,7 @@ struct WallStep {
   bool passive;      // it neither swung on nor gave energy
 };
 
-/// What a certificate's measurement recorded.
+/// The record of a certificate's measurement.
 struct CertificateRecord {
   std::string device;
   bool simulated{false};

@@ -42,8 +42,8 @@ class Excitation {
   long ticks(CertificatePart part) const noexcept;
   /// @param tick  from the beginning of the part.  @returns the force to command [N].
   Eigen::Vector3d command(CertificatePart part, long tick) const noexcept;
-  /// What keeps a handle that was let go near the origin, along the axis that moves; added to the
-  /// command of kFree and kLoaded [N].
+  /// The force that keeps a handle that was let go near the origin, along the axis that moves;
+  /// added to the command of kFree and kLoaded [N].
   Eigen::Vector3d centring(CertificatePart part, long tick, const PointState& tool) const noexcept;
   /// Where a machine that holds the handle takes it; the origin unless the part is kMove [m].
   /// @param reach  to either side [m]

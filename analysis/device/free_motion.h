@@ -7,7 +7,7 @@
 
 namespace haptrial::analysis {
 
-/// What motion alone tells of a handle that commanded forces move along one axis:
+/// Figures that motion alone tells of a handle that commanded forces move along one axis:
 ///
 ///     a = mobility · (dead(f(t - delay)) - friction sgn v + offset)
 ///

@@ -6,21 +6,29 @@
 namespace haptrial::analysis {
 namespace {
 
+/// A figure that takes `least` samples.
+Finding figure(const char* name, const char* title, double value, const char* unit,
+               const ChannelQuality& c, std::uint64_t least) {
+  Finding finding{.name = name, .title = title, .unit = unit};
+  if (c.samples >= least) {
+    finding.value = value;
+  } else {
+    finding.why_not = c.samples == 0 ? "no sample came" : "one sample came";
+  }
+  return finding;
+}
+
 FindingRow row_of(const record::SessionInfo& info, const ChannelQuality& c) {
-  return {
-      {.name = "participant", .title = "Participant", .value = info.subject},
-      {.name = "session", .title = "Session", .value = info.session},
-      {.name = "channel", .title = "Channel", .value = c.name},
-      {.name = "samples", .title = "Samples", .value = c.samples},
-      {.name = "rate", .title = "A second", .value = c.rate(), .unit = "Hz"},
-      {.name = "uncertainty", .title = "Times within, median", .value = c.uncertainty, .unit = "s"},
-      {.name = "largest_uncertainty",
-       .title = "at most",
-       .value = c.largest_uncertainty,
-       .unit = "s"},
-      {.name = "missing", .title = "Missing", .value = c.missing},
-      {.name = "losses", .title = "Times lost", .value = c.losses},
-      {.name = "clock_steps", .title = "Steps of its clock", .value = c.clock_steps}};
+  return {{.name = "participant", .title = "Participant", .value = info.subject},
+          {.name = "session", .title = "Session", .value = info.session},
+          {.name = "channel", .title = "Channel", .value = c.name},
+          {.name = "samples", .title = "Samples", .value = c.samples},
+          figure("rate", "A second", c.rate(), "Hz", c, 2),
+          figure("uncertainty", "Times within, median", c.uncertainty, "s", c, 1),
+          figure("largest_uncertainty", "at most", c.largest_uncertainty, "s", c, 1),
+          {.name = "missing", .title = "Missing", .value = c.missing},
+          {.name = "losses", .title = "Times lost", .value = c.losses},
+          {.name = "clock_steps", .title = "Steps of its clock", .value = c.clock_steps}};
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ constexpr double kKept = 4.0;        // for which the log has room [s]
 constexpr std::size_t kLeastBlocks = 16;
 constexpr std::size_t kMostIncidents = 10000;  // that wait for the session
 
-/// What an instrument said, as a column of the session file can hold it.
+/// A message of an instrument, as a column of the session file can hold it.
 std::string readable(std::string text) {
   const bool known = is_utf8(text);
   std::ranges::replace_if(

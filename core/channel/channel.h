@@ -51,7 +51,7 @@ class Channel final : private ChannelInbox {
 
   /// The newest values; a channel that is lost has `live` false. Servo thread: wait-free.
   const ChannelState& newest() noexcept;
-  /// The same for another thread, with a lock: for a console.
+  /// The newest values for another thread, such as a console's; it locks.
   ChannelState seen() const;
 
   using Log = realtime::BlockLog<ChannelRow>;

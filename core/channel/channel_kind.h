@@ -12,7 +12,7 @@
 
 namespace haptrial::channel {
 
-/// What the keys of one channel ask for.
+/// One channel as its keys ask for it.
 struct ChannelPlan {
   std::vector<Quantity> quantities;  // 1 to kMostQuantities; none: the kind gives messages alone
   double rate{0.0};                  // samples a second, as far as it is known; 0: it is not [Hz]

@@ -12,7 +12,7 @@ namespace haptrial::channel {
 
 inline constexpr std::size_t kMostChannels = 8;
 
-/// What stands in for an instrument where no person takes part: a sine of each quantity.
+/// Values in place of an instrument where no person takes part: a sine of each quantity.
 struct SimulatedInput {
   double mean{0.0};       // in the unit of the quantity
   double amplitude{0.0};  // likewise, >= 0

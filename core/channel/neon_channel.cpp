@@ -71,7 +71,7 @@ struct PhoneState {
   }
 };
 
-/// What one part of the phone says about itself.
+/// One part of the phone and its state.
 struct PartState {
   std::string text;
   bool fault{false};

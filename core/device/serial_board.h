@@ -21,7 +21,7 @@ class Schema;
 
 namespace haptrial::device {
 
-/// What a board on a serial line says of its handle.
+/// One reading of a board on a serial line.
 struct BoardReading {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // in W [m]
   std::uint32_t buttons{0};                           // bit i: button i is pressed

@@ -48,7 +48,7 @@ struct VendorDevice {
   std::unique_ptr<Device> (*open)(const VendorSetups& setups, int number, double rate,
                                   const std::string& library);
   bool (*has_buttons)(const VendorSetups& setups);
-  /// What is there, in one line, without opening a device.
+  /// Says what is there, in one line, without opening a device.
   /// @throws InputError or RunError that says what is missing
   std::string (*look)(const std::string& library);
 };

@@ -14,7 +14,7 @@
 
 namespace haptrial::protocols {
 
-/// What the readings of all devices have in common on a tick.
+/// The part of a reading that all devices have in common on a tick.
 struct SessionInputs {
   std::uint32_t keys{0};               // of the participant's window
   char32_t typed{0};                   // there

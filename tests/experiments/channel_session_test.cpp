@@ -29,6 +29,7 @@ namespace {
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kStudy = R"([experiment]
 protocol = "trials"
@@ -263,6 +264,17 @@ TEST_F(LiveChannelTest, ASessionThatNeedsAMissingInstrumentDoesNotBegin) {
   const auto recorded = test::run_command("haptrial record " + file + " " + out + ".h5");
   EXPECT_EQ(recorded.status, 1);
   EXPECT_NE(test::run_command("ls " + out + ".h5.partial").status, 0);
+}
+
+/// Nothing is stated of samples that never came.
+TEST_F(LiveChannelTest, AChannelWithoutASampleHasNeitherRateNorUncertainty) {
+  const std::string file = study("path = \"/dev/nowhere\"\n");
+  const std::string recorded = folder_ / "silent.h5";
+  ASSERT_EQ(test::run_command("haptrial record " + file + " " + recorded + " --seconds 1").status,
+            0);
+  EXPECT_THAT(test::run_command("haptrial info " + recorded).output,
+              AllOf(HasSubstr("channel     grip: 0 samples, 0 missing, 1 loss"),
+                    Not(HasSubstr("simulated"))));
 }
 
 TEST_F(LiveChannelTest, RecordKeepsAChannelWithoutTrials) {

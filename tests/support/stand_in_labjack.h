@@ -21,7 +21,7 @@ namespace haptrial::test {
 /// mistakes that the test asks for. One connection at a time.
 class StandInLabJack {
  public:
-  /// What it makes of its next answer.
+  /// The way in which it spoils its next answer.
   enum class Mistake : std::uint8_t {
     kNone,
     kTwice,    // the answer comes twice

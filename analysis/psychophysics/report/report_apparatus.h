@@ -18,7 +18,7 @@ bool grows_with_force(const std::string& unit);
 /// @param certificate  with a gain
 Estimated as_measured(const Estimated& commanded, const device::Certificate& certificate);
 
-/// What reached the hand for a commanded newton, and the thresholds as commanded and as measured;
+/// The force that came for a commanded newton, and the thresholds as commanded and as measured;
 /// without rows if no certificate is stated.
 FindingList apparatus_findings(const TrialsResult& result);
 

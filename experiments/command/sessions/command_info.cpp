@@ -59,11 +59,13 @@ void print_loop(const record::SessionReader& reader) {
 
 void print_channels(const record::SessionReader& reader) {
   for (const analysis::ChannelQuality& c : analysis::channel_quality(reader)) {
-    fmt::print(
-        "channel     {}: {}, {:.1f} a second, times within {:.2f} ms (median), {} missing, "
-        "{}, {} of its clock\n",
-        c.name, counted(c.samples, "sample", "samples"), c.rate(), 1e3 * c.uncertainty, c.missing,
-        counted(c.losses, "loss", "losses"), counted(c.clock_steps, "step", "steps"));
+    const std::string times =
+        c.samples == 0 ? ""
+                       : fmt::format(", {:.1f} a second, times within {:.2f} ms (median)", c.rate(),
+                                     1e3 * c.uncertainty);
+    fmt::print("channel     {}: {}{}, {} missing, {}, {} of its clock\n", c.name,
+               counted(c.samples, "sample", "samples"), times, c.missing,
+               counted(c.losses, "loss", "losses"), counted(c.clock_steps, "step", "steps"));
   }
 }
 

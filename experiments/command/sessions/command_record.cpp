@@ -37,6 +37,7 @@ record::SessionInfo info_of(const protocols::Definition& d, const RecordOptions&
   info.subject = options.subject;
   info.device = "none";
   info.clock = "real";
+  info.simulated = false;
   info.rate = d.rate;
   info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   return info;

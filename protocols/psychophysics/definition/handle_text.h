@@ -18,7 +18,7 @@ struct TrialsDefinition;
 /// (docs/algorithms/every-hand.md).
 struct HandleText {
   std::vector<std::string> lines;  // what lighter hands get less of; what begins around the hand
-  /// What the hand of [hand] does not carry, and what the certified device cannot present.
+  /// Says what the hand of [hand] does not carry, and what the certified device cannot present.
   std::vector<std::string> warnings;
 };
 

@@ -1,4 +1,4 @@
-// What a certificate says of a virtual arm with planted faults.
+// Certificates of a virtual arm with planted faults.
 
 #include "tests/analysis/device/device_coverage.h"
 

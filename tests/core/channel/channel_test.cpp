@@ -54,7 +54,7 @@ std::vector<ChannelOptions> read(const std::string& text) {
 const std::string kGrip =
     "[channels.grip]\nkind = \"scripted\"\nquantities = { force = \"N\", angle = \"1\" }\n";
 
-/// What a set has given so far.
+/// Rows that a set has given so far.
 struct Kept {
   std::vector<ChannelRow> rows;
   std::vector<IncidentRow> incidents;

@@ -26,7 +26,7 @@ enum class BoardFailure {
   kLate,        // each reading comes with the next one
 };
 
-/// What a board does with its bytes; the physics are the same for all.
+/// The firmware of a board, which takes and gives bytes; the physics are the same for all.
 class BoardFirmware {
  public:
   virtual ~BoardFirmware() = default;
@@ -62,7 +62,7 @@ class SimulatedBoard {
   void fail(BoardFailure failure, long tick);
   void unplug();
 
-  // Of the thread that steps, or of the hand.
+  // These belong to the thread that steps, or to the hand.
   device::CoupledMass mass{device::CoupledMassParameters{}};
   std::atomic<unsigned> buttons{0};
   /// Force that the motors give now; any thread once the board is stopped.

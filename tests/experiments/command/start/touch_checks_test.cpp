@@ -58,7 +58,7 @@ class StagedTouch : public testing::Test {
               return !closed_.contains("/" + fs::relative(file, root()).string());
             }};
   }
-  /// What asks for something to be done.
+  /// The checks that ask for something to be done.
   static std::vector<std::string> to_do(const TouchSearch& search) {
     std::vector<std::string> sentences;
     for (const MachineCheck& check : check_touch(search)) {
