@@ -10,6 +10,10 @@
 
 namespace haptrial::device {
 
+/// The parts of a handle that the loop reads and drives, each by the same laws and under the same
+/// watch: its tip, its rotation, and the opening of its gripper.
+enum class Part : std::uint8_t { kTip, kRotation, kGrip };
+
 /// Abilities of a device, for the session file and for checks before a session.
 struct DeviceInfo {
   std::string name;
@@ -20,6 +24,21 @@ struct DeviceInfo {
   /// 1 along each axis of W along which it moves and gives forces, 0 along the others; forces along
   /// these are left out before they are limited and recorded.
   Eigen::Vector3d force_axes{Eigen::Vector3d::Ones()};
+  /// 1 along each axis of W about which it gives torque, 0 along the others: none by default.
+  Eigen::Vector3d torque_axes{Eigen::Vector3d::Zero()};
+  double max_torque{0.0};      // sustained [N·m]
+  double max_grip_force{0.0};  // of its gripper, which it has if this is above 0 [N]
+};
+
+/// Forces of a handle on the hand, in W. A device gives those that its DeviceInfo names.
+struct Wrench {
+  Wrench() = default;
+  template <class Vector>
+  Wrench(const Eigen::MatrixBase<Vector>& only) : force(only) {}  // implicit: a force alone
+
+  Eigen::Vector3d force{Eigen::Vector3d::Zero()};   // on the tool tip [N]
+  Eigen::Vector3d torque{Eigen::Vector3d::Zero()};  // about the tool tip [N·m]
+  double grip{0.0};                                 // that opens the fingers [N]
 };
 
 /// One reading of a device, in the world frame W (docs/conventions.md).
@@ -37,6 +56,9 @@ struct DeviceReading {
   /// Newest values of the session's channels (channel::place_of); NaN: none. Valid for the tick.
   std::span<const double> channels{};
   control::GainShares shares{};  // of the gains of all laws, which the handle carries now
+  Eigen::Vector3d angular_velocity{Eigen::Vector3d::Zero()};  // in W [rad/s]
+  double opening{0.0};        // between the fingers of the gripper [m]
+  double opening_speed{0.0};  // [m/s]
 };
 
 /// Whether a button is among those pressed. @param button  from 0; below 0 there is none
@@ -44,7 +66,7 @@ constexpr bool is_pressed(std::uint32_t buttons, int button) noexcept {
   return button >= 0 && ((buttons >> static_cast<unsigned>(button)) & 1u) != 0;
 }
 
-/// An impedance device: the position is read, the force is commanded.
+/// An impedance device: the pose is read, the wrench is commanded.
 /// Opened by its constructor, which throws; read() and write() belong to the servo thread and never
 /// throw, allocate or lock.
 class Device {
@@ -53,9 +75,8 @@ class Device {
   virtual const DeviceInfo& info() const noexcept = 0;
   /// @returns false when the device did not answer; `reading` is then unchanged.
   virtual bool read(DeviceReading& reading) noexcept = 0;
-  /// @param force  on the tool tip, in W [N].
   /// @returns false when the device refused it.
-  virtual bool write(const Eigen::Vector3d& force) noexcept = 0;
+  virtual bool write(const Wrench& wrench) noexcept = 0;
   /// Whether a pass may begin with the next read(); asked before it on every tick while a pass
   /// wants to begin. A recording lets each pass begin where it began when it was recorded. Servo
   /// thread.

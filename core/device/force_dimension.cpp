@@ -384,8 +384,9 @@ void ForceDimensionDevice::judge_status(DeviceReading& reading) noexcept {
   }
 }
 
-bool ForceDimensionDevice::write(const Eigen::Vector3d& force) noexcept {
+bool ForceDimensionDevice::write(const Wrench& wrench) noexcept {
   const CallTimer::Scope timed(timer_);
+  const Eigen::Vector3d& force = wrench.force;
   const int result = api_->set_force(force.z(), force.x(), force.y(), id_);
   if (result == kMotorSaturated) {
     saturated_.fetch_add(1, std::memory_order_relaxed);

@@ -53,7 +53,7 @@ class ForceDimensionDevice final : public Device {
 
   const DeviceInfo& info() const noexcept override { return info_; }
   bool read(DeviceReading& reading) noexcept override;
-  bool write(const Eigen::Vector3d& force) noexcept override;
+  bool write(const Wrench& wrench) noexcept override;
   const char* trouble() const noexcept override { return trouble_; }
   std::uint64_t slow_calls() const noexcept override { return timer_.slow(); }
 

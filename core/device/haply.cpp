@@ -103,10 +103,10 @@ bool HaplyDevice::read(DeviceReading& reading) noexcept {
   return true;
 }
 
-bool HaplyDevice::write(const Eigen::Vector3d& force) noexcept {
-  const double size = force.norm();
+bool HaplyDevice::write(const Wrench& wrench) noexcept {
+  const double size = wrench.force.norm();
   const double share = size > info_.max_force ? info_.max_force / size : 1.0;
-  link_.write(service_of(share * force));
+  link_.write(service_of(share * wrench.force));
   return true;
 }
 

@@ -50,7 +50,7 @@ class HaplyDevice final : public Device {
 
   const DeviceInfo& info() const noexcept override { return info_; }
   bool read(DeviceReading& reading) noexcept override;
-  bool write(const Eigen::Vector3d& force) noexcept override;
+  bool write(const Wrench& wrench) noexcept override;
   const char* trouble() const noexcept override { return trouble_; }
   /// Ticks to which the service brought no fresh state.
   std::uint64_t slow_calls() const noexcept override {

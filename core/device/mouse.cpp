@@ -56,9 +56,9 @@ bool MouseDevice::read(DeviceReading& reading) noexcept {
   return true;
 }
 
-bool MouseDevice::write(const Eigen::Vector3d& force) noexcept {
+bool MouseDevice::write(const Wrench& wrench) noexcept {
   follow();
-  return electronics_.write(force);
+  return electronics_.write(wrench);
 }
 
 // A pointer jumps; the hand that it stands for does not.

@@ -43,7 +43,7 @@ class MouseDevice final : public Device {
 
   const DeviceInfo& info() const noexcept override { return info_; }
   bool read(DeviceReading& reading) noexcept override;
-  bool write(const Eigen::Vector3d& force) noexcept override;
+  bool write(const Wrench& wrench) noexcept override;
 
   /// These five belong to one thread, the screen's; they never wait. What is not finite is left
   /// out, and what is out of bounds is brought to them.

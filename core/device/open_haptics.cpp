@@ -273,8 +273,8 @@ bool OpenHapticsDevice::read(DeviceReading& reading) noexcept {
   return true;
 }
 
-bool OpenHapticsDevice::write(const Eigen::Vector3d& force) noexcept {
-  command_.write(force);
+bool OpenHapticsDevice::write(const Wrench& wrench) noexcept {
+  command_.write(wrench.force);
   return true;
 }
 

@@ -48,7 +48,7 @@ class OpenHapticsDevice final : public Device {
 
   const DeviceInfo& info() const noexcept override { return info_; }
   bool read(DeviceReading& reading) noexcept override;
-  bool write(const Eigen::Vector3d& force) noexcept override;
+  bool write(const Wrench& wrench) noexcept override;
   const char* trouble() const noexcept override { return trouble_; }
   /// Periods of the vendor's scheduler that brought no fresh position to a tick.
   std::uint64_t slow_calls() const noexcept override {

@@ -31,7 +31,7 @@ bool ReplayDevice::read(DeviceReading& reading) noexcept {
   return true;
 }
 
-bool ReplayDevice::write(const Eigen::Vector3d&) noexcept {
+bool ReplayDevice::write(const Wrench&) noexcept {
   const bool held = passes_ < starts_.size() && next_ + 1 >= starts_[passes_];
   next_ += over() || held ? 0 : 1;
   return true;

@@ -29,7 +29,7 @@ class ReplayDevice final : public Device {
   /// @returns false after the last state; trouble() then says so.
   bool read(DeviceReading& reading) noexcept override;
   /// Goes on to the next state.
-  bool write(const Eigen::Vector3d& force) noexcept override;
+  bool write(const Wrench& wrench) noexcept override;
   bool ready() noexcept override;
   const char* trouble() const noexcept override;
 

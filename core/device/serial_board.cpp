@@ -226,8 +226,8 @@ Eigen::Vector3d SerialBoard::velocity() const noexcept {
   return rate_ / square * product;
 }
 
-bool SerialBoard::write(const Eigen::Vector3d& force) noexcept {
-  command_.write(force);
+bool SerialBoard::write(const Wrench& wrench) noexcept {
+  command_.write(wrench.force);
   eventfd_write(wake_, 1);  // never waits: it fails when the count is at its end
   return true;
 }

@@ -85,7 +85,7 @@ bool VirtualDevice::read(DeviceReading& reading) noexcept {
   return true;
 }
 
-bool VirtualDevice::write(const Eigen::Vector3d& force) noexcept {
+bool VirtualDevice::write(const Wrench& wrench) noexcept {
   Eigen::Vector3d& arrived = pending_[static_cast<std::size_t>(oldest_)];
   if (longer(arrived, parameters_.max_force)) {
     arrived *= parameters_.max_force / arrived.norm();
@@ -93,7 +93,7 @@ bool VirtualDevice::write(const Eigen::Vector3d& force) noexcept {
   const PointState now = physics_.state();
   const Eigen::Vector3d soon = now.position + period_ * now.velocity;
   sense(physics_.step(motors_.force(arrived, soon), period_).position);
-  arrived = force;
+  arrived = wrench.force;
   oldest_ = oldest_ + 1 < parameters_.force_delay ? oldest_ + 1 : 0;
   return true;
 }

@@ -43,7 +43,7 @@ class VirtualDevice final : public Device {
 
   const DeviceInfo& info() const noexcept override { return info_; }
   bool read(DeviceReading& reading) noexcept override;
-  bool write(const Eigen::Vector3d& force) noexcept override;
+  bool write(const Wrench& wrench) noexcept override;
 
   /// Sets buttons, pedal and orientation of the handle until the next call. Servo thread.
   /// @param pedal  0 to 1

@@ -17,23 +17,57 @@ DeviceSet::DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& lo
         fmt::format("DeviceSet: {} devices; allowed: 1 to {}", arms.size(), kMostDevices));
   }
   for (const Arm& arm : arms) {
-    devices_.push_back(arm.device);
+    const bool of_a_tip = std::ranges::any_of(arms_, [&](const Arm& before) {
+      return before.device == arm.device && before.part == device::Part::kTip;
+    });
+    if (arm.part != device::Part::kTip && !(of_a_tip && arm.radius > 0.0)) {
+      throw std::invalid_argument(
+          "DeviceSet: a rotation or grip comes after its device's tip, with a radius above 0");
+    }
+    arms_.push_back(arm);
     envelopes_.emplace_back(arm.limits);
-    guards_.emplace_back(loop);
+    guards_.emplace_back(loop_of(arm));
   }
   readings_.resize(arms.size());
   forces_.resize(arms.size(), Eigen::Vector3d::Zero());
   stimuli_.resize(arms.size(), Eigen::Vector3d::Zero());
 }
 
+control::HandleLoop DeviceSet::loop_of(const Arm& arm) const {
+  control::HandleLoop loop = loop_;
+  loop.handle_mass = arm.handle_mass.value_or(loop.handle_mass);
+  return loop;
+}
+
+/// A device is read once, for its tip; its other parts are taken from that reading.
+void DeviceSet::read(std::size_t arm, const SessionInputs& inputs) noexcept {
+  device::DeviceReading& reading = readings_[arm];
+  bool read_ok = true;
+  if (arms_[arm].part == device::Part::kTip) {
+    read_ok = arms_[arm].device->read(reading);
+    reading.keys = inputs.keys;
+    reading.typed = inputs.typed;
+    reading.pedal = inputs.pedal.value_or(reading.pedal);
+    reading.channels = inputs.channels;
+  } else {
+    const Eigen::Vector3d before = reading.tool.position;
+    reading = readings_[tip_of(arm)];
+    reading.tool = device::part_state(arms_[arm].part, reading, arms_[arm].radius, before);
+  }
+  envelopes_[arm].check(read_ok, reading);
+}
+
+std::size_t DeviceSet::tip_of(std::size_t arm) const noexcept {
+  std::size_t tip = 0;
+  while (arms_[tip].device != arms_[arm].device) {
+    ++tip;
+  }
+  return tip;
+}
+
 void DeviceSet::read(const SessionInputs& inputs, double dt) noexcept {
-  for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
-    const bool read_ok = devices_[arm]->read(readings_[arm]);
-    readings_[arm].keys = inputs.keys;
-    readings_[arm].typed = inputs.typed;
-    readings_[arm].pedal = inputs.pedal.value_or(readings_[arm].pedal);
-    readings_[arm].channels = inputs.channels;
-    envelopes_[arm].check(read_ok, readings_[arm]);
+  for (std::size_t arm = 0; arm < arms_.size(); ++arm) {
+    read(arm, inputs);
     readings_[arm].shares =
         guards_[arm].watch(readings_[arm].tool.velocity, forces_[arm], stimuli_[arm], dt);
   }
@@ -43,7 +77,7 @@ void DeviceSet::read(const SessionInputs& inputs, double dt) noexcept {
 
 void DeviceSet::limit(const PassOutput& wanted, std::span<const Drive> others, double dt) noexcept {
   limit(0, wanted, dt);
-  for (std::size_t arm = 1; arm < devices_.size(); ++arm) {
+  for (std::size_t arm = 1; arm < arms_.size(); ++arm) {
     static const Drive kNothing;
     limit(arm, arm <= others.size() ? others[arm - 1] : kNothing, dt);
   }
@@ -54,7 +88,7 @@ void DeviceSet::limit(const PassOutput& wanted, std::span<const Drive> others, d
 /// damper never makes a force too large that the protocol keeps within the limit.
 void DeviceSet::limit(std::size_t arm, const Drive& drive, double dt) noexcept {
   device::Envelope& envelope = envelopes_[arm];
-  const Eigen::Vector3d& axes = devices_[arm]->info().force_axes;
+  const Eigen::Vector3d axes = device::part_axes(arms_[arm].part, arms_[arm].device->info());
   const Eigen::Vector3d force = drive.force.cwiseProduct(axes);
   device::ForceIntent intent = drive.intent;
   intent.stimulus = intent.stimulus.cwiseProduct(axes);
@@ -66,7 +100,7 @@ void DeviceSet::limit(std::size_t arm, const Drive& drive, double dt) noexcept {
 
 /// A fault of one device is one of all: none of them goes on with its force.
 void DeviceSet::stop_together() noexcept {
-  if (devices_.size() == 1 || fault() == Fault::kNone) {
+  if (arms_.size() == 1 || fault() == Fault::kNone) {
     return;
   }
   for (device::Envelope& envelope : envelopes_) {
@@ -81,19 +115,29 @@ void DeviceSet::drop() noexcept {
   std::fill(forces_.begin(), forces_.end(), Eigen::Vector3d::Zero());
 }
 
+device::Wrench DeviceSet::wrench_of(std::size_t tip) const noexcept {
+  device::Wrench wrench;
+  for (std::size_t arm = tip; arm < arms_.size(); ++arm) {
+    if (arms_[arm].device == arms_[tip].device) {
+      device::put_force(arms_[arm].part, forces_[arm], arms_[arm].radius, wrench);
+    }
+  }
+  return wrench;
+}
+
 bool DeviceSet::write() noexcept {
   bool taken = true;
-  for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
-    if (!devices_[arm]->write(forces_[arm])) {
+  for (std::size_t arm = 0; arm < arms_.size(); ++arm) {
+    if (arms_[arm].part == device::Part::kTip && !arms_[arm].device->write(wrench_of(arm))) {
       envelopes_[arm].trip(Fault::kWriteFailed);
       taken = false;
     }
   }
   note_trouble();
-  if (!taken && devices_.size() > 1) {
+  if (!taken && arms_.size() > 1) {
     stop_together();
-    for (device::Device* device : devices_) {
-      device->write(Eigen::Vector3d::Zero());
+    for (const Arm& arm : arms_) {
+      arm.device->write(device::Wrench{});
     }
   }
   return taken;
@@ -103,7 +147,7 @@ bool DeviceSet::write() noexcept {
 void DeviceSet::note_trouble() noexcept {
   const bool faulty_now = fault() != Fault::kNone;
   if (faulty_now && !noted_) {
-    trouble_ = devices_[faulty()]->trouble();
+    trouble_ = arms_[faulty()].device->trouble();
   } else if (!faulty_now) {
     trouble_ = "";
   }
@@ -141,7 +185,7 @@ void DeviceSet::release() noexcept {
 void DeviceSet::engage() noexcept {
   for (std::size_t arm = 0; arm < envelopes_.size(); ++arm) {
     envelopes_[arm].engage();
-    guards_[arm] = control::HandleGuard(loop_);
+    guards_[arm] = control::HandleGuard(loop_of(arms_[arm]));
     stimuli_[arm].setZero();
   }
 }
@@ -165,9 +209,9 @@ bool DeviceSet::may_begin() noexcept {
     return true;
   }
   bool may = true;
-  for (std::size_t arm = 0; arm < devices_.size(); ++arm) {
+  for (std::size_t arm = 0; arm < arms_.size(); ++arm) {
     const device::Envelope& envelope = envelopes_[arm];
-    may = may && (!envelope.released() || envelope.at_rest()) && devices_[arm]->ready();
+    may = may && (!envelope.released() || envelope.at_rest()) && arms_[arm].device->ready();
   }
   return may;
 }

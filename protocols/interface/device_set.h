@@ -9,6 +9,7 @@
 #include "core/control/handle_guard.h"
 #include "core/device/device.h"
 #include "core/device/envelope.h"
+#include "core/device/handle_part.h"
 #include "core/stimulus/observer.h"
 #include "protocols/interface/pass.h"
 
@@ -22,23 +23,29 @@ struct SessionInputs {
   std::span<const double> channels{};  // newest values (channel::ChannelSet)
 };
 
-/// The devices of a session, each with its reading, the guard that keeps its handle calm, and its
-/// envelope. One for whom something is wrong stops all of them in the same tick. Servo thread,
-/// unless a function says otherwise.
+/// What a session drives: the tips of its devices, and of those that give torque or a grip force
+/// their rotation and grip. Each is an arm, with its reading, the guard that keeps it calm, and its
+/// envelope; all of them are read, limited and recorded alike (core/device/handle_part.h). One for
+/// whom something is wrong stops all of them in the same tick. Servo thread, unless a function says
+/// otherwise.
 class DeviceSet {
  public:
-  /// One device; it outlives the set.
+  /// A part of a device that outlives the set. The arm of its tip comes before those of its
+  /// rotation and grip.
   struct Arm {
     device::Device* device{nullptr};
     device::EnvelopeLimits limits;
+    device::Part part{device::Part::kTip};
+    double radius{1.0};                   // of the fingers about the axis of a rotation [m]
+    std::optional<double> handle_mass{};  // at the fingers [kg]; else as the loop has it
   };
-  /// @param arms  1 to kMostDevices
+  /// @param arms  1 to kMostDevices, the first of them a tip
   /// @param loop  that the guard of each handle assumes
   /// @throws std::invalid_argument for another number, or as Envelope and HandleGuard do
   explicit DeviceSet(const std::vector<Arm>& arms, const control::HandleLoop& loop = {});
 
-  std::size_t size() const noexcept { return devices_.size(); }
-  device::Device& device(std::size_t arm) noexcept { return *devices_[arm]; }
+  std::size_t size() const noexcept { return arms_.size(); }
+  device::Device& device(std::size_t arm) noexcept { return *arms_[arm].device; }
 
   /// Reads every device and judges what it said. @param inputs  all readings get them
   /// @param dt  since the tick before [s]
@@ -71,17 +78,21 @@ class DeviceSet {
   const char* trouble() const noexcept { return trouble_; }
 
  private:
+  control::HandleLoop loop_of(const Arm& arm) const;
+  void read(std::size_t arm, const SessionInputs& inputs) noexcept;
   void limit(std::size_t arm, const Drive& drive, double dt) noexcept;
+  std::size_t tip_of(std::size_t arm) const noexcept;
+  device::Wrench wrench_of(std::size_t tip) const noexcept;
   void stop_together() noexcept;
   void note_trouble() noexcept;
 
   control::HandleLoop loop_;
-  std::vector<device::Device*> devices_;
+  std::vector<Arm> arms_;
   std::vector<device::Envelope> envelopes_;
   std::vector<control::HandleGuard> guards_;
   std::vector<Eigen::Vector3d> stimuli_;  // of the last forces (ForceIntent) [N]
   std::vector<device::DeviceReading> readings_;
-  std::vector<Eigen::Vector3d> forces_;
+  std::vector<Eigen::Vector3d> forces_;  // of rotations at the fingers [N]
   const char* trouble_{""};
   bool noted_{false};  // of this fault
 };

@@ -28,8 +28,8 @@ class ScriptedDevice final : public device::Device {
     reading = answer;
     return true;
   }
-  bool write(const Eigen::Vector3d& force) noexcept override {
-    written.push_back(force);
+  bool write(const device::Wrench& wrench) noexcept override {
+    written.push_back(wrench.force);
     return !on_write || on_write(written.size() - 1);
   }
 

@@ -29,7 +29,7 @@ class Circle final : public device::Device {
     reading.tool.velocity = {-kTurn * radius_ * s, 0.0, kTurn * radius_ * c};
     return true;
   }
-  bool write(const Eigen::Vector3d&) noexcept override { return true; }
+  bool write(const device::Wrench&) noexcept override { return true; }
 
  private:
   device::DeviceInfo info_;
