@@ -73,6 +73,18 @@ double most_force(Part part, const DeviceInfo& info, double radius) noexcept {
   return info.max_force;
 }
 
+const char* part_word(Part part) noexcept {
+  switch (part) {
+    case Part::kRotation:
+      return "rotation";
+    case Part::kGrip:
+      return "grip";
+    case Part::kTip:
+      break;
+  }
+  return "tip";
+}
+
 const char* force_word(Part part) noexcept {
   switch (part) {
     case Part::kRotation:

@@ -37,7 +37,9 @@ void put_force(Part part, const Eigen::Vector3d& force, double radius, Wrench& w
 /// The most that the device gives there [N].
 double most_force(Part part, const DeviceInfo& info, double radius) noexcept;
 
-/// Its word in a sentence: "torque" of a rotation.
+/// Its name: "rotation".
+const char* part_word(Part part) noexcept;
+/// The name of what it gives: "torque" of a rotation.
 const char* force_word(Part part) noexcept;
 
 }  // namespace haptrial::device

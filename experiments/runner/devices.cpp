@@ -59,27 +59,31 @@ class GamepadRig final : public protocols::Rig {
   device::MouseDevice device_;
 };
 
-/// Devices that people hold, each with the definition's envelope.
+/// Devices that people hold, with the parts of them that the definition names.
 class SeveralDevices final : public protocols::Rig {
  public:
-  SeveralDevices(std::unique_ptr<protocols::Rig> first, const device::EnvelopeLimits& envelope)
-      : first_(std::move(first)), envelope_(envelope) {}
-  void add(std::unique_ptr<protocols::Rig> rig) { others_.push_back(std::move(rig)); }
+  explicit SeveralDevices(std::unique_ptr<protocols::Rig> first) : first_(std::move(first)) {
+    arms_.push_back({&first_->device(), {}});
+  }
+  void add(std::unique_ptr<protocols::Rig> rig, const protocols::DeviceArm& arm) {
+    arms_.push_back({&rig->device(), arm.limits});
+    others_.push_back(std::move(rig));
+  }
+  /// A part of a device that was added before.
+  void add(const protocols::DeviceArm& arm) {
+    arms_.push_back({arms_[arm.of].device, arm.limits, arm.part, arm.radius, arm.handle_mass});
+  }
   device::Device& device() override { return first_->device(); }
   device::MouseDevice* mouse() override { return first_->mouse(); }
   device::Gamepad* gamepad() override { return first_->gamepad(); }
   std::vector<protocols::DeviceSet::Arm> others() override {
-    std::vector<protocols::DeviceSet::Arm> arms;
-    for (const auto& rig : others_) {
-      arms.push_back({&rig->device(), envelope_});
-    }
-    return arms;
+    return {arms_.begin() + 1, arms_.end()};
   }
 
  private:
   std::unique_ptr<protocols::Rig> first_;
-  device::EnvelopeLimits envelope_;
   std::vector<std::unique_ptr<protocols::Rig>> others_;
+  std::vector<protocols::DeviceSet::Arm> arms_;  // with the first
 };
 
 std::unique_ptr<device::Device> replayed(const std::string& file, double rate) {
@@ -137,6 +141,27 @@ std::unique_ptr<protocols::Rig> open_rig(
   return virtual_rig();
 }
 
+/// @throws InputError for a rotation or grip without motors, or with weaker ones
+void check_part(const device::DeviceInfo& info, const protocols::DeviceArm& arm,
+                const std::string& file_name) {
+  const bool turns = arm.part == device::Part::kRotation;
+  const double most = device::most_force(arm.part, info, arm.radius);
+  const double in_its_unit = turns ? arm.radius : 1.0;
+  if (most <= 0.0) {
+    throw InputError(
+        fmt::format("{}: devices.{} wants a {}, which the {} does not give; leave it "
+                    "out, or choose a device that does (haptrial devices)",
+                    file_name, arm.name, device::force_word(arm.part), info.name));
+  }
+  if (arm.limits.max_force > most) {
+    throw InputError(fmt::format(
+        "{}: the max_force of devices.{} is {:g} {}; allowed: at most {:g}, which is what the {} "
+        "gives",
+        file_name, arm.name, in_its_unit * arm.limits.max_force, turns ? "N·m" : "N",
+        in_its_unit * most, info.name));
+  }
+}
+
 /// A weaker device would saturate unseen, a smaller one would stop at its walls.
 void check_reach(const device::DeviceInfo& info, const protocols::Definition& d) {
   const auto check = [&](const char* key, double wanted, double most, const char* unit) {
@@ -149,6 +174,29 @@ void check_reach(const device::DeviceInfo& info, const protocols::Definition& d)
   };
   check("max_force", d.envelope.max_force, info.max_force, "N");
   check("workspace_radius", d.envelope.workspace_radius, info.workspace_radius, "m");
+}
+
+/// Opens the devices after the first, each as its choice says or like the one before, and adds the
+/// parts that are driven.
+std::unique_ptr<protocols::Rig> with_others(
+    std::unique_ptr<protocols::Rig> first, const std::vector<DeviceChoice>& choices,
+    const protocols::Definition& d,
+    const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig) {
+  const std::vector<protocols::DeviceArm> arms = d.arms();
+  auto together = std::make_unique<SeveralDevices>(std::move(first));
+  std::size_t opened = 1;
+  for (std::size_t i = 1; i < arms.size(); ++i) {
+    if (arms[i].part != device::Part::kTip) {
+      together->add(arms[i]);
+      check_part(together->others().back().device->info(), arms[i], d.file_name);
+      continue;
+    }
+    DeviceChoice choice = choices[std::min(opened, choices.size() - 1)];
+    choice.number += opened < choices.size() ? 0 : static_cast<int>(opened - choices.size() + 1);
+    together->add(open_rig(choice, d, virtual_rig), arms[i]);
+    ++opened;
+  }
+  return together;
 }
 
 }  // namespace
@@ -190,15 +238,8 @@ std::unique_ptr<protocols::Rig> make_rig(
     const std::vector<DeviceChoice>& choices, const protocols::Definition& d,
     const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig) {
   std::unique_ptr<protocols::Rig> rig = open_rig(choices.front(), d, virtual_rig);
-  const auto wanted = static_cast<std::size_t>(d.devices());
-  if (1 + rig->others().size() < wanted) {  // a virtual rig has all of them
-    auto together = std::make_unique<SeveralDevices>(std::move(rig), d.envelope);
-    for (std::size_t i = 1; i < wanted; ++i) {
-      DeviceChoice choice = choices[std::min(i, choices.size() - 1)];
-      choice.number += i < choices.size() ? 0 : static_cast<int>(i - choices.size() + 1);
-      together->add(open_rig(choice, d, virtual_rig));
-    }
-    rig = std::move(together);
+  if (rig->others().size() + 1 < d.arms().size()) {  // a virtual rig has all of them
+    rig = with_others(std::move(rig), choices, d, virtual_rig);
   }
   check_reach(rig->device().info(), d);
   for (const protocols::DeviceSet::Arm& arm : rig->others()) {

@@ -19,6 +19,7 @@
 #include "core/stream/marker_options.h"
 #include "core/stream/side_stream.h"
 #include "core/subject/hand_parameters.h"
+#include "protocols/definition/device_arm.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/definition/tutoring_options.h"
@@ -69,7 +70,7 @@ struct Definition {
   device::VendorSetups vendor{};
   device::MouseParameters mouse{};
   device::GamepadParameters gamepad{};
-  device::PedalParameters pedal{};  // beside any of them
+  device::PedalParameters pedal{};                  // beside any of them
   std::vector<channel::ChannelOptions> channels{};  // other instruments
   markers::MarkerOptions markers{};
   TutoringOptions tutoring{};
@@ -78,8 +79,9 @@ struct Definition {
   Table root() const;
   /// How many sessions each participant comes to, on days of their own; at least 1.
   virtual int sessions() const { return 1; }
-  /// How many devices a session drives, 1 to kMostDevices.
-  virtual int devices() const { return 1; }
+  /// What a session drives, 1 to kMostDevices parts of devices, the first of them a tip.
+  virtual std::vector<DeviceArm> arms() const { return {{envelope}}; }
+  int devices() const { return static_cast<int>(arms().size()); }  // these parts
   virtual PedalUse pedal_use() const { return PedalUse::kNone; }
   /// Lines that say what the definition asks for.
   virtual std::vector<std::string> description() const = 0;

@@ -70,6 +70,7 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       names_(read_names(root_, definition)),
       sequence_(definition, identity_of(definition, place)),
       object_files_(object_files(definition.objects)),
+      arms_(arm_rows(definition.hands)),
       touched_bodies_(definition.objects) {
   if (records_contacts(d_)) {
     contacts_ = std::make_unique<ContactLog>();
@@ -162,13 +163,21 @@ record::TableList DefinedTrials::tables() const {
   if (!object_files_.empty()) {
     tables.push_back(&record::table_of<record::ObjectFileRow>());
   }
+  if (!arms_.empty()) {
+    tables.push_back(&record::table_of<record::ArmRow>());
+  }
   return tables;
 }
 
 std::vector<record::Rows> DefinedTrials::first_rows() const {
-  return object_files_.empty()
-             ? std::vector<record::Rows>{}
-             : std::vector{record::Rows(std::span<const record::ObjectFileRow>(object_files_))};
+  std::vector<record::Rows> rows;
+  if (!object_files_.empty()) {
+    rows.emplace_back(std::span<const record::ObjectFileRow>(object_files_));
+  }
+  if (!arms_.empty()) {
+    rows.emplace_back(std::span<const record::ArmRow>(arms_));
+  }
+  return rows;
 }
 
 /// A virtual participant goes on as if the session had not been interrupted.
@@ -266,7 +275,8 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.trial = current_.plan.trial + (practice ? kPracticeNumbers : 0);
   setup.feedback_time = d_.feedback_time;
   setup.most_repeats = d_.most_repeats;
-  setup.max_force = d_.envelope.max_force;
+  std::ranges::transform(d_.arms(), setup.max_force.begin(),
+                         [](const DeviceArm& arm) { return arm.limits.max_force; });
   setup.said = said_.get();
   setup.left = rig_ != nullptr ? rig_->left() : nullptr;
   setup.contacts = contacts_.get();

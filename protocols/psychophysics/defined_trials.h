@@ -93,6 +93,7 @@ class DefinedTrials final : public Trials {
   std::unique_ptr<ContactLog> contacts_;                                // null: none are recorded
   std::shared_ptr<SeenBodies> bodies_{std::make_shared<SeenBodies>()};  // for the screen
   std::vector<record::ObjectFileRow> object_files_;
+  std::vector<record::ArmRow> arms_;  // none where every arm is a tip
   BodyReport touched_bodies_;
   std::vector<record::LateWindowRow> late_again_;
   bool repeats_{false};

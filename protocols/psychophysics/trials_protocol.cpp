@@ -66,6 +66,7 @@ class TrialsProtocol final : public Protocol {
     tables.push_back(&record::table_of<record::MovingBodyRow>());
     tables.push_back(&record::table_of<record::LateWindowRow>());
     tables.push_back(&record::table_of<record::ObjectFileRow>());
+    tables.push_back(&record::table_of<record::ArmRow>());
     return tables;
   }
   std::unique_ptr<Trials> trials(const Definition& definition,

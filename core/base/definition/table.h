@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/definition/angular_units.h"
 #include "core/base/definition/bounds.h"
 #include "core/base/definition/translations.h"
 
@@ -102,6 +103,12 @@ class Table {
   /// @param numbers  outlives what is read from it
   Table with(const NumberSource& numbers) const;
   const NumberSource* numbers() const { return numbers_; }  // null: no text may stand for a number
+  /// This table states its numbers in angular units, from now on and wherever it is asked for; what
+  /// is read comes back in the units that readers ask for.
+  void state_in(const AngularUnits& units);
+  /// How the table states a number for which readers ask in `unit`; nothing: in this unit.
+  std::optional<AngularUnits::Given> given_for(std::string_view unit) const;
+
   /// The number that a text within `key` stands for; nothing, with the problem noted, if it has
   /// none or is out of bounds.
   std::optional<double> worth(std::string_view key, std::string_view text, const Bounds& bounds,

@@ -33,7 +33,7 @@ struct Table::Document {
   KeyExploration* exploration{nullptr};  // off but for lists of keys
   std::vector<Part> parts;               // in order; at least one
   std::string source;
-  std::shared_ptr<toml::table> root;        // shared by those who read the same document
+  std::shared_ptr<toml::table> root;              // shared by those who read the same document
   std::multimap<unsigned, std::string> problems;  // of one value each, by line
   std::multimap<unsigned, std::string> together;  // of values taken together, by line
 
@@ -54,7 +54,8 @@ struct Table::Document {
     }
   }
 
-  std::vector<std::shared_ptr<Node>> nodes;  // tables that somebody asked for
+  std::vector<std::shared_ptr<Node>> nodes;                // tables that somebody asked for
+  std::map<std::string, AngularUnits, std::less<>> units;  // of tables that state_in(), by path
   Translations translations;
   std::vector<ShownText> shown;
 };

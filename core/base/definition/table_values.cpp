@@ -67,8 +67,21 @@ std::optional<T> Table::get(std::string_view key, std::string_view allowed, bool
   return value;
 }
 
+void Table::state_in(const AngularUnits& units) {
+  document_->units.insert_or_assign(node_->path, units);
+}
+
+std::optional<AngularUnits::Given> Table::given_for(std::string_view unit) const {
+  const auto units = document_->units.find(node_->path);
+  return units == document_->units.end() ? std::nullopt : units->second.given_for(unit);
+}
+
 std::optional<double> Table::worth(std::string_view key, std::string_view text,
                                    const Bounds& bounds, std::string_view unit) {
+  if (const auto given = given_for(unit)) {
+    const auto value = worth(key, text, given->bounds(bounds), given->unit);
+    return value ? std::optional(given->factor * *value) : std::nullopt;
+  }
   std::optional<double> value;
   try {
     value = numbers_ == nullptr ? std::nullopt : numbers_->value_of(text);
@@ -86,6 +99,9 @@ std::optional<double> Table::worth(std::string_view key, std::string_view text,
 }
 
 double Table::number(std::string_view key, const Bounds& bounds, std::string_view unit) {
+  if (const auto given = given_for(unit)) {
+    return given->factor * number(key, given->bounds(bounds), given->unit);
+  }
   if (numbers_ != nullptr) {
     if (const auto text = whole_text(key)) {
       return worth(key, *text, bounds, unit).value_or(fallback(bounds));
@@ -199,6 +215,13 @@ std::vector<T> Table::array(std::string_view key, const std::string& allowed) {
 
 std::vector<double> Table::numbers(std::string_view key, const Bounds& bounds,
                                    std::string_view unit) {
+  if (const auto given = given_for(unit)) {
+    std::vector<double> values = numbers(key, given->bounds(bounds), given->unit);
+    for (double& value : values) {
+      value *= given->factor;
+    }
+    return values;
+  }
   const std::string allowed = fmt::format("an array, each {}", words(bounds, unit));
   if (exploration() != nullptr) {
     tell(key, {"list of numbers", bounds, {}}, allowed, unit);

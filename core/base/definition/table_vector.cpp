@@ -87,6 +87,10 @@ Vector3d vector_with_texts(Table& table, std::string_view key, const Bounds& bou
 
 Eigen::Vector3d read_vector(Table& table, std::string_view key, const Bounds& bounds,
                             std::string_view unit, const Eigen::Vector3d& otherwise) {
+  if (const auto given = table.given_for(unit)) {
+    return given->factor *
+           read_vector(table, key, given->bounds(bounds), given->unit, otherwise / given->factor);
+  }
   if (table.numbers() != nullptr && table.has_text(key)) {
     return vector_with_texts(table, key, bounds, unit, otherwise);
   }
@@ -110,6 +114,13 @@ Eigen::Vector3d read_any_direction(Table& table, std::string_view key) {
 
 std::vector<Eigen::Vector3d> read_vectors(Table& table, std::string_view key, const Bounds& bounds,
                                           std::string_view unit) {
+  if (const auto given = table.given_for(unit)) {
+    std::vector<Vector3d> places = read_vectors(table, key, given->bounds(bounds), given->unit);
+    for (Vector3d& place : places) {
+      place *= given->factor;
+    }
+    return places;
+  }
   const Allowed allowed{
       key, bounds, unit,
       fmt::format("a list of places, [[x, y, z], …], each number {}", words(bounds, unit))};
@@ -139,6 +150,9 @@ std::vector<Eigen::Vector3d> read_vectors(Table& table, std::string_view key, co
 
 Eigen::Matrix3d read_matrix(Table& table, std::string_view key, const Bounds& bounds,
                             std::string_view unit) {
+  if (const auto given = table.given_for(unit)) {
+    return given->factor * read_matrix(table, key, given->bounds(bounds), given->unit);
+  }
   const auto rows = table.rows(key, kMatrix);
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
   const bool square =

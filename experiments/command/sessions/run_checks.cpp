@@ -197,9 +197,10 @@ std::string check_study(const RunOptions& options, const protocols::Protocol& pr
 
 void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
                      const protocols::Definition& setup) {
-  if (options.devices.size() > static_cast<std::size_t>(setup.devices())) {
+  const int tips = protocols::tips_of(setup.arms());
+  if (std::cmp_greater(options.devices.size(), tips)) {
     throw InputError(fmt::format("--device is given {} times; {} drives {}", options.devices.size(),
-                                 setup.file_name, counted(setup.devices(), "device", "devices")));
+                                 setup.file_name, counted(tips, "device", "devices")));
   }
   const auto file = replayed_file(options.devices.front());
   if (!file) {

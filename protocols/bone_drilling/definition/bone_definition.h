@@ -78,7 +78,7 @@ struct BoneDefinition : Definition {
   std::vector<std::shared_ptr<const nerve::NerveDistances>> nerve_distances;  // (bones) if watched
   std::vector<std::shared_ptr<const hint::HintMap>> hint_maps;  // (bones) if there are hints
 
-  int devices() const override { return drilling.second ? 2 : 1; }
+  std::vector<DeviceArm> arms() const override { return {drilling.second ? 2U : 1U, {envelope}}; }
   /// Whether something bleeds or warms up.
   bool has_field() const { return simulator.heat || !simulator.bleeding.structures.empty(); }
   /// Whether a shaft is felt, a burr wears or can be reversed.

@@ -33,32 +33,56 @@ std::string words_of(const TrialsDefinition& d, const TrialValues& values) {
   return words;
 }
 
+/// The key that bounds an arm.
+std::string key_of(const DeviceArm& arm, const char* key) {
+  return arm.part == device::Part::kTip ? fmt::format("envelope.{}", key)
+                                        : fmt::format("devices.{}.{}", arm.name, key);
+}
+
 /// A force that is cut off is not the level that is recorded.
-void check_forces(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
-  for (const scene::Field& field : fields) {
-    const double force = scene::traits_of(field).asked_force;
-    const double most = std::min(field.limit, d.envelope.max_force);
-    if (force > most) {
-      throw InputError(fmt::format(
-          "{}: fields.{} asks for {:g} N; allowed: at most {:g} [N], {}", d.file_name, field.name,
-          force, most, field.limit < d.envelope.max_force ? "its limit" : "envelope.max_force"));
+void check_force(const TrialsDefinition& d, const scene::Field& field, const DeviceArm& arm) {
+  const bool turns = arm.part == device::Part::kRotation;
+  const double unit = turns ? arm.radius : 1.0;
+  const double force = scene::traits_of(field).asked_force;
+  const double most = std::min(field.limit, arm.limits.max_force);
+  if (force > most) {
+    throw InputError(
+        fmt::format("{}: fields.{} asks for {:g} {}; allowed: at most {:g} [{}], {}", d.file_name,
+                    field.name, unit * force, turns ? "N·m" : "N", unit * most, turns ? "N·m" : "N",
+                    field.limit < arm.limits.max_force ? "its limit" : key_of(arm, "max_force")));
+  }
+}
+
+void check_forces(const TrialsDefinition& d, const Presented& presented) {
+  const std::vector<DeviceArm> arms = d.arms();
+  for (std::size_t field = 0; field < presented.fields.size(); ++field) {
+    for (std::size_t device = 0; device < arms.size(); ++device) {
+      if ((presented.felt[device] >> field & 1U) != 0) {
+        check_force(d, presented.fields[field], arms[device]);
+      }
     }
   }
 }
 
 /// A stage that waits in a region out of reach is aborted for ever.
 void check_reach(const TrialsDefinition& d, const Presented& presented) {
+  const std::vector<DeviceArm> arms = d.arms();
   for (const NamedStage& stage : presented.stages) {
     for (std::size_t i = 0; i < presented.regions.size(); ++i) {
       const scene::Region& region = presented.regions[i];
       const bool waits = (stage.stage.until.inside >> i & 1U) != 0;
       const double away =
           scene::PlacedShape(region.shape).distance(Eigen::Vector3d::Zero()).distance;
-      if (waits && away > d.envelope.workspace_radius) {
+      const DeviceArm& arm = arms[presented.region_devices[i]];
+      if (waits && away > arm.limits.workspace_radius) {
+        const bool turns = arm.part == device::Part::kRotation;
+        const double unit = turns ? 1.0 / arm.radius : 1.0;
         throw InputError(fmt::format(
-            "{}: stage {} waits until the tool is inside regions.{}, which is {:.3g} m from the "
-            "origin; allowed: at most envelope.workspace_radius, {:g} [m]",
-            d.file_name, stage.name, region.name, away, d.envelope.workspace_radius));
+            "{}: stage {} waits until the tool is inside regions.{}, which is {:.3g} {} from the "
+            "origin; allowed: at most {}, {:g} [{}]",
+            d.file_name, stage.name, region.name, unit * away, turns ? "rad" : "m",
+            key_of(arm, "workspace_radius"), unit * arm.limits.workspace_radius,
+            turns ? "rad" : "m"));
       }
     }
   }
@@ -148,7 +172,7 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       Presented presented = read_presented(root, *names, d, nullptr);
       root.check();
       scene::Scene(presented.fields, d.rate);
-      check_forces(d, presented.fields);
+      check_forces(d, presented);
       check_objects(d, presented.fields);
       check_reach(d, presented);
       handle.add(presented);

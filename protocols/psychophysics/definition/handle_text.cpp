@@ -115,18 +115,24 @@ std::vector<std::string> words_of_beginnings(const Presented& presented, double 
 
 }  // namespace
 
-HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t stage) const {
+HandleReport::HandleReport(const TrialsDefinition& definition)
+    : d_(definition), arms_(definition.arms()) {}
+
+HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t stage,
+                                         std::size_t device) const {
   const NamedStage& named = presented.stages[stage];
   const std::vector<scene::Field> fields = without_reliefs(presented.fields);
   Load load;
   load.stage = named.name;
+  load.device = device;
   std::size_t at = 0;
   for (std::size_t i = 0; i < presented.fields.size(); ++i) {
     if (scene::traits_of(presented.fields[i]).relief) {
       continue;
     }
     const scene::Field& field = fields[at];
-    if (acts(named.stage.fields, i) && !is_weak_friction(field)) {
+    const bool felt = acts(named.stage.fields & presented.felt[device], i);
+    if (felt && !is_weak_friction(field)) {
       const scene::StiffnessBound bound = scene::stiffness_bound(fields, at);
       load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
       load.damping += bound.damping;
@@ -139,6 +145,21 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
   return load;
 }
 
+/// The loop of the device, with what it has in its handle's place.
+control::HandleLoop HandleReport::loop_of(const Load& load) const {
+  control::HandleLoop loop = handle_loop(d_);
+  loop.handle_mass = arms_[load.device].handle_mass.value_or(loop.handle_mass);
+  return loop;
+}
+
+/// The beginning of a sentence.
+std::string HandleReport::where(const Load& load) const {
+  return arms_.size() == 1
+             ? fmt::format("stage {}: its fields add up to {}", load.stage, amount_of(load))
+             : fmt::format("stage {}: its fields on {} add up to {}", load.stage,
+                           arms_[load.device].name, amount_of(load));
+}
+
 /// The guard leaves alone what swings no faster than a hand that trembles. With the hands of most
 /// people such swings reach 2 N only where even a heavy hand does not carry the load.
 /// @throws InputError if it is such a load
@@ -148,21 +169,20 @@ void HandleReport::reject_slow_swings(const Load& load, const control::HandleLoo
   if (load.lightest < kHeavyHand) {
     return;
   }
-  const double frequency = control::dominant_frequency(
-      {load.stiffness, load.damping}, loop, control::held_by_hand(0.98 * load.lightest));
+  const double frequency = control::dominant_frequency({load.stiffness, load.damping}, loop,
+                                                       control::held_by_hand(0.98 * load.lightest));
   if (frequency <= kTremor) {
     throw InputError(fmt::format(
-        "stage {}: its fields add up to {}; at {:g} Hz, with forces that come {} late, hands of "
-        "less than {:.2f} kg oscillate with them at {:.1f} Hz, which cannot be told from a tremor; "
-        "allowed: less of it, or a faster loop",
-        load.stage, amount_of(load), d_.rate, control::ticks_in_words(loop.force_delay),
-        load.lightest, frequency));
+        "{}; at {:g} Hz, with forces that come {} late, hands of less than {:.2f} kg oscillate "
+        "with them at {:.1f} Hz, which cannot be told from a tremor; allowed: less of it, or a "
+        "faster loop",
+        where(load), d_.rate, control::ticks_in_words(loop.force_delay), load.lightest, frequency));
   }
 }
 
 /// @throws InputError if no hand carries it, or one swings with it as slowly as a tremor
 void HandleReport::judge(Load& load) const {
-  const control::HandleLoop loop = handle_loop(d_);
+  const control::HandleLoop loop = loop_of(load);
   const control::PdGains gains{load.stiffness, load.damping};
   const auto mass_carried_by = [&](double hand) {
     return load.mass == 0.0 ||
@@ -173,10 +193,9 @@ void HandleReport::judge(Load& load) const {
   load.lightest = control::lightest_calm_hand(gains, loop);
   if (load.lightest > control::kHeaviestHand || !mass_carried_by(control::kHeaviestHand)) {
     throw InputError(fmt::format(
-        "stage {}: its fields add up to {}; no hand of up to {:g} kg carries that at {:g} Hz, with "
-        "forces that come {} late; allowed: less of it, or a faster loop",
-        load.stage, amount_of(load), control::kHeaviestHand, d_.rate,
-        control::ticks_in_words(loop.force_delay)));
+        "{}; no hand of up to {:g} kg carries that at {:g} Hz, with forces that come {} late; "
+        "allowed: less of it, or a faster loop",
+        where(load), control::kHeaviestHand, d_.rate, control::ticks_in_words(loop.force_delay)));
   }
   reject_slow_swings(load, loop);
   constexpr double kStep = 0.01;  // [kg]
@@ -194,15 +213,29 @@ std::string HandleReport::amount_of(const Load& load) const {
       parts.push_back(fmt::format("{} {}", std::round(10.0 * amount) / 10.0, unit));
     }
   };
-  add(load.stiffness, "N/m");
-  add(load.damping, "N·s/m");
-  add(load.mass, "kg of virtual mass");
+  const DeviceArm& arm = arms_[load.device];
+  if (arm.part == device::Part::kRotation) {
+    const double square = arm.radius * arm.radius;
+    const auto add_small = [&](double amount, const char* unit) {
+      if (amount > 0.0) {
+        parts.push_back(fmt::format("{:.3g} {}", square * amount, unit));
+      }
+    };
+    add_small(load.stiffness, "N·m/rad");
+    add_small(load.damping, "N·m·s/rad");
+    add_small(load.mass, "kg·m² of virtual inertia");
+  } else {
+    add(load.stiffness, "N/m");
+    add(load.damping, "N·s/m");
+    add(load.mass, "kg of virtual mass");
+  }
   return fmt::format("{}", fmt::join(parts, " and "));
 }
 
 void HandleReport::keep(const Load& load) {
-  const auto said = std::find_if(worst_.begin(), worst_.end(),
-                                 [&](const Load& other) { return other.stage == load.stage; });
+  const auto said = std::find_if(worst_.begin(), worst_.end(), [&](const Load& other) {
+    return other.stage == load.stage && other.device == load.device;
+  });
   if (said == worst_.end()) {
     worst_.push_back(load);
   } else if (load.lightest > said->lightest) {
@@ -210,28 +243,33 @@ void HandleReport::keep(const Load& load) {
   }
 }
 
+void HandleReport::add(Load load) {
+  if (load.stiffness > stiffest_.stiffness && arms_[load.device].part == device::Part::kTip) {
+    stiffest_ = {load.stage, load.stiffness};
+  }
+  if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
+    return;
+  }
+  const auto same = std::find_if(judged_.begin(), judged_.end(), [&](const Load& other) {
+    return other.device == load.device && other.stiffness == load.stiffness &&
+           other.damping == load.damping && other.mass == load.mass && other.cutoff == load.cutoff;
+  });
+  if (same == judged_.end()) {
+    judge(load);
+    judged_.push_back(load);
+  } else {
+    load.lightest = same->lightest;
+    load.own_hand = same->own_hand;
+  }
+  if (load.lightest > 0.0 || !load.own_hand) {
+    keep(load);
+  }
+}
+
 void HandleReport::add(const Presented& presented) {
   for (std::size_t stage = 0; stage < presented.stages.size(); ++stage) {
-    Load load = load_of(presented, stage);
-    if (load.stiffness > stiffest_.stiffness) {
-      stiffest_ = {load.stage, load.stiffness};
-    }
-    if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
-      continue;
-    }
-    const auto same = std::find_if(judged_.begin(), judged_.end(), [&](const Load& other) {
-      return other.stiffness == load.stiffness && other.damping == load.damping &&
-             other.mass == load.mass && other.cutoff == load.cutoff;
-    });
-    if (same == judged_.end()) {
-      judge(load);
-      judged_.push_back(load);
-    } else {
-      load.lightest = same->lightest;
-      load.own_hand = same->own_hand;
-    }
-    if (load.lightest > 0.0 || !load.own_hand) {
-      keep(load);
+    for (std::size_t device = 0; device < arms_.size(); ++device) {
+      add(load_of(presented, stage, device));
     }
   }
   if (!std::exchange(looked_, true)) {
@@ -242,8 +280,8 @@ void HandleReport::add(const Presented& presented) {
 HandleText HandleReport::words() const {
   HandleText words;
   words.lines = begin_;
-  const control::HandleLoop loop = handle_loop(d_);
   for (const Load& load : worst_) {
+    const control::HandleLoop loop = loop_of(load);
     const control::BareHandle bare = control::bare_handle({load.stiffness, load.damping}, loop);
     std::string less = load.damping > bare.damping
                            ? fmt::format(" of the damping {:.1f} N·s/m", bare.damping)
@@ -256,14 +294,14 @@ HandleText HandleReport::words() const {
       less += fmt::format("{} of the virtual mass what it carries", less.empty() ? "" : ",");
     }
     words.lines.push_back(
-        fmt::format("stage {}: its fields add up to {}, which hands of {:.2f} kg or more carry; "
-                    "for lighter ones haptrial reduces them, for a handle that nobody holds to:{}",
-                    load.stage, amount_of(load), load.lightest, less));
+        fmt::format("{}, which hands of {:.2f} kg or more carry; for lighter ones haptrial reduces "
+                    "them, for a handle that nobody holds to:{}",
+                    where(load), load.lightest, less));
     if (!load.own_hand) {
       words.warnings.push_back(fmt::format(
-          "stage {}: its fields add up to {}, which only hands of {:.2f} kg or more carry at {:g} "
-          "Hz; the hand of [hand] has {:g} kg, so that they are reduced in most trials",
-          load.stage, amount_of(load), load.lightest, d_.rate, d_.hand.hand_mass));
+          "{}, which only hands of {:.2f} kg or more carry at {:g} Hz; the hand of [hand] has {:g} "
+          "kg, so that they are reduced in most trials",
+          where(load), load.lightest, d_.rate, d_.hand.hand_mass));
     }
   }
   for (const std::string& warning : certificate_warnings(d_, stiffest_)) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "protocols/definition/device_arm.h"
 #include "protocols/psychophysics/definition/certificate_words.h"
 
 namespace haptrial::control {
@@ -26,14 +27,15 @@ struct HandleText {
 /// @throws InputError for gains that no hand carries
 class HandleReport {
  public:
-  explicit HandleReport(const TrialsDefinition& definition) : d_(definition) {}
+  explicit HandleReport(const TrialsDefinition& definition);
   void add(const Presented& presented);
   HandleText words() const;
 
  private:
-  /// The sum of what acts in a stage.
+  /// The sum of what acts in a stage on one device, or a part of it.
   struct Load {
     std::string stage;
+    std::size_t device{0};
     double stiffness{0.0};  // [N/m]
     double damping{0.0};    // [N·s/m]
     double mass{0.0};       // virtual [kg]
@@ -41,13 +43,17 @@ class HandleReport {
     double lightest{0.0};   // hand that carries it [kg]
     bool own_hand{true};    // that of [hand] does
   };
-  Load load_of(const Presented& presented, std::size_t stage) const;
+  Load load_of(const Presented& presented, std::size_t stage, std::size_t device) const;
+  void add(Load load);
+  control::HandleLoop loop_of(const Load& load) const;
+  std::string where(const Load& load) const;
   void reject_slow_swings(const Load& load, const control::HandleLoop& loop) const;
   void judge(Load& load) const;
   void keep(const Load& load);
   std::string amount_of(const Load& load) const;
 
   const TrialsDefinition& d_;
+  std::vector<DeviceArm> arms_;
   std::vector<Load> judged_;        // each sum once, whatever the stage
   std::vector<Load> worst_;         // (stages that some hand does not carry)
   std::vector<std::string> begin_;  // what begins around the hand

@@ -65,7 +65,7 @@ struct TrialsDefinition : Definition {
   int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
   PedalUse pedal_use() const override;
-  int devices() const override { return hands.empty() ? 1 : static_cast<int>(hands.size()); }
+  std::vector<DeviceArm> arms() const override { return arms_of(hands, envelope); }
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override;
   std::vector<std::string> warnings() const override;

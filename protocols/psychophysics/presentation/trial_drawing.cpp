@@ -290,6 +290,9 @@ class TrialDrawing final : public Drawing {
     const double radius = scale_ * d_.view.hand_radius;
     painter_.disc(pixel_of(view.tool, part), radius, d_.display.marker_colour);
     for (std::size_t i = 0; i < view.other_count; ++i) {
+      if (!d_.hands[i + 1].is_tip()) {
+        continue;  // it is nowhere in the world that is drawn
+      }
       painter_.disc(pixel_of(place_of(view.others[i]), part), radius, d_.display.marker_colour);
     }
   }

@@ -123,10 +123,11 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
     drive.intent.added += scene.state(field).added;
     saturated_ = saturated_ || scene.state(field).limited;
   }
-  if (const double size = force.norm(); size > setup_.max_force) {
-    drive.force *= setup_.max_force / size;
-    drive.intent.push *= setup_.max_force / size;
-    drive.intent.stimulus *= setup_.max_force / size;
+  const double most = setup_.max_force[device];
+  if (const double size = force.norm(); size > most) {
+    drive.force *= most / size;
+    drive.intent.push *= most / size;
+    drive.intent.stimulus *= most / size;
     saturated_ = true;
   }
   return drive;

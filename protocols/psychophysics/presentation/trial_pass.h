@@ -90,8 +90,9 @@ class TrialPass final : public Pass {
     std::vector<PresentedQuestion> questions;
     double feedback_time{0.0};  // [s]
     int most_repeats{5};
-    double max_force{8.0};           // the sum of a device's fields is scaled to at most this [N]
-    SimulatedAnswer* said{nullptr};  // null: a person answers
+    /// The sum of a device's fields is scaled to at most this (devices) [N].
+    std::array<double, kMostDevices> max_force{8.0, 8.0, 8.0, 8.0};
+    SimulatedAnswer* said{nullptr};        // null: a person answers
     const LeftDecision* left{nullptr};     // null: nothing is left to the session's thread
     ContactLog* contacts{nullptr};         // of recorded objects; null if there are none
     int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none

@@ -135,7 +135,18 @@ Schema<ObserverPlan> make_observer_schema(const ObserverNames& names,
                 plan.stage = table.text(key);
                 check_stage(table, key, plan.stage, names.stages);
               })
-      .otherwise("throughout the interval");
+      .otherwise("throughout the interval")
+      .custom("at_device", "Device at which virtual participants feel what they judge",
+              [&names](Table& table, const std::string& key, P& plan) {
+                std::vector<std::string> known;
+                for (const TrialDevice& each : names.devices) {
+                  known.push_back(each.name);
+                }
+                const auto at = std::ranges::find(known, table.choice(key, known));
+                plan.device = at == known.end() ? 0 : static_cast<std::size_t>(at - known.begin());
+              })
+      .only_if([&names](const P&) { return !names.devices.empty(); })
+      .otherwise("the first");
   add_decision(schema, names.questions);
   schema
       .custom("actions",

@@ -34,7 +34,8 @@ struct Adaptation {
 /// The virtual participants of a dry run.
 struct ObserverPlan {
   subject::Quantity senses{subject::Quantity::kForce};
-  std::string stage;  // in which it is felt; empty: throughout the interval
+  std::string stage;      // in which it is felt; empty: throughout the interval
+  std::size_t device{0};  // whose hand feels it
   Decides decides{Decides::kLargest};
   int yes{0};                       // choice that means yes, from 0
   std::vector<double> prototypes;   // (choices) percepts that the choices stand for, of kNearest

@@ -171,6 +171,7 @@ void read_actions_of_stage(Table& table, const std::string& stage,
   for (std::size_t device = 0; device < devices.size(); ++device) {
     if (table.has(devices[device].name)) {
       Table own = table.table(devices[device].name);
+      state_in_units_of(devices[device], own);
       actions.push_back(read_action(
           own, stage,
           "Action of the hand in the stage of the first name at the device of the second", ""));

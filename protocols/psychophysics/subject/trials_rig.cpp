@@ -41,6 +41,13 @@ std::optional<device::FaultyMotors> motors_of(const Definition& d) {
   return perfect ? std::nullopt : std::optional(device::FaultyMotors(faults, 1.0 / d.rate));
 }
 
+/// The hand of [hand] at a part of a device, where its fingers are.
+subject::HandParameters hand_at(const subject::HandParameters& hand, const DeviceArm& arm) {
+  subject::HandParameters here = hand;
+  here.handle_mass = arm.handle_mass.value_or(hand.handle_mass);
+  return here;
+}
+
 }  // namespace
 
 /// Servo thread, but for the constructor, recall() and carried_over().
@@ -258,16 +265,17 @@ class TrialsRig::Participant final : public stimulus::Observer {
   }
 
   void feel(const TrialView& view, const stimulus::Forces& forces, double dt) noexcept {
-    const PointState& hand = hands_.front().state;
+    const std::size_t device = plan_.device < forces.size() ? plan_.device : 0;
+    const PointState& hand = hands_[device].state;
     const Eigen::Vector3d given =
-        motors_ ? motors_->force(forces[0], hand.position) : Eigen::Vector3d(forces[0]);
+        motors_ ? motors_->force(forces[device], hand.position) : Eigen::Vector3d(forces[device]);
     if (view.interval == 0) {
       return;
     }
     if (felt_in_ < 0 || stage_ == felt_in_) {
       sense_.feel(given, hand, dt);
       if (hands_.size() > 1 && forces.size() > 1) {
-        grip_.feel({forces[0], hand}, {forces[1], hands_[1].state}, dt);
+        grip_.feel({forces[0], hands_[0].state}, {forces[1], hands_[1].state}, dt);
       }
       seen_ = view.dots.shown ? view.dots : seen_;
     }
@@ -395,7 +403,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::uint64_t seed_;
   subject::HandParameters hand_parameters_;
   double step_;                                 // [s]
-  std::optional<device::FaultyMotors> motors_;  // of the device in the first hand
+  std::optional<device::FaultyMotors> motors_;  // of the device that is felt
   subject::SenseParameters senses_;
   subject::Sense sense_;
   subject::Grip grip_;
@@ -424,21 +432,19 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::array<double, kMostIntervals> percepts_{};
 };
 
-TrialsRig::Arm::Arm(const Definition& d, const Eigen::Vector3d& start)
-    : hand(std::make_unique<subject::Hand>(d.hand, 1.0 / d.rate, start)),
-      device(d.device, *hand, d.rate) {}
+TrialsRig::Arm::Arm(const Definition& d, const TrialDevice& held, const DeviceArm& as)
+    : hand(std::make_unique<subject::Hand>(hand_at(d.hand, as), 1.0 / d.rate, held.start)),
+      device(d.device, *hand, d.rate),
+      arm(as) {}
 
 TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
                      std::uint64_t session_seed)
-    : decide_(briefing.decide),
-      left_(decide_ ? std::make_unique<LeftDecision>() : nullptr),
-      envelope_(briefing.definition->envelope) {
+    : decide_(briefing.decide), left_(decide_ ? std::make_unique<LeftDecision>() : nullptr) {
   const Definition& d = *briefing.definition;
-  for (const TrialDevice& each : *briefing.devices) {
-    arms_.push_back(std::make_unique<Arm>(d, each.start));
-  }
-  if (arms_.empty()) {
-    arms_.push_back(std::make_unique<Arm>(d, Eigen::Vector3d::Zero()));
+  const std::vector<DeviceArm> arms = d.arms();
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    const TrialDevice held = briefing.devices->empty() ? TrialDevice{} : (*briefing.devices)[i];
+    arms_.push_back(std::make_unique<Arm>(d, held, arms[i]));
   }
   participant_ =
       std::make_unique<Participant>(briefing, arms_, left_.get(), person_seed, session_seed);
@@ -449,7 +455,9 @@ TrialsRig::~TrialsRig() = default;
 std::vector<DeviceSet::Arm> TrialsRig::others() {
   std::vector<DeviceSet::Arm> others;
   for (std::size_t i = 1; i < arms_.size(); ++i) {
-    others.push_back({&arms_[i]->device, envelope_});
+    const DeviceArm& arm = arms_[i]->arm;
+    others.push_back(
+        {&arms_[i]->device, arm.limits, device::Part::kTip, arm.radius, arm.handle_mass});
   }
   return others;
 }

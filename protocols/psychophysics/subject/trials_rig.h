@@ -27,7 +27,8 @@ struct CarriedOver {
 };
 
 /// A virtual device with the hand of a virtual participant, who explores, feels and answers; or
-/// several devices, a hand or fingertip at each.
+/// several devices, a hand or fingertip at each. A rotation or grip is simulated at the fingers
+/// that move it, as a device of its own.
 class TrialsRig final : public Rig {
  public:
   /// A participant's instructions.
@@ -62,14 +63,14 @@ class TrialsRig final : public Rig {
  private:
   /// A hand at its device.
   struct Arm {
-    Arm(const Definition& definition, const Eigen::Vector3d& start);
+    Arm(const Definition& definition, const TrialDevice& held, const DeviceArm& arm);
     std::unique_ptr<subject::HandModel> hand;
     device::VirtualDevice device;
+    DeviceArm arm;
   };
   class Participant;
   std::function<LeftDecision::Answer(const LeftDecision::DecisionRequest&)> decide_;
   std::unique_ptr<LeftDecision> left_;  // before the participant, who uses it
-  device::EnvelopeLimits envelope_;
   std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Participant> participant_;
 };
