@@ -1,12 +1,6 @@
 #include "core/record/rows/arm_row.h"
 
 namespace haptrial::record {
-namespace {
-
-constexpr std::size_t kNameBytes = 64;
-constexpr std::size_t kPartBytes = 16;
-
-}  // namespace
 
 template <>
 const Table<ArmRow>& table_of<ArmRow>() {
@@ -16,7 +10,7 @@ const Table<ArmRow>& table_of<ArmRow>() {
       {"arms", "what the rows of /devices are of", 4, RowsOf::kSession, {"device"}},
       {T::column("device", &R::device, "1", "as in /devices; 0 is in /samples"),
        T::text("name", &R::name, kNameBytes, "in the definition"),
-       T::text("part", &R::part, kPartBytes,
+       T::text("part", &R::part, kNameBytes,
                "tip; rotation: positions are r times the rotation vector, forces the torque over "
                "r; grip: x is the opening"),
        T::column("of", &R::of, "1", "number of the device whose part it is"),
