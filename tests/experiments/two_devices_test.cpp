@@ -60,9 +60,9 @@ class CirclingDevice final : public device::Device {
     ++tick_;
     return true;
   }
-  bool write(const Vector3d& force) noexcept override {
-    given.push_back(force);
-    return !(trouble_.write_fails && tick_ > trouble_.at_tick && !force.isZero(0.0));
+  bool write(const device::Wrench& wrench) noexcept override {
+    given.push_back(wrench.force);
+    return !(trouble_.write_fails && tick_ > trouble_.at_tick && !wrench.force.isZero(0.0));
   }
   const char* trouble() const noexcept override { return said_; }
   std::vector<Vector3d> given;

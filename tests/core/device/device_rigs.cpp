@@ -9,8 +9,8 @@
 
 #include "core/device/coupled_mass.h"
 #include "core/device/force_dimension.h"
-#include "core/device/haply.h"
 #include "core/device/hapi_board.h"
+#include "core/device/haply.h"
 #include "core/device/mouse.h"
 #include "core/device/open_haptics.h"
 #include "core/device/paddle_board.h"

@@ -112,7 +112,7 @@ TEST_P(DeviceSuiteTest, ATickDoesNotAllocate) {
   for (int i = 0; i < 1000; ++i) {
     const test::AllocationGuard guard;
     rig_->device().read(reading);
-    rig_->device().write({0.1, 0.0, 0.0});
+    rig_->device().write(Eigen::Vector3d(0.1, 0.0, 0.0));
     const std::size_t before = guard.count();
     rig_->period();
     allocations += rig_->period_is_the_drivers() ? guard.count() : before;

@@ -142,7 +142,7 @@ TEST(ForceDimensionTest, ItsStopButtonIsThatOfTheHandleUnlessThereIsNone) {
 TEST(ForceDimensionTest, ForcesReachTheMotorsInTheVendorsAxes) {
   const StandIn stand_in("stand_in_dhd");
   ForceDimensionDevice device({}, kRigRate, stand_in.path);
-  ASSERT_TRUE(device.write({1.0, 2.0, 3.0}));  // right, up, to the user
+  ASSERT_TRUE(device.write(Eigen::Vector3d(1.0, 2.0, 3.0)));  // right, up, to the user
   const test::StandInView seen = stand_in.look();
   EXPECT_EQ(seen.force[0], 3.0) << "x is to the user";
   EXPECT_EQ(seen.force[1], 1.0) << "y is to the right";
@@ -162,7 +162,7 @@ TEST(ForceDimensionTest, SaysWhyForcesWentOffOrALinkWasLost) {
     DeviceReading reading;
     bool well = true;
     for (int tick = 0; tick < 10 && well; ++tick) {
-      device.write({1.0, 0.0, 0.0});
+      device.write(Eigen::Vector3d(1.0, 0.0, 0.0));
       well = device.read(reading) && reading.forces_on;
     }
     EXPECT_FALSE(well) << word;
@@ -190,7 +190,7 @@ TEST(ForceDimensionTest, SlowCallsAndSaturationAreCounted) {
     EXPECT_TRUE(device.read(reading));
   }
   EXPECT_GE(device.slow_calls(), before + 3);
-  EXPECT_TRUE(device.write({0.0, 20.0, 0.0}));
+  EXPECT_TRUE(device.write(Eigen::Vector3d(0.0, 20.0, 0.0)));
   EXPECT_EQ(device.saturated_writes(), 1u);
   EXPECT_EQ(stand_in.look().force[2], 12.0);
 }
@@ -258,7 +258,7 @@ TEST_F(OpenHapticsTest, TheSmallerForceLimitHolds) {
 
 TEST_F(OpenHapticsTest, WithoutCommandsTheSchedulerLetsTheForceGo) {
   OpenHapticsDevice device({}, kRigRate, stand_in_.path);
-  device.write({1.0, 2.0, -3.0});
+  device.write(Eigen::Vector3d(1.0, 2.0, -3.0));
   stand_in_.step();
   EXPECT_EQ(stand_in_.look().force[0], 1.0);
   EXPECT_EQ(stand_in_.look().force[1], 2.0);
@@ -295,7 +295,7 @@ TEST_F(OpenHapticsTest, RunsWithTheVendorsOwnThread) {
   double farthest = 0.0;
   for (int tick = 0; tick < 300; ++tick) {
     ASSERT_TRUE(device.read(reading)) << device.trouble();
-    device.write({0.0, 1.0, 0.0});
+    device.write(Eigen::Vector3d(0.0, 1.0, 0.0));
     farthest = std::max(farthest, reading.tool.position.y());
     const timespec pause{0, 1'000'000};
     nanosleep(&pause, nullptr);

@@ -235,7 +235,7 @@ TEST(HaplyDeviceTest, AForceAboveTheLimitKeepsItsDirection) {
   HaplyDevice device(parameters, test::kRigRate);
   EXPECT_EQ(device.info().max_force, 2.5);
   for (int i = 0; i < 3; ++i) {
-    device.write({3.0, 0.0, -4.0});
+    device.write(Eigen::Vector3d(3.0, 0.0, -4.0));
     service.step();
   }
   const auto force = service.force();

@@ -127,7 +127,7 @@ TEST(SensedMountTest, StepsAndReadingsDoNotAllocate) {
     device.read(reading);
     mount.read(measured);
     mount.hold({1e-5 * tick, 0.0, 0.0});
-    device.write({1.0, 0.0, 0.0});
+    device.write(Eigen::Vector3d(1.0, 0.0, 0.0));
   }
   EXPECT_EQ(guard.count(), 0u);
 }

@@ -164,7 +164,7 @@ TEST(HapiBoardTest, WithItsArmsInLineItGivesNoForceAndSaysWhy) {
   for (const std::uint64_t seen = device->readings(); device->readings() < seen + 3;) {
     DeviceReading reading;
     EXPECT_FALSE(device->read(reading));
-    device->write({1.0, 0.0, 0.0});
+    device->write(Eigen::Vector3d(1.0, 0.0, 0.0));
   }
   board.stop();
   EXPECT_EQ(firmware.torque[0], 0.0);

@@ -90,7 +90,7 @@ TEST(MouseTest, APressIsHeldByTheDeviceThatHoldsAgainstIt) {
   for (int i = 0; i < 4000; ++i) {  // a plane constraint, as in visual training
     mouse.read(reading);
     held = -2000.0 * reading.tool.position.y() - 40.0 * reading.tool.velocity.y();
-    mouse.write({0.0, held, 0.0});
+    mouse.write(Eigen::Vector3d(0.0, held, 0.0));
   }
   EXPECT_NEAR(held, 6.0 * 2000.0 / 2400.0, 0.05) << "the hand's own spring takes its share";
   mouse.press(0.0);
@@ -187,7 +187,7 @@ TEST(ReplayTest, GivesEveryStateOnceAndThenEnds) {
     ASSERT_EQ(reading.tool.position, state.position);
     ASSERT_EQ(reading.tool.velocity, state.velocity);
     ASSERT_STREQ(replay.trouble(), "");
-    ASSERT_TRUE(replay.write({5.0, 0.0, 0.0}));
+    ASSERT_TRUE(replay.write(Eigen::Vector3d(5.0, 0.0, 0.0)));
   }
   EXPECT_FALSE(replay.read(reading));
   EXPECT_STREQ(replay.trouble(), "the recording has come to its end");

@@ -57,7 +57,7 @@ TEST(VirtualDeviceTest, TheForceOfATickActsInTheNextPeriod) {
   ScriptedHandle handle;
   VirtualDevice device({}, handle, kRate);
   for (int k = 1; k <= 5; ++k) {
-    ASSERT_TRUE(device.write({0.0, k * 1.0, 0.0}));
+    ASSERT_TRUE(device.write(Eigen::Vector3d(0.0, k * 1.0, 0.0)));
   }
   ASSERT_EQ(handle.forces.size(), 5u) << "one period a write";
   for (int k = 0; k < 5; ++k) {
@@ -69,8 +69,8 @@ TEST(VirtualDeviceTest, TheForceOfATickActsInTheNextPeriod) {
 TEST(VirtualDeviceTest, MotorsSaturateAndKeepTheDirection) {
   ScriptedHandle handle;
   VirtualDevice device({}, handle, kRate);
-  device.write({0.0, 30.0, -40.0});
-  device.write({0.0, 7.2, 9.6});
+  device.write(Eigen::Vector3d(0.0, 30.0, -40.0));
+  device.write(Eigen::Vector3d(0.0, 7.2, 9.6));
   device.write(Vector3d::Zero());
   EXPECT_LT((handle.forces[1] - Vector3d(0.0, 7.2, -9.6)).norm(), 1e-12);
   EXPECT_EQ(handle.forces[2], Vector3d(0.0, 7.2, 9.6)) << "the limit itself is not touched";
@@ -167,7 +167,7 @@ TEST(VirtualDeviceTest, AFreeMassFollowsTheExactIntegral) {
   VirtualDevice device(exact, mass, kRate);
   constexpr double kForce = 2.0;
   for (int k = 1; k <= 200; ++k) {
-    device.write({kForce, 0.0, 0.0});
+    device.write(Eigen::Vector3d(kForce, 0.0, 0.0));
     const double t = (k - 1) * kPeriod;  // the first force arrives one period later
     EXPECT_NEAR(reading_of(device).tool.position.x(), 0.5 * kForce / kMass * t * t, 1e-12) << k;
   }
@@ -180,7 +180,7 @@ TEST(VirtualDeviceTest, ATickDoesNotAllocate) {
   const test::AllocationGuard guard;
   for (int i = 0; i < 1000; ++i) {
     device.read(reading);
-    device.write({0.0, 20.0, 0.0});
+    device.write(Eigen::Vector3d(0.0, 20.0, 0.0));
   }
   EXPECT_EQ(guard.count(), 0u);
 }

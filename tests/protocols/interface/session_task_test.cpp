@@ -624,7 +624,7 @@ TEST_F(RealThreadTest, AnEmergencyStopFromAnotherThreadEndsThePass) {
 struct QuietDevice final : device::Device {
   const device::DeviceInfo& info() const noexcept override { return info_; }
   bool read(DeviceReading&) noexcept override { return true; }
-  bool write(const Vector3d&) noexcept override { return true; }
+  bool write(const device::Wrench&) noexcept override { return true; }
   device::DeviceInfo info_;
 };
 
