@@ -60,7 +60,6 @@ class TrialsRig::Participant final : public stimulus::Observer {
         said_(*briefing.said),
         left_(left),
         seed_(derived_seed(session_seed, "subject")),
-        hand_parameters_(briefing.definition->hand),
         step_(1.0 / briefing.definition->rate),
         motors_(motors_of(*briefing.definition)),
         senses_(plan_.people->draw_senses(derived_seed(person_seed, "subject"))),
@@ -71,8 +70,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
         reaction_(seed_, "reaction") {
     for (const auto& arm : arms) {
       const std::size_t device = hands_.size();
+      const subject::HandParameters held = hand_at(briefing.definition->hand, arm->arm);
       SimulatedHand& hand = hands_.emplace_back(SimulatedHand{
-          arm->hand.get(), &arm->device, subject::ExplorationController(hand_parameters_), {}});
+          arm->hand.get(), &arm->device, held, subject::ExplorationController(held), {}});
       for (const std::string& stage : briefing.stages) {
         hand.actions.push_back(action_in(stage, device));
       }
@@ -122,6 +122,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   struct SimulatedHand {
     subject::HandModel* hand;
     device::VirtualDevice* device;
+    subject::HandParameters held;
     subject::ExplorationController prober;
     std::vector<const StageAction*> actions;  // (stages), null: rests
     PointState state{};                       // at this tick
@@ -178,8 +179,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
     // A hand that is quite still would look like a device whose reading is frozen.
     for (std::size_t i = 0; i < hands_.size(); ++i) {
       hands_[i].prober = subject::ExplorationController(
-          hand_parameters_, subject::MotorNoise(subject::SubjectParameters{}, step_,
-                                                subject::trial_stream(seed_, kMotor[i], trial)));
+          hands_[i].held, subject::MotorNoise(subject::SubjectParameters{}, step_,
+                                              subject::trial_stream(seed_, kMotor[i], trial)));
     }
     reaction_ = subject::trial_stream(seed_, "reaction", trial);
   }
@@ -401,7 +402,6 @@ class TrialsRig::Participant final : public stimulus::Observer {
   double left_reaction_{0.0};  // that was proposed [s]
   bool thinks_{false};         // until the decision that was left is there
   std::uint64_t seed_;
-  subject::HandParameters hand_parameters_;
   double step_;                                 // [s]
   std::optional<device::FaultyMotors> motors_;  // of the device that is felt
   subject::SenseParameters senses_;

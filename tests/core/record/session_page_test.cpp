@@ -15,6 +15,7 @@
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
 #include "core/channel/channel_row.h"
+#include "core/record/rows/arm_row.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/late_window_row.h"
 #include "core/record/rows/moving_body_row.h"
@@ -67,6 +68,7 @@ TEST(SessionPageTest, TablesOfTrials) {
   tables.push_back(&table_of<TouchedBodyRow>());
   tables.push_back(&table_of<MovingBodyRow>());
   tables.push_back(&table_of<LateWindowRow>());
+  tables.push_back(&table_of<ArmRow>());
   expect_described("trials", tables);
 }
 TEST(SessionPageTest, TablesOfDrillings) {

@@ -1,0 +1,251 @@
+// Fields of torque and grip: each by its law from the log of a session, in the units in which a
+// definition states it; handles and hands of every inertia at their limits; what is refused.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <optional>
+
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/arm_row.h"
+#include "core/record/rows/device_row.h"
+#include "core/record/rows/trial_rows.h"
+#include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments::handle_parts_test {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+constexpr double kRadius = 0.02;  // [m]
+
+/// A trial in which a knob or a gripper is moved to and fro under one field.
+std::string study(const std::string& field, const std::string& of, const std::string& more = "") {
+  return R"([experiment]
+protocol = "trials"
+name = "parts"
+[design]
+participants = 1
+[devices.stylus]
+start = [0.0, 0.0, 0.0]
+[devices.knob]
+rotation_of = "stylus"
+radius = 0.02
+max_force = 0.14
+[devices.pinch]
+grip_of = "stylus"
+start = [0.02, 0.0, 0.0]
+max_force = 6.0
+[fields.felt]
+device = ")" +
+         of + "\"\n" + field + R"(
+[[stages]]
+name = "feel"
+fields = ["felt"]
+until = { time = 1.5 }
+[response]
+question = "Was it there?"
+choices = [{ value = "yes", keys = ["Y"] }, { value = "no", keys = ["N"] }]
+[[blocks]]
+name = "one"
+trials = 1
+[observer]
+decides = "yes"
+at_device = ")" +
+         of + "\"\n" + more;
+}
+
+/// A tick of a rotation in rad and N·m, or of a grip in m and N.
+struct Tick {
+  double time;  // in the stage [s]
+  Vector3d place;
+  Vector3d velocity;
+  Vector3d force;
+};
+
+class HandlePartsTest : public testing::Test {
+ protected:
+  test::CommandResult run(const std::string& text, const std::string& command = "dry-run") {
+    const std::string file = folder_ / "parts.toml";
+    std::ofstream(file) << text;
+    return test::run_command("haptrial " + command + " " + file +
+                             (command == "dry-run" ? " --subjects 1 --out " + out() : ""));
+  }
+  std::string out() const { return (folder_ / "out").string(); }
+
+  /// The ticks of the stage, once fields and forces have come in and before they go.
+  std::vector<Tick> ticks(int device) const {
+    const record::SessionReader reader(folder_ / "out" / "S01.h5");
+    const record::StageRow stage = reader.rows<record::StageRow>().front();
+    const auto arms = reader.rows<record::ArmRow>();
+    const double radius = arms[static_cast<std::size_t>(device)].radius;
+    const bool turns = arms[static_cast<std::size_t>(device)].part == "rotation";
+    std::vector<Tick> ticks;
+    for (const record::DeviceRow& row : reader.rows<record::DeviceRow>()) {
+      const double time =
+          1e-3 * (static_cast<double>(row.sequence) - static_cast<double>(stage.first_sample));
+      if (row.device == device && time > 0.3 && row.sequence < stage.last_sample) {
+        const double r = turns ? radius : 1.0;
+        ticks.push_back({time, row.position / r, row.velocity / r, r * row.force});
+      }
+    }
+    return ticks;
+  }
+
+  /// The largest difference between the recorded force and the law, over the largest force.
+  double worst(int device, const std::function<Vector3d(const Tick&)>& law) const {
+    double difference = 0.0, largest = 0.0;
+    for (const Tick& tick : ticks(device)) {
+      difference = std::max(difference, (tick.force - law(tick)).norm());
+      largest = std::max(largest, tick.force.norm());
+    }
+    EXPECT_GT(largest, 0.0);
+    return difference / largest;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+constexpr const char* kTurned =
+    "[observer.actions.feel]\nknob = { do = \"stroke\", direction = [0.0, 1.0, 0.0], "
+    "half_length = 0.4, frequency = 0.7, normal = [1.0, 0.0, 0.0] }\n";
+constexpr const char* kPinched =
+    "[observer.actions.feel]\npinch = { do = \"stroke\", direction = [1.0, 0.0, 0.0], "
+    "half_length = 0.01, frequency = 0.7, normal = [0.0, 1.0, 0.0] }\n";
+constexpr double kRounding = 2e-3;  // of rows of /devices, and of what fades
+
+TEST_F(HandlePartsTest, ASpringOfARotationGivesItsTorquePerAngle) {
+  const auto result =
+      run(study("type = \"spring\"\nto = [0.0, 0.3, 0.0]\nstiffness = 0.1\n"
+                "damping = 0.0005\n",
+                "knob", kTurned));
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_LT(worst(1,
+                  [](const Tick& t) -> Vector3d {
+                    return 0.1 * (Vector3d(0.0, 0.3, 0.0) - t.place) - 0.0005 * t.velocity;
+                  }),
+            kRounding);
+}
+
+TEST_F(HandlePartsTest, ADamperOfARotationGivesItsTorquePerAngularVelocity) {
+  const auto result = run(study("type = \"viscous\"\ndamping = 0.004\n", "knob", kTurned));
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_LT(worst(1, [](const Tick& t) -> Vector3d { return -0.004 * t.velocity; }), kRounding);
+}
+
+TEST_F(HandlePartsTest, AConstantTorqueIsAsStated) {
+  const auto result =
+      run(study("type = \"constant\"\nforce = [0.0, 0.03, 0.0]\n", "knob", kTurned));
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_LT(worst(1, [](const Tick&) { return Vector3d(0.0, 0.03, 0.0); }), kRounding);
+}
+
+TEST_F(HandlePartsTest, DetentsOfAKnobAreTurnsApart) {
+  const auto result =
+      run(study("type = \"detent\"\ndirection = [0.0, 1.0, 0.0]\n"
+                "spacing = 0.3\npeak = 0.02\n",
+                "knob", kTurned));
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_LT(worst(1,
+                  [](const Tick& t) {
+                    const double wave = 2.0 * std::numbers::pi / 0.3;
+                    return Vector3d(0.0, -0.02 * std::sin(wave * t.place.y()), 0.0);
+                  }),
+            0.05);
+}
+
+TEST_F(HandlePartsTest, AGripSpringPushesTheFingersApart) {
+  const auto result =
+      run(study("type = \"spring\"\nto = [0.02, 0.0, 0.0]\nstiffness = 200.0\n"
+                "damping = 1.0\n",
+                "pinch", kPinched));
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_LT(worst(2,
+                  [](const Tick& t) -> Vector3d {
+                    return 200.0 * (Vector3d(0.02, 0.0, 0.0) - t.place) - 1.0 * t.velocity;
+                  }),
+            kRounding);
+}
+
+TEST_F(HandlePartsTest, AGripForceIsHeld) {
+  const auto result =
+      run(study("type = \"constant\"\nforce = [1.5, 0.0, 0.0]\n", "pinch", kPinched));
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_LT(worst(2, [](const Tick&) { return Vector3d(1.5, 0.0, 0.0); }), kRounding);
+}
+
+TEST_F(HandlePartsTest, TheSumOfTorquesStaysWithinTheLimitOfTheRotation) {
+  const auto result =
+      run(study("type = \"spring\"\nto = [0.0, 1.5, 0.0]\nstiffness = 0.2\ndamping = 0.002\n"
+                "limit = 0.2\n",
+                "knob", "[observer.actions.feel]\nknob = { do = \"hold\" }\n"));
+  ASSERT_EQ(result.status, 0) << result.errors;
+  double largest = 0.0;
+  for (const Tick& tick : ticks(1)) {
+    largest = std::max(largest, tick.force.norm());
+  }
+  EXPECT_NEAR(largest, 0.14, 1e-5);
+}
+
+TEST_F(HandlePartsTest, TheFileSaysWhatTheRowsOfEachPartAre) {
+  ASSERT_EQ(run(study("type = \"viscous\"\ndamping = 0.001\n", "knob", kTurned)).status, 0);
+  const auto arms = record::SessionReader(folder_ / "out" / "S01.h5").rows<record::ArmRow>();
+  ASSERT_EQ(arms.size(), 3u);
+  EXPECT_EQ(arms[0].part, "tip");
+  EXPECT_EQ(arms[1].name, "knob");
+  EXPECT_EQ(arms[1].part, "rotation");
+  EXPECT_EQ(arms[1].of, 0);
+  EXPECT_EQ(arms[1].radius, kRadius);
+  EXPECT_EQ(arms[2].part, "grip");
+}
+
+TEST_F(HandlePartsTest, AFieldWithoutADeviceActsOnTipsAlone) {
+  std::string text = study("type = \"constant\"\nforce = [0.0, 1.0, 0.0]\n", "knob", kTurned);
+  text.replace(text.find("device = \"knob\"\n"), 16, "");
+  ASSERT_EQ(run(text).status, 0);
+  for (const int part : {1, 2}) {
+    for (const Tick& tick : ticks(part)) {
+      ASSERT_TRUE(tick.force.isZero(0.0)) << part;
+    }
+  }
+}
+
+TEST_F(HandlePartsTest, WhatIsWrongIsSaidInTheUnitsOfTheRotation) {
+  const auto said = [&](const std::string& text) { return run(text, "validate").errors; };
+  EXPECT_THAT(said(study("type = \"spring\"\nto = [0.0, 1.0, 0.0]\nstiffness = 900.0\n"
+                         "damping = 0.0\n",
+                         "knob")),
+              HasSubstr("allowed: a number from 0 to 40 [N·m/rad]"));
+  EXPECT_THAT(said(study("type = \"constant\"\nforce = [0.0, 0.18, 0.0]\nlimit = 0.2\n", "knob")),
+              HasSubstr("fields.felt asks for 0.18 N·m; allowed: at most 0.14 [N·m], "
+                        "devices.knob.max_force"));
+  EXPECT_THAT(said(study("type = \"spring\"\nto = [0.0, 0.0, 0.0]\nstiffness = 2.0\n"
+                         "damping = 0.2\n",
+                         "knob")),
+              HasSubstr("stage feel: its fields on knob add up to 2 N·m/rad and 0.2 N·m·s/rad"));
+}
+
+TEST_F(HandlePartsTest, AnImpossiblePartIsRefused) {
+  const std::string text = study("type = \"viscous\"\ndamping = 0.001\n", "knob");
+  const auto without = [&](const std::string& what, const std::string& instead) {
+    std::string changed = text;
+    changed.replace(changed.find(what), what.size(), instead);
+    const auto result = run(changed, "validate");
+    EXPECT_EQ(result.status, 2);
+    return result.errors;
+  };
+  EXPECT_THAT(without("rotation_of = \"stylus\"", "rotation_of = \"nobody\""),
+              HasSubstr("devices.knob.rotation_of is \"nobody\"; allowed: \"stylus\""));
+  EXPECT_THAT(without("grip_of = \"stylus\"", "rotation_of = \"stylus\""),
+              HasSubstr("devices.pinch is the same part of stylus as knob; leave out one"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments::handle_parts_test
