@@ -149,7 +149,7 @@ TEST_F(HandlePartsTest, AConstantTorqueIsAsStated) {
 
 TEST_F(HandlePartsTest, DetentsOfAKnobAreTurnsApart) {
   const auto result =
-      run(study("type = \"detent\"\ndirection = [0.0, 1.0, 0.0]\n"
+      run(study("type = \"detent\"\nat = [0.0, 0.0, 0.0]\ndirection = [0.0, 1.0, 0.0]\n"
                 "spacing = 0.3\npeak = 0.02\n",
                 "knob", kTurned));
   ASSERT_EQ(result.status, 0) << result.errors;
@@ -222,13 +222,15 @@ TEST_F(HandlePartsTest, WhatIsWrongIsSaidInTheUnitsOfTheRotation) {
   EXPECT_THAT(said(study("type = \"spring\"\nto = [0.0, 1.0, 0.0]\nstiffness = 900.0\n"
                          "damping = 0.0\n",
                          "knob")),
-              HasSubstr("allowed: a number from 0 to 40 [N·m/rad]"));
+              HasSubstr("allowed: a number of at least 0 and at most 40 [N·m/rad]"));
   EXPECT_THAT(said(study("type = \"constant\"\nforce = [0.0, 0.18, 0.0]\nlimit = 0.2\n", "knob")),
               HasSubstr("fields.felt asks for 0.18 N·m; allowed: at most 0.14 [N·m], "
                         "devices.knob.max_force"));
-  EXPECT_THAT(said(study("type = \"spring\"\nto = [0.0, 0.0, 0.0]\nstiffness = 2.0\n"
-                         "damping = 0.2\n",
-                         "knob")),
+  EXPECT_THAT(run(study("type = \"spring\"\nto = [0.0, 0.0, 0.0]\nstiffness = 2.0\n"
+                        "damping = 0.2\n",
+                        "knob"),
+                  "validate")
+                  .output,
               HasSubstr("stage feel: its fields on knob add up to 2 N·m/rad and 0.2 N·m·s/rad"));
 }
 
@@ -243,7 +245,8 @@ TEST_F(HandlePartsTest, AnImpossiblePartIsRefused) {
   };
   EXPECT_THAT(without("rotation_of = \"stylus\"", "rotation_of = \"nobody\""),
               HasSubstr("devices.knob.rotation_of is \"nobody\"; allowed: \"stylus\""));
-  EXPECT_THAT(without("grip_of = \"stylus\"", "rotation_of = \"stylus\""),
+  EXPECT_THAT(without("grip_of = \"stylus\"\nstart = [0.02, 0.0, 0.0]\nmax_force = 6.0",
+                      "rotation_of = \"stylus\""),
               HasSubstr("devices.pinch is the same part of stylus as knob; leave out one"));
 }
 

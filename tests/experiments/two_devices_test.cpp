@@ -113,7 +113,7 @@ class Push final : public protocols::Pass {
 };
 
 struct PairDefinition final : protocols::Definition {
-  int devices() const override { return 2; }
+  std::vector<protocols::DeviceArm> arms() const override { return {2, {envelope}}; }
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override { return {}; }
   double longest(int trials) const override { return trials * kRunning; }

@@ -67,7 +67,11 @@ std::optional<T> Table::get(std::string_view key, std::string_view allowed, bool
   return value;
 }
 
+/// Lists of keys show the units that readers ask for.
 void Table::state_in(const AngularUnits& units) {
+  if (exploration() != nullptr) {
+    return;
+  }
   document_->units.insert_or_assign(node_->path, units);
 }
 

@@ -1,6 +1,7 @@
 #include "protocols/psychophysics/definition/trial_devices.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -59,19 +60,20 @@ const Schema<TrialDevice>& part_schema() {
 /// The tip that a key names among the devices before; the first, with the problem noted, if it
 /// names none.
 std::size_t tip_of(Table& table, const char* key, const std::vector<TrialDevice>& before) {
+  const std::string name = table.text(key);
   std::vector<std::string> tips;
-  for (const TrialDevice& each : before) {
-    if (each.is_tip()) {
-      tips.push_back(each.name);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (before[i].is_tip()) {
+      tips.push_back(fmt::format("\"{}\"", before[i].name));
+    }
+    if (before[i].is_tip() && before[i].name == name) {
+      return i;
     }
   }
-  if (tips.empty()) {
-    table.reject(key, "stands before its device; move it below");
-    return 0;
-  }
-  const std::string name = table.choice(key, tips);
-  const auto at = std::ranges::find(before, name, &TrialDevice::name);
-  return at == before.end() ? 0 : static_cast<std::size_t>(at - before.begin());
+  const std::string allowed = fmt::format("{}", fmt::join(tips, ", "));
+  table.reject(key, fmt::format("\"{}\"", name),
+               tips.empty() ? "a device whose table stands above" : allowed);
+  return 0;
 }
 
 void describe_parts(const Table& table) {

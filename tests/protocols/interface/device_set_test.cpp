@@ -167,8 +167,13 @@ TEST(DeviceSetTest, ATickWithPartsDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-/// Trains of turns in what a part gave over a time with one law [s].
-double train(double mass, const Law& law, Part part) {
+/// What a part did over three seconds under one law.
+struct Outcome {
+  double train;  // longest of turns [s]
+  device::Fault fault;
+};
+
+Outcome outcome_of(double mass, const Law& law, Part part) {
   const bool turns = part == Part::kRotation;
   TurningHandle handle(mass * kRadius * kRadius, mass);
   const double damping = 15.0 * mass / 0.8;  // of a hand of that mass
@@ -182,36 +187,54 @@ double train(double mass, const Law& law, Part part) {
     turns ? tick(set, law, {}) : tick(set, {}, law);
     forces.push_back(turns ? handle.given.torque.y() / kRadius : handle.given.grip);
   }
-  return test::longest_train(forces, 1.0 / kTick);
+  return {test::longest_train(forces, 1.0 / kTick), set.fault()};
 }
 
-// Springs, dampers, walls and detents as strong as a definition may ask for at 1 kHz, with handles
-// and hands from 20 g to 1 kg at the fingers; nobody feels an oscillation.
-TEST(DeviceSetTest, NoHandleOfAnyInertiaOscillates) {
-  struct Case {
-    const char* name;
-    double stiffness, damping;
-    bool wall;
+struct Firmness {
+  const char* name;
+  double stiffness, damping;
+  bool wall;
+};
+
+/// @param gives_way  whether the law uses the shares that the guard leaves it
+Law law_of(const Firmness& of, Part part, bool gives_way) {
+  const Eigen::Index axis = part == Part::kRotation ? 1 : 0;
+  return [of, axis, gives_way](const DeviceReading& reading) {
+    const control::GainShares shares = gives_way ? reading.shares : control::GainShares{};
+    const double x = reading.tool.position[axis], v = reading.tool.velocity[axis];
+    Vector3d force = Vector3d::Zero();
+    if (!of.wall || x > 0.0) {
+      force[axis] = std::clamp(
+          -shares.stiffness * of.stiffness * x - shares.damping * of.damping * v, -8.0, 8.0);
+    }
+    return force;
   };
+}
+
+constexpr Firmness kFirm[] = {{"spring", 1000.0, 10.0, false},
+                              {"damper", 0.0, 60.0, false},
+                              {"wall", 1500.0, 5.0, true},
+                              {"stiff", 2000.0, 30.0, false}};
+constexpr double kMasses[] = {0.02, 0.05, 0.1, 0.3, 1.0};  // handle and hand, at the fingers [kg]
+
+TEST(DeviceSetTest, NoHandleOfAnyInertiaOscillates) {
   for (const Part part : {Part::kRotation, Part::kGrip}) {
-    const Eigen::Index axis = part == Part::kRotation ? 1 : 0;
-    for (const Case& each : {Case{"spring", 1000.0, 10.0, false}, Case{"damper", 0.0, 60.0, false},
-                             Case{"wall", 1500.0, 5.0, true}, Case{"stiff", 2000.0, 30.0, false}}) {
-      for (const double mass : {0.02, 0.05, 0.1, 0.3, 1.0}) {
-        const Law law = [&](const DeviceReading& reading) {
-          const double x = reading.tool.position[axis], v = reading.tool.velocity[axis];
-          const bool out = each.wall && x < 0.0;
-          Vector3d force = Vector3d::Zero();
-          force[axis] = out ? 0.0
-                            : std::clamp(-reading.shares.stiffness * each.stiffness * x -
-                                             reading.shares.damping * each.damping * v,
-                                         -8.0, 8.0);
-          return force;
-        };
-        EXPECT_LE(train(mass, law, part), 0.2)
-            << each.name << ", " << device::part_word(part) << ", " << mass << " kg";
+    for (const Firmness& each : kFirm) {
+      for (const double mass : kMasses) {
+        SCOPED_TRACE(testing::Message()
+                     << each.name << ", " << device::part_word(part) << ", " << mass << " kg");
+        const Outcome outcome = outcome_of(mass, law_of(each, part, true), part);
+        EXPECT_LE(outcome.train, 0.2);
+        EXPECT_EQ(outcome.fault, device::Fault::kNone) << device::describe(outcome.fault);
       }
     }
+  }
+}
+
+TEST(DeviceSetTest, WhatDoesNotGiveWayIsEndedAsAnOscillation) {
+  for (const Part part : {Part::kRotation, Part::kGrip}) {
+    const Outcome outcome = outcome_of(0.05, law_of(kFirm[3], part, false), part);
+    EXPECT_EQ(outcome.fault, device::Fault::kOscillation) << device::describe(outcome.fault);
   }
 }
 
