@@ -62,17 +62,20 @@ constexpr std::array<const char*, 23> kErrors{
     "the device refused a value",
     "the device's automatic control is not running"};
 
-/// Greatest force of a device according to its maker, by the number of its system type [N].
+/// Greatest force, torque and grip force of a device according to its maker, by the number of its
+/// system type.
 struct Model {
   int type;
   const char* name;
-  double max_force;
+  double max_force;            // [N]
+  double max_torque{0.2};      // of a wrist with motors [N·m]
+  double max_grip_force{8.0};  // of a gripper with a motor [N]
 };
 constexpr std::array<Model, 6> kModels{{{33, "omega.3", 12.0},
                                         {60, "Falcon", 8.0},
                                         {63, "delta.3", 20.0},
-                                        {104, "sigma.7", 20.0},
-                                        {105, "sigma.7", 20.0},
+                                        {104, "sigma.7", 20.0, 0.4},
+                                        {105, "sigma.7", 20.0, 0.4},
                                         {206, "sigma.3", 20.0}}};
 constexpr Model kOther{-1, "device of a type that is not known here", 12.0};
 
@@ -102,8 +105,9 @@ DynamicLibrary open_library(const std::string& library) {
 }
 
 void check(const ForceDimensionParameters& p, double rate) {
-  const bool good = p.index >= 0 && p.index <= 3 && p.max_force > 0.0 && p.workspace_radius > 0.0 &&
-                    p.effector_mass >= 0.0 && p.velocity_window >= 0.001 && p.watchdog > 0.0 &&
+  const bool good = p.index >= 0 && p.index <= 3 && p.max_force > 0.0 && p.max_torque > 0.0 &&
+                    p.max_grip_force > 0.0 && p.workspace_radius > 0.0 && p.effector_mass >= 0.0 &&
+                    p.velocity_window >= 0.001 && p.watchdog > 0.0 &&
                     p.watchdog <= kLongestWatchdog + 1e-9 && p.velocity_threshold >= -1 &&
                     p.time_guard >= 0.0 && rate > 0.0;
   if (!good) {
@@ -134,6 +138,17 @@ struct ForceDimensionDevice::Api {
   unsigned (*get_button_mask)(char);
   bool (*has_wrist)(char);  // null in libraries before 3
   int (*get_orientation)(double (*)[3], char);
+  // Null in libraries that know no motors of a wrist or gripper.
+  bool (*has_active_wrist)(char);
+  int (*get_angular_velocity)(double*, double*, double*, char);
+  int (*config_angular_velocity)(int, int, char);
+  int (*set_max_torque)(double, char);
+  bool (*has_active_gripper)(char);
+  int (*get_gripper_gap)(double*, char);
+  int (*get_gripper_velocity)(double*, char);
+  int (*config_gripper_velocity)(int, int, char);
+  int (*set_max_gripper_force)(double, char);
+  int (*set_wrench)(double, double, double, double, double, double, double, char);
   int (*get_status)(int*, char);
   int (*set_max_force)(double, char);
   int (*enable_expert_mode)();
@@ -153,6 +168,14 @@ struct ForceDimensionDevice::Api {
   bool has_drd() const noexcept {
     return drd_open && drd_close && drd_is_supported && drd_is_initialized && drd_auto_init &&
            drd_stop;
+  }
+  bool knows_torque() const noexcept {
+    return has_active_wrist && get_orientation && get_angular_velocity && config_angular_velocity &&
+           set_max_torque && set_wrench;
+  }
+  bool knows_grip() const noexcept {
+    return has_active_gripper && get_gripper_gap && get_gripper_velocity &&
+           config_gripper_velocity && set_max_gripper_force && set_wrench;
   }
 };
 
@@ -181,6 +204,16 @@ ForceDimensionDevice::Api::Api(const std::string& path) : library(open_library(p
   library.find(system_type, "dhdGetSystemType");
   library.find(has_wrist, "dhdHasWrist");
   library.find(get_orientation, "dhdGetOrientationFrame");
+  library.find(has_active_wrist, "dhdHasActiveWrist");
+  library.find(get_angular_velocity, "dhdGetAngularVelocityRad");
+  library.find(config_angular_velocity, "dhdConfigAngularVelocity");
+  library.find(set_max_torque, "dhdSetMaxTorque");
+  library.find(has_active_gripper, "dhdHasActiveGripper");
+  library.find(get_gripper_gap, "dhdGetGripperGap");
+  library.find(get_gripper_velocity, "dhdGetGripperLinearVelocity");
+  library.find(config_gripper_velocity, "dhdConfigGripperVelocity");
+  library.find(set_max_gripper_force, "dhdSetMaxGripperForce");
+  library.find(set_wrench, "dhdSetForceAndTorqueAndGripperForce");
   library.find(drd_open, "drdOpenID");
   library.find(drd_close, "drdClose");
   library.find(drd_is_supported, "drdIsSupported");
@@ -198,6 +231,12 @@ const Schema<ForceDimensionParameters>& force_dimension_schema() {
           .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
                   "Force at which the driver saturates; at most what the model gives is used")
           .required()
+          .number("max_torque", &P::max_torque, {0.0, 10.0, true}, "N·m",
+                  "Torque at which the driver saturates, of a wrist with motors; at most what the "
+                  "model gives")
+          .number("max_grip_force", &P::max_grip_force, {0.0, 100.0, true}, "N",
+                  "Grip force at which the driver saturates, of a gripper with a motor; at most "
+                  "what the model gives")
           .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
                   "Radius of the device's workspace")
           .required()
@@ -267,19 +306,73 @@ void ForceDimensionDevice::open() {
   id_ = static_cast<char>(id);
 }
 
-/// No definition may claim more force than the device gives.
-void ForceDimensionDevice::check_force() const {
+/// No definition may claim more than the device gives.
+void ForceDimensionDevice::check_limits() const {
   const Model model = model_of(api_->system_type != nullptr ? api_->system_type(id_) : -1);
-  if (parameters_.max_force > model.max_force) {
-    throw InputError(
-        fmt::format("force_dimension.max_force is {} N; allowed: at most {} N, which "
-                    "is what the {} gives",
-                    parameters_.max_force, model.max_force, model.name));
+  const auto check = [&](const char* key, double claimed, double most, const char* unit) {
+    if (claimed > most) {
+      throw InputError(fmt::format(
+          "force_dimension.{} is {} {}; allowed: at most {} {}, which is what the {} gives", key,
+          claimed, unit, most, unit, model.name));
+    }
+  };
+  check("max_force", parameters_.max_force, model.max_force, "N");
+  if (info_.max_torque > 0.0) {
+    check("max_torque", parameters_.max_torque, model.max_torque, "N·m");
+  }
+  if (info_.max_grip_force > 0.0) {
+    check("max_grip_force", parameters_.max_grip_force, model.max_grip_force, "N");
   }
 }
 
+/// What the handle has beside its tip.
+void ForceDimensionDevice::find_parts() {
+  const Api& api = *api_;
+  info_.senses_orientation =
+      api.has_wrist != nullptr && api.get_orientation != nullptr && api.has_wrist(id_);
+  if (api.knows_torque() && api.has_active_wrist(id_)) {
+    info_.senses_orientation = true;
+    info_.torque_axes = Eigen::Vector3d::Ones();
+    info_.max_torque = parameters_.max_torque;
+  }
+  if (api.knows_grip() && api.has_active_gripper(id_)) {
+    info_.max_grip_force = parameters_.max_grip_force;
+  }
+}
+
+void ForceDimensionDevice::configure_parts(int window_ms) const {
+  const Api& api = *api_;
+  if (info_.max_torque > 0.0) {
+    require(api.config_angular_velocity(window_ms, kVelocityWindowMode, id_),
+            "set its window of angular velocity");
+    require(api.set_max_torque(parameters_.max_torque, id_), "set its torque limit");
+  }
+  if (info_.max_grip_force > 0.0) {
+    require(api.config_gripper_velocity(window_ms, kVelocityWindowMode, id_),
+            "set its gripper's velocity window");
+    require(api.set_max_gripper_force(parameters_.max_grip_force, id_), "set its grip force limit");
+  }
+}
+
+/// Set again at every start: a program before this one may have switched them off.
+void ForceDimensionDevice::configure_safety() {
+  const Api& api = *api_;
+  const ForceDimensionParameters& p = parameters_;
+  require(api.enable_expert_mode(), "enter its expert mode");
+  const auto watchdog = static_cast<unsigned char>(std::lround(p.watchdog / kWatchdogStep));
+  require(api.set_watchdog(watchdog, id_), "set its watchdog");
+  if (p.velocity_threshold >= 0) {
+    require(api.set_velocity_threshold(static_cast<unsigned>(p.velocity_threshold), id_),
+            "set its velocity threshold");
+  }
+  require(api.set_time_guard(static_cast<int>(std::lround(1e6 * p.time_guard)), id_),
+          "set its time guard");
+  require(api.disable_expert_mode(), "leave its expert mode");
+}
+
 void ForceDimensionDevice::configure() {
-  check_force();
+  find_parts();
+  check_limits();
   const Api& api = *api_;
   const ForceDimensionParameters& p = parameters_;
   if (opened_by_drd_ && api.drd_is_supported(id_)) {
@@ -295,30 +388,19 @@ void ForceDimensionDevice::configure() {
   require(api.config_linear_velocity(window_ms, kVelocityWindowMode, id_),
           "set its velocity window");
   require(api.set_max_force(p.max_force, id_), "set its force limit");
-  // Set again at every start: a program before this one may have switched them off.
-  require(api.enable_expert_mode(), "enter its expert mode");
-  const auto watchdog = static_cast<unsigned char>(std::lround(p.watchdog / kWatchdogStep));
-  require(api.set_watchdog(watchdog, id_), "set its watchdog");
-  if (p.velocity_threshold >= 0) {
-    require(api.set_velocity_threshold(static_cast<unsigned>(p.velocity_threshold), id_),
-            "set its velocity threshold");
-  }
-  require(api.set_time_guard(static_cast<int>(std::lround(1e6 * p.time_guard)), id_),
-          "set its time guard");
-  require(api.disable_expert_mode(), "leave its expert mode");
-  require(api.set_force(0.0, 0.0, 0.0, id_), "take a force of zero");
+  configure_parts(window_ms);
+  configure_safety();
+  require(set_wrench({}), "take a force of zero");
   require(api.enable_force(kOn, id_), "switch its forces on");
   const char* const name = api.system_name(id_);
   info_.name = fmt::format("Force Dimension {}", name != nullptr ? name : "device");
-  info_.senses_orientation =
-      api.has_wrist != nullptr && api.get_orientation != nullptr && api.has_wrist(id_);
 }
 
 void ForceDimensionDevice::close() noexcept {
   if (id_ < 0) {
     return;
   }
-  api_->set_force(0.0, 0.0, 0.0, id_);
+  set_wrench({});
   api_->enable_force(kOff, id_);
   api_->stop(id_);
   opened_by_drd_ ? api_->drd_close(id_) : api_->close(id_);
@@ -346,7 +428,7 @@ bool ForceDimensionDevice::read(DeviceReading& reading) noexcept {
   DeviceReading fresh;
   fresh.tool.position = {py, pz, px};
   fresh.tool.velocity = {vy, vz, vx};
-  if (info_.senses_orientation && !read_orientation(fresh.orientation)) {
+  if (!read_wrist(fresh) || !read_gripper(fresh)) {
     return fail();
   }
   fresh.buttons = api_->get_button_mask(id_);
@@ -355,6 +437,27 @@ bool ForceDimensionDevice::read(DeviceReading& reading) noexcept {
   judge_status(fresh);
   reading = fresh;
   return true;
+}
+
+bool ForceDimensionDevice::read_wrist(DeviceReading& reading) noexcept {
+  if (info_.senses_orientation && !read_orientation(reading.orientation)) {
+    return false;
+  }
+  if (info_.max_torque <= 0.0) {
+    return true;
+  }
+  double wx = 0.0;
+  double wy = 0.0;
+  double wz = 0.0;
+  const bool read = api_->get_angular_velocity(&wx, &wy, &wz, id_) >= 0;
+  reading.angular_velocity = {wy, wz, wx};
+  return read;
+}
+
+bool ForceDimensionDevice::read_gripper(DeviceReading& reading) noexcept {
+  return info_.max_grip_force <= 0.0 ||
+         (api_->get_gripper_gap(&reading.opening, id_) >= 0 &&
+          api_->get_gripper_velocity(&reading.opening_speed, id_) >= 0);
 }
 
 bool ForceDimensionDevice::read_orientation(Eigen::Quaterniond& orientation) noexcept {
@@ -386,12 +489,21 @@ void ForceDimensionDevice::judge_status(DeviceReading& reading) noexcept {
 
 bool ForceDimensionDevice::write(const Wrench& wrench) noexcept {
   const CallTimer::Scope timed(timer_);
-  const Eigen::Vector3d& force = wrench.force;
-  const int result = api_->set_force(force.z(), force.x(), force.y(), id_);
+  const int result = set_wrench(wrench);
   if (result == kMotorSaturated) {
     saturated_.fetch_add(1, std::memory_order_relaxed);
   }
   return result >= 0 || fail();
+}
+
+/// The vendor's axes turn into ours without a reflection, so that a torque is mapped as a force is.
+int ForceDimensionDevice::set_wrench(const Wrench& wrench) noexcept {
+  const Eigen::Vector3d& f = wrench.force;
+  const Eigen::Vector3d& t = wrench.torque;
+  if (info_.max_torque > 0.0 || info_.max_grip_force > 0.0) {
+    return api_->set_wrench(f.z(), f.x(), f.y(), t.z(), t.x(), t.y(), wrench.grip, id_);
+  }
+  return api_->set_force(f.z(), f.x(), f.y(), id_);
 }
 
 int count_force_dimension_devices(const std::string& library) {

@@ -16,8 +16,10 @@ namespace haptrial::device {
 /// How a Force Dimension device is set up; nothing is left to what its last user chose. The
 /// defaults suit an omega.3.
 struct ForceDimensionParameters {
-  int index{0};            // of the device, 0 to 3
-  double max_force{12.0};  // the driver saturates here, at most what the model gives > 0 [N]
+  int index{0};                // of the device, 0 to 3
+  double max_force{12.0};      // the driver saturates here, at most what the model gives > 0 [N]
+  double max_torque{0.1};      // likewise of a wrist with motors > 0 [N·m]
+  double max_grip_force{4.0};  // likewise of a gripper with a motor > 0 [N]
   double workspace_radius{0.075};  // > 0 [m]
   double effector_mass{0.0};  // what is mounted on the handle, for gravity compensation >= 0 [kg]
   bool gravity_compensation{true};
@@ -33,8 +35,9 @@ struct ForceDimensionParameters {
 /// The keys of [force_dimension].
 const Schema<ForceDimensionParameters>& force_dimension_schema();
 
-/// Drives an omega.3, delta.3, sigma or Falcon through the vendor's DHD library, and through its
-/// DRD library, where that is installed, for the automatic start-up calibration.
+/// Drives an omega, delta, sigma, lambda or Falcon through the vendor's DHD library, and through
+/// its DRD library, where that is installed, for the automatic start-up calibration. A wrist or
+/// gripper with motors gives torque or grip force, if the library has what it takes for them.
 ///
 /// The vendor's axes are x to the user, y to the right and z up; this driver is the only place that
 /// knows (docs/conventions.md). Its origin is the vendor's.
@@ -65,8 +68,14 @@ class ForceDimensionDevice final : public Device {
  private:
   struct Api;
   void open();
-  void check_force() const;
+  void check_limits() const;
   void configure();
+  void configure_safety();
+  void find_parts();
+  void configure_parts(int window_ms) const;
+  int set_wrench(const Wrench& wrench) noexcept;
+  bool read_wrist(DeviceReading& reading) noexcept;
+  bool read_gripper(DeviceReading& reading) noexcept;
   void close() noexcept;
   void require(int result, const char* what) const;
   bool fail() noexcept;

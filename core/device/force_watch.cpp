@@ -33,10 +33,10 @@ Fault ForceWatch::look(const Eigen::Vector3d& force, const Eigen::Vector3d& stim
   saturated_for_ = force.norm() >= kAtTheLimit * limit_ ? saturated_for_ + dt : 0.0;
   const SwingCounter::Train near = at_limit_.look(force, stimulus, dt);
   const SwingCounter::Train any = swings_.look(force, stimulus, dt);
-  const bool oscillates = (near.turned && near.turns >= kTurnsNearLimit &&
-                           near.lasted >= kLastingNearLimit && near.largest > kNear * limit_) ||
-                          (any.turned && any.lasted >= kLasting &&
-                           any.swing >= kDying * any.swing_before);
+  const bool oscillates =
+      (near.turned && near.turns >= kTurnsNearLimit && near.lasted >= kLastingNearLimit &&
+       near.largest > kNear * limit_) ||
+      (any.turned && any.lasted >= kLasting && any.swing >= kDying * any.swing_before);
   if (oscillates) {
     return Fault::kOscillation;
   }

@@ -23,7 +23,7 @@ struct HaplyParameters {
   double workspace_radius{0.1};  // at most the model's is used > 0 [m]
   Eigen::Vector3d origin{0.0, -0.12,
                          0.15};  // of W in the service's axes, from the mounting face [m]
-  double patience{0.02};         // how long one side goes on without word from the other > 0 [s]
+  double patience{0.018};        // how long one side goes on without word from the other > 0 [s]
   int stop_button{2};            // emergency stop, 0 to 2: a, b and c of the grip; -1: none
 };
 

@@ -13,7 +13,7 @@ struct HaplyAddress {
   std::string device_id;  // empty: the first one that the service lists
   std::string grip_id;    // empty: the first one, or none if there is none
   int number{0};          // of several sessions' devices, from 0: counted from the one above
-  double patience{0.02};  // without a command for so long the link commands no force > 0 [s]
+  double patience{0.018};  // without a command for so long the link commands no force > 0 [s]
 };
 
 /// A WebSocket to the Inverse Service, on a thread of its own. The service gives one state for each

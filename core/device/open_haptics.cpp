@@ -16,10 +16,16 @@ namespace haptrial::device {
 namespace {
 
 constexpr unsigned kCurrentButtons = 0x2000;
-constexpr unsigned kPosition = 0x2050;   // [mm]
-constexpr unsigned kVelocity = 0x2051;   // [mm/s]
-constexpr unsigned kTransform = 0x2052;  // 4 x 4, by columns
+constexpr unsigned kPosition = 0x2050;         // [mm]
+constexpr unsigned kVelocity = 0x2051;         // [mm/s]
+constexpr unsigned kTransform = 0x2052;        // 4 x 4, by columns
+constexpr unsigned kAngularVelocity = 0x2053;  // [rad/s]
+constexpr unsigned kOutputs = 0x2554;          // motors
 constexpr unsigned kForce = 0x2700;
+constexpr unsigned kTorque = 0x2701;            // of a device with six motors [mN·m]
+constexpr unsigned kNominalMaxTorque = 0x2622;  // likewise [mN·m]
+constexpr int kWithTorque = 6;                  // motors
+constexpr double kMillinewtonmetre = 1e-3;      // [N·m]
 constexpr unsigned kNominalMaxForce = 0x2603;
 constexpr double kForceOfATouch = 3.3;  // the weakest of them, where the device says nothing [N]
 constexpr unsigned kForceOutput = 0x4000;
@@ -64,7 +70,8 @@ const char* hd_sentence(unsigned error) noexcept {
 bool only_force_is_off(unsigned error) noexcept { return error >= 0x200 && error <= 0x204; }
 
 void check_hd(const OpenHapticsParameters& p, double rate) {
-  if (!(p.max_force > 0.0 && p.workspace_radius > 0.0 && p.patience > 0.0 && rate > 0.0)) {
+  if (!(p.max_force > 0.0 && p.max_torque > 0.0 && p.workspace_radius > 0.0 && p.patience > 0.0 &&
+        rate > 0.0)) {
     throw std::invalid_argument("OpenHapticsDevice: a parameter is out of its bounds");
   }
 }
@@ -121,6 +128,9 @@ const Schema<OpenHapticsParameters>& open_haptics_schema() {
           .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
                   "Force at which the driver saturates; at most the device's own limit is used")
           .required()
+          .number("max_torque", &P::max_torque, {0.0, 10.0, true}, "N·m",
+                  "Torque at which the driver saturates, of a device with six motors; at most the "
+                  "device's own limit is used")
           .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
                   "Radius of the device's workspace")
           .required()
@@ -171,6 +181,7 @@ void OpenHapticsDevice::start(double rate) {
       fmt::format("OpenHaptics {}", parameters_.name.empty() ? "default device" : parameters_.name),
       std::min(nominal > 0.0 ? nominal : kForceOfATouch, parameters_.max_force),
       parameters_.workspace_radius, false, true};
+  find_torque();
   api_->enable(kForceOutput);
   require("switch its forces on");
   callback_ = api_->schedule(&OpenHapticsDevice::frame, this, kPriority);
@@ -189,6 +200,21 @@ void OpenHapticsDevice::start(double rate) {
   }
 }
 
+/// A device that does not say how much torque it gives gives none here.
+void OpenHapticsDevice::find_torque() {
+  int motors = 0;
+  double nominal = 0.0;
+  api_->get_integer(kOutputs, &motors);
+  if (motors == kWithTorque) {
+    api_->get_double(kNominalMaxTorque, &nominal);
+  }
+  require("say its greatest torque");
+  if (nominal > 0.0) {
+    info_.torque_axes = Eigen::Vector3d::Ones();
+    info_.max_torque = std::min(kMillinewtonmetre * nominal, parameters_.max_torque);
+  }
+}
+
 void OpenHapticsDevice::close() noexcept {
   ending_.store(true, std::memory_order_release);
   if (scheduler_runs_) {
@@ -196,9 +222,8 @@ void OpenHapticsDevice::close() noexcept {
     api_->stop_scheduler();
     api_->unschedule(callback_);
   }
-  const double nothing[3] = {0.0, 0.0, 0.0};
   api_->begin_frame(device_);
-  api_->set_double(kForce, nothing);
+  give({});
   api_->end_frame(device_);
   api_->disable(kForceOutput);
   api_->disable_device(device_);
@@ -209,15 +234,23 @@ unsigned OpenHapticsDevice::frame(void* self) {
   return kGoOn;
 }
 
+void OpenHapticsDevice::give(const Wrench& wrench) noexcept {
+  api_->set_double(kForce, wrench.force.data());
+  if (info_.max_torque > 0.0) {
+    const Eigen::Vector3d torque = wrench.torque / kMillinewtonmetre;
+    api_->set_double(kTorque, torque.data());
+  }
+}
+
 void OpenHapticsDevice::exchange() noexcept {
   const Api& api = *api_;
-  if (command_.read(force_)) {
+  if (command_.read(wrench_)) {
     frames_without_command_ = 0;
   } else if (++frames_without_command_ > patience_ticks_) {
-    force_.setZero();
+    wrench_ = {};
   }
   if (ending_.load(std::memory_order_acquire)) {
-    force_.setZero();
+    wrench_ = {};
   }
   double p[3] = {0.0, 0.0, 0.0};
   double v[3] = {0.0, 0.0, 0.0};
@@ -228,10 +261,13 @@ void OpenHapticsDevice::exchange() noexcept {
   api.get_double(kVelocity, v);
   api.get_double(kTransform, transform.data());
   api.get_integer(kCurrentButtons, &buttons);
-  api.set_double(kForce, force_.data());
+  Sensed now;
+  if (info_.max_torque > 0.0) {
+    api.get_double(kAngularVelocity, now.reading.angular_velocity.data());
+  }
+  give(wrench_);
   api.end_frame(device_);
 
-  Sensed now;
   now.reading.tool.position = kMillimetre * Eigen::Vector3d(p[0], p[1], p[2]);
   now.reading.tool.velocity = kMillimetre * Eigen::Vector3d(v[0], v[1], v[2]);
   now.reading.orientation =
@@ -274,7 +310,7 @@ bool OpenHapticsDevice::read(DeviceReading& reading) noexcept {
 }
 
 bool OpenHapticsDevice::write(const Wrench& wrench) noexcept {
-  command_.write(wrench.force);
+  command_.write(wrench);
   return true;
 }
 

@@ -18,6 +18,7 @@ namespace haptrial::device {
 struct OpenHapticsParameters {
   std::string name;               // as the vendor's setup tool named it; empty: the default one
   double max_force{3.3};          // at most the device's own limit is used > 0 [N]
+  double max_torque{0.1};         // likewise, of a device with six motors > 0 [N·m]
   double workspace_radius{0.08};  // > 0 [m]
   double patience{0.02};          // how long one side goes on without word from the other > 0 [s]
   int stop_button{1};             // emergency stop; -1: none
@@ -34,7 +35,8 @@ const Schema<OpenHapticsParameters>& open_haptics_schema();
 /// side for `patience` is a fault: read() fails when no fresh position came, and the callback lets
 /// the force go when no fresh command came.
 ///
-/// The vendor's axes are ours (x right, y up, z to the user), in millimetres.
+/// The vendor's axes are ours (x right, y up, z to the user), in millimetres. A device with six
+/// motors, a Premium 6DOF, gives torque.
 class OpenHapticsDevice final : public Device {
  public:
   /// @param rate     of the scheduler and of the servo loop > 0 [Hz]
@@ -65,6 +67,8 @@ class OpenHapticsDevice final : public Device {
   void exchange() noexcept;
   void note_error(unsigned error) noexcept;
   void start(double rate);
+  void find_torque();
+  void give(const Wrench& wrench) noexcept;
   void close() noexcept;
   void require(const char* what) const;
 
@@ -77,15 +81,15 @@ class OpenHapticsDevice final : public Device {
   int patience_ticks_;
   const char* trouble_{""};
 
-  realtime::LatestValue<Sensed> sensed_;            // scheduler -> servo
-  realtime::LatestValue<Eigen::Vector3d> command_;  // servo -> scheduler
+  realtime::LatestValue<Sensed> sensed_;   // scheduler -> servo
+  realtime::LatestValue<Wrench> command_;  // servo -> scheduler
   std::atomic<bool> ending_{false};
   std::atomic<std::uint64_t> stale_{0};
   // Servo thread.
   Sensed latest_;
   int ticks_without_news_{0};
   // Scheduler's thread.
-  Eigen::Vector3d force_{Eigen::Vector3d::Zero()};
+  Wrench wrench_;
   int frames_without_command_{0};
   unsigned error_{0};
   int error_frames_{0};  // left, for which it is still told

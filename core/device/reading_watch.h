@@ -67,7 +67,7 @@ class ReadingWatch {
   Eigen::Vector3d free_way_{Eigen::Vector3d::Zero()};    // [m]
   double doubted_{0.0};   // force when the position was first in doubt; 0: it is not [N]
   double gone_for_{0.0};  // since the force has gone in doubt [s]
-  double odd_for_{0.0};  // left, after an odd step [s]
+  double odd_for_{0.0};   // left, after an odd step [s]
   std::array<double, kJitterTicks - 1> odd_at_{};  // ring of times [s]
   int odd_{0};
 

@@ -59,6 +59,7 @@ void check_line(const char* table, const SerialBoardSetup& line, int number) {
 }
 
 bool always(const VendorSetups& /*setups*/) { return true; }
+double says_velocity(const VendorSetups& /*setups*/) { return 0.0; }
 
 /// An entry of a device that is opened from its set-up, the rate and a library.
 template <auto member, auto schema>
@@ -90,7 +91,8 @@ constexpr std::array kDevices{
                    parameters.index += number;
                    return std::make_unique<ForceDimensionDevice>(parameters, rate, library);
                  },
-                 always, look_for_force_dimension},
+                 always, [](const S& s) { return s.force_dimension.velocity_window; },
+                 look_for_force_dimension},
     VendorDevice{"open-haptics", "open_haptics", true,
                  read_table<&S::open_haptics, open_haptics_schema>, limits_of<&S::open_haptics>,
                  without_stop_button<&S::open_haptics>,
@@ -98,14 +100,14 @@ constexpr std::array kDevices{
                     const std::string& library) -> std::unique_ptr<Device> {
                    return std::make_unique<OpenHapticsDevice>(setups.open_haptics, rate, library);
                  },
-                 always, look_for_open_haptics},
+                 always, says_velocity, look_for_open_haptics},
     VendorDevice{"haply", "haply", false, read_table<&S::haply, haply_schema>, limits_of<&S::haply>,
                  without_stop_button<&S::haply>,
                  [](const S& setups, int number, double rate,
                     const std::string& /*library*/) -> std::unique_ptr<Device> {
                    return std::make_unique<HaplyDevice>(setups.haply, rate, number);
                  },
-                 always, look_for_haply},
+                 always, says_velocity, look_for_haply},
     VendorDevice{"hapi", "hapi", false, read_table<&S::hapi, hapi_schema>,
                  limits_of_board<&S::hapi>, [](S& /*setups*/) {},
                  [](const S& setups, int number, double rate,
@@ -113,7 +115,8 @@ constexpr std::array kDevices{
                    check_line("hapi", setups.hapi.line, number);
                    return open_hapi_board(setups.hapi, rate);
                  },
-                 [](const S& /*setups*/) { return false; }, look_for_boards},
+                 [](const S& /*setups*/) { return false; },
+                 [](const S& s) { return s.hapi.line.velocity_window; }, look_for_boards},
     VendorDevice{"paddle", "paddle", false, read_table<&S::paddle, paddle_schema>,
                  limits_of_board<&S::paddle>, without_stop_button<&S::paddle>,
                  [](const S& setups, int number, double rate,
@@ -121,7 +124,8 @@ constexpr std::array kDevices{
                    check_line("paddle", setups.paddle.line, number);
                    return open_paddle_board(setups.paddle, rate);
                  },
-                 [](const S& setups) { return has_buttons(setups.paddle); }, look_for_boards},
+                 [](const S& setups) { return has_buttons(setups.paddle); },
+                 [](const S& s) { return s.paddle.line.velocity_window; }, look_for_boards},
 };
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/device/force_dimension.h"
-#include "core/device/haply.h"
 #include "core/device/hapi_board.h"
+#include "core/device/haply.h"
 #include "core/device/open_haptics.h"
 #include "core/device/paddle_board.h"
 
@@ -48,6 +48,8 @@ struct VendorDevice {
   std::unique_ptr<Device> (*open)(const VendorSetups& setups, int number, double rate,
                                   const std::string& library);
   bool (*has_buttons)(const VendorSetups& setups);
+  /// Over which its driver estimates velocity [s]; 0: the device itself says it.
+  double (*velocity_window)(const VendorSetups& setups);
   /// Says what is there, in one line, without opening a device.
   /// @throws InputError or RunError that says what is missing
   std::string (*look)(const std::string& library);

@@ -16,6 +16,8 @@
 #include "core/record/rows/device_row.h"
 #include "core/record/rows/trial_rows.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::handle_parts_test {
@@ -248,6 +250,60 @@ TEST_F(HandlePartsTest, AnImpossiblePartIsRefused) {
   EXPECT_THAT(without("grip_of = \"stylus\"\nstart = [0.02, 0.0, 0.0]\nmax_force = 6.0",
                       "rotation_of = \"stylus\""),
               HasSubstr("devices.pinch is the same part of stylus as knob; leave out one"));
+}
+
+/// A handle with motors for torque and grip, over the stand-in library, at which nobody is.
+class LiveHandlePartsTest : public HandlePartsTest {
+ protected:
+  std::string live(const std::string& text) {
+    std::ofstream(folder_ / "parts.toml") << text;
+    return "run '" + (folder_ / "parts.toml").string() + "' --subject S01 --out '" + out() +
+           "' --device force-dimension --library '" +
+           HAPTRIAL_BINARY_DIR "/libstand_in_dhd.so' --console";
+  }
+  static std::string study_of_both() {
+    std::string text = study(
+        "type = \"spring\"\nto = [0.0, 0.3, 0.0]\nstiffness = 0.05\ndamping = 0.0005\n"
+        "[fields.sponge]\ndevice = \"pinch\"\ntype = \"spring\"\nto = [0.03, 0.0, 0.0]\n"
+        "stiffness = 100.0\ndamping = 1.0\n",
+        "knob");
+    text.replace(text.find("fields = [\"felt\"]"), 17, "fields = [\"felt\", \"sponge\"]");
+    text.replace(text.find("time = 1.5"), 10, "time = 1.0");  // before all has come to rest
+    const auto question = text.find("[response]");
+    text.erase(question, text.find("[[blocks]]") - question);
+    text.erase(text.find("[observer]"));
+    return text + "[force_dimension]\nmax_torque = 0.15\nmax_grip_force = 6.0\n";
+  }
+};
+
+TEST_F(LiveHandlePartsTest, TorqueAndGripReachTheDevice) {
+  test::LiveCommand session(live(study_of_both()), "export STAND_IN_ACTIVE=1");
+  test::ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions")) << session.errors();
+  ASSERT_TRUE(person.ask("start"));
+  const test::CommandResult result = session.wait();
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_LT(worst(1,
+                  [](const Tick& t) -> Vector3d {
+                    return 0.05 * (Vector3d(0.0, 0.3, 0.0) - t.place) - 0.0005 * t.velocity;
+                  }),
+            kRounding);
+  EXPECT_LT(worst(2,
+                  [](const Tick& t) -> Vector3d {
+                    return 100.0 * (Vector3d(0.03, 0.0, 0.0) - t.place) - 1.0 * t.velocity;
+                  }),
+            kRounding);
+  // The wrist's own spring of 0.04 N·m/rad and the field's balance: 0.05 (0.3 - a) = 0.04 a.
+  EXPECT_NEAR(ticks(1).back().place.y(), 0.05 * 0.3 / 0.09, 0.005);
+  // The gripper's 200 N/m about 20 mm and the field's 100 N/m about 30 mm.
+  EXPECT_NEAR(ticks(2).back().place.x(), 0.02 + 0.01 / 3.0, 0.0005);
+}
+
+TEST_F(LiveHandlePartsTest, ADeviceWithoutTheMotorsIsRefusedBeforeTheSession) {
+  const auto result = test::run_command("haptrial " + live(study_of_both()));
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.errors, HasSubstr("devices.knob wants a torque, which the Force Dimension "
+                                       "omega.3 does not give"));
 }
 
 }  // namespace

@@ -36,7 +36,9 @@ enum class Failure : int {
 struct StandInView {
   double position[3];
   double force[3];  // that the motors give
-  long ticks;       // periods that passed
+  double torque[3];
+  double grip;
+  long ticks;  // periods that passed
   bool forces_on;
   bool open;
 };
@@ -51,8 +53,11 @@ struct StandInSetup {
   int watchdog;
   int threshold;
   int time_guard_us;
-  double rate;       // of the scheduler [Hz]
-  char calls[1024];  // names of the set-up calls, each with a blank behind it
+  double rate;  // of the scheduler [Hz]
+  int angular_window_ms, gripper_window_ms;
+  double max_torque;      // [N·m]
+  double max_grip_force;  // [N]
+  char calls[1024];       // names of the set-up calls, each with a blank behind it
 };
 
 // Each stand-in exports these with C linkage beside the vendor's functions:
@@ -60,6 +65,7 @@ struct StandInSetup {
 //   void stand_in_fail(int failure, long tick)  from that tick on
 //   void stand_in_place(const double p[3])      the handle rests there; its spring too
 //   void stand_in_turn(const double r[9])       a rotation by rows, from now on
+//   void stand_in_activate()                    wrist and gripper have motors (STAND_IN_ACTIVE=1)
 //   void stand_in_buttons(unsigned mask)
 //   void stand_in_view(StandInView*)
 //   void stand_in_setup(StandInSetup*)

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <limits>
 
 #include "tests/support/stand_in_dhd.h"
@@ -79,6 +80,7 @@ void stand_in_turn(const double* rows) {
   std::copy_n(rows, 9, handle.turn.begin());
   handle.wrist = true;
 }
+void stand_in_activate() { handle.active = handle.wrist = true; }
 void stand_in_buttons(unsigned mask) { handle.buttons = mask; }
 void stand_in_view(StandInView* out) { handle.view(out, 1.0); }
 void stand_in_setup(StandInSetup* out) { *out = handle.setup; }
@@ -93,6 +95,9 @@ int dhdOpenID(char index) {
     return failed(kNoDevice);
   }
   handle.open = true;
+  if (std::getenv("STAND_IN_ACTIVE") != nullptr) {
+    stand_in_activate();
+  }
   handle.note("dhdOpen");
   return 0;
 }
@@ -198,6 +203,44 @@ int dhdSetForce(double x, double y, double z, char) {
   return saturated ? 2 : 0;
 }
 bool dhdHasWrist(char) { return handle.wrist; }
+bool dhdHasActiveWrist(char) { return handle.active; }
+bool dhdHasActiveGripper(char) { return handle.active; }
+int dhdConfigAngularVelocity(int ms, int, char) {
+  handle.setup.angular_window_ms = ms;
+  return setting("angular_window");
+}
+int dhdConfigGripperVelocity(int ms, int, char) {
+  handle.setup.gripper_window_ms = ms;
+  return setting("gripper_window");
+}
+int dhdSetMaxTorque(double torque, char) {
+  handle.setup.max_torque = torque;
+  return setting("max_torque");
+}
+int dhdSetMaxGripperForce(double force, char) {
+  handle.setup.max_grip_force = force;
+  return setting("max_grip");
+}
+int dhdGetAngularVelocityRad(double* x, double* y, double* z, char) {
+  *x = handle.spin[0];
+  *y = handle.spin[1];
+  *z = handle.spin[2];
+  return link();
+}
+int dhdGetGripperGap(double* gap, char) {
+  *gap = handle.gap;
+  return link();
+}
+int dhdGetGripperLinearVelocity(double* speed, char) {
+  *speed = handle.gap_speed;
+  return link();
+}
+int dhdSetForceAndTorqueAndGripperForce(double x, double y, double z, double tx, double ty,
+                                        double tz, double grip, char id) {
+  handle.torque = {tx, ty, tz};
+  handle.grip = grip;
+  return dhdSetForce(x, y, z, id);
+}
 int dhdGetOrientationFrame(double (*rows)[3], char) {
   if (link() < 0) {
     return -1;

@@ -26,7 +26,10 @@ struct StandInHandle {
   Vector anchor{};
   Vector force{};  // that the motors give [N]
   std::array<double, 9> turn{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};  // by rows
-  bool wrist{false};  // it says how it is turned
+  bool wrist{false};   // it says how it is turned
+  bool active{false};  // wrist and gripper have motors: masses on damped springs, as the tip is
+  Vector spin{}, torque{}, turned{};           // [rad/s, N·m, rad]
+  double gap{0.0}, gap_speed{0.0}, grip{0.0};  // [m, m/s, N]
   long ticks{0};
   unsigned buttons{0};
   bool forces_on{false};
@@ -44,6 +47,30 @@ struct StandInHandle {
           dt / kMass * (motor - kStiffness * (position[i] - anchor[i]) - kDamping * velocity[i]);
       position[i] += dt * velocity[i];
     }
+    if (active) {
+      step_parts(dt);
+    }
+  }
+
+  /// A wrist that turns by little, and a gripper that rests 20 mm open.
+  void step_parts(double dt) {
+    constexpr double kInertia = 1e-4;      // [kg·m²]
+    constexpr double kTurning = 0.04;      // [N·m/rad]
+    constexpr double kTurnDamping = 4e-3;  // [N·m·s/rad]
+    constexpr double kRest = 0.02;         // [m]
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double motor = forces_on ? torque[i] : 0.0;
+      spin[i] += dt / kInertia * (motor - kTurning * turned[i] - kTurnDamping * spin[i]);
+      turned[i] += dt * spin[i];
+    }
+    const double x = 0.5 * turned[0], y = 0.5 * turned[1], z = 0.5 * turned[2];
+    const double w = std::sqrt(std::max(0.0, 1.0 - x * x - y * y - z * z));
+    turn = {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
+            2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
+            2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
+    const double motor = forces_on ? grip : 0.0;
+    gap_speed += dt / kMass * (motor - kStiffness * (gap - kRest) - kDamping * gap_speed);
+    gap += dt * gap_speed;
   }
 
   bool fails(Failure what) const { return failure == what && ticks >= failure_tick; }
@@ -66,6 +93,10 @@ struct StandInHandle {
       out->position[i] = position[i] / unit;
       out->force[i] = forces_on ? force[i] : 0.0;
     }
+    out->torque[0] = forces_on ? torque[0] : 0.0;
+    out->torque[1] = forces_on ? torque[1] : 0.0;
+    out->torque[2] = forces_on ? torque[2] : 0.0;
+    out->grip = forces_on ? grip : 0.0;
     out->ticks = ticks;
     out->forces_on = forces_on;
     out->open = open;

@@ -95,6 +95,10 @@ void stand_in_turn(const double* rows) {
   const std::lock_guard lock(mutex);
   std::copy_n(rows, 9, handle.turn.begin());
 }
+void stand_in_activate() {
+  const std::lock_guard lock(mutex);
+  handle.active = true;
+}
 void stand_in_buttons(unsigned mask) {
   const std::lock_guard lock(mutex);
   handle.buttons = mask;
@@ -167,6 +171,14 @@ void hdGetDoublev(unsigned what, double* out) {
     *out = 3.3;
     return;
   }
+  if (what == 0x2622) {
+    *out = handle.active ? 515.0 : 0.0;
+    return;
+  }
+  if (what == 0x2053) {
+    std::copy_n(handle.spin.begin(), 3, out);
+    return;
+  }
   if (what == 0x2052) {
     std::fill_n(out, 16, 0.0);
     for (std::size_t i = 0; i < 9; ++i) {
@@ -186,10 +198,15 @@ void hdGetDoublev(unsigned what, double* out) {
     out[1] += 20.0;
   }
 }
-void hdGetIntegerv(unsigned, int* out) { *out = static_cast<int>(handle.buttons); }
+void hdGetIntegerv(unsigned what, int* out) {
+  *out = what == 0x2554 ? (handle.active ? 6 : 3) : static_cast<int>(handle.buttons);
+}
 void hdSetDoublev(unsigned what, const double* in) {
   if (what == 0x2700) {
     std::copy_n(in, 3, handle.force.begin());
+  }
+  if (what == 0x2701) {
+    std::transform(in, in + 3, handle.torque.begin(), [](double t) { return 1e-3 * t; });
   }
 }
 ErrorInfo hdGetError() { return {error.exchange(0), 0, 0}; }

@@ -77,8 +77,9 @@ std::size_t tip_of(Table& table, const char* key, const std::vector<TrialDevice>
 }
 
 void describe_parts(const Table& table) {
-  table.describe({"rotation_of", "Device whose rotation this is", "", false});
-  table.describe({"grip_of", "Device whose grip this is", "", false});
+  table.describe(
+      {"rotation_of", "Device whose rotation this is", "the tip of a device of its own", false});
+  table.describe({"grip_of", "Device whose grip this is", "the tip of a device of its own", false});
 }
 
 TrialDevice read_device(Table& table, const std::string& name,

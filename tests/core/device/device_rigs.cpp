@@ -30,6 +30,7 @@ StandIn::StandIn(const std::string& name)
   library.get(fail, "stand_in_fail");
   library.get(place, "stand_in_place");
   library.get(turn, "stand_in_turn");
+  library.get(activate, "stand_in_activate");
   library.get(buttons, "stand_in_buttons");
   library.get(view, "stand_in_view");
   library.get(set_up, "stand_in_setup");

@@ -65,6 +65,7 @@ struct StandIn {
   void (*fail)(int, long);
   void (*place)(const double*);
   void (*turn)(const double*);
+  void (*activate)();
   void (*buttons)(unsigned);
   void (*view)(StandInView*);
   void (*set_up)(StandInSetup*);

@@ -57,8 +57,9 @@ TEST(AngularUnitsTest, WhatHasNoLengthInItStaysAsItIs) {
 TEST(AngularUnitsTest, ASentenceSaysTheUnitAndTheBoundsOfARotation) {
   Knob knob("stiffness = -1.0\n");
   knob.table().number("stiffness", {0.0, 1e5}, "N/m");
-  EXPECT_EQ(test::message_of([&] { knob.document.finish(); }),
-            "k.toml:2: knob.stiffness is -1; allowed: a number from 0 to 40 [N·m/rad]");
+  EXPECT_EQ(
+      test::message_of([&] { knob.document.finish(); }),
+      "k.toml:2: knob.stiffness is -1; allowed: a number of at least 0 and at most 40 [N·m/rad]");
 }
 
 TEST(AngularUnitsTest, OtherTablesAreNotTouched) {
