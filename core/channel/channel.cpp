@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLook{20};    // for the end of the session, and for silence
+constexpr milliseconds kLook{20};  // for the end of the session, and for silence
 constexpr milliseconds kUntilBegin{1};
 constexpr milliseconds kRetry{500};  // until a lost instrument is opened again
 constexpr std::size_t kBlock = 256;  // samples in a block of the log
@@ -131,6 +131,7 @@ void Channel::take(const Measured& sample) {
     note(Incident::kDropped, static_cast<double>(std::exchange(no_room_, 0)));
   }
   state_.values = row.values;
+  state_.time_ns = row.time_ns;
   show(true);
 }
 

@@ -24,6 +24,7 @@ namespace haptrial::channel {
 struct ChannelState {
   bool live{false};  // data come
   std::array<double, kMostQuantities> values{};
+  std::int64_t time_ns{0};  // at which they were measured
 };
 
 /// A channel of a running session. A thread of its own opens the instrument, reads it and gives
@@ -34,8 +35,8 @@ class Channel final : private ChannelInbox {
   /// Time since the session's first tick [ns]; any thread.
   using Now = std::function<std::int64_t()>;
 
-  /// Starts the thread, which opens the instrument and waits for begin(). @param first  number of the first sample: of those that an earlier run of
-  /// the session has
+  /// Starts the thread, which opens the instrument and waits for begin(). @param first  number of
+  /// the first sample: of those that an earlier run of the session has
   Channel(ChannelOptions options, Now now, std::uint64_t first = 0);
   ~Channel() override;
   Channel(const Channel&) = delete;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/device/sensed_mount.h"
 #include "experiments/command/sessions/certificate_task.h"
+#include "experiments/command/sessions/sensor_channel.h"
 #include "experiments/control/interrupt.h"
 
 namespace haptrial::experiments {
@@ -27,7 +29,9 @@ const char* certificate_prompt(analysis::CertificatePart part) {
     case analysis::CertificatePart::kWall:
       return "take the mass off and let the handle go: the device presses it against walls";
     case analysis::CertificatePart::kGrid:
+      return "clamp the handle to the force sensor in the middle of the workspace";
     case analysis::CertificatePart::kFrequency:
+      return "leave the handle clamped";
     case analysis::CertificatePart::kMove:
     case analysis::CertificatePart::kDone:
       break;
@@ -112,11 +116,31 @@ analysis::CertificateRecord virtual_record(const DeviceTestOptions& options,
   return record;
 }
 
+/// The channel that the options name. @throws InputError if the definition has no such channel
+const channel::ChannelOptions& sensor_of(const DeviceTestOptions& options,
+                                         const DeviceSetup& setup) {
+  const auto found =
+      std::ranges::find(setup.channels, options.sensor, &channel::ChannelOptions::name);
+  if (found == setup.channels.end()) {
+    throw InputError(fmt::format(
+        "--sensor {}: {} has no [channels.{}]", options.sensor,
+        options.definition.empty() ? "no definition was given, which" : options.definition,
+        options.sensor));
+  }
+  return *found;
+}
+
 analysis::CertificateRecord real_record(const DeviceTestOptions& options, const DeviceSetup& setup,
                                         const analysis::Excitation& excitation,
                                         std::vector<analysis::CertificatePart> parts) {
+  std::optional<SensorChannel> sensor;
+  if (!options.sensor.empty()) {
+    sensor.emplace(sensor_of(options, setup), options.sensor_axes);
+    using analysis::CertificatePart;
+    parts.insert(parts.begin() + 1, {CertificatePart::kGrid, CertificatePart::kFrequency});
+  }
   const DeviceUnderTest bench = make_bench(options, setup);
-  CertificateTask task(*bench.device, nullptr, excitation, std::move(parts));
+  CertificateTask task(*bench.device, sensor ? &*sensor : nullptr, excitation, std::move(parts));
   realtime::ServoLoop loop(realtime::ClockKind::kReal, kDeviceTestRate);
   run_certificate(task, *bench.device, loop);
   if (interrupted()) {
@@ -141,6 +165,9 @@ int certify_device(const DeviceTestOptions& options, const DeviceSetup& setup) {
   if (!(options.mass >= 0.0 && options.mass <= kMostMass)) {
     throw InputError(
         fmt::format("--mass is {}; allowed: a number from 0 to {} [kg]", options.mass, kMostMass));
+  }
+  if (!options.sensor.empty() && options.name == "virtual") {
+    throw InputError("the virtual device has a simulated force sensor; leave --sensor out");
   }
   if (options.name == "mouse") {
     throw InputError("a mouse gives no force, so that it has no certificate");

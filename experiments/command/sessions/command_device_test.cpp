@@ -82,8 +82,8 @@ int device_test(const DeviceTestOptions& options) {
   if (!options.certificate.empty()) {
     return certify_device(options, setup);
   }
-  if (options.mass != 0.0 || options.without_sensor) {
-    throw InputError("--mass and --without-sensor belong to --certificate FOLDER");
+  if (options.mass != 0.0 || options.without_sensor || !options.sensor.empty()) {
+    throw InputError("--mass, --sensor and --without-sensor belong to --certificate FOLDER");
   }
   DeviceUnderTest bench = make_bench(options, setup);
   const device::DeviceInfo& info = bench.device->info();
@@ -128,6 +128,12 @@ void add_device_test(CLI::App& app, int& status) {
                   "Folder for a certificate: what the device does, with intervals");
   sub->add_option("--mass", o.mass,
                   "Known mass that you fix to the handle for a certificate [kg] (default: none)");
+  sub->add_option("--sensor", o.sensor,
+                  "Channel of the definition, a force sensor to which you clamp the handle for a "
+                  "certificate");
+  sub->add_option(
+      "--sensor-axes", o.sensor_axes,
+      with_default("Axes of the world along which the sensor's x, y and z point", o.sensor_axes));
   sub->add_flag("--without-sensor", o.without_sensor,
                 "Certificate of the virtual device without its simulated force sensor");
   sub->add_option("--library", o.library,

@@ -42,6 +42,7 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
     const protocols::Definition& d = *experiment.definition;
     setup = {d.device, d.hand, d.mouse, d.vendor, d.envelope.holding_force, {}};
     setup.margins = d.margins();
+    setup.channels = d.channels;
   } else {
     for (const Study* study : studies()) {
       const auto published = study->protocol().margins();

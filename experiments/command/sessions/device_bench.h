@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/channel/channel_options.h"
 #include "core/device/coupled_mass.h"
 #include "core/device/mouse.h"
 #include "core/device/vendor_devices.h"
@@ -27,6 +28,8 @@ struct DeviceTestOptions {
   std::string certificate;     // folder; empty: no certificate
   double mass{0.0};            // known, on the handle; 0: none [kg]
   bool without_sensor{false};  // of the virtual device
+  std::string sensor;          // channel of the definition that measures the force; empty: none
+  std::string sensor_axes{"x,y,z"};  // along which its axes point
 };
 
 /// A device, and who moves it where there is no person.
@@ -45,8 +48,9 @@ struct DeviceSetup {
   device::MouseParameters mouse;
   device::VendorSetups vendor;
   double holding_force{
-      device::EnvelopeLimits{}.holding_force};  // a device may have more friction [N]
-  std::vector<std::string> margins;             // of the definition, or the published ones
+      device::EnvelopeLimits{}.holding_force};      // a device may have more friction [N]
+  std::vector<std::string> margins;                 // of the definition, or the published ones
+  std::vector<channel::ChannelOptions> channels{};  // of the definition
 };
 
 /// Set-up of the definition that the options name, or that of the drivers.

@@ -1,0 +1,91 @@
+#include "experiments/command/sessions/sensor_channel.h"
+
+#include <fmt/format.h>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+
+#include "core/base/error.h"
+
+namespace haptrial::experiments {
+namespace {
+
+std::array<std::size_t, 3> places_of_force(const channel::ChannelOptions& options) {
+  constexpr std::array kForces{"fx", "fy", "fz"};
+  const auto& quantities = options.plan.quantities;
+  std::array<std::size_t, 3> places{};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto at = std::ranges::find(quantities, kForces[i], &channel::Quantity::name);
+    if (at == quantities.end() || at->unit != "N") {
+      throw InputError(fmt::format(
+          "channels.{}: a force sensor has the quantities fx, fy and fz in N; {} is not among them",
+          options.name, kForces[i]));
+    }
+    places[i] = static_cast<std::size_t>(at - quantities.begin());
+  }
+  return places;
+}
+
+/// The axis of "-z"; zero for anything else.
+Eigen::Vector3d axis_of(std::string_view word) {
+  const bool back = word.starts_with('-');
+  word.remove_prefix(back ? 1 : 0);
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  if (word == "x" || word == "y" || word == "z") {
+    axis[word[0] - 'x'] = back ? -1.0 : 1.0;
+  }
+  return axis;
+}
+
+}  // namespace
+
+Eigen::Matrix3d rotation_of_axes(const std::string& axes) {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
+  std::istringstream words(axes);
+  std::string word;
+  Eigen::Index column = 0;
+  while (std::getline(words, word, ',')) {
+    if (column < 3) {
+      rotation.col(column) = axis_of(word);
+    }
+    ++column;
+  }
+  if (column != 3 || rotation.determinant() != 1.0) {
+    throw InputError(
+        fmt::format("--sensor-axes is {}; allowed: three axes that are at right angles and "
+                    "right-handed, such as x,y,z or x,-z,y",
+                    axes));
+  }
+  return rotation;
+}
+
+SensorChannel::SensorChannel(const channel::ChannelOptions& options, const std::string& axes)
+    : to_world_(rotation_of_axes(axes)),
+      force_(places_of_force(options)),
+      channel_(options, [this] { return now(); }) {
+  if (const std::string why = channel_.wait_until_open(); !why.empty()) {
+    throw RunError(why);
+  }
+  channel_.begin();
+}
+
+std::int64_t SensorChannel::now() const {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool SensorChannel::read(device::MeasuredForce& measured) noexcept {
+  const channel::ChannelState& state = channel_.newest();
+  const Eigen::Vector3d force(state.values[force_[0]], state.values[force_[1]],
+                              state.values[force_[2]]);
+  if (!state.live || !force.allFinite()) {
+    return false;
+  }
+  measured.force = to_world_ * force;
+  measured.age = std::max(0.0, 1e-9 * static_cast<double>(now() - state.time_ns));
+  measured.noise = 0.0;
+  return true;
+}
+
+}  // namespace haptrial::experiments
