@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "analysis/document/finding_json_internal.h"
+#include "analysis/exchange/certificate_findings.h"
 #include "analysis/exchange/channel_findings.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
@@ -16,7 +17,8 @@ namespace haptrial::analysis {
 namespace {
 
 std::vector<FindingSource>& sources() {
-  static std::vector<FindingSource> all{{"channels", channel_findings}};
+  static std::vector<FindingSource> all{{"certificates", certificate_findings},
+                                        {"channels", channel_findings}};
   return all;
 }
 

@@ -18,7 +18,8 @@ struct FindingSource {
   std::function<FindingList(const std::vector<std::filesystem::path>& sessions)> find;
 };
 
-/// Adds a source; that of the sessions' channels is there. Call before threads are started.
+/// Adds a source; those of the sessions' channels and devices' certificates are there. Call before
+/// threads are started.
 /// @throws std::invalid_argument for a name with another character, or one that is empty or taken
 void add_finding_source(FindingSource source);
 

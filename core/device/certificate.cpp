@@ -1,6 +1,8 @@
 #include "core/device/certificate.h"
 
 #include "core/base/definition/schema.h"
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
 
 namespace haptrial::device {
 namespace {
@@ -53,6 +55,21 @@ const Schema<Certificate>& certificate_schema() {
             }
           });
   return schema;
+}
+
+std::optional<Certificate> certificate_in(const std::string& definition, const std::string& name) {
+  try {
+    Table root = Table::parse(definition, name);
+    if (!root.is_table("certificate")) {
+      return std::nullopt;
+    }
+    Table table = root.table("certificate");
+    const Certificate certificate = certificate_schema().read(table);
+    root.check();
+    return certificate;
+  } catch (const InputError&) {
+    return std::nullopt;  // a report of sessions whose definition no longer reads goes without
+  }
 }
 
 }  // namespace haptrial::device

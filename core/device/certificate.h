@@ -25,6 +25,10 @@ struct Certificate {
   std::optional<double> stiffest_wall;              // that stays passive > 0 [N/m]
 };
 
+/// The certificate that a definition's text states; nothing if it states none, or no longer reads.
+/// @param name  of the definition, for sentences
+std::optional<Certificate> certificate_in(const std::string& definition, const std::string& name);
+
 /// The keys of [certificate].
 const Schema<Certificate>& certificate_schema();
 

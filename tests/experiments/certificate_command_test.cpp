@@ -42,9 +42,16 @@ std::string certificate(const std::string& findings) {
          findings + "}}}";
 }
 
-/// A definition without [device], whose device then has this certificate.
-std::string naming(const std::string& text, const std::string& file) {
-  return fmt::format("{}\n[device]\ncertificate = \"{}\"\n", text, file);
+/// A definition whose device then has this certificate.
+std::string naming(std::string text, const std::string& file) {
+  const std::string key = fmt::format("[device]\ncertificate = \"{}\"\n", file);
+  const std::size_t table = text.find("[device]\n");
+  return table == std::string::npos ? text + "\n" + key : text.replace(table, 9, key);
+}
+
+/// The row of the only certificate in the results of a study.
+Json certificates(const Json& results) {
+  return results.at("own_findings").at("certificates").at("tables").at("certificates").at(0);
 }
 
 class CertificateCommandTest : public testing::Test {
@@ -143,9 +150,27 @@ TEST_F(CertificateCommandTest, SessionsKeepTheCertificateTheyRanWith) {
   std::filesystem::remove(at("arm.json"));
   const test::CommandResult report = run("analyze s");
   ASSERT_EQ(report.status, 0) << report.errors;
-  const Json apparatus = json_of(at("s") / "results.json")["apparatus"];
-  EXPECT_NEAR(apparatus["gain"]["estimate"].get<double>(), 0.9, 1e-9);
-  EXPECT_EQ(apparatus["checksum"].dump().size(), 2 + 16u);
+  const Json row = certificates(json_of(at("s") / "results.json"));
+  EXPECT_NEAR(row["gain"]["estimate"].get<double>(), 0.9, 1e-9);
+  EXPECT_EQ(row["checksum"].dump().size(), 2 + 16u);
+}
+
+TEST_F(CertificateCommandTest, EveryProtocolsReportSaysWhatTheDeviceDid) {
+  write(at("arm.json"),
+        certificate(R"("gain": {"estimate": 0.9, "low_95": 0.89, "high_95": 0.91})"));
+  for (const char* name : {"force_training.toml", "first_drilling.toml"}) {
+    write(at(name), naming(shipped_text(name), "arm.json"));
+    const test::CommandResult made = run(fmt::format(
+        "dry-run {0} --out of_{0} --subjects 2 --seed 5 && haptrial analyze of_{0}", name));
+    ASSERT_EQ(made.status, 0) << made.output << made.errors;
+    const std::filesystem::path folder = folder_ / fmt::format("of_{}", name);
+    const Json row = certificates(json_of(folder / "statistics.json"));
+    EXPECT_NEAR(row["gain"]["estimate"].get<double>(), 0.9, 1e-9) << name;
+    EXPECT_EQ(row["sessions"], 2) << name;
+    EXPECT_THAT(file_text(folder / "report.html"),
+                HasSubstr("What the device did with what was commanded"))
+        << name;
+  }
 }
 
 TEST_F(CertificateCommandTest, ValidateSaysWhatTheDeviceCannotPresent) {

@@ -5,19 +5,9 @@
 #include <cmath>
 
 #include "analysis/psychophysics/report/trials_report.h"
-#include "core/base/definition/schema.h"
-#include "core/base/definition/table.h"
-#include "core/base/error.h"
 
 namespace haptrial::analysis::trials {
 namespace {
-
-void add_figure(FindingRow& row, const char* name, const char* title,
-                const std::optional<double>& value, const char* unit) {
-  if (value) {
-    row.push_back({.name = name, .title = title, .value = *value, .unit = unit});
-  }
-}
 
 Finding level(const char* name, const char* title, const Estimated& e, const std::string& unit) {
   return {
@@ -59,18 +49,7 @@ FindingTable measured_table(const TrialsResult& result, const device::Certificat
 }  // namespace
 
 std::optional<device::Certificate> certificate_of(const TrialsResult& result) {
-  try {
-    Table root = Table::parse(result.definition, result.definition_name);
-    if (!root.is_table("certificate")) {
-      return std::nullopt;
-    }
-    Table table = root.table("certificate");
-    const device::Certificate certificate = device::certificate_schema().read(table);
-    root.check();
-    return certificate;
-  } catch (const InputError&) {
-    return std::nullopt;  // a report of sessions whose definition no longer reads goes without
-  }
+  return device::certificate_in(result.definition, result.definition_name);
 }
 
 bool grows_with_force(const std::string& unit) {
@@ -91,26 +70,8 @@ Estimated as_measured(const Estimated& commanded, const device::Certificate& cer
 FindingList apparatus_findings(const TrialsResult& result) {
   FindingList list{.name = "apparatus", .heading = "Apparatus"};
   const auto certificate = certificate_of(result);
-  if (!certificate) {
-    return list;
-  }
-  const device::Certificate& c = *certificate;
-  FindingRow& row = list.findings;
-  row.push_back({.name = "device", .title = "Device", .value = c.device});
-  row.push_back({.name = "certificate", .title = "Certificate", .value = c.file});
-  row.push_back({.name = "checksum", .title = "Checksum of the certificate", .value = c.checksum});
-  if (c.gain) {
-    row.push_back({.name = "gain",
-                   .title = "Force on the hand per force commanded",
-                   .value = *c.gain,
-                   .low = *c.gain_low,
-                   .high = *c.gain_high});
-  }
-  add_figure(row, "dead_zone", "Commands up to here gave no force", c.dead_zone, "N");
-  add_figure(row, "friction", "Friction of the device", c.friction, "N");
-  add_figure(row, "delay", "Delay from a command to its force", c.delay, "s");
-  if (c.gain) {
-    list.tables.push_back(measured_table(result, c));
+  if (certificate && certificate->gain) {
+    list.tables.push_back(measured_table(result, *certificate));
   }
   return list;
 }
@@ -120,25 +81,21 @@ void add_apparatus(Document& document, const TrialsResult& result) {
   if (!certificate) {
     return;
   }
-  const FindingList list = apparatus_findings(result);
   add_section(document, result, "Apparatus");
-  if (certificate->simulated) {
-    document.paragraph("The certificate is of a simulated device.");
-  }
-  document.points(lines_of(list.findings));
-  for (const FindingTable& table : list.tables) {
+  for (const FindingTable& table : apparatus_findings(result).tables) {
     if (!table.rows.empty()) {
       add_table(document, table, false);
     }
   }
   if (certificate->gain) {
     document.paragraph(
-        "Levels as measured are those as commanded times the certificate's gain; their intervals "
-        "hold the uncertainty of both. Shares such as the Weber fraction are alike in both.");
+        "Levels as measured are those as commanded times the gain of the device's certificate; "
+        "their intervals hold the uncertainty of both. Shares such as the Weber fraction are alike "
+        "in both.");
   } else {
     document.paragraph(
-        "The certificate states no gain, so that levels are as commanded: a gain takes a force "
-        "sensor or a known mass.");
+        "The device's certificate states no gain, so that levels are as commanded: a gain takes a "
+        "force sensor or a known mass.");
   }
 }
 

@@ -18,8 +18,8 @@ bool grows_with_force(const std::string& unit);
 /// @param certificate  with a gain
 Estimated as_measured(const Estimated& commanded, const device::Certificate& certificate);
 
-/// The force that came for a commanded newton, and the thresholds as commanded and as measured;
-/// without rows if no certificate is stated.
+/// The levels as commanded and as measured; no table if no gain is stated. The certificate itself
+/// is a finding of every protocol (analysis/exchange/certificate_findings.h).
 FindingList apparatus_findings(const TrialsResult& result);
 
 }  // namespace haptrial::analysis::trials

@@ -146,7 +146,7 @@ class ResultsJson {
     add("kind", name_of(plan.kind));
     add("factors", plan.by);
     add_table(participant_findings(result_));
-    if (const FindingList apparatus = apparatus_findings(result_); !apparatus.findings.empty()) {
+    if (const FindingList apparatus = apparatus_findings(result_); !apparatus.tables.empty()) {
       Json made = json_of(apparatus.findings);
       for (const FindingTable& table : apparatus.tables) {
         made[table.name] = json_of(table.rows);

@@ -38,7 +38,7 @@ TEST(ReportApparatusTest, TheCertificateIsThatOfTheDefinition) {
   result.definition_name = "study.toml";
   result.definition = "[experiment]\nname = \"x\"\n";
   EXPECT_FALSE(certificate_of(result));
-  EXPECT_TRUE(apparatus_findings(result).findings.empty());
+  EXPECT_TRUE(apparatus_findings(result).tables.empty());
   result.definition +=
       "[certificate]\nfile = \"arm.json\"\nchecksum = \"0123456789abcdef\"\ndevice = \"virtual\"\n"
       "gain = 0.87\ngain_low = 0.86\ngain_high = 0.88\n";

@@ -1,0 +1,76 @@
+#include "analysis/exchange/certificate_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/device/certificate.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::analysis {
+namespace {
+
+Finding figure(const char* name, const char* title, const std::optional<double>& value,
+               const char* unit) {
+  Finding finding{.name = name, .title = title, .unit = unit};
+  if (value) {
+    finding.value = *value;
+  } else {
+    finding.why_not = "the certificate does not state it";
+  }
+  return finding;
+}
+
+FindingRow row_of(const device::Certificate& c, std::size_t sessions) {
+  Finding gain = figure("gain", "Force on the hand per force commanded", c.gain, "");
+  if (c.gain) {
+    gain.low = c.gain_low.value_or(Finding::kNone);
+    gain.high = c.gain_high.value_or(Finding::kNone);
+  }
+  return {{.name = "device",
+           .title = "Device",
+           .value = fmt::format("{}{}", c.device, c.simulated ? " (simulated)" : "")},
+          {.name = "certificate", .title = "Certificate", .value = c.file},
+          {.name = "checksum", .title = "Checksum", .value = c.checksum},
+          {.name = "sessions", .title = "Sessions", .value = sessions},
+          gain,
+          figure("dead_zone", "Commands up to here gave no force", c.dead_zone, "N"),
+          figure("friction", "Friction", c.friction, "N"),
+          figure("delay", "Delay from a command to its force", c.delay, "s")};
+}
+
+}  // namespace
+
+FindingList certificate_findings(const std::vector<std::filesystem::path>& sessions) {
+  struct Used {
+    device::Certificate certificate;
+    std::size_t sessions{1};
+  };
+  std::vector<Used> all;
+  for (const std::filesystem::path& file : sessions) {
+    const record::SessionReader reader(file);
+    const auto certificate =
+        device::certificate_in(reader.info().definition, reader.info().definition_name);
+    if (!certificate) {
+      continue;
+    }
+    const auto known = std::ranges::find_if(
+        all, [&](const Used& used) { return used.certificate.checksum == certificate->checksum; });
+    if (known == all.end()) {
+      all.push_back({*certificate});
+    } else {
+      ++known->sessions;
+    }
+  }
+  FindingList list{"certificates", "Device"};
+  if (!all.empty()) {
+    FindingTable table{"certificates", "What the device did with what was commanded"};
+    for (const Used& used : all) {
+      table.rows.push_back(row_of(used.certificate, used.sessions));
+    }
+    list.tables.push_back(std::move(table));
+  }
+  return list;
+}
+
+}  // namespace haptrial::analysis
