@@ -28,15 +28,15 @@ struct ClosePcm {
 struct CardPlayer::Card {
   std::unique_ptr<snd_pcm_t, ClosePcm> pcm;
 
-  explicit Card(const std::string& device) {
+  Card(const std::string& device, unsigned channels) {
     snd_lib_error_set_handler(say_nothing);  // what is wrong is said below, in a sentence
     snd_pcm_t* opened = nullptr;
     int error = snd_pcm_open(&opened, device.c_str(), SND_PCM_STREAM_PLAYBACK, 0);
     pcm.reset(opened);
     if (error >= 0) {
       constexpr auto kWhole = static_cast<unsigned>(kRate);
-      error = snd_pcm_set_params(opened, SND_PCM_FORMAT_FLOAT, SND_PCM_ACCESS_RW_INTERLEAVED, 1,
-                                 kWhole, 1, kLatency);
+      error = snd_pcm_set_params(opened, SND_PCM_FORMAT_FLOAT, SND_PCM_ACCESS_RW_INTERLEAVED,
+                                 channels, kWhole, 1, kLatency);
     }
     if (error < 0) {
       throw RunError(fmt::format("sound card '{}': {}", device, snd_strerror(error)));
@@ -44,8 +44,11 @@ struct CardPlayer::Card {
   }
 };
 
-CardPlayer::CardPlayer(const std::string& device, Fill fill, Handed handed)
-    : fill_(std::move(fill)), handed_(std::move(handed)), card_(std::make_unique<Card>(device)) {
+CardPlayer::CardPlayer(const std::string& device, Fill fill, Handed handed, unsigned channels)
+    : fill_(std::move(fill)),
+      handed_(std::move(handed)),
+      channels_(channels),
+      card_(std::make_unique<Card>(device, channels)) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -57,11 +60,11 @@ CardPlayer::~CardPlayer() {
 /// Samples that the card has run out of time for are tried once more. @returns whether it took them
 bool CardPlayer::write(std::span<const float> part) {
   while (!stop_.load(std::memory_order_relaxed)) {
-    const snd_pcm_sframes_t written =
-        snd_pcm_writei(card_->pcm.get(), part.data(), static_cast<snd_pcm_uframes_t>(part.size()));
+    const snd_pcm_sframes_t written = snd_pcm_writei(
+        card_->pcm.get(), part.data(), static_cast<snd_pcm_uframes_t>(part.size() / channels_));
     if (written >= 0) {
       played_.fetch_add(static_cast<std::uint64_t>(written), std::memory_order_relaxed);
-      part = part.subspan(static_cast<std::size_t>(written));
+      part = part.subspan(channels_ * static_cast<std::size_t>(written));
       if (part.empty()) {
         return true;
       }
@@ -78,7 +81,7 @@ bool CardPlayer::write(std::span<const float> part) {
 
 void CardPlayer::run() {
   using Clock = std::chrono::steady_clock;
-  std::array<float, kPart> part{};
+  std::vector<float> part(channels_ * kPart);
   Clock::time_point due = Clock::now();
   while (!stop_.load(std::memory_order_relaxed)) {
     fill_(part);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/sound/actuator.h"
 #include "core/sound/noise.h"
 
 namespace haptrial::sound {
@@ -27,6 +28,8 @@ struct Cue {
   double level{-20.0};       // of a recording its gain [dB]
   double rise{0.005};        // raised cosine at both ends, of tone and burst [s]
   std::filesystem::path file;
+  std::string actuator{};  // that gives it as a vibration; empty: loudspeakers play it
+  double amplitude{0.0};  // of that vibration: a noise's root mean square, else the peak [its unit]
 };
 
 /// Noise that keeps the device's own sounds from being heard.
@@ -42,6 +45,7 @@ struct CueSet {
   std::vector<Cue> cues;
   std::optional<Masking> masking;
   std::string device{"default"};  // ALSA's name of the card
+  std::vector<Actuator> actuators{};
   bool empty() const { return cues.empty() && !masking; }
 };
 

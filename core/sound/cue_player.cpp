@@ -1,5 +1,7 @@
 #include "core/sound/cue_player.h"
 
+#include <algorithm>
+#include <memory>
 #include <span>
 
 #include "core/sound/card_player.h"
@@ -8,14 +10,53 @@
 namespace haptrial::sound {
 namespace {
 
-Mixer mixer_of(const CueSet& set, std::uint64_t seed) {
+/// The sounds of the loudspeakers, or of one actuator, on a channel of their own.
+struct Output {
+  std::size_t channel;            // from 0
+  std::vector<std::size_t> cues;  // of the set, which it plays
+  std::unique_ptr<Mixer> mixer;
+};
+
+/// Whether loudspeakers play the sound; else the actuator does.
+bool plays_on(const Cue& cue, const Actuator* actuator) {
+  return actuator == nullptr ? cue.actuator.empty() : cue.actuator == actuator->name;
+}
+
+/// @param actuator  null: the loudspeakers, which have the masking noise, too
+Output output_of(const CueSet& set, const Actuator* actuator, std::uint64_t seed) {
+  Output output{actuator == nullptr ? 0 : static_cast<std::size_t>(actuator->channel - 1), {}, {}};
   std::vector<std::vector<float>> clips;
-  for (const Cue& cue : set.cues) {
-    clips.push_back(rendered(cue, seed));
+  for (std::size_t i = 0; i < set.cues.size(); ++i) {
+    if (plays_on(set.cues[i], actuator)) {
+      output.cues.push_back(i);
+      clips.push_back(rendered(set.cues[i], seed));
+    }
   }
-  const bool masked = set.masking.has_value();
-  return {std::move(clips), masked ? rendered(*set.masking, seed) : std::vector<float>{},
-          masked ? set.masking->fade : 0.0, CardPlayer::kRate};
+  const bool masked = actuator == nullptr && set.masking.has_value();
+  output.mixer = std::make_unique<Mixer>(
+      std::move(clips), masked ? rendered(*set.masking, seed) : std::vector<float>{},
+      masked ? set.masking->fade : 0.0, CardPlayer::kRate);
+  return output;
+}
+
+/// The loudspeakers' comes first.
+std::vector<Output> outputs_of(const CueSet& set, std::uint64_t seed) {
+  std::vector<Output> outputs;
+  outputs.push_back(output_of(set, nullptr, seed));
+  for (const Actuator& actuator : set.actuators) {
+    outputs.push_back(output_of(set, &actuator, seed));
+  }
+  return outputs;
+}
+
+/// One channel, which a card gives to all loudspeakers; with actuators as many as they reach.
+unsigned channels_of(const CueSet& set) {
+  constexpr int kLoudspeakers = 2;
+  int channels = set.actuators.empty() ? 1 : kLoudspeakers;
+  for (const Actuator& actuator : set.actuators) {
+    channels = std::max(channels, actuator.channel);
+  }
+  return static_cast<unsigned>(channels);
 }
 
 }  // namespace
@@ -23,15 +64,21 @@ Mixer mixer_of(const CueSet& set, std::uint64_t seed) {
 struct CuePlayer::Impl {
   Impl(const CueSet& set, std::uint64_t seed, std::function<std::int64_t()> clock)
       : now(std::move(clock)),
-        mixer(mixer_of(set, seed)),
+        outputs(outputs_of(set, seed)),
+        channels(channels_of(set)),
         player(
-            set.device, [this](std::span<float> part) { fill(part); }, [this] { hand_over(); }) {}
+            set.device, [this](std::span<float> part) { fill(part); }, [this] { hand_over(); },
+            channels) {}
 
   void fill(std::span<float> part);
+  void begin(std::size_t cue);
+  void spread(std::span<float> part);
   void hand_over();
 
   std::function<std::int64_t()> now;
-  Mixer mixer;
+  std::vector<Output> outputs;
+  unsigned channels;
+  std::vector<float> own;            // of one output
   std::vector<std::uint64_t> begun;  // with the samples that the card has not taken yet
 
   mutable std::mutex mutex;  // all that follow
@@ -42,17 +89,48 @@ struct CuePlayer::Impl {
   CardPlayer player;  // last: its thread uses the others
 };
 
+void CuePlayer::Impl::begin(std::size_t cue) {
+  for (Output& output : outputs) {
+    const auto at = std::ranges::find(output.cues, cue);
+    if (at != output.cues.end()) {
+      output.mixer->start(static_cast<std::size_t>(at - output.cues.begin()));
+    }
+  }
+}
+
 void CuePlayer::Impl::fill(std::span<float> part) {
   {
     const std::lock_guard lock(mutex);
     for (const auto& [cue, ticket] : asked) {
-      mixer.start(cue);
+      begin(cue);
       begun.push_back(ticket);
     }
     asked.clear();
-    mixer.mask(masked);
+    outputs.front().mixer->mask(masked);
   }
-  mixer.fill(part);
+  if (channels == 1) {
+    outputs.front().mixer->fill(part);
+  } else {
+    spread(part);
+  }
+}
+
+/// Each output on its channel; the loudspeakers are the first two that no actuator has.
+void CuePlayer::Impl::spread(std::span<float> part) {
+  constexpr std::size_t kLoudspeakers = 2;
+  std::ranges::fill(part, 0.0F);
+  own.resize(part.size() / channels);
+  for (Output& output : outputs) {
+    output.mixer->fill(own);
+    const bool speakers = &output == &outputs.front();
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+      if (speakers ? channel < kLoudspeakers : channel == output.channel) {
+        for (std::size_t i = 0; i < own.size(); ++i) {
+          part[i * channels + channel] = own[i];
+        }
+      }
+    }
+  }
 }
 
 void CuePlayer::Impl::hand_over() {
@@ -91,7 +169,9 @@ std::string CuePlayer::trouble() const {
   if (impl_->player.lost()) {
     return "the sound card was lost: nothing was played from then on";
   }
-  if (impl_->mixer.limited() > 0) {
+  const bool limited = std::ranges::any_of(
+      impl_->outputs, [](const Output& output) { return output.mixer->limited() > 0; });
+  if (limited) {
     return "the sounds together were too loud for the card and were made softer; lower their "
            "levels";
   }

@@ -1,5 +1,10 @@
 #include "core/sound/read_cues.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/base/definition/schema.h"
@@ -14,7 +19,9 @@ constexpr Bounds kLength{0.0, 60.0, true};       // [s]
 constexpr Bounds kLevel{-120.0, -3.1, false};    // a sine that just fits has -3.01 dB
 
 bool is_file(const Cue& cue) { return cue.kind == Cue::Kind::kFile; }
-bool is_no_file(const Cue& cue) { return !is_file(cue); }
+bool is_felt(const Cue& cue) { return !cue.actuator.empty(); }
+bool has_level(const Cue& cue) { return !is_file(cue) && !is_felt(cue); }
+bool has_gain(const Cue& cue) { return is_file(cue) && !is_felt(cue); }
 bool is_click(const Cue& cue) { return cue.kind == Cue::Kind::kClick; }
 bool is_tone(const Cue& cue) { return cue.kind == Cue::Kind::kTone; }
 bool is_noise(const Cue& cue) { return cue.kind == Cue::Kind::kNoise; }
@@ -79,17 +86,25 @@ const Schema<Cue>& cue_schema() {
                   "Kind of a sound: a sine, a burst of noise, a pulse or a recording")
           .required()
           .derive(set_defaults_of_kind)
+          .text("actuator", &C::actuator,
+                "Name of the actuator that gives the sound as a vibration")
+          .otherwise("loudspeakers play it")
+          .number("amplitude", &C::amplitude, {0.0, 1e6, true}, "",
+                  "Amplitude of a vibration in the actuator's unit: the peak, of noise the root "
+                  "mean square, of a recording what its full scale becomes")
+          .required()
+          .only_if(is_felt)
           .custom("file", "Recording at 48,000 samples a second (WAV), relative to the definition",
                   [](Table& table, const std::string& key, C& cue) { cue.file = table.text(key); })
           .required()
           .only_if(is_file)
           .number("level", &C::level, {-120.0, 0.0}, "dB", kLevelText)
           .otherwise(kLevelAbsent)
-          .only_if(is_file)
+          .only_if(has_gain)
           .number("level", &C::level, kLevel, "dB", kLevelText)
           .required()
           .otherwise(kLevelAbsent)
-          .only_if(is_no_file)
+          .only_if(has_level)
           .number("duration", &C::duration, kLength, "s", kDurationText)
           .otherwise(kDurationAbsent)
           .only_if(is_click)
@@ -132,6 +147,30 @@ const Schema<CueSet>& device_schema() {
 
 }  // namespace
 
+/// Takes the level of a vibration from its amplitude. What the actuator cannot give is noted.
+void fit_to_actuator(Table& table, const std::vector<Actuator>& actuators, Cue& cue) {
+  if (!is_felt(cue)) {
+    return;
+  }
+  const auto actuator = std::ranges::find(actuators, cue.actuator, &Actuator::name);
+  if (actuator == actuators.end()) {
+    table.reject("actuator", fmt::format("\"{}\"", cue.actuator), "a name of [actuators]");
+    return;
+  }
+  const double share = cue.amplitude / actuator->full_scale;
+  if (share > 1.0) {
+    table.reject("amplitude", fmt::format("{:g}", cue.amplitude),
+                 fmt::format("at most {:g} [{}], which is what {} gives", actuator->full_scale,
+                             actuator->unit, actuator->name));
+  }
+  if (is_tone(cue) && !(cue.frequency >= actuator->lowest && cue.frequency <= actuator->highest)) {
+    table.reject("frequency", fmt::format("{:g}", cue.frequency),
+                 fmt::format("{:g} to {:g} [Hz], for which {} is calibrated", actuator->lowest,
+                             actuator->highest, actuator->name));
+  }
+  cue.level = 20.0 * std::log10(is_tone(cue) ? share / std::numbers::sqrt2 : share);
+}
+
 std::vector<std::string> cue_names(const Table& table) {
   std::vector<std::string> names;
   for (const std::string& name : table.keys_as_written()) {
@@ -142,12 +181,14 @@ std::vector<std::string> cue_names(const Table& table) {
   return names;
 }
 
-CueSet read_cues(Table& table) {
+CueSet read_cues(Table& table, std::vector<Actuator> actuators) {
   CueSet set = device_schema().read(table);
+  set.actuators = std::move(actuators);
   for (const std::string& name : cue_names(table)) {
     Table inner = table.table(name);
     Cue cue = cue_schema().read(inner);
     cue.name = name;
+    fit_to_actuator(inner, set.actuators, cue);
     set.cues.push_back(std::move(cue));
   }
   if (table.has(kMasking)) {

@@ -18,7 +18,10 @@ namespace haptrial::sound {
 ///     [sounds.masking]  level, [colour] ("pink"), [low], [high], [fade] (0.5 s), [stages]
 ///
 /// colour is "white", "pink" (both from 20 to 20,000 Hz) or "band" (needs low and high).
-CueSet read_cues(Table& table);
+///
+/// A sound with `actuator`, the name of one of them, is a vibration: `amplitude` in the actuator's
+/// unit stands for level.
+CueSet read_cues(Table& table, std::vector<Actuator> actuators = {});
 
 /// The names of the sounds in the order of CueSet::cues, without reading them.
 std::vector<std::string> cue_names(const Table& table);

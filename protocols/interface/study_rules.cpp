@@ -20,6 +20,7 @@ DefinitionRules of_every_study() {
                 "mouse",
                 "gamepad",
                 "pedal",
+                "actuators",
                 "channels",
                 "markers.serial",
                 "markers.baud",

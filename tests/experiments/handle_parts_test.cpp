@@ -272,7 +272,11 @@ class LiveHandlePartsTest : public HandlePartsTest {
     const auto question = text.find("[response]");
     text.erase(question, text.find("[[blocks]]") - question);
     text.erase(text.find("[observer]"));
-    return text + "[force_dimension]\nmax_torque = 0.15\nmax_grip_force = 6.0\n";
+    return text +
+           "[force_dimension]\nindex = 0\nmax_force = 12.0\nmax_torque = 0.15\nmax_grip_force = "
+           "6.0\n"
+           "workspace_radius = 0.075\neffector_mass = 0.0\ngravity_compensation = true\n"
+           "velocity_window = 0.008\nwatchdog = 0.02\ntime_guard = 0.0\nstop_button = 0\n";
   }
 };
 
