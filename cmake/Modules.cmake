@@ -263,6 +263,7 @@ function(haptrial_test_needs)
   add_dependencies(test_channel stand_in_lsl)
   target_sources(test_device PRIVATE ${CMAKE_SOURCE_DIR}/tests/support/boards/simulated_board.cpp)
   target_link_libraries(test_channel PRIVATE PkgConfig::httplib)  # a phone that answers
+  target_link_libraries(test_stream PRIVATE PkgConfig::httplib)
   add_dependencies(test_device stand_in_dhd stand_in_dhd_only stand_in_hd)
 endfunction()
 

@@ -10,8 +10,8 @@
 namespace haptrial::analysis {
 namespace {
 
-Finding figure(const char* name, const char* title, const std::optional<double>& value,
-               const char* unit) {
+Finding certified(const char* name, const char* title, const std::optional<double>& value,
+                  const char* unit) {
   Finding finding{.name = name, .title = title, .unit = unit};
   if (value) {
     finding.value = *value;
@@ -21,8 +21,8 @@ Finding figure(const char* name, const char* title, const std::optional<double>&
   return finding;
 }
 
-FindingRow row_of(const device::Certificate& c, std::size_t sessions) {
-  Finding gain = figure("gain", "Force on the hand per force commanded", c.gain, "");
+FindingRow certificate_row(const device::Certificate& c, std::size_t sessions) {
+  Finding gain = certified("gain", "Force on the hand per force commanded", c.gain, "");
   if (c.gain) {
     gain.low = c.gain_low.value_or(Finding::kNone);
     gain.high = c.gain_high.value_or(Finding::kNone);
@@ -34,9 +34,9 @@ FindingRow row_of(const device::Certificate& c, std::size_t sessions) {
           {.name = "checksum", .title = "Checksum", .value = c.checksum},
           {.name = "sessions", .title = "Sessions", .value = sessions},
           gain,
-          figure("dead_zone", "Commands up to here gave no force", c.dead_zone, "N"),
-          figure("friction", "Friction", c.friction, "N"),
-          figure("delay", "Delay from a command to its force", c.delay, "s")};
+          certified("dead_zone", "Commands up to here gave no force", c.dead_zone, "N"),
+          certified("friction", "Friction", c.friction, "N"),
+          certified("delay", "Delay from a command to its force", c.delay, "s")};
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ FindingList certificate_findings(const std::vector<std::filesystem::path>& sessi
   if (!all.empty()) {
     FindingTable table{"certificates", "What the device did with what was commanded"};
     for (const Used& used : all) {
-      table.rows.push_back(row_of(used.certificate, used.sessions));
+      table.rows.push_back(certificate_row(used.certificate, used.sessions));
     }
     list.tables.push_back(std::move(table));
   }

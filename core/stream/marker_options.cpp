@@ -45,6 +45,10 @@ const Schema<MarkerOptions>& marker_schema() {
           .text("serial", &O::serial,
                 "Serial line that receives each code as a byte, such as \"/dev/ttyUSB0\"")
           .otherwise("none")
+          .text("neon", &O::neon,
+                "Address of a Pupil Labs Neon's phone, HOST or HOST:PORT, whose recording gets "
+                "each onset as an event")
+          .otherwise("none")
           .integer("baud", &O::baud, 1, 10'000'000, "Speed of the serial line, in bits per second")
           .number("pulse", &O::pulse, {0.0, 1.0}, "s",
                   "Time for which a code stands on the serial line before a zero follows; 0: it "

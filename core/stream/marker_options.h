@@ -19,6 +19,7 @@ struct MarkerOptions {
   bool used{false};    // a session records its markers
   std::string serial;  // a serial line, such as /dev/ttyUSB0; empty: none
   int baud{115200};
+  std::string neon;     // address of a Pupil Labs Neon's phone; empty: none
   double pulse{0.005};  // for which a code stands on the line >= 0 [s]; 0: it stays
   int trial{1};
   int interval{11};

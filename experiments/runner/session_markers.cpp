@@ -56,6 +56,9 @@ void SessionMarkers::open_outputs(const SessionRequest& request, stream::LslOutl
   if (definition_.sounds() != nullptr) {
     open_sound(request);
   }
+  if (!options.neon.empty()) {
+    neon_ = std::make_unique<markers::NeonEvents>(options.neon, now_);
+  }
   markers::MarkerThread::MarkerOutputs outputs;
   outputs.serial = line_.get();
   outputs.other = [this](const TimedOnset& onset) { hear(onset); };
@@ -112,8 +115,19 @@ void SessionMarkers::hear(const TimedOnset& onset) {
       player_->mask(stage && masked_[static_cast<std::size_t>(onset.onset.index)]);
     }
   }
+  tell_neon(onset);
   const std::lock_guard lock(mutex_);
   heard_.push_back(onset);
+}
+
+/// The sending thread.
+void SessionMarkers::tell_neon(const TimedOnset& onset) {
+  if (neon_ && !onset.over) {
+    const MarkerRow row = row_of(onset);
+    const std::string what = record::name_of(row.what);
+    neon_->send(onset, row.name == what ? fmt::format("{} {}", what, row.trial)
+                                        : fmt::format("{} {}", what, row.name));
+  }
 }
 
 /// The sending thread.
@@ -164,7 +178,8 @@ void SessionMarkers::take_in(const TimedOnset& onset) {
     return;
   }
   const auto& send = definition_.markers.send;
-  bool goes = streams_ || (line_ && std::ranges::find(send, onset.onset.what) != send.end());
+  bool goes =
+      streams_ || neon_ || (line_ && std::ranges::find(send, onset.onset.what) != send.end());
   if (flashes_) {
     unseen_.push_back(onset);
     goes = true;
@@ -196,6 +211,10 @@ void SessionMarkers::gather() {
   for (const markers::SentOnset& sent : thread_->take_sent()) {
     add(sent.onset, sent.way, sent.written_ns);
   }
+  for (const markers::NeonEvent& sent :
+       neon_ ? neon_->take_sent() : std::vector<markers::NeonEvent>{}) {
+    add(sent.onset, MarkerOutput::kNeon, sent.taken_ns);
+  }
   for (const Flash& flash : flashes_ ? flashes_() : std::vector<Flash>{}) {
     const auto shown = [&](const TimedOnset& onset) { return onset.number <= flash.onsets; };
     for (const TimedOnset& onset : unseen_) {
@@ -215,7 +234,8 @@ void SessionMarkers::gather() {
 }
 
 bool SessionMarkers::all_sent() const {
-  return !thread_ || thread_->wait_until_sent(std::chrono::milliseconds(0));
+  return (!thread_ || thread_->wait_until_sent(std::chrono::milliseconds(0))) &&
+         (!neon_ || neon_->all_sent());
 }
 
 bool SessionMarkers::all_shown() const { return unseen_.empty() && unheard_.empty(); }
@@ -244,6 +264,9 @@ std::vector<MarkerRow> SessionMarkers::take_rows(bool last) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     gather();
   }
+  if (last && neon_) {
+    neon_->give_up();
+  }
   gather();  // what came since all was sent
   if (last) {
     give_up_waiting();
@@ -257,8 +280,9 @@ std::vector<MarkerRow> SessionMarkers::take_rows(bool last) {
 
 std::vector<std::string> SessionMarkers::troubles() const {
   std::vector<std::string> all;
-  for (std::string trouble : {thread_ ? thread_->trouble() : std::string(),
-                              player_ ? player_->trouble() : std::string()}) {
+  for (std::string trouble :
+       {thread_ ? thread_->trouble() : std::string(), player_ ? player_->trouble() : std::string(),
+        neon_ ? neon_->trouble() : std::string()}) {
     if (!trouble.empty()) {
       all.push_back(std::move(trouble));
     }

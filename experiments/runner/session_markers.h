@@ -13,6 +13,7 @@
 #include "core/stream/lsl_outlet.h"
 #include "core/stream/marker_thread.h"
 #include "core/stream/marker_times.h"
+#include "core/stream/neon_events.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 
@@ -59,6 +60,7 @@ class SessionMarkers {
   void open_sound(const SessionRequest& request);
   void hear(const markers::TimedOnset& onset);
   bool stream(stream::LslOutlet& outlet, const markers::TimedOnset& onset) const;
+  void tell_neon(const markers::TimedOnset& onset);
   void gather();
   void take_in(const markers::TimedOnset& onset);
   void give_up_waiting();
@@ -78,6 +80,7 @@ class SessionMarkers {
   std::string notice_;
   std::unique_ptr<markers::SerialLine> line_;
   std::unique_ptr<sound::CuePlayer> player_;
+  std::unique_ptr<markers::NeonEvents> neon_;
   bool streams_{false};
 
   mutable std::mutex mutex_;                     // the two that follow

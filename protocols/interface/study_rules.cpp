@@ -24,6 +24,7 @@ DefinitionRules of_every_study() {
                 "channels",
                 "markers.serial",
                 "markers.baud",
+                "markers.neon",
                 "markers.pulse",
                 "sounds.device",
                 "power",

@@ -50,6 +50,13 @@ class StandInNeon {
             state_.recording = start;
           });
     }
+    server_.Post("/api/event",
+                 [this](const httplib::Request& request, httplib::Response& response) {
+                   const std::lock_guard lock(mutex_);
+                   events_.push_back(request.body);
+                   response.status = status_;
+                   response.set_content(R"({"message": "Success"})", "application/json");
+                 });
     port_ = port == 0 ? server_.bind_to_any_port("127.0.0.1") : port;
     if (port != 0 && !server_.bind_to_port("127.0.0.1", port)) {
       throw std::runtime_error("the port is taken");
@@ -83,6 +90,11 @@ class StandInNeon {
     garbage_ = garbage;
     status_ = status;
   }
+  /// The bodies of the events so far.
+  std::vector<std::string> events() const {
+    const std::lock_guard lock(mutex_);
+    return events_;
+  }
   std::vector<std::string> posts() const {
     const std::lock_guard lock(mutex_);
     return posts_;
@@ -115,6 +127,7 @@ class StandInNeon {
   std::string garbage_;
   int status_{200};
   std::vector<std::string> posts_;
+  std::vector<std::string> events_;
   std::thread thread_;
 };
 

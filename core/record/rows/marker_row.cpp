@@ -38,6 +38,8 @@ const char* name_of(MarkerOutput way) noexcept {
       return "screen";
     case MarkerOutput::kSound:
       return "sound";
+    case MarkerOutput::kNeon:
+      return "neon";
   }
   return "";
 }
@@ -68,8 +70,8 @@ const Table<MarkerRow>& table_of<MarkerRow>() {
        T::word("way", &R::way, kMarkerWordBytes,
                EnumText({named(MarkerOutput::kNone), named(MarkerOutput::kSerial),
                          named(MarkerOutput::kStream), named(MarkerOutput::kScreen),
-                         named(MarkerOutput::kSound)}),
-               "where it went: serial, stream, screen, sound or none"),
+                         named(MarkerOutput::kSound), named(MarkerOutput::kNeon)}),
+               "where it went: serial, stream, screen, sound, neon or none"),
        T::column("written", &R::written, "s",
                  "when it had gone there, since the first tick of the session; NaN: it did not"),
        T::column("latency", &R::latency, "s", "from the tick to then; NaN: it did not go"),

@@ -19,6 +19,7 @@ enum class MarkerOutput : std::uint8_t {
   kStream,  // the Lab Streaming Layer
   kScreen,  // the photodiode's square
   kSound,   // the sound that begins with it
+  kNeon,    // an event of an eye tracker's recording
 };
 const char* name_of(MarkerOutput way) noexcept;
 
