@@ -115,14 +115,16 @@ TEST_F(LabFileTest, ASessionFileNeedsNoOtherFile) {
 TEST_F(LabFileTest, HoldsOnlyTablesOfMachines) {
   lab_ = "# guidance does not belong here\n" + lab_ + "\n[guidance]\nwait = 1\n";
   const auto line = std::count(lab_.begin(), lab_.end(), '\n') - 1;
-  EXPECT_EQ(refusal(),
-            (folder_ / "room/lab.toml").string() + ":" + std::to_string(line) +
-                ": guidance is not a table of a lab file; allowed: certificate, channels, device, "
-                "force_dimension, gamepad, hapi, haply, mouse, open_haptics, paddle, pedal, screen; "
-                "what belongs to the study stays in the definition");
+  EXPECT_EQ(
+      refusal(),
+      (folder_ / "room/lab.toml").string() + ":" + std::to_string(line) +
+          ": guidance is not a table of a lab file; allowed: actuators, certificate, channels, "
+          "device, "
+          "force_dimension, gamepad, hapi, haply, mouse, open_haptics, paddle, pedal, screen; "
+          "what belongs to the study stays in the definition");
   lab_ = "[screem]\nmonitor = 0\n";
   EXPECT_THAT(refusal(), HasSubstr("lab.toml:1: screem is not a table of a lab file; did you mean "
-                                   "screen? allowed: certificate"));
+                                   "screen? allowed: actuators"));
   lab_ = "[lab]\nuse = \"lab.toml\"\n";
   EXPECT_THAT(refusal(), HasSubstr("lab.toml:1: lab is not a table of a lab file"));
 }
