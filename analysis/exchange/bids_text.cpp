@@ -10,6 +10,7 @@
 #include <set>
 
 #include "analysis/exchange/bids_label.h"
+#include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/pass_facts.h"
 #include "analysis/files/delimited.h"
@@ -332,7 +333,10 @@ std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnD
   return sidecar_of(event_docs(options.phases, columns));
 }
 
-std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {
+namespace {
+
+/// What every recording of a session says of its task.
+Json described_task(const Session& session) {
   const auto& info = session.source.info;
   Json json;
   const std::string name = experiment_name(info);
@@ -343,6 +347,14 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
   if (!marks.empty()) {
     json["TaskDescription"] = marks;
   }
+  return json;
+}
+
+}  // namespace
+
+std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {
+  const auto& info = session.source.info;
+  Json json = described_task(session);
   json["SamplingFrequency"] = info.rate;
   json["StartTime"] = static_cast<double>(samples.first_sequence) / info.rate;
   json["Columns"] = Json::array();
@@ -362,6 +374,22 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
   for (std::size_t i = 1; i < sample_docs().size(); ++i) {
     json[sample_docs()[i].name] = json_of(sample_docs()[i]);
   }
+  return text_of(json);
+}
+
+std::string channel_sidecar(const Session& session, const record::TableDescription& table,
+                            const analysis::ChannelQuality& channel) {
+  Json json = described_task(session);
+  json["SamplingFrequency"] = channel.rate();
+  json["StartTime"] = channel.first;
+  json["Simulated"] = session.source.info.simulated;
+  json["Columns"] = Json::array();
+  for (const ColumnDoc& doc : docs_of(table)) {
+    json["Columns"].push_back(doc.name);
+    json[doc.name] = json_of(doc);
+  }
+  json["Missing"] = channel.missing;
+  json["TimeUncertainty"] = channel.uncertainty;
   return text_of(json);
 }
 

@@ -8,6 +8,8 @@
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/export_sessions.h"
 #include "analysis/exchange/sample_text.h"
+#include "analysis/quality/channel_quality.h"
+#include "core/record/table/table_description.h"
 
 // The texts of a BIDS data set; for export_bids.cpp only.
 namespace haptrial::exchange::bids {
@@ -40,5 +42,8 @@ std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnD
 /// The description of a table's columns as JSON.
 std::string sidecar_of(const std::vector<ColumnDoc>& docs);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
+/// The same of a channel, whose samples have the times of their columns.
+std::string channel_sidecar(const Session& session, const record::TableDescription& table,
+                            const analysis::ChannelQuality& channel);
 
 }  // namespace haptrial::exchange::bids

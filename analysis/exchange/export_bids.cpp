@@ -9,6 +9,7 @@
 #include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/bids_pages.h"
 #include "analysis/exchange/bids_text.h"
+#include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/pass_facts.h"
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
@@ -99,6 +100,24 @@ std::vector<ColumnDoc> fact_columns(std::span<const Session> sessions) {
   return columns;
 }
 
+/// Each channel is a continuous recording of its own. One that gave events alone has no rate and
+/// stays out.
+void write_channels(const NewFolder& out, const Session& session,
+                    const record::SessionReader& reader) {
+  for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
+    if (channel.rate() <= 0.0) {
+      continue;
+    }
+    const auto table = reader.description("channel_" + channel.name);
+    const std::string stem = fmt::format("{}/beh/{}_recording-{}_physio", session.folder(),
+                                         session.stem(), bids_label(channel.name));
+    GzipFile file(out.place(stem + ".tsv.gz"));
+    write_channel(reader, *table, Delimited::kTsv, false, file);
+    file.close();
+    out.write(stem + ".json", bids::channel_sidecar(session, *table, channel));
+  }
+}
+
 WrittenSamples write_session(const NewFolder& out, const Session& session,
                              const std::vector<ColumnDoc>& columns, Counter& counter) {
   const record::SessionReader reader(session.source.file);
@@ -108,6 +127,7 @@ WrittenSamples write_session(const NewFolder& out, const Session& session,
   WrittenSamples samples = write_samples(reader, Delimited::kTsv, file, counter);
   file.close();
   out.write(stem + "_physio.json", bids::recording_sidecar(session, samples));
+  write_channels(out, session, reader);
   out.write(stem + "_events.tsv", bids::events_table(session, reader, samples, columns));
   const std::string prefix = session.session.empty() ? "" : "_" + session.session;
   out.write(fmt::format("{}/{}{}_scans.tsv", session.folder(), session.subject, prefix),

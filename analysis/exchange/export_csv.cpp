@@ -6,6 +6,7 @@
 #include <set>
 #include <variant>
 
+#include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
@@ -173,17 +174,9 @@ struct ProtocolTable {
   std::string text;  // empty: no session has a row
 };
 
-Docs own_docs(const record::TableDescription& table) {
-  Docs docs;
-  for (const record::Column& column : table.schema().columns) {
-    docs.push_back(doc_of(table.schema(), column.name));
-  }
-  return docs;
-}
-
 Docs column_docs(const record::TableDescription& table) {
   Docs docs{kSubject, kSession};
-  for (const ColumnDoc& doc : own_docs(table)) {
+  for (const ColumnDoc& doc : docs_of(table)) {
     docs.push_back(doc);
   }
   return docs;
@@ -192,7 +185,7 @@ Docs column_docs(const record::TableDescription& table) {
 /// The columns that every channel has.
 Docs channel_docs() {
   const channel::ChannelTable table("NAME", {}, 1);
-  return own_docs(table.table());
+  return docs_of(table.table());
 }
 
 void add_rows(ProtocolTable& own, const ExportSession& session,
@@ -311,30 +304,12 @@ std::vector<std::string> file_stems(const std::vector<ExportSession>& sessions) 
   return stems;
 }
 
-/// The samples of a channel, a piece at a time.
-void write_channel(const record::SessionReader& reader, const record::TableDescription& table,
-                   GzipFile& file) {
-  constexpr std::size_t kPiece = std::size_t{1} << 20;  // [bytes]
-  std::string text = heading(own_docs(table), Delimited::kCsv);
-  RowText row(text, Delimited::kCsv);
-  reader.each_row(table, [&](const std::vector<record::Cell>& cells) {
-    for (const record::Cell& cell : cells) {
-      std::visit([&](const auto& value) { row.add(value); }, cell);
-    }
-    row.end();
-    if (text.size() >= kPiece) {
-      file.write(text);
-      text.clear();
-    }
-  });
-  file.write(text);
-}
-
 void write_channels(const NewFolder& out, const record::SessionReader& reader,
                     const std::string& stem) {
   for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
     GzipFile file(out.place(fmt::format("channels/{}_{}.csv.gz", stem, channel.name)));
-    write_channel(reader, *reader.description("channel_" + channel.name), file);
+    write_channel(reader, *reader.description("channel_" + channel.name), Delimited::kCsv, true,
+                  file);
     file.close();
   }
 }

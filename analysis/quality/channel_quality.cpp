@@ -32,6 +32,7 @@ ChannelQuality quality_of(const record::SessionReader& reader, const std::string
   };
   const auto numbered = static_cast<std::uint64_t>(at("sample", last) - at("sample", 0)) + 1;
   quality.missing = numbered - quality.samples;
+  quality.first = 1e-9 * static_cast<double>(at("time_ns", 0));
   quality.seconds = 1e-9 * static_cast<double>(at("time_ns", last) - at("time_ns", 0));
   std::vector<double> all(quality.samples);
   const std::array<record::ColumnTarget, 1> targets{

@@ -14,11 +14,12 @@ namespace haptrial::analysis {
 struct ChannelQuality {
   std::string name;
   std::uint64_t samples{0};
-  std::uint64_t missing{0};      // that the instrument counted and that never came
-  std::uint64_t losses{0};       // times that no data came any more
-  std::uint64_t clock_steps{0};  // of the instrument's clock
-  double seconds{0.0};           // from the first sample to the last
-  double uncertainty{0.0};       // of the samples' times, median [s]
+  std::uint64_t missing{0};         // that the instrument counted and that never came
+  std::uint64_t losses{0};          // times that no data came any more
+  std::uint64_t clock_steps{0};     // of the instrument's clock
+  double first{0.0};                // time of the first sample, since the session's first tick [s]
+  double seconds{0.0};              // from the first sample to the last
+  double uncertainty{0.0};          // of the samples' times, median [s]
   double largest_uncertainty{0.0};  // [s]
 
   /// Samples a second; 0 where there are less than two [Hz]

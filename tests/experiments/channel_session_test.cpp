@@ -13,6 +13,7 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <thread>
 
@@ -97,6 +98,27 @@ class ChannelSessionTest : public testing::Test {
 constexpr const char* kSine =
     "path = \"nowhere\"\nrate = 50.0\n"
     "simulated = { mean = 0.0, amplitude = 4.0, frequency = 0.5 }\n";
+
+TEST_F(ChannelSessionTest, ABidsDataSetHasTheChannelAsARecordingOfItsOwn) {
+  ASSERT_EQ(dry_run(study(kSine), "a").status, 0);
+  const std::string bids = (folder_ / "bids").string();
+  ASSERT_EQ(
+      test::run_command("haptrial export --bids " + bids + " " + (folder_ / "a").string()).status,
+      0);
+  const std::string stem = bids + "/sub-S01/beh/sub-S01_task-squeeze_recording-grip_physio";
+  const auto sidecar = nlohmann::json::parse(file_text(stem + ".json"));
+  EXPECT_NEAR(sidecar["SamplingFrequency"].get<double>(), 50.0, 1e-6);
+  EXPECT_EQ(sidecar["force"]["Units"], "N");
+  const auto rows = test::run_command("zcat " + stem + ".tsv.gz").output;
+  const auto grip = grip_of(session("a"));
+  EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), static_cast<std::ptrdiff_t>(grip.size()));
+  // A row has as many columns as the sidecar names, and the force is the last.
+  const std::string first = rows.substr(0, rows.find('\n'));
+  EXPECT_EQ(std::count(first.begin(), first.end(), '\t') + 1,
+            static_cast<std::ptrdiff_t>(sidecar["Columns"].size()));
+  EXPECT_EQ(std::stod(first.substr(first.rfind('\t') + 1)), grip.front().force);
+  EXPECT_NEAR(sidecar["StartTime"].get<double>(), grip.front().time, 1e-9);
+}
 
 TEST_F(ChannelSessionTest, InADryRunAStageEndsOnTheTickOnWhichTheSineExceedsTheValue) {
   ASSERT_EQ(dry_run(study(kSine), "a").status, 0);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/exchange/columns.h"
+#include "analysis/files/delimited.h"
+#include "analysis/files/gzip_file.h"
+
+namespace haptrial::record {
+class SessionReader;
+class TableDescription;
+}  // namespace haptrial::record
+
+namespace haptrial::exchange {
+
+/// All columns of a table of the session file.
+std::vector<ColumnDoc> docs_of(const record::TableDescription& table);
+
+/// Writes the samples of a channel, a row each with all columns of its table.
+/// @param table  of the channel, one of the reader's; @param headed  begins with the names
+/// @throws InputError when the file is damaged, RunError when the disk is full
+void write_channel(const record::SessionReader& reader, const record::TableDescription& table,
+                   Delimited kind, bool headed, GzipFile& file);
+
+}  // namespace haptrial::exchange
