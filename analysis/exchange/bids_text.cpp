@@ -384,7 +384,7 @@ std::string channel_sidecar(const Session& session, const record::TableDescripti
   json["StartTime"] = channel.first;
   json["Simulated"] = session.source.info.simulated;
   json["Columns"] = Json::array();
-  for (const ColumnDoc& doc : docs_of(table)) {
+  for (const ColumnDoc& doc : exchange::docs_of(table)) {
     json["Columns"].push_back(doc.name);
     json[doc.name] = json_of(doc);
   }
