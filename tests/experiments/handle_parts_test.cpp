@@ -236,6 +236,31 @@ TEST_F(HandlePartsTest, WhatIsWrongIsSaidInTheUnitsOfTheRotation) {
               HasSubstr("stage feel: its fields on knob add up to 2 N·m/rad and 0.2 N·m·s/rad"));
 }
 
+TEST_F(HandlePartsTest, ObjectsMeetDevicesThemselves) {
+  const std::string objects =
+      "[objects.ball]\nshape = \"sphere\"\nradius = 0.01\ndevice = \"knob\"\nstiffness = 300.0\n"
+      "damping = 0.0\n";
+  const auto result =
+      run(study("type = \"viscous\"\ndamping = 0.001\n" + objects, "knob"), "validate");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.errors,
+              HasSubstr("objects.ball.device is \"knob\"; allowed: a device itself"));
+}
+
+TEST_F(HandlePartsTest, ADamagedFileIsRecoveredWithItsParts) {
+  ASSERT_EQ(run(study("type = \"viscous\"\ndamping = 0.001\n", "knob", kTurned)).status, 0);
+  const std::string file = (folder_ / "out" / "S01.h5").string();
+  const auto before = record::SessionReader(file).rows<record::DeviceRow>();
+  const auto damaged =
+      test::run_command("cd '" + folder_.path().string() +
+                        "' && cp out/S01.h5 cut.h5 && printf '\\0\\0\\0\\0' | dd of=cut.h5 bs=1 "
+                        "conv=notrunc status=none && haptrial recover cut.h5 back.h5");
+  ASSERT_EQ(damaged.status, 0) << damaged.errors;
+  const record::SessionReader back((folder_ / "back.h5").string());
+  EXPECT_EQ(back.rows<record::DeviceRow>().size(), before.size());
+  EXPECT_EQ(back.rows<record::ArmRow>().size(), 3u);
+}
+
 TEST_F(HandlePartsTest, AnImpossiblePartIsRefused) {
   const std::string text = study("type = \"viscous\"\ndamping = 0.001\n", "knob");
   const auto without = [&](const std::string& what, const std::string& instead) {

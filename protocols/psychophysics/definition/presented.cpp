@@ -1,5 +1,7 @@
 #include "protocols/psychophysics/definition/presented.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <variant>
@@ -31,6 +33,16 @@ std::vector<scene::Field> read_felt_objects(Table& table, const TrialsDefinition
   return objects;
 }
 
+/// A rotation or grip is nowhere that an object could be.
+void refuse_parts(Table& objects, const TrialsDefinition& d, const DeviceOf& devices) {
+  for (const auto& [name, device] : devices) {
+    if (!d.hands.empty() && !d.hands[device].is_tip()) {
+      objects.table(name).reject("device", fmt::format("\"{}\"", d.hands[device].name),
+                                 "a device itself, not its rotation or grip");
+    }
+  }
+}
+
 /// Fields, and behind them the objects, which are felt as fields.
 void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presented) {
   DeviceOf devices;
@@ -38,6 +50,7 @@ void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presen
   if (root.has("objects")) {
     Table table = root.table("objects");
     devices = devices_of(table, d.hands, "Device whose tool feels the object", "every device");
+    refuse_parts(table, d, devices);
     objects = read_felt_objects(table, d);
   }
   if (root.has("fields")) {
