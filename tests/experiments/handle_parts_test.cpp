@@ -238,7 +238,7 @@ TEST_F(HandlePartsTest, WhatIsWrongIsSaidInTheUnitsOfTheRotation) {
 
 TEST_F(HandlePartsTest, ObjectsMeetDevicesThemselves) {
   const std::string objects =
-      "[objects.ball]\nshape = \"sphere\"\nradius = 0.01\ndevice = \"knob\"\nstiffness = 300.0\n"
+      "[objects.ball]\nshape = \"sphere\"\nradius = 0.01\ndevice = \"knob\"\nstiffness = 30.0\n"
       "damping = 0.0\n";
   const auto result =
       run(study("type = \"viscous\"\ndamping = 0.001\n" + objects, "knob"), "validate");

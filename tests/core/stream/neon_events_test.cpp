@@ -25,7 +25,7 @@ std::int64_t session_now() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now() - kBegin).count();
 }
 
-TimedOnset onset(std::uint64_t number, std::int64_t time_ns) {
+TimedOnset stage_onset(std::uint64_t number, std::int64_t time_ns) {
   return {{record::MarkerOf::kStage}, number, 10 * number, time_ns};
 }
 
@@ -48,8 +48,8 @@ TEST(NeonEventsTest, AnEventHasTheTimeOfItsTickOnThePhonesClock) {
   const std::int64_t tick = session_now() - 3 * kSecond;
   const auto wall = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch() -
                                              std::chrono::seconds(3));
-  events.send(onset(1, tick), "stage press");
-  events.send(onset(2, tick + 5'000'000), "response yes");
+  events.send(stage_onset(1, tick), "stage press");
+  events.send(stage_onset(2, tick + 5'000'000), "response yes");
   const auto sent = all_of(events, 2);
   ASSERT_EQ(phone.events().size(), 2u);
   const auto first = nlohmann::json::parse(phone.events()[0]);
@@ -70,8 +70,8 @@ TEST(NeonEventsTest, AnEventHasTheTimeOfItsTickOnThePhonesClock) {
 TEST(NeonEventsTest, APhoneThatIsAwayIsSaidOnceAndEveryEventCounts) {
   const int port = test::free_port();
   NeonEvents events(address_of(port), session_now);
-  events.send(onset(1, 0), "trial 1");
-  events.send(onset(2, 0), "trial 2");
+  events.send(stage_onset(1, 0), "trial 1");
+  events.send(stage_onset(2, 0), "trial 2");
   for (const NeonEvent& each : all_of(events, 2)) {
     EXPECT_EQ(each.taken_ns, -1);
   }
@@ -83,7 +83,7 @@ TEST(NeonEventsTest, ARefusalIsNoEvent) {
   test::StandInNeon phone;
   phone.answer_with("", 500);
   NeonEvents events(address_of(phone.port()), session_now);
-  events.send(onset(1, 0), "trial 1");
+  events.send(stage_onset(1, 0), "trial 1");
   EXPECT_EQ(all_of(events, 1)[0].taken_ns, -1);
   EXPECT_THAT(events.trouble(), HasSubstr("refused an event (status 500)"));
 }
@@ -91,7 +91,7 @@ TEST(NeonEventsTest, ARefusalIsNoEvent) {
 TEST(NeonEventsTest, WhatIsGivenUpCountsAsNotTaken) {
   NeonEvents events("192.0.2.1", session_now);  // an address that nobody has
   for (std::uint64_t number = 1; number <= 5; ++number) {
-    events.send(onset(number, 0), "trial");
+    events.send(stage_onset(number, 0), "trial");
   }
   events.give_up();
   EXPECT_EQ(all_of(events, 5).size(), 5u);
