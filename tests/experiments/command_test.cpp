@@ -111,8 +111,9 @@ TEST_F(CommandTest, ValidateAndDevices) {
   EXPECT_EQ(valid.status, 0);
   EXPECT_THAT(valid.output, HasSubstr("12 participants, 72 trials in 24 blocks of 3"));
   EXPECT_THAT(valid.output, HasSubstr(" minutes per participant, breaks and pages not counted\n"));
-  EXPECT_THAT(run_command("haptrial devices").output,
-              AllOf(HasSubstr("virtual"), HasSubstr("\nrdt              force-torque sensors")));
+  EXPECT_THAT(
+      run_command("haptrial devices").output,
+      testing::AllOf(HasSubstr("virtual"), HasSubstr("\nrdt              force-torque sensors")));
 }
 
 TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
