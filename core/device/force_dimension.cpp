@@ -9,7 +9,7 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
-#include "core/device/dynamic_library.h"
+#include "core/device/force_dimension_internal.h"
 
 namespace haptrial::device {
 namespace {
@@ -24,9 +24,6 @@ constexpr int kStatusConnected = 1;  // places in the status words
 constexpr int kStatusForce = 5;
 constexpr int kStatusForceOffCause = 14;
 constexpr int kStatusWords = 32;  // 17 today; room for a later library
-
-constexpr const char* kForceDimensionFrom =
-    "the Force Dimension SDK, from https://www.forcedimension.com/software/sdk";
 
 constexpr std::array<const char*, 7> kForceOffCauses{
     "the device switched its motors off and gives no cause",
@@ -91,19 +88,6 @@ const char* sentence(const std::array<const char*, n>& sentences, int number) no
   return sentences[known ? static_cast<std::size_t>(number) : 0];
 }
 
-DynamicLibrary open_library(const std::string& library) {
-  if (!library.empty()) {
-    return {library, kForceDimensionFrom};
-  }
-  // libdrd brings the DHD functions with it. Two libraries side by side might not share their
-  // devices, so that all functions come from one.
-  try {
-    return {"libdrd.so.3", kForceDimensionFrom};
-  } catch (const InputError&) {
-    return {"libdhd.so.3", kForceDimensionFrom};
-  }
-}
-
 void check(const ForceDimensionParameters& p, double rate) {
   const bool good = p.index >= 0 && p.index <= 3 && p.max_force > 0.0 && p.max_torque > 0.0 &&
                     p.max_grip_force > 0.0 && p.workspace_radius > 0.0 && p.effector_mass >= 0.0 &&
@@ -116,111 +100,6 @@ void check(const ForceDimensionParameters& p, double rate) {
 }
 
 }  // namespace
-
-/// The functions of the vendor's library that are used here.
-struct ForceDimensionDevice::Api {
-  explicit Api(const std::string& path);
-
-  DynamicLibrary library;
-  int (*count)();
-  int (*open)(char);
-  int (*close)(char);
-  const char* (*system_name)(char);
-  int (*system_type)(char);  // null in old libraries
-  int (*enable_force)(unsigned char, char);
-  int (*stop)(char);
-  int (*set_effector_mass)(double, char);
-  int (*set_gravity_compensation)(int, char);
-  int (*get_position)(double*, double*, double*, char);
-  int (*config_linear_velocity)(int, int, char);
-  int (*get_linear_velocity)(double*, double*, double*, char);
-  int (*set_force)(double, double, double, char);
-  unsigned (*get_button_mask)(char);
-  bool (*has_wrist)(char);  // null in libraries before 3
-  int (*get_orientation)(double (*)[3], char);
-  // Null in libraries that know no motors of a wrist or gripper.
-  bool (*has_active_wrist)(char);
-  int (*get_angular_velocity)(double*, double*, double*, char);
-  int (*config_angular_velocity)(int, int, char);
-  int (*set_max_torque)(double, char);
-  bool (*has_active_gripper)(char);
-  int (*get_gripper_gap)(double*, char);
-  int (*get_gripper_velocity)(double*, char);
-  int (*config_gripper_velocity)(int, int, char);
-  int (*set_max_gripper_force)(double, char);
-  int (*set_wrench)(double, double, double, double, double, double, double, char);
-  int (*get_status)(int*, char);
-  int (*set_max_force)(double, char);
-  int (*enable_expert_mode)();
-  int (*disable_expert_mode)();
-  int (*set_time_guard)(int, char);
-  int (*set_watchdog)(unsigned char, char);
-  int (*set_velocity_threshold)(unsigned, char);
-  int (*last_error)();
-  // Null where DRD is not installed.
-  int (*drd_open)(char);
-  int (*drd_close)(char);
-  bool (*drd_is_supported)(char);
-  bool (*drd_is_initialized)(char);
-  int (*drd_auto_init)(char);
-  int (*drd_stop)(bool, char);
-
-  bool has_drd() const noexcept {
-    return drd_open && drd_close && drd_is_supported && drd_is_initialized && drd_auto_init &&
-           drd_stop;
-  }
-  bool knows_torque() const noexcept {
-    return has_active_wrist && get_orientation && get_angular_velocity && config_angular_velocity &&
-           set_max_torque && set_wrench;
-  }
-  bool knows_grip() const noexcept {
-    return has_active_gripper && get_gripper_gap && get_gripper_velocity &&
-           config_gripper_velocity && set_max_gripper_force && set_wrench;
-  }
-};
-
-ForceDimensionDevice::Api::Api(const std::string& path) : library(open_library(path)) {
-  library.get(count, "dhdGetDeviceCount");
-  library.get(open, "dhdOpenID");
-  library.get(close, "dhdClose");
-  library.get(system_name, "dhdGetSystemName");
-  library.get(enable_force, "dhdEnableForce");
-  library.get(stop, "dhdStop");
-  library.get(set_effector_mass, "dhdSetEffectorMass");
-  library.get(set_gravity_compensation, "dhdSetGravityCompensation");
-  library.get(get_position, "dhdGetPosition");
-  library.get(config_linear_velocity, "dhdConfigLinearVelocity");
-  library.get(get_linear_velocity, "dhdGetLinearVelocity");
-  library.get(set_force, "dhdSetForce");
-  library.get(get_button_mask, "dhdGetButtonMask");
-  library.get(get_status, "dhdGetStatus");
-  library.get(set_max_force, "dhdSetMaxForce");
-  library.get(enable_expert_mode, "dhdEnableExpertMode");
-  library.get(disable_expert_mode, "dhdDisableExpertMode");
-  library.get(set_time_guard, "dhdSetTimeGuard");
-  library.get(set_watchdog, "dhdSetWatchdog");
-  library.get(set_velocity_threshold, "dhdSetVelocityThreshold");
-  library.get(last_error, "dhdErrorGetLast");
-  library.find(system_type, "dhdGetSystemType");
-  library.find(has_wrist, "dhdHasWrist");
-  library.find(get_orientation, "dhdGetOrientationFrame");
-  library.find(has_active_wrist, "dhdHasActiveWrist");
-  library.find(get_angular_velocity, "dhdGetAngularVelocityRad");
-  library.find(config_angular_velocity, "dhdConfigAngularVelocity");
-  library.find(set_max_torque, "dhdSetMaxTorque");
-  library.find(has_active_gripper, "dhdHasActiveGripper");
-  library.find(get_gripper_gap, "dhdGetGripperGap");
-  library.find(get_gripper_velocity, "dhdGetGripperLinearVelocity");
-  library.find(config_gripper_velocity, "dhdConfigGripperVelocity");
-  library.find(set_max_gripper_force, "dhdSetMaxGripperForce");
-  library.find(set_wrench, "dhdSetForceAndTorqueAndGripperForce");
-  library.find(drd_open, "drdOpenID");
-  library.find(drd_close, "drdClose");
-  library.find(drd_is_supported, "drdIsSupported");
-  library.find(drd_is_initialized, "drdIsInitialized");
-  library.find(drd_auto_init, "drdAutoInit");
-  library.find(drd_stop, "drdStop");
-}
 
 const Schema<ForceDimensionParameters>& force_dimension_schema() {
   using P = ForceDimensionParameters;
@@ -507,7 +386,7 @@ int ForceDimensionDevice::set_wrench(const Wrench& wrench) noexcept {
 }
 
 int count_force_dimension_devices(const std::string& library) {
-  const DynamicLibrary loaded = open_library(library);
+  const DynamicLibrary loaded = open_force_dimension_library(library);
   int (*count)() = nullptr;
   loaded.get(count, "dhdGetDeviceCount");
   return count();

@@ -10,7 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <filesystem>
 #include <numbers>
 #include <thread>
 
@@ -88,7 +88,7 @@ TEST(ActuatorTest, WhatTheActuatorCannotGiveIsRefused) {
               HasSubstr("channel is that of wrist, too"));
 }
 
-/// Samples of each channel that a card of four was given, a second of them.
+/// Samples of each channel that a card of four was given, for half a second or more.
 std::array<std::vector<float>, 4> played(const std::string& sounds,
                                          const std::vector<std::size_t>& cues) {
   const test::TemporaryFolder folder;
@@ -105,7 +105,11 @@ std::array<std::vector<float>, 4> played(const std::string& sounds,
       started += player.take_started().size();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    // The card is given the whole sound, and what follows.
+    constexpr std::uintmax_t kWritten = 4 * sizeof(float) * 24'000;
+    while (std::filesystem::file_size(file) < kWritten) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
   }
   const std::string bytes = file_text(file);
   std::array<std::vector<float>, 4> channels;
