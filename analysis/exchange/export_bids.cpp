@@ -102,8 +102,8 @@ std::vector<ColumnDoc> fact_columns(std::span<const Session> sessions) {
 
 /// Each channel is a continuous recording of its own. One that gave events alone has no rate and
 /// stays out.
-void write_channels(const NewFolder& out, const Session& session,
-                    const record::SessionReader& reader) {
+void write_channel_recordings(const NewFolder& out, const Session& session,
+                              const record::SessionReader& reader) {
   for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
     if (channel.rate() <= 0.0) {
       continue;
@@ -127,7 +127,7 @@ WrittenSamples write_session(const NewFolder& out, const Session& session,
   WrittenSamples samples = write_samples(reader, Delimited::kTsv, file, counter);
   file.close();
   out.write(stem + "_physio.json", bids::recording_sidecar(session, samples));
-  write_channels(out, session, reader);
+  write_channel_recordings(out, session, reader);
   out.write(stem + "_events.tsv", bids::events_table(session, reader, samples, columns));
   const std::string prefix = session.session.empty() ? "" : "_" + session.session;
   out.write(fmt::format("{}/{}{}_scans.tsv", session.folder(), session.subject, prefix),
