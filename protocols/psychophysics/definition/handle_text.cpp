@@ -1,6 +1,7 @@
 #include "protocols/psychophysics/definition/handle_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -277,26 +278,37 @@ void HandleReport::add(const Presented& presented) {
   }
 }
 
+/// The end of a sentence; empty where a handle that nobody holds carries all of it, if barely.
+std::string HandleReport::left_on_bare_handle(const Load& load) const {
+  const control::BareHandle bare =
+      control::bare_handle({load.stiffness, load.damping}, loop_of(load));
+  const DeviceArm& arm = arms_[load.device];
+  const bool turns = arm.part == device::Part::kRotation;
+  const double square = turns ? arm.radius * arm.radius : 1.0;
+  std::vector<std::string> less;
+  if (load.damping > bare.damping) {
+    less.push_back(turns ? fmt::format(" of the damping {:.2g} N·m·s/rad", square * bare.damping)
+                         : fmt::format(" of the damping {:.1f} N·s/m", bare.damping));
+  }
+  if (load.stiffness > bare.stiffness) {
+    less.push_back(turns ? fmt::format(" of the stiffness {:.2g} N·m/rad", square * bare.stiffness)
+                         : fmt::format(" of the stiffness {:.0f} N/m", bare.stiffness));
+  }
+  if (load.mass > 0.0) {
+    less.emplace_back(" of the virtual mass what it carries");
+  }
+  return less.empty() ? ""
+                      : fmt::format(", for a handle that nobody holds to:{}", fmt::join(less, ","));
+}
+
 HandleText HandleReport::words() const {
   HandleText words;
   words.lines = begin_;
   for (const Load& load : worst_) {
-    const control::HandleLoop loop = loop_of(load);
-    const control::BareHandle bare = control::bare_handle({load.stiffness, load.damping}, loop);
-    std::string less = load.damping > bare.damping
-                           ? fmt::format(" of the damping {:.1f} N·s/m", bare.damping)
-                           : "";
-    if (load.stiffness > bare.stiffness) {
-      less +=
-          fmt::format("{} of the stiffness {:.0f} N/m", less.empty() ? "" : ",", bare.stiffness);
-    }
-    if (load.mass > 0.0) {
-      less += fmt::format("{} of the virtual mass what it carries", less.empty() ? "" : ",");
-    }
     words.lines.push_back(
         fmt::format("{}, which hands of {:.2f} kg or more carry; for lighter ones haptrial reduces "
-                    "them, for a handle that nobody holds to:{}",
-                    where(load), load.lightest, less));
+                    "them{}",
+                    where(load), load.lightest, left_on_bare_handle(load)));
     if (!load.own_hand) {
       words.warnings.push_back(fmt::format(
           "{}, which only hands of {:.2f} kg or more carry at {:g} Hz; the hand of [hand] has {:g} "

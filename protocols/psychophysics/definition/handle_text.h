@@ -51,6 +51,7 @@ class HandleReport {
   void judge(Load& load) const;
   void keep(const Load& load);
   std::string amount_of(const Load& load) const;
+  std::string left_on_bare_handle(const Load& load) const;
 
   const TrialsDefinition& d_;
   std::vector<DeviceArm> arms_;
