@@ -335,7 +335,7 @@ std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnD
 
 namespace {
 
-/// What every recording of a session says of its task.
+/// Every recording of a session describes its task in these words.
 Json described_task(const Session& session) {
   const auto& info = session.source.info;
   Json json;

@@ -42,7 +42,7 @@ std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnD
 /// The description of a table's columns as JSON.
 std::string sidecar_of(const std::vector<ColumnDoc>& docs);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
-/// The same of a channel, whose samples have the times of their columns.
+/// The sidecar of a channel's recording; its samples have the times of their columns.
 std::string channel_sidecar(const Session& session, const record::TableDescription& table,
                             const analysis::ChannelQuality& channel);
 

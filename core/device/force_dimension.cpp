@@ -204,7 +204,7 @@ void ForceDimensionDevice::check_limits() const {
   }
 }
 
-/// What the handle has beside its tip.
+/// Notes which motors and sensors the handle has beside those of its tip.
 void ForceDimensionDevice::find_parts() {
   const Api& api = *api_;
   info_.senses_orientation =

@@ -73,6 +73,10 @@ double most_force(Part part, const DeviceInfo& info, double radius) noexcept {
   return info.max_force;
 }
 
+PartUnits units_of(Part part, double radius) noexcept {
+  return part == Part::kRotation ? PartUnits{"N·m", radius, "rad", 1.0 / radius} : PartUnits{};
+}
+
 const char* part_word(Part part) noexcept {
   switch (part) {
     case Part::kRotation:

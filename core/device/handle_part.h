@@ -37,9 +37,19 @@ void put_force(Part part, const Eigen::Vector3d& force, double radius, Wrench& w
 /// The most that the device gives there [N].
 double most_force(Part part, const DeviceInfo& info, double radius) noexcept;
 
-/// Its name: "rotation".
+/// The units in which people state a part's forces and places, and what 1 N and 1 m at the fingers
+/// are in them.
+struct PartUnits {
+  const char* force{"N"};
+  double newton{1.0};
+  const char* place{"m"};
+  double metre{1.0};
+};
+PartUnits units_of(Part part, double radius) noexcept;
+
+/// The name of a part: "rotation".
 const char* part_word(Part part) noexcept;
-/// The name of what it gives: "torque" of a rotation.
+/// The name of the force that it gives: "torque" of a rotation.
 const char* force_word(Part part) noexcept;
 
 }  // namespace haptrial::device

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/sound/card_player.h"
 #include "core/sound/mixer.h"
@@ -72,6 +74,7 @@ struct CuePlayer::Impl {
 
   void fill(std::span<float> part);
   void begin(std::size_t cue);
+  bool is_felt(std::size_t cue) const;
   void spread(std::span<float> part);
   void hand_over();
 
@@ -84,10 +87,15 @@ struct CuePlayer::Impl {
   mutable std::mutex mutex;  // all that follow
   std::vector<std::pair<std::size_t, std::uint64_t>> asked;
   bool masked{false};
+  bool stilled{false};  // before what is asked for
   std::vector<StartedCue> started;
 
   CardPlayer player;  // last: its thread uses the others
 };
+
+bool CuePlayer::Impl::is_felt(std::size_t cue) const {
+  return std::ranges::find(outputs.front().cues, cue) == outputs.front().cues.end();
+}
 
 void CuePlayer::Impl::begin(std::size_t cue) {
   for (Output& output : outputs) {
@@ -101,6 +109,11 @@ void CuePlayer::Impl::begin(std::size_t cue) {
 void CuePlayer::Impl::fill(std::span<float> part) {
   {
     const std::lock_guard lock(mutex);
+    if (std::exchange(stilled, false)) {
+      for (Output& output : std::span(outputs).subspan(1)) {
+        output.mixer->still();
+      }
+    }
     for (const auto& [cue, ticket] : asked) {
       begin(cue);
       begun.push_back(ticket);
@@ -153,6 +166,13 @@ CuePlayer::~CuePlayer() = default;
 void CuePlayer::start(std::size_t cue, std::uint64_t ticket) {
   const std::lock_guard lock(impl_->mutex);
   impl_->asked.emplace_back(cue, ticket);
+}
+
+/// Vibrations that were asked for and have not begun do not begin.
+void CuePlayer::still() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->stilled = true;
+  std::erase_if(impl_->asked, [this](const auto& each) { return impl_->is_felt(each.first); });
 }
 
 void CuePlayer::mask(bool on) {

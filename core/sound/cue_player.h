@@ -30,6 +30,8 @@ class CuePlayer {
   CuePlayer& operator=(const CuePlayer&) = delete;
 
   void start(std::size_t cue, std::uint64_t ticket);
+  /// Ends what the actuators give; what is started afterwards begins. Loudspeakers go on.
+  void still();
   void mask(bool on);
   std::vector<StartedCue> take_started();
 

@@ -25,7 +25,14 @@ Mixer::Mixer(std::vector<std::vector<float>> clips, std::vector<float> masking, 
     : clips_(std::move(clips)),
       masking_(std::move(masking)),
       step_(fade * rate > 1.0 ? 1.0 / (fade * rate) : 1.0),
+      fade_(std::max(1, static_cast<int>(0.005 * rate))),
       limiter_(rate) {}
+
+void Mixer::still() noexcept {
+  for (Voice& voice : voices_) {
+    voice.left = voice.left < 0 ? fade_ : voice.left;
+  }
+}
 
 void Mixer::start(std::size_t clip) noexcept {
   if (clip >= clips_.size()) {
@@ -43,8 +50,9 @@ double Mixer::next() noexcept {
   double sum = 0.0;
   for (Voice& voice : voices_) {
     if (voice.clip != nullptr) {
-      sum += (*voice.clip)[voice.at++];
-      if (voice.at >= voice.clip->size()) {
+      const double gain = voice.left < 0 ? 1.0 : static_cast<double>(voice.left--) / fade_;
+      sum += gain * (*voice.clip)[voice.at++];
+      if (voice.at >= voice.clip->size() || voice.left == 0) {
         voice.clip = nullptr;
       }
     }

@@ -37,6 +37,8 @@ class Mixer {
 
   /// Starts a clip from the next sample on. @param clip  from 0; others are none
   void start(std::size_t clip) noexcept;
+  /// What sounds now fades out over 5 ms; what is started afterwards does not.
+  void still() noexcept;
   void mask(bool on) noexcept { masked_ = on; }
   void fill(std::span<float> samples) noexcept;
 
@@ -47,12 +49,14 @@ class Mixer {
   struct Voice {
     const std::vector<float>* clip{nullptr};
     std::size_t at{0};
+    int left{-1};  // samples until it has faded out; -1: it plays on
   };
   double next() noexcept;
 
   std::vector<std::vector<float>> clips_;
   std::vector<float> masking_;
   double step_;  // of the masking's gain, a sample
+  int fade_;     // of what is stilled [samples]
   std::array<Voice, kMostVoices> voices_{};
   std::size_t oldest_{0};
   std::size_t place_{0};  // in the masking's loop

@@ -16,6 +16,7 @@ constexpr const char* kMasking = "masking";
 constexpr const char* kDevice = "device";
 constexpr Bounds kHeard{20.0, 20'000.0, false};  // [Hz]
 constexpr Bounds kLength{0.0, 60.0, true};       // [s]
+constexpr double kPeaksOfNoise = 5.0;            // root mean squares, seldom exceeded
 constexpr Bounds kLevel{-120.0, -3.1, false};    // a sine that just fits has -3.01 dB
 
 bool is_file(const Cue& cue) { return cue.kind == Cue::Kind::kFile; }
@@ -158,10 +159,17 @@ void fit_to_actuator(Table& table, const std::vector<Actuator>& actuators, Cue& 
     return;
   }
   const double share = cue.amplitude / actuator->full_scale;
-  if (share > 1.0) {
+  const double most = actuator->full_scale / (is_noise(cue) ? kPeaksOfNoise : 1.0);
+  if (cue.amplitude > most) {
     table.reject("amplitude", fmt::format("{:g}", cue.amplitude),
-                 fmt::format("at most {:g} [{}], which is what {} gives", actuator->full_scale,
-                             actuator->unit, actuator->name));
+                 fmt::format("at most {:g} [{}], which is what {} gives", most, actuator->unit,
+                             actuator->name));
+  }
+  if (is_noise(cue) && (cue.colour.low < actuator->lowest || cue.colour.high > actuator->highest)) {
+    table.reject("colour", fmt::format("of {:g} to {:g} Hz", cue.colour.low, cue.colour.high),
+                 fmt::format("\"band\" with low and high from {:g} to {:g} [Hz], for which {} is "
+                             "calibrated",
+                             actuator->lowest, actuator->highest, actuator->name));
   }
   if (is_tone(cue) && !(cue.frequency >= actuator->lowest && cue.frequency <= actuator->highest)) {
     table.reject("frequency", fmt::format("{:g}", cue.frequency),

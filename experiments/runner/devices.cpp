@@ -144,9 +144,8 @@ std::unique_ptr<protocols::Rig> open_rig(
 /// @throws InputError for a rotation or grip without motors, or with weaker ones
 void check_part(const device::DeviceInfo& info, const protocols::DeviceArm& arm,
                 const std::string& file_name) {
-  const bool turns = arm.part == device::Part::kRotation;
+  const device::PartUnits unit = arm.units();
   const double most = device::most_force(arm.part, info, arm.radius);
-  const double in_its_unit = turns ? arm.radius : 1.0;
   if (most <= 0.0) {
     throw InputError(
         fmt::format("{}: devices.{} wants a {}, which the {} does not give; leave it "
@@ -157,8 +156,8 @@ void check_part(const device::DeviceInfo& info, const protocols::DeviceArm& arm,
     throw InputError(fmt::format(
         "{}: the max_force of devices.{} is {:g} {}; allowed: at most {:g}, which is what the {} "
         "gives",
-        file_name, arm.name, in_its_unit * arm.limits.max_force, turns ? "N·m" : "N",
-        in_its_unit * most, info.name));
+        file_name, arm.name, unit.newton * arm.limits.max_force, unit.force, unit.newton * most,
+        info.name));
   }
 }
 

@@ -107,10 +107,13 @@ void SessionMarkers::begin_pass(std::int32_t row, std::int32_t trial) {
 /// The sending thread.
 void SessionMarkers::hear(const TimedOnset& onset) {
   if (player_) {
+    const bool stage = !onset.over && onset.onset.what == MarkerOf::kStage;
+    if (onset.over || stage) {
+      player_->still();  // a vibration ends with its stage, however the stage ends
+    }
     if (!onset.over && onset.onset.sound >= 0) {
       player_->start(static_cast<std::size_t>(onset.onset.sound), onset.number);
     }
-    const bool stage = !onset.over && onset.onset.what == MarkerOf::kStage;
     if (!masked_.empty() && (onset.over || stage)) {
       player_->mask(stage && masked_[static_cast<std::size_t>(onset.onset.index)]);
     }

@@ -109,6 +109,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   definition.pages = pages::read_pages(root);
   read_devices(root, definition);
   definition.channels = channel::read_channels(root);
+  definition.actuators = sound::read_actuators(root);
   if (root.has("markers")) {
     Table markers = root.table("markers");
     definition.markers = markers::marker_schema().read(markers);

@@ -16,6 +16,7 @@
 #include "core/device/virtual_device.h"
 #include "core/pages/page.h"
 #include "core/render/flat/trial_display_style.h"
+#include "core/sound/actuator.h"
 #include "core/stream/marker_options.h"
 #include "core/stream/side_stream.h"
 #include "core/subject/hand_parameters.h"
@@ -72,6 +73,7 @@ struct Definition {
   device::GamepadParameters gamepad{};
   device::PedalParameters pedal{};                  // beside any of them
   std::vector<channel::ChannelOptions> channels{};  // other instruments
+  std::vector<sound::Actuator> actuators{};         // on channels of the sound card
   markers::MarkerOptions markers{};
   TutoringOptions tutoring{};
 
@@ -79,7 +81,7 @@ struct Definition {
   Table root() const;
   /// How many sessions each participant comes to, on days of their own; at least 1.
   virtual int sessions() const { return 1; }
-  /// What a session drives, 1 to kMostDevices parts of devices, the first of them a tip.
+  /// A session drives these parts of devices, 1 to kMostDevices of them; the first is a tip.
   virtual std::vector<DeviceArm> arms() const { return {{envelope}}; }
   int devices() const { return static_cast<int>(arms().size()); }  // these parts
   virtual PedalUse pedal_use() const { return PedalUse::kNone; }

@@ -19,6 +19,8 @@ struct DeviceArm {
   std::size_t of{0};                    // number of the arm that is the tip of its device
   double radius{1.0};                   // of the fingers about the axis of a rotation [m]
   std::optional<double> handle_mass{};  // at the fingers, in place of that of [hand] [kg]
+
+  device::PartUnits units() const { return device::units_of(part, radius); }
 };
 
 /// How many devices these are.

@@ -23,11 +23,11 @@ struct SessionInputs {
   std::span<const double> channels{};  // newest values (channel::ChannelSet)
 };
 
-/// What a session drives: the tips of its devices, and of those that give torque or a grip force
-/// their rotation and grip. Each is an arm, with its reading, the guard that keeps it calm, and its
-/// envelope; all of them are read, limited and recorded alike (core/device/handle_part.h). One for
-/// whom something is wrong stops all of them in the same tick. Servo thread, unless a function says
-/// otherwise.
+/// A session drives the tips of its devices, and of those that give torque or a grip force
+/// also their rotation and grip. Each is an arm, with its reading, the guard that keeps it calm,
+/// and its envelope; all of them are read, limited and recorded alike (core/device/handle_part.h).
+/// One for whom something is wrong stops all of them in the same tick. Servo thread, unless a
+/// function says otherwise.
 class DeviceSet {
  public:
   /// A part of a device that outlives the set. The arm of its tip comes before those of its

@@ -41,14 +41,13 @@ std::string key_of(const DeviceArm& arm, const char* key) {
 
 /// A force that is cut off is not the level that is recorded.
 void check_force(const TrialsDefinition& d, const scene::Field& field, const DeviceArm& arm) {
-  const bool turns = arm.part == device::Part::kRotation;
-  const double unit = turns ? arm.radius : 1.0;
+  const device::PartUnits unit = arm.units();
   const double force = scene::traits_of(field).asked_force;
   const double most = std::min(field.limit, arm.limits.max_force);
   if (force > most) {
     throw InputError(
         fmt::format("{}: fields.{} asks for {:g} {}; allowed: at most {:g} [{}], {}", d.file_name,
-                    field.name, unit * force, turns ? "N·m" : "N", unit * most, turns ? "N·m" : "N",
+                    field.name, unit.newton * force, unit.force, unit.newton * most, unit.force,
                     field.limit < arm.limits.max_force ? "its limit" : key_of(arm, "max_force")));
   }
 }
@@ -75,14 +74,12 @@ void check_reach(const TrialsDefinition& d, const Presented& presented) {
           scene::PlacedShape(region.shape).distance(Eigen::Vector3d::Zero()).distance;
       const DeviceArm& arm = arms[presented.region_devices[i]];
       if (waits && away > arm.limits.workspace_radius) {
-        const bool turns = arm.part == device::Part::kRotation;
-        const double unit = turns ? 1.0 / arm.radius : 1.0;
+        const device::PartUnits unit = arm.units();
         throw InputError(fmt::format(
             "{}: stage {} waits until the tool is inside regions.{}, which is {:.3g} {} from the "
             "origin; allowed: at most {}, {:g} [{}]",
-            d.file_name, stage.name, region.name, unit * away, turns ? "rad" : "m",
-            key_of(arm, "workspace_radius"), unit * arm.limits.workspace_radius,
-            turns ? "rad" : "m"));
+            d.file_name, stage.name, region.name, unit.metre * away, unit.place,
+            key_of(arm, "workspace_radius"), unit.metre * arm.limits.workspace_radius, unit.place));
       }
     }
   }

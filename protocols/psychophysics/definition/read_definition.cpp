@@ -95,7 +95,7 @@ const Schema<TrialsDefinition>& feedback_schema() {
 void read_display(Table& root, TrialsDefinition& d) {
   if (root.has("sounds")) {
     Table table = root.table("sounds");
-    d.cues = sound::read_cues(table, sound::read_actuators(root));
+    d.cues = sound::read_cues(table, d.actuators);
     d.markers.used = true;
   }
   Table table = root.table("display");

@@ -45,7 +45,8 @@ struct TrialDevice {
 /// there is one device, which needs no name, and the list is empty. Problems are noted.
 std::vector<TrialDevice> read_devices(Table& root);
 
-/// What sessions drive. @param envelope  of every tip, and of a part what it does not state
+/// The parts that sessions drive. @param envelope  of every tip, and of a part what it does not
+/// state
 std::vector<DeviceArm> arms_of(const std::vector<TrialDevice>& devices,
                                const device::EnvelopeLimits& envelope);
 

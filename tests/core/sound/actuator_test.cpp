@@ -83,14 +83,32 @@ TEST(ActuatorTest, WhatTheActuatorCannotGiveIsRefused) {
   EXPECT_THAT(
       said("[sounds.buzz]\nactuator = \"nose\"\namplitude = 1.0\nfrequency = 250.0\n" + tone),
       HasSubstr("sounds.buzz.actuator is \"nose\"; allowed: a name of [actuators]"));
+  const std::string noise = "type = \"noise\"\nduration = 0.5\ncolour = \"band\"\nlow = 60.0\n";
+  EXPECT_THAT(said(buzz(noise + "high = 400.0\namplitude = 7.0\n")),
+              HasSubstr("sounds.buzz.amplitude is 7; allowed: at most 6 [m/s²]"));
+  EXPECT_THAT(said(buzz(noise + "high = 4000.0\namplitude = 5.0\n")),
+              HasSubstr("sounds.buzz.colour is of 60 to 4000 Hz; allowed: \"band\" with low and "
+                        "high from 40 to 500 [Hz]"));
   const std::string twin = "[actuators.ankle]\nchannel = 4\nfull_scale = 1.0\nunit = \"g\"\n";
   EXPECT_THAT(test::message_of([&] { read("[sounds]\ndevice = \"null\"\n", kActuators + twin); }),
               HasSubstr("channel is that of wrist, too"));
 }
 
+TEST(ActuatorTest, TheLargestNoiseThatIsAllowedIsNotCutOff) {
+  const CueSet set =
+      read(buzz("type = \"noise\"\nduration = 10.0\ncolour = \"band\"\n"
+                "low = 60.0\nhigh = 400.0\namplitude = 6.0\n"));
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const float sample : rendered(set.cues[0], seed)) {
+      ASSERT_LE(std::abs(sample), 1.0F) << seed;
+    }
+  }
+}
+
 /// Samples of each channel that a card of four was given, for half a second or more.
 std::array<std::vector<float>, 4> played(const std::string& sounds,
-                                         const std::vector<std::size_t>& cues) {
+                                         const std::vector<std::size_t>& cues,
+                                         bool stilled = false) {
   const test::TemporaryFolder folder;
   const std::string file = (folder / "played.raw").string();
   {
@@ -104,6 +122,10 @@ std::array<std::vector<float>, 4> played(const std::string& sounds,
     while (started < cues.size()) {
       started += player.take_started().size();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    if (stilled) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      player.still();
     }
     // The card is given the whole sound, and what follows.
     constexpr std::uintmax_t kWritten = 4 * sizeof(float) * 24'000;
@@ -127,6 +149,19 @@ double largest(const std::vector<float>& samples) {
     most = std::max(most, std::abs(static_cast<double>(sample)));
   }
   return most;
+}
+
+TEST(ActuatorTest, AVibrationIsStilledAndASoundIsNot) {
+  const std::string tone = "type = \"tone\"\nfrequency = 250.0\nduration = 60.0\n";
+  const std::string sounds =
+      "[sounds.beep]\nlevel = -20.0\n" + tone + buzz(tone + "amplitude = 15.0\n");
+  const auto channels = played(sounds, {0, 1}, true);
+  const std::size_t end = channels[3].size() - 4800;
+  EXPECT_GT(largest(channels[3]), 0.4);
+  EXPECT_EQ(largest({channels[3].begin() + static_cast<std::ptrdiff_t>(end), channels[3].end()}),
+            0.0);
+  EXPECT_GT(largest({channels[0].begin() + static_cast<std::ptrdiff_t>(end), channels[0].end()}),
+            0.1);
 }
 
 TEST(ActuatorTest, EachSoundIsOnItsChannelOfTheCard) {

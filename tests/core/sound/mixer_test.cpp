@@ -62,6 +62,26 @@ TEST(MixerTest, TheLimiterTakesWhatIsNoNumber) {
   EXPECT_EQ(limiter.limited(-1e9), -1.0F);
 }
 
+TEST(MixerTest, WhatIsStilledFadesAndWhatBeginsThenDoesNot) {
+  Mixer mixer({std::vector<float>(48'000, 0.5F), std::vector<float>(48'000, 0.25F)}, {}, 0.0,
+              kRate);
+  std::vector<float> samples(480);
+  mixer.start(0);
+  mixer.fill(samples);
+  EXPECT_EQ(samples.back(), 0.5F);
+  mixer.still();
+  mixer.start(1);
+  mixer.fill(samples);
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    ASSERT_LE(samples[i], samples[i - 1]);
+    ASSERT_GT(samples[i], samples[i - 1] - 0.01F) << "no step";
+  }
+  EXPECT_EQ(samples[0], 0.75F);
+  for (std::size_t i = 240; i < samples.size(); ++i) {  // 5 ms
+    ASSERT_EQ(samples[i], 0.25F);
+  }
+}
+
 TEST(MixerTest, MaskingFadesInAndOut) {
   Mixer mixer({}, std::vector<float>(1000, 0.4F), 0.1, kRate);
   EXPECT_EQ(filled(mixer, 100), std::vector<float>(100, 0.0F));

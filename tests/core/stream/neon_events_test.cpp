@@ -42,7 +42,7 @@ std::vector<NeonEvent> all_of(NeonEvents& events, std::size_t count) {
 
 std::string address_of(int port) { return "127.0.0.1:" + std::to_string(port); }
 
-TEST(NeonEventsTest, AnEventHasTheTimeOfItsTickOnThePhonesClock) {
+TEST(NeonEventsTest, AnEventHasTheTimeOfItsTickRatherThanThatOfItsSending) {
   test::StandInNeon phone;
   NeonEvents events(address_of(phone.port()), session_now);
   const std::int64_t tick = session_now() - 3 * kSecond;

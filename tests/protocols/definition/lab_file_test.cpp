@@ -112,6 +112,22 @@ TEST_F(LabFileTest, ASessionFileNeedsNoOtherFile) {
   EXPECT_THAT(record::SessionReader(folder_ / "two/S01.h5").info().definition, HasSubstr(lab_));
 }
 
+TEST_F(LabFileTest, ServesStudiesThatHaveNoUseForWhatItHolds) {
+  lab_ += "\n[actuators.wrist]\nchannel = 3\nfull_scale = 30.0\nunit = \"g\"\n";
+  write();
+  const CommandResult force = run_command("haptrial validate " + (folder_ / "study.toml").string());
+  EXPECT_EQ(force.status, 0) << force.errors;
+  test::write_text(folder_ / "room/lab.toml",
+                   "[actuators.wrist]\nchannel = 3\nfull_scale = 30.0\nunit = \"g\"\n");
+  for (const char* name : {"stiffness_discrimination.toml", "first_drilling.toml"}) {
+    test::write_text(folder_ / name,
+                     test::read_text(fs::path(HAPTRIAL_SOURCE_DIR "/experiments") / name) +
+                         "\n[lab]\nuse = \"room/lab.toml\"\n");
+    const CommandResult valid = run_command("haptrial validate " + (folder_ / name).string());
+    EXPECT_EQ(valid.status, 0) << name << ": " << valid.errors;
+  }
+}
+
 TEST_F(LabFileTest, HoldsOnlyTablesOfMachines) {
   lab_ = "# guidance does not belong here\n" + lab_ + "\n[guidance]\nwait = 1\n";
   const auto line = std::count(lab_.begin(), lab_.end(), '\n') - 1;

@@ -172,7 +172,7 @@ TEST(DeviceSetTest, ATickWithPartsDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-/// What a part did over three seconds under one law.
+/// A part was driven by one law for three seconds, and this came of it.
 struct Outcome {
   double train;  // longest of turns [s]
   device::Fault fault;
