@@ -154,10 +154,10 @@ void check_part(const device::DeviceInfo& info, const protocols::DeviceArm& arm,
   }
   if (arm.limits.max_force > most) {
     throw InputError(fmt::format(
-        "{}: the max_force of devices.{} is {:g} {}; allowed: at most {:g}, which is what the {} "
-        "gives",
+        "{}: the max_force of devices.{} is {:g} {}; allowed: at most {:g} {}, which is what the "
+        "{} gives",
         file_name, arm.name, unit.newton * arm.limits.max_force, unit.force, unit.newton * most,
-        info.name));
+        unit.force, info.name));
   }
 }
 
