@@ -70,7 +70,7 @@ TEST(SensorChannelTest, TheCommandSaysWhichChannelIsMissing) {
   const auto result = test::run_command(
       "haptrial device-test force-dimension --certificate nowhere --sensor force");
   EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.errors, HasSubstr("--sensor force: no definition was given, which has no "
+  EXPECT_THAT(result.errors, HasSubstr("--sensor force needs --definition FILE with a table "
                                        "[channels.force]"));
   const auto of_virtual =
       test::run_command("haptrial device-test virtual --certificate nowhere --sensor force");

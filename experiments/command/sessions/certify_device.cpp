@@ -122,10 +122,12 @@ const channel::ChannelOptions& sensor_of(const DeviceTestOptions& options,
   const auto found =
       std::ranges::find(setup.channels, options.sensor, &channel::ChannelOptions::name);
   if (found == setup.channels.end()) {
-    throw InputError(fmt::format(
-        "--sensor {}: {} has no [channels.{}]", options.sensor,
-        options.definition.empty() ? "no definition was given, which" : options.definition,
-        options.sensor));
+    throw InputError(
+        options.definition.empty()
+            ? fmt::format("--sensor {0} needs --definition FILE with a table [channels.{0}]",
+                          options.sensor)
+            : fmt::format("--sensor {0}: {1} has no [channels.{0}]", options.sensor,
+                          options.definition));
   }
   return *found;
 }
