@@ -25,14 +25,15 @@ import sys
 import tempfile
 import tomllib
 
-from session_swings import LONGEST, measure
+from session_swings import LONGEST, Gains, measure
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SHIPPED = os.path.join(HERE, "..", "..", "experiments")
 
 FREE_STEP = 500.0  # of the force, that is accepted beside what contact explains [N/s]
 PUSHING = {"vibration", "tap", "pulse", "grating", "texture"}  # whose force may swing and step
-STEERING = {"matrix_viscous", "minimum_jerk", "path"}          # whose force may swing
+STEERING = {"matrix_viscous", "minimum_jerk", "path"}  # whose force may swing
+RIPPLED = {"detent"}                                   # whose force swings as a hand moves over it
 
 LOOPS = [(500, 1), (500, 3), (1000, 1), (1000, 2), (1000, 3), (2000, 1), (2000, 3), (4000, 1),
          (4000, 3)]  # [Hz], ticks from a command to its force
@@ -115,7 +116,7 @@ def at_loop(definition, rate, delay, keys):
 def active_fields(definition):
     """Kinds of fields that move by themselves; a burr vibrates."""
     kinds = {field.get("type") for field in definition.get("fields", {}).values()}
-    return ["burr"] if is_drilling(definition) else sorted(kinds & (PUSHING | STEERING))
+    return ["burr"] if is_drilling(definition) else sorted(kinds & (PUSHING | STEERING | RIPPLED))
 
 
 def numbers(value):
@@ -127,9 +128,29 @@ def numbers(value):
     return [value] if isinstance(value, (int, float)) and not isinstance(value, bool) else []
 
 
+def greatest_of_formula(formula, levels):
+    """A formula's value with the greatest level of each of its names, which all of them grow with."""
+    names = set(re.findall(r"\$(\w+)", formula))
+    most = max(levels.values(), default=0.0)
+    text = re.sub(r"\$(\w+)", lambda found: str(levels.get(found[1], most)), formula)
+    if names and re.fullmatch(r"[-\d.e+*/() ]+", text):
+        return float(eval(text, {"__builtins__": {}}))
+    return most
+
+
+def levels_of(definition):
+    """The greatest number by each name that trials vary."""
+    procedure = definition.get("procedure", {})
+    varied = {**definition.get("factors", {}), **definition.get("variables", {})}
+    if "variable" in procedure:
+        varied[procedure["variable"]] = procedure
+    varied[""] = [definition.get("procedure", {}), definition.get("intervals", {})]
+    return {name: max(numbers(value)) for name, value in varied.items() if numbers(value)}
+
+
 def greatest(definition, *names):
-    """The greatest number that stands under a key of these names; a formula may be any level."""
-    levels = numbers([definition.get(key, {}) for key in ("procedure", "factors", "intervals")])
+    """The greatest number that stands under a key of these names."""
+    levels = levels_of(definition)
     found = [0.0]
 
     def look(table):
@@ -137,7 +158,8 @@ def greatest(definition, *names):
             if isinstance(value, dict):
                 look(value)
             elif key in names:
-                found.extend(levels if isinstance(value, str) else numbers(value))
+                formula = isinstance(value, str)
+                found += [greatest_of_formula(value, levels)] if formula else numbers(value)
     for section in ("fields", "objects", "guidance", "tutoring"):
         look(definition.get(section, {}))
     return max(found)
@@ -154,10 +176,12 @@ def key_stiffness(field):
 
 
 def gains_of(definition):
-    """The greatest stiffness [N/m] and damping [N·s/m] that a definition states."""
-    keys = [key_stiffness(field) for field in definition.get("fields", {}).values()]
-    return (max([greatest(definition, "stiffness", "spring"), *keys]),
-            greatest(definition, "damping", "matrix"))
+    """The greatest gains that a definition states."""
+    fields = definition.get("fields", {}).values()
+    keys = [key_stiffness(field) for field in fields]
+    slips = [field["static"] - field["dynamic"] for field in fields if field.get("type") == "friction"]
+    return Gains(max([greatest(definition, "stiffness", "spring"), *keys]),
+                 greatest(definition, "damping", "matrix"), greatest(definition, "mass"), max([0.0, *slips]))
 
 
 # --- one cell of the table ---
@@ -241,7 +265,7 @@ def breaks_rule(result):
     active = set(result["active"].split())
     swings = int(result["long_trains"]) > 0 and not active
     steps = float(result["unexplained"]) > FREE_STEP / float(result["rate"])
-    return swings or steps and active <= STEERING
+    return swings or steps and active <= STEERING | RIPPLED
 
 
 def key_of(result):

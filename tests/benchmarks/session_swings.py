@@ -18,7 +18,11 @@ GAP = 0.06     # longest time between two turns of a train [s]
 TURNS = 6      # fewest turns of a train
 TOUCH = 0.05   # of the force, below which nothing is touched [N]
 LONGEST = 0.2  # of a train that is accepted [s]
+ENTRY = 1e-3   # over which the damper of a surface begins and ends (core/contact/normal_spring.h) [m]
 FAULT = re.compile(r"(device \d+: )?(the (position|force|tool|device|protocol)|another device|emergency)")
+
+# The greatest of a definition: [N/m], [N·s/m], virtual [kg], and from static to dynamic friction [N].
+Gains = collections.namedtuple("Gains", "stiffness damping mass slip", defaults=(0.0,) * 4)
 
 
 def vectors(rows, what):
@@ -78,6 +82,31 @@ def aborted_passes(session):
     return dict(zip(rows.tolist(), texts))
 
 
+def near_contact(force, way):
+    """Ticks within ENTRY of the way that the handle has gone from or to a tick without force."""
+    changes = numpy.flatnonzero(numpy.diff((force < TOUCH).astype(int)))
+    if len(changes) == 0:
+        return numpy.zeros(len(way), dtype=bool)
+    at = numpy.clip(numpy.searchsorted(changes, numpy.arange(len(way))), 1, max(len(changes) - 1, 1))
+    nearest = numpy.minimum(abs(way - way[changes[at - 1]]),
+                            abs(way - way[changes[numpy.minimum(at, len(changes) - 1)]]))
+    return nearest < ENTRY
+
+
+def explained_steps(position, velocity, size, rate, gains):
+    """Steps of the force that the stated stiffness, damping, mass and friction make [N]."""
+    moved = numpy.linalg.norm(numpy.diff(position, axis=0), axis=1)
+    faster = numpy.diff(velocity, axis=0, prepend=velocity[:1])
+    surged = numpy.linalg.norm(numpy.diff(faster, axis=0), axis=1) * rate
+    way = numpy.concatenate([[0.0], numpy.cumsum(moved)])
+    begins = numpy.minimum(moved / ENTRY, 1.0) * near_contact(size, way)[1:]
+    touches = (size[:-1] < TOUCH) != (size[1:] < TOUCH)
+    begins = numpy.maximum(begins, touches)
+    return (gains.stiffness * moved + gains.damping * numpy.linalg.norm(faster[1:], axis=1)
+            + gains.damping * numpy.linalg.norm(velocity[1:], axis=1) * begins
+            + gains.mass * surged + gains.slip)
+
+
 def measure_device(device, faults, rate, delay, gains):
     """Trains, steps and work of one device. A force acts from `delay` ticks after its command on."""
     of_pass, position, velocity, force = device
@@ -89,10 +118,7 @@ def measure_device(device, faults, rate, delay, gains):
     moved = numpy.diff(position, axis=0)
     steps = numpy.linalg.norm(numpy.diff(force, axis=0), axis=1)
     size = numpy.linalg.norm(force, axis=1)
-    touches = (size[:-1] < TOUCH) != (size[1:] < TOUCH)  # a damper then acts with its whole force
-    explained = (gains[0] * numpy.linalg.norm(moved, axis=1)
-                 + gains[1] * numpy.linalg.norm(numpy.diff(velocity, axis=0), axis=1)
-                 + gains[1] * numpy.linalg.norm(velocity[1:], axis=1) * touches)
+    explained = explained_steps(position, velocity, size, rate, gains)
     meant = numpy.ones(len(steps), dtype=bool)
     meant[[part[-1] - 1 for part in parts if of_pass[part[0]] in faults]] = False  # cut to zero
     work = numpy.zeros(len(force))
@@ -104,10 +130,10 @@ def measure_device(device, faults, rate, delay, gains):
             "work": max((numpy.cumsum(work[part]).max() for part in parts), default=0.0)}
 
 
-def measure(file, delay=1, gains=(0.0, 0.0)):
+def measure(file, delay=1, gains=Gains()):
     """What the force of one session did, of several devices the worst.
 
-    delay is in ticks; gains are the greatest stiffness and damping, which explain steps in contact.
+    delay is in ticks; gains are the greatest that the definition states, which explain steps.
     """
     with h5py.File(file, "r") as session:
         rate = float(session.attrs["rate"])
