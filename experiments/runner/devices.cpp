@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/device/gamepad.h"
+#include "core/device/mirrored_device.h"
 #include "core/device/mouse.h"
 #include "core/device/registered_devices.h"
 #include "core/device/replay.h"
@@ -116,6 +117,12 @@ std::unique_ptr<protocols::Rig> open_rig(
     const DeviceChoice& choice, const protocols::Definition& d,
     const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig) {
   const auto with = [](auto device) { return std::make_unique<DeviceRig>(std::move(device)); };
+  const auto held = [&](std::unique_ptr<device::Device> device) {
+    if (d.display.mirrored) {
+      device = std::make_unique<device::MirroredDevice>(std::move(device));
+    }
+    return with(std::move(device));
+  };
   if (choice.name == "mouse") {
     return std::make_unique<MouseRig>(d);
   }
@@ -129,13 +136,13 @@ std::unique_ptr<protocols::Rig> open_rig(
     return std::make_unique<GamepadRig>(d);
   }
   if (const device::VendorDevice* vendor = device::vendor_device(choice.name)) {
-    return with(vendor->open(d.vendor, choice.number, d.rate, choice.library));
+    return held(vendor->open(d.vendor, choice.number, d.rate, choice.library));
   }
   if (const auto file = replayed_file(choice.name)) {
     return with(replayed(*file, d.rate));
   }
   if (const device::RegisteredDevice* own = device::registered_device(choice.name)) {
-    return with(own->open(device::setting_of(choice.name), choice.number, d.rate));
+    return held(own->open(device::setting_of(choice.name), choice.number, d.rate));
   }
   check_device_name(choice.name);
   return virtual_rig();

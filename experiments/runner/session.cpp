@@ -390,6 +390,9 @@ void Session::note_setting() {
   if (!d_.language.empty()) {
     record_.event("language", d_.language);
   }
+  if (d_.display.mirrored) {
+    record_.event("mirrored", "x of W runs to the left: the participant is left-handed");
+  }
 }
 
 void Session::show_trial() {

@@ -66,6 +66,11 @@ void check_same_session(const SessionRequest& request, const record::SessionInfo
                                  before.pilot ? "a pilot" : "part of the study",
                                  before.pilot ? "with" : "without"));
   }
+  if (request.definition->mirror_left_handed &&
+      before.participant.handedness != request.person.handedness) {
+    throw InputError(fmt::format("{}: was recorded with --handedness {}; resume it with the same",
+                                 partial, before.participant.handedness));
+  }
   if (before.session != static_cast<std::uint64_t>(request.session)) {
     throw InputError(fmt::format("{}: was recorded as session {}; resume it with --session {}",
                                  partial, before.session, before.session));

@@ -54,6 +54,7 @@ struct Definition {
   std::string name;
   double rate{1000.0};  // of the servo loop [Hz]
   Design design;
+  bool mirror_left_handed{false};  // left-handed participants have the mirror image at x = 0
   double recovery{3.0};  // without force after an abort [s]
   device::EnvelopeLimits envelope;
   device::VirtualDeviceParameters device;

@@ -11,6 +11,7 @@
 #include "core/base/definition/schema.h"
 #include "core/base/nearest.h"
 #include "core/control/loop_margin.h"
+#include "protocols/definition/mirroring.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/force_training/recorded_path.h"
@@ -159,6 +160,7 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   d.guidance = guidance_schema().read(guidance);
   recording_schema().read(recording, d);
   d.design = design_schema().read(design);
+  read_mirroring(design, d);
   d.recovery = d.guidance.recovery;
   d.display = render::trial_display_schema().read(display);
   if (d.guidance.kind == Guidance::kCurve) {

@@ -17,19 +17,22 @@ TrialDisplayStyle checked(TrialDisplayStyle style, int width, int height) {
   return style;
 }
 
-/// Seen from above: x to the right, z (towards the user) down the screen.
-Eigen::Vector2d seen_from_above(const Eigen::Vector3d& point) { return {point.x(), point.z()}; }
+/// Seen from above: x to the right, or mirrored to the left, z (towards the user) down the screen.
+Eigen::Vector2d seen_from_above(const Eigen::Vector3d& point, const TrialDisplayStyle& style) {
+  return {style.mirrored ? -point.x() : point.x(), point.z()};
+}
 
-Rectangle bounds(std::span<const Eigen::Vector3d> points, double smallest_extent) {
-  Rectangle box{seen_from_above(points.front()), seen_from_above(points.front())};
+Rectangle bounds(std::span<const Eigen::Vector3d> points, const TrialDisplayStyle& style) {
+  const Eigen::Vector2d first = seen_from_above(points.front(), style);
+  Rectangle box{first, first};
   for (const Eigen::Vector3d& point : points) {
     if (!point.allFinite()) {
       throw std::invalid_argument("a point of the trajectory to be drawn is not finite");
     }
-    box.low = box.low.cwiseMin(seen_from_above(point));
-    box.high = box.high.cwiseMax(seen_from_above(point));
+    box.low = box.low.cwiseMin(seen_from_above(point, style));
+    box.high = box.high.cwiseMax(seen_from_above(point, style));
   }
-  const Eigen::Vector2d half = 0.5 * box.size().cwiseMax(smallest_extent);
+  const Eigen::Vector2d half = 0.5 * box.size().cwiseMax(style.smallest_extent);
   return {box.centre() - half, box.centre() + half};
 }
 
@@ -53,7 +56,7 @@ Rectangle grown(const Rectangle& box, double by) {
 TrialDisplay::TrialDisplay(const Gl& gl, const TrialDisplayStyle& style, int width, int height)
     : style_(checked(style, width, height)), painter_(gl, width, height) {
   const std::array origin{Eigen::Vector3d::Zero().eval()};
-  view_ = fit(bounds(origin, style_.smallest_extent), screen_for_trajectory(style_));
+  view_ = fit(bounds(origin, style_), screen_for_trajectory(style_));
 }
 
 void TrialDisplay::set_trajectory(std::span<const Eigen::Vector3d> points) {
@@ -61,7 +64,7 @@ void TrialDisplay::set_trajectory(std::span<const Eigen::Vector3d> points) {
     curve_.clear();
     return;
   }
-  view_ = fit(bounds(points, style_.smallest_extent), screen_for_trajectory(style_));
+  view_ = fit(bounds(points, style_), screen_for_trajectory(style_));
   curve_.clear();
   for (const Eigen::Vector3d& point : points) {
     const Eigen::Vector2d pixel = to_pixels(point);
@@ -73,12 +76,12 @@ void TrialDisplay::set_trajectory(std::span<const Eigen::Vector3d> points) {
 }
 
 Eigen::Vector2d TrialDisplay::to_pixels(const Eigen::Vector3d& point) const {
-  return view_.to_pixels(seen_from_above(point));
+  return view_.to_pixels(seen_from_above(point, style_));
 }
 
 Eigen::Vector3d TrialDisplay::to_world(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d point = view_.to_point(pixel);
-  return {point.x(), 0.0, point.y()};
+  return {style_.mirrored ? -point.x() : point.x(), 0.0, point.y()};
 }
 
 void TrialDisplay::draw(const stimulus::Presentation& presentation) {

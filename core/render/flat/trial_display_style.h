@@ -12,6 +12,7 @@ struct TrialDisplayStyle {
   int width{1280};      // [px]
   int height{720};      // [px]
   double margin{56.0};  // between the picture's edge and what is drawn, >= 0 [px]
+  bool mirrored{false};  // x of W runs to the left: this session's participant is left-handed
 
   // Spatial trajectory and device position
   double trajectory_width{5.0};  // [px]

@@ -14,7 +14,9 @@
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/device/registered_devices.h"
+#include "core/record/hdf5/session_target.h"
 #include "core/record/read/overruns.h"
+#include "core/record/read/session_reader.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/meet_partner.h"
@@ -29,6 +31,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_name.h"
+#include "protocols/definition/mirroring.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -148,6 +151,19 @@ protocols::AuxiliaryPages chosen_pages(const RunOptions& options,
   return chosen;
 }
 
+/// A session that is resumed has the hand that it began with, if no other is given.
+std::string handedness_of(const RunOptions& options, const fs::path& file) {
+  if (!options.resume || !options.person.handedness.empty()) {
+    return options.person.handedness;
+  }
+  return record::SessionReader(record::partial_path(file)).info().participant.handedness;
+}
+
+/// A virtual participant has no better hand, and a recording's was mirrored when it was recorded.
+bool has_better_hand(const std::string& device) {
+  return device != "virtual" && !replayed_file(device);
+}
+
 int run(const RunOptions& asked) {
   watch_for_interrupt();
   watch_fatal_signals();
@@ -204,6 +220,10 @@ int run(const RunOptions& asked) {
   request.file =
       fs::path(options.out) / session_file_name(options.subject, request.session, setup.sessions());
   check_session_file(options, request.file);
+  options.person.handedness = handedness_of(options, request.file);
+  if (has_better_hand(options.devices.front())) {
+    protocols::mirror_for(options.person.handedness, *experiment.definition);
+  }
   if (!options.resume) {
     if (const std::string changed =
             check_study(options, experiment.study->protocol(), setup, request.file);

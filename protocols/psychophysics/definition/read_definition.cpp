@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/psychometric/definition/read_tracks.h"
 #include "core/sound/read_cues.h"
+#include "protocols/definition/mirroring.h"
 #include "protocols/definition/window_keys.h"
 #include "protocols/psychophysics/definition/check_definition.h"
 #include "protocols/psychophysics/definition/defaults.h"
@@ -288,6 +289,8 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.script = read_level_script(root);
   d.order = read_trial_design(root, !d.tracks.empty());
   read_intervals(root, d);
+  Table design = root.table("design");
+  read_mirroring(design, d);
   check_common(root, d);
   check_procedures(root, d);
   read_first_trial(root, d);

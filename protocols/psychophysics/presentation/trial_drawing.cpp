@@ -55,7 +55,8 @@ class TrialDrawing final : public Drawing {
         page_(gl, width, height, d.display.background, d.display.marker_colour,
               d.display.target_colour),
         half_(0.5 * width / (d.view.stereo ? 2.0 : 1.0), 0.5 * height),
-        scale_(2.0 * half_.x() / d.view.width) {
+        scale_(2.0 * half_.x() / d.view.width),
+        right_(d.display.mirrored ? -1.0 : 1.0) {
     if (d.view.stereo) {
       parts_ = {{-1, half_}, {1, {3.0 * half_.x(), half_.y()}}};
     } else {
@@ -77,14 +78,14 @@ class TrialDrawing final : public Drawing {
   }
   std::optional<Eigen::Vector3d> to_world(const Eigen::Vector2d& pixel) const override {
     const Eigen::Vector2d p = (pixel - parts_.front().middle) / scale_;
-    return d_.view.from_above ? Eigen::Vector3d(p.x(), 0.0, p.y())
-                              : Eigen::Vector3d(p.x(), -p.y(), 0.0);
+    return d_.view.from_above ? Eigen::Vector3d(right_ * p.x(), 0.0, p.y())
+                              : Eigen::Vector3d(right_ * p.x(), -p.y(), 0.0);
   }
 
  private:
   /// Place on the screen from its middle, x to the right and y down [m].
   Eigen::Vector2d on_screen(const Eigen::Vector3d& p) const {
-    return d_.view.from_above ? Eigen::Vector2d(p.x(), p.z()) : Eigen::Vector2d(p.x(), -p.y());
+    return {right_ * p.x(), d_.view.from_above ? p.z() : -p.y()};
   }
   Eigen::Vector2d pixel_of(const Eigen::Vector3d& p, const Part& part) const {
     return part.middle + scale_ * on_screen(p);
@@ -317,6 +318,7 @@ class TrialDrawing final : public Drawing {
   render::TextScreen page_;
   Eigen::Vector2d half_;  // of a part [px]
   double scale_;          // [px/m]
+  double right_;          // x of W on the screen: 1 to the right, -1 to the left
   std::vector<Part> parts_;
   std::vector<std::vector<EyeDot>> dots_;  // (parts)
   std::optional<std::uint64_t> laid_;      // seed of them

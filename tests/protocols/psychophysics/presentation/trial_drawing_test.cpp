@@ -175,6 +175,38 @@ TEST_F(TrialDrawingTest, PixelsArePlaces) {
   EXPECT_NEAR(p->y(), 0.0, 1e-12);
 }
 
+/// Ink of the picture whose pixels are swapped left and right.
+render::Image swapped(const render::Image& image) {
+  render::Image other = image;
+  const auto width = static_cast<std::size_t>(image.width);
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+    const std::size_t row = i / (3 * width), column = i / 3 % width;
+    std::copy_n(
+        image.rgb.begin() + static_cast<std::ptrdiff_t>(i), 3,
+        other.rgb.begin() + static_cast<std::ptrdiff_t>(3 * (row * width + width - 1 - column)));
+  }
+  return other;
+}
+
+TEST_F(TrialDrawingTest, ALeftHandSeesTheMirrorImage) {
+  TrialView view;
+  view.interval = 1;
+  view.hand_shown = true;
+  view.tool = {0.02, 0.01, 0.0};
+  view.marks[0] = {{0.05F, -0.02F, 0.0F}, 0.008F};
+  view.mark_count = 1;
+  const render::Image right = picture_of(view, "right hand");
+  definition_.display.mirrored = true;
+  drawing_ = trial_drawing(definition_)(context_.gl(), kWidth, kHeight);
+  const render::Image left = picture_of(view, "left hand");
+  EXPECT_GT(ink(left), 0);
+  EXPECT_NE(left.rgb, right.rgb);
+  EXPECT_EQ(left.rgb, swapped(right).rgb);
+  const auto p = drawing_->to_world({0.75 * kWidth, 0.5 * kHeight});
+  ASSERT_TRUE(p);
+  EXPECT_NEAR(p->x(), -0.04, 1e-12);
+}
+
 TEST_F(TrialDrawingTest, ShowsEachEyeItsOwnDotsInItsHalf) {
   definition_.view.stereo = true;
   drawing_ = trial_drawing(definition_)(context_.gl(), kWidth, kHeight);
