@@ -64,7 +64,9 @@ const Schema<ChoiceMeans>& means_schema() {
           .otherwise("none")
           .number("pedal", &C::pedal, {0.0, 1.0, true}, "1",
                   "Depth from which on an analog pedal makes the choice")
-          .otherwise("none");
+          .otherwise("none")
+          .flag("silent", &C::silent,
+                "Whether it is the choice of participants who give no answer within `timeout`");
   return schema;
 }
 
@@ -91,7 +93,9 @@ ChoiceMeans read_means(Table& table, std::size_t place, Means& means) {
   ChoiceMeans choice = means_schema().read(table);
   read_choice_keys(table, means.keys, choice);
   check_touch(table, means, choice);
-  if (choice.keys == 0 && choice.buttons == 0 && choice.touch.empty() && choice.pedal == 0.0) {
+  const bool stated =
+      choice.keys != 0 || choice.buttons != 0 || !choice.touch.empty() || choice.pedal > 0.0;
+  if (!stated && !choice.silent) {
     choice.keys = means.keys.bit_of(static_cast<int>('1' + place));
     choice.hint = fmt::format("{}", place + 1);
     choice.buttons = std::uint32_t{1} << place;
@@ -219,6 +223,20 @@ void check_touch_time(Table& table, TrialQuestion& question) {
   }
 }
 
+/// Silence says one thing, and only once the time is over.
+void check_silence(Table& table, TrialQuestion& question) {
+  const auto silent =
+      std::ranges::count_if(question.means, [](const ChoiceMeans& each) { return each.silent; });
+  if (silent > 1) {
+    table.reject("choices", fmt::format("a list with {} silent choices", silent),
+                 "at most one with silent = true");
+  } else if (silent == 1 && question.timeout == 0.0) {
+    table.reject("choices",
+                 "has a choice with silent = true, but nothing says when it is given; add timeout, "
+                 "the time for an answer");
+  }
+}
+
 void check_limits(Table& table, TrialQuestion& question) {
   if (table.has("out_of_time") && !question.has_limits()) {
     table.reject("out_of_time", "stands alone; add too_fast or too_slow, a limit in seconds");
@@ -250,9 +268,12 @@ const Schema<TrialQuestion>& question_schema() {
                    {"always", Feedback::kAlways}},
                   "Trials after which participants are shown whether the answer was right")
           .check(check_feedback)
-          .number("timeout", &Q::timeout, {0.1, 3600.0}, "s",
-                  "Time for an answer; without one the trial is aborted and comes again")
+          .number(
+              "timeout", &Q::timeout, {0.1, 3600.0}, "s",
+              "Time for an answer; then the silent choice is given, and without one the trial is "
+              "aborted and comes again")
           .otherwise("none")
+          .check(check_silence)
           .text("reaction_time_from", &Q::onset,
                 "Stage from whose beginning the reaction time is counted")
           .otherwise("the question")
@@ -330,6 +351,11 @@ std::vector<std::string> TrialQuestion::answers() const {
 
 bool TrialQuestion::touched() const {
   return std::ranges::any_of(means, [](const ChoiceMeans& each) { return !each.touch.empty(); });
+}
+
+int TrialQuestion::silent_choice() const noexcept {
+  const auto found = std::ranges::find_if(means, &ChoiceMeans::silent);
+  return found == means.end() ? -1 : static_cast<int>(found - means.begin());
 }
 
 bool TrialQuestion::has_limits() const { return too_fast > 0.0 || std::isfinite(too_slow); }

@@ -41,6 +41,7 @@ struct ChoiceMeans {
   std::uint32_t buttons{0};  // of the device, likewise
   std::string touch{};       // region into which the tip of the tool is moved; empty: none
   double pedal{0.0};         // depth of an analog pedal from which on it gives it; 0: it does not
+  bool silent{false};        // no answer within the question's timeout gives it
 };
 
 /// Most choices of a question that are given by touch.
@@ -66,7 +67,7 @@ struct TrialQuestion : questions::Question {
   std::vector<HeardBit> heard;  // without choices, enter last
   std::string correct;          // formula: the number of the right choice, or its word; empty: none
   Feedback feedback{Feedback::kNever};
-  double timeout{0.0};    // then the trial is aborted; 0: never [s]
+  double timeout{0.0};    // then the silent choice is given, or the trial aborted; 0: never [s]
   std::string onset;      // stage of the last interval from whose beginning the reaction counts;
                           // empty: from the question
   double touch_for{0.2};  // the tip stays in the region for it [s]
@@ -79,6 +80,7 @@ struct TrialQuestion : questions::Question {
   /// Whether formulas know the answer by its name.
   bool is_number() const { return has_choices() || low < high; }
   bool touched() const;     // whether a choice is given by touch
+  int silent_choice() const noexcept;  // that no answer gives; -1: none
   bool has_limits() const;  // whether an answer can be too fast or too slow
   /// @param reaction_time  [s]; NaN is in time
   Pace pace_of(double reaction_time) const noexcept;
@@ -96,21 +98,22 @@ questions::Answer given_answer(const TrialQuestion& question, int choice,
 ///
 ///     [name]       "answer" if left out; unlike every other's
 ///     question     the text
-///     choices      [{ value, [label], [keys], [buttons], [touch], [pedal] }, …], or
+///     choices      [{ value, [label], [keys], [buttons], [touch], [pedal], [silent] }, …], or
 ///     scale        [lowest, highest]: whole numbers, by the keys of their digits, or
 ///     scale        with step or ends: a mark is moved by the arrow keys, as on a page, or
 ///     number       [lowest, highest]: typed, or
 ///     words        true: any words, typed, or the key of a kind that a program adds
 ///     [correct]    formula of the right choice: its number, from 1, or its value as a word
 ///     [feedback]   "never" (as if left out), "practice" or "always"
-///     [timeout]    then the trial is aborted [s]
+///     [timeout]    then the silent choice is given; if there is none, the trial is aborted [s]
 ///     [reaction_time_from]   a stage
 ///     [touch_for]  how long the tip stays in a region that is touched [s]
 ///     [too_fast], [too_slow]   limits of the reaction time [s]; the participant reads
 ///                  texts.too_fast or texts.too_slow
 ///     [out_of_time]  of answers beyond them: "go on" (as if left out), or "repeat", the trial at
 ///                  the end of its block
-/// Choices without keys, buttons, touch and pedal have the keys 1, 2, … and the buttons 0, 1, …
+/// Choices without keys, buttons, touch and pedal have the keys 1, 2, … and the buttons 0, 1, …;
+/// a silent one has none.
 std::vector<TrialQuestion> read_questions(Table& root, KeyBits& keys);
 
 }  // namespace haptrial::protocols

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <utility>
 
 #include "core/questions/question_kind.h"
@@ -288,10 +289,15 @@ void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noe
     listen_to_pedal(question, answer);
     watch_places(readings, answer);
   }
+  if (!answer.given && question.timeout > 0.0 && time_ >= question.timeout) {
+    answer.choice = question.silent_choice();
+    answer.given = answer.silence = answer.choice >= 0;
+    if (!answer.given) {
+      abort("no answer was given in time");
+    }
+  }
   if (answer.given) {
     take(answer, out);
-  } else if (question.timeout > 0.0 && time_ >= question.timeout) {
-    abort("no answer was given in time");
   }
 }
 
@@ -419,7 +425,9 @@ void TrialPass::take(const Answer& given, PassOutput& out) noexcept {
         setup_.intervals.back().machine.times()[static_cast<std::size_t>(asked.onset)];
     from = first_ticks_.back() + static_cast<std::uint64_t>(std::max<std::int64_t>(0, times.begin));
   }
-  answer.reaction_time = static_cast<double>(answer.sequence - from + 1) * tick_time_;
+  answer.reaction_time = answer.silence
+                             ? std::numeric_limits<double>::quiet_NaN()
+                             : static_cast<double>(answer.sequence - from + 1) * tick_time_;
   answer.pace = asked.question->pace_of(answer.reaction_time);
   out.onsets.add({record::MarkerOf::kResponse,
                   static_cast<std::int16_t>(asked.marker + std::max(0, answer.choice)), 0,

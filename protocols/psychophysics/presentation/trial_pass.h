@@ -71,6 +71,7 @@ struct PresentedQuestion {
 /// An answer.
 struct Answer {
   bool given{false};
+  bool silence{false};           // the silent choice, of which no reaction time is known
   int choice{-1};                // from 0; -1: the question has no choices
   questions::AnswerDraft draft;  // of a question without choices
   record::ResponseSource source{record::ResponseSource::kNone};

@@ -367,6 +367,9 @@ class TrialsRig::Participant final : public stimulus::Observer {
 
   /// The answer that is decided, in the way in which it is to be given.
   void give(const TrialQuestion& question, const TrialView& view) noexcept {
+    if (said_.choice >= 0 && said_.choice == question.silent_choice()) {
+      return;  // nothing is to be done for it
+    }
     const int place = AnswerByHand::place_of(question, said_.choice);
     if (place >= 0 && place < view.mark_count) {
       const auto mark = static_cast<std::size_t>(place);
