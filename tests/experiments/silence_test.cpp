@@ -41,12 +41,17 @@ correct = "$push > 0 ? 1 : 2"
 name = "one"
 trials = 12
 [observer]
-decides = "$push > 1 ? 1 : 2"
+senses = "force"
+in_stage = "feel"
+decides = "yes"
+yes = "go"
+criterion = 1.0
 reaction = 0.3
+actions.feel = { do = "hold" }
 )";
 }
 
-constexpr const char* kGo = "{ value = \"go\", keys = [\"Space\"] }";
+constexpr const char* kGo = "{ value = \"go\", keys = [\"space\"] }";
 constexpr const char* kNoGo = "{ value = \"no_go\", silent = true }";
 
 class SilenceTest : public testing::Test {
