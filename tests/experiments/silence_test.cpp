@@ -82,8 +82,7 @@ TEST_F(SilenceTest, IsTheChoiceThatSaysSo) {
   for (const record::PassRow& pass : session.passes()) {
     EXPECT_EQ(pass.status, record::PassStatus::kCompleted);
   }
-  const auto report = test::run_command("haptrial analyze '" + out() + "' --out '" +
-                                        (folder_ / "report").string() + "'");
+  const auto report = test::run_command("haptrial analyze '" + out() + "'");
   EXPECT_EQ(report.status, 0) << report.errors;
 }
 
