@@ -11,18 +11,15 @@
 #include "core/channel/neon_channel.h"
 #include "core/channel/rdt_channel.h"
 #include "core/channel/robotiq_channel.h"
+#include "core/channel/vrpn_channel.h"
 
 namespace haptrial::channel {
 namespace {
 
 std::vector<ChannelKind>& all_kinds() {
   static std::vector<ChannelKind> kinds{
-      labjack_channel(),
-      line_channel(),
-      lsl_channel(),
-      neon_channel(),
-      rdt_channel(),
-      robotiq_channel(),
+      labjack_channel(), line_channel(),    lsl_channel(),  neon_channel(),
+      rdt_channel(),     robotiq_channel(), vrpn_channel(),
   };
   return kinds;
 }

@@ -17,6 +17,7 @@
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/channel/connection.h"
+#include "core/channel/network_order.h"
 
 // The C library's header of name servers, which this one includes, defines a macro _res; Eigen has
 // parameters of that name.
@@ -240,11 +241,6 @@ std::string status_text(std::uint32_t status) {
     }
   }
   return text;
-}
-
-std::uint32_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) {
-  return std::uint32_t{bytes[at]} << 24 | std::uint32_t{bytes[at + 1]} << 16 |
-         std::uint32_t{bytes[at + 2]} << 8 | std::uint32_t{bytes[at + 3]};
 }
 
 class RdtSource final : public ChannelSource {
