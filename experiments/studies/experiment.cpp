@@ -15,6 +15,7 @@
 #include "core/render/gl/image.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
+#include "protocols/definition/button_uses.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/definition/languages.h"
 #include "protocols/definition/tutoring_warnings.h"
@@ -131,6 +132,9 @@ void warn_of_missing_axes(const protocols::Definition& d, std::vector<std::strin
 std::vector<std::string> warnings_of(const Experiment& experiment) {
   std::vector<std::string> warnings = experiment.definition->warnings();
   warn_of_missing_axes(*experiment.definition, warnings);
+  for (std::string& warning : protocols::button_warnings(*experiment.definition)) {
+    warnings.push_back(std::move(warning));
+  }
   for (std::string& warning : protocols::tutoring_warnings(*experiment.definition)) {
     warnings.push_back(std::move(warning));
   }

@@ -31,6 +31,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_name.h"
+#include "protocols/definition/button_uses.h"
 #include "protocols/definition/mirroring.h"
 
 namespace haptrial::experiments {
@@ -183,6 +184,9 @@ int run(const RunOptions& asked) {
   }
   check_recording(options, experiment.study->protocol(), setup);
   check_pages(options, setup);
+  for (const std::string& sentence : protocols::button_warnings(setup, options.devices)) {
+    fmt::print("warning: {}\n", sentence);
+  }
   const protocols::AuxiliaryPages auxiliary_pages =
       chosen_pages(options, experiment.study->protocol(), setup);
   if (!experiment.untranslated.empty()) {

@@ -23,6 +23,7 @@
 #include "core/subject/drilling/drilling_surgeon.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/bone_drilling/definition/placement.h"
+#include "protocols/definition/button_uses.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::protocols {
@@ -39,7 +40,7 @@ struct ParticipantGroup {
 
 /// An experiment of drillings (`protocol = "bone_drilling"`), read from a definition file and valid
 /// as a whole. A trial is one procedure on one bone.
-struct BoneDefinition : Definition {
+struct BoneDefinition : Definition, ButtonUser {
   std::vector<std::string>
       sources;                    // of bones: "procedural temporal", "procedural mandible", files
   std::uint64_t bone_seed{1};     // of procedural ones
@@ -96,6 +97,7 @@ struct BoneDefinition : Definition {
   void load_bones(const std::filesystem::path& folder);
 
   PedalUse pedal_use() const override;
+  std::vector<ButtonUse> button_uses() const override;
   std::vector<std::string> description() const override;
   std::vector<std::string> warnings() const override;
   std::vector<std::string> left_out_of_dry_runs() const override;

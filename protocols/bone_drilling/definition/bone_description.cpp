@@ -113,6 +113,20 @@ std::vector<std::string> BoneDefinition::warnings() const {
   return warnings;
 }
 
+std::vector<ButtonUse> BoneDefinition::button_uses() const {
+  constexpr std::size_t kDrill = 0, kTube = 1;  // devices
+  std::vector<ButtonUse> uses;
+  for (std::size_t f = 0; f < bone::kFunctions; ++f) {
+    uses.push_back({fmt::format("buttons.{}", bone::name_of(static_cast<bone::Function>(f))),
+                    drilling.controls.buttons[f], "", kDrill});
+  }
+  if (drilling.second) {
+    uses.push_back({"second_hand.suck", drilling.second->suck, "", kTube});
+    uses.push_back({"second_hand.rinse", drilling.second->rinse, "", kTube});
+  }
+  return uses;
+}
+
 PedalUse BoneDefinition::pedal_use() const {
   return drilling.controls.analog_power ? PedalUse::kBeside : PedalUse::kNone;
 }

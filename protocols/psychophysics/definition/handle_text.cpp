@@ -150,6 +150,7 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
 control::HandleLoop HandleReport::loop_of(const Load& load) const {
   control::HandleLoop loop = handle_loop(d_);
   loop.handle_mass = arms_[load.device].handle_mass.value_or(loop.handle_mass);
+  loop.force_delay = d_.force_delay(load.device);
   return loop;
 }
 

@@ -168,6 +168,7 @@ void keep_stages(const std::vector<NamedStage>& stages, TrialsDefinition& d) {
   for (const NamedStage& stage : stages) {
     d.stages.push_back(stage.name);
     d.stage_markers.push_back(stage.marker);
+    d.stage_buttons.push_back(stage.stage.until.buttons);
     d.markers.used = d.markers.used || stage.marker > 0;
     const Until& until = stage.stage.until;
     d.stage_time +=

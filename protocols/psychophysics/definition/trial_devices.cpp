@@ -17,9 +17,14 @@ constexpr const char* kStart =
     "Place at which the hand of a virtual participant on this device begins";
 
 const Schema<TrialDevice>& tip_schema() {
-  static const auto schema = Schema<TrialDevice>()
-                                 .vector("start", &TrialDevice::start, {-1.0, 1.0}, "m", kStart)
-                                 .required();
+  static const auto schema =
+      Schema<TrialDevice>()
+          .vector("start", &TrialDevice::start, {-1.0, 1.0}, "m", kStart)
+          .required()
+          .integer("force_delay", &TrialDevice::force_delay, 1, 8,
+                   "Ticks from a command to the force that the hand on this device and its parts "
+                   "feels")
+          .otherwise("from [device]");
   return schema;
 }
 

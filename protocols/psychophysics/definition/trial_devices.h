@@ -27,9 +27,10 @@ struct TrialDevice {
   std::string name;                                // as fields and regions name it
   Eigen::Vector3d start{Eigen::Vector3d::Zero()};  // of a virtual participant's hand, in W [m]
   device::Part part{device::Part::kTip};
-  std::size_t of{0};         // the device whose part it is, from 0
-  double radius{0.03};       // of the fingers about the axis of a rotation > 0 [m]
-  double handle_mass{0.05};  // of a bare rotation or grip, at the fingers [kg]
+  std::size_t of{0};                 // the device whose part it is, from 0
+  double radius{0.03};               // of the fingers about the axis of a rotation > 0 [m]
+  double handle_mass{0.05};          // of a bare rotation or grip, at the fingers [kg]
+  std::optional<int> force_delay{};  // of a tip, in place of that of [device] [ticks]
   // In place of those of [envelope], for a rotation or grip.
   std::optional<double> max_force{};         // [N]
   std::optional<double> max_force_rate{};    // [N/s]

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core/base/counted.h"
+#include "core/base/definition/table.h"
 #include "core/psychometric/definition/expectation.h"
 #include "protocols/psychophysics/definition/unmatched_literals.h"
 
@@ -189,6 +190,29 @@ std::vector<std::string> TrialsDefinition::warnings() const {
     }
   }
   return all;
+}
+
+std::vector<ButtonUse> TrialsDefinition::button_uses() const {
+  std::vector<ButtonUse> uses;
+  for (std::size_t i = 0; i < stage_buttons.size(); ++i) {
+    const std::string place = fmt::format("stages[{}]", i + 1);
+    uses.push_back({place + ".until.buttons", stage_buttons[i], place});
+  }
+  const bool several = document != nullptr && root().has("responses");
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const std::string place =
+        several ? fmt::format("responses[{}]", i + 1) : std::string("response");
+    for (std::size_t c = 0; c < questions[i].means.size(); ++c) {
+      uses.push_back({fmt::format("{}.choices[{}].buttons", place, c + 1),
+                      questions[i].means[c].buttons, place});
+    }
+  }
+  return uses;
+}
+
+int TrialsDefinition::force_delay(std::size_t arm) const {
+  return hands.empty() ? device.force_delay
+                       : hands[hands[arm].of].force_delay.value_or(device.force_delay);
 }
 
 PedalUse TrialsDefinition::pedal_use() const {

@@ -7,6 +7,7 @@
 
 #include "core/psychometric/definition/track.h"
 #include "core/sound/cue.h"
+#include "protocols/definition/button_uses.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/psychophysics/definition/block.h"
@@ -39,16 +40,17 @@ struct TrialsView {
 
 /// An experiment that a definition file states whole: what can be felt, what a trial is made of,
 /// what is asked, and what follows from the answers (docs/guide-own-experiment.md).
-struct TrialsDefinition : Definition {
+struct TrialsDefinition : Definition, ButtonUser {
   TrialDesign order;
   std::vector<Interval> intervals;  // at least one
   bool random_intervals{false};     // their order, within each trial
   std::vector<TrialQuestion> questions;
   KeyBits keys;
   std::vector<Track> tracks;
-  std::optional<ScriptPlan> script;  // may choose the levels of the tracks
-  std::vector<std::string> stages;   // names, in their order
-  std::vector<int> stage_markers;    // the code of each; 0: the one of its place
+  std::optional<ScriptPlan> script;          // may choose the levels of the tracks
+  std::vector<std::string> stages;           // names, in their order
+  std::vector<int> stage_markers;            // the code of each; 0: the one of its place
+  std::vector<std::uint32_t> stage_buttons;  // that each waits for, a bit each
   std::vector<StudyGroup> groups;
   std::vector<TrialDevice> hands;  // in the order of the session's devices; empty: one, unnamed
   std::vector<TrialObject> objects;
@@ -65,6 +67,7 @@ struct TrialsDefinition : Definition {
   int most_repeats{5};  // of an interval whose stage asks for it; then the trial is aborted
 
   PedalUse pedal_use() const override;
+  std::vector<ButtonUse> button_uses() const override;
   std::vector<DeviceArm> arms() const override { return arms_of(hands, envelope); }
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override;
@@ -77,6 +80,9 @@ struct TrialsDefinition : Definition {
     return keys.bits_of(held);
   }
   int sessions() const override { return order.sessions; }
+  /// Ticks from a command to the force of a virtual device. @param arm  of arms(): a part has the
+  /// delay of its tip
+  int force_delay(std::size_t arm) const;
   /// Trials of a session at most, without practice; and those of practice.
   /// @param session  from 1; 0: the longest
   int most_trials(int session = 0) const;

@@ -41,6 +41,13 @@ std::optional<device::FaultyMotors> motors_of(const Definition& d) {
   return perfect ? std::nullopt : std::optional(device::FaultyMotors(faults, 1.0 / d.rate));
 }
 
+/// The virtual device in the place of this one.
+device::VirtualDeviceParameters electronics_of(const Definition& d, const TrialDevice& tip) {
+  device::VirtualDeviceParameters electronics = d.device;
+  electronics.force_delay = tip.force_delay.value_or(electronics.force_delay);
+  return electronics;
+}
+
 /// The hand of [hand] at a part of a device, where its fingers are.
 subject::HandParameters hand_at(const subject::HandParameters& hand, const DeviceArm& arm) {
   subject::HandParameters here = hand;
@@ -435,9 +442,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
   std::array<double, kMostIntervals> percepts_{};
 };
 
-TrialsRig::Arm::Arm(const Definition& d, const TrialDevice& held, const DeviceArm& as)
+TrialsRig::Arm::Arm(const Definition& d, const device::VirtualDeviceParameters& electronics,
+                    const TrialDevice& held, const DeviceArm& as)
     : hand(std::make_unique<subject::Hand>(hand_at(d.hand, as), 1.0 / d.rate, held.start)),
-      device(d.device, *hand, d.rate),
+      device(electronics, *hand, d.rate),
       arm(as) {}
 
 TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
@@ -446,8 +454,10 @@ TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
   const Definition& d = *briefing.definition;
   const std::vector<DeviceArm> arms = d.arms();
   for (std::size_t i = 0; i < arms.size(); ++i) {
-    const TrialDevice held = briefing.devices->empty() ? TrialDevice{} : (*briefing.devices)[i];
-    arms_.push_back(std::make_unique<Arm>(d, held, arms[i]));
+    const bool named = !briefing.devices->empty();
+    const TrialDevice held = named ? (*briefing.devices)[i] : TrialDevice{};
+    arms_.push_back(std::make_unique<Arm>(
+        d, electronics_of(d, named ? (*briefing.devices)[held.of] : held), held, arms[i]));
   }
   participant_ =
       std::make_unique<Participant>(briefing, arms_, left_.get(), person_seed, session_seed);

@@ -63,7 +63,8 @@ class TrialsRig final : public Rig {
  private:
   /// A hand at its device.
   struct Arm {
-    Arm(const Definition& definition, const TrialDevice& held, const DeviceArm& arm);
+    Arm(const Definition& definition, const device::VirtualDeviceParameters& electronics,
+        const TrialDevice& held, const DeviceArm& arm);
     std::unique_ptr<subject::HandModel> hand;
     device::VirtualDevice device;
     DeviceArm arm;

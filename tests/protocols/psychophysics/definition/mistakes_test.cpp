@@ -415,6 +415,20 @@ TEST(TrialMistakesTest, AWallThatSwingsAsSlowlyAsATremorIsRefused) {
                              HasSubstr("cannot be told from a tremor"))));
 }
 
+TEST(TrialMistakesTest, AWallIsJudgedByTheDelayOfTheDeviceThatFeelsIt) {
+  const auto problems = [](const std::string& device) {
+    return problems_of_trials(with(with(with(kSmall, "\"$stiffness\"", "5000.0"), "[experiment]\n",
+                                        "[experiment]\nrate = 500.0\n"),
+                                   "[fields.floor]\n",
+                                   "[fields.floor]\ndevice = \"" + device + "\"\n") +
+                              "[devices.near]\nstart = [0.0, 0.0, 0.0]\n"
+                              "[devices.far]\nstart = [0.0, 0.0, 0.0]\nforce_delay = 3\n");
+  };
+  EXPECT_THAT(problems("near"), IsEmpty());
+  EXPECT_THAT(problems("far"), Contains(AllOf(HasSubstr("fields on far add up to 5000 N/m"),
+                                              HasSubstr("3 ticks late"))));
+}
+
 TEST(TrialMistakesTest, ARegionOutsideOfThePictureGetsAWarning) {
   const auto warnings = [](const std::string& more) {
     TrialsDefinition definition;
