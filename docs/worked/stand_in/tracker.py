@@ -33,7 +33,8 @@ def arguments():
 
 def message(when, sender, kind, body):
     micros = round(1e6 * when)
-    head = struct.pack(">IIIiiI", 24 + len(body), micros // 1000000, micros % 1000000, sender, kind, 0)
+    seconds, rest = divmod(micros, 1000000)
+    head = struct.pack(">IIIiiI", 24 + len(body), seconds, rest, sender, kind, 0)
     return head + body + bytes(-len(body) % 8)
 
 
