@@ -21,7 +21,8 @@ namespace {
 using std::chrono::milliseconds;
 using stream::LslLibrary;
 
-constexpr double kResolveFor = 2.0;         // [s]
+constexpr double kResolveFor = 2.0;         // at most, for a stream [s]
+constexpr double kSecondFor = 0.3;          // for another, beyond what the first one took [s]
 constexpr double kAnswerFor = 5.0;          // of the sender, while the stream is opened [s]
 constexpr std::int32_t kInletBuffer = 360;  // [s]
 constexpr std::uint32_t kRawStamps = 0;     // no flag of post-processing
@@ -136,6 +137,7 @@ class LslSource final : public ChannelSource {
     open_inlet();
     try {
       describe();
+      refuse_second();
       check(options.quantities);
       measure_offset(kAnswerFor);
     } catch (...) {
@@ -175,29 +177,40 @@ class LslSource final : public ChannelSource {
     double uncertainty{0.0};  // [s]
   };
 
+  /// Opens the stream that answers first.
   void open_inlet() {
-    std::array<LslLibrary::Info, 2> found{};
-    const std::int32_t count = lsl_.resolve(found.data(), 2, name_.c_str(), 2, kResolveFor);
-    const StreamInfo first(lsl_, found[0]);
-    const StreamInfo second(lsl_, found[1]);
+    LslLibrary::Info found = nullptr;
+    const double began = lsl_.local_clock();
+    const std::int32_t count = lsl_.resolve(&found, 1, name_.c_str(), 1, kResolveFor);
+    const StreamInfo info(lsl_, found);
     if (count < 1) {
       throw RunError(
           fmt::format("no stream of the Lab Streaming Layer has {}; start it, and check "
                       "that both computers are in one network",
                       name_));
     }
+    answered_after_ = lsl_.local_clock() - began;
+    // A lost stream is opened anew by the channel, so that its clock is measured anew, too.
+    inlet_ = lsl_.create_inlet(info.get(), kInletBuffer, 0, 0);
+    if (inlet_ == nullptr) {
+      throw RunError(
+          fmt::format("the stream with {} cannot be opened: {}", name_, lsl_.last_error()));
+    }
+  }
+
+  /// Looks for a second stream that fits, while the first one's samples are kept by the layer.
+  void refuse_second() const {
+    std::array<LslLibrary::Info, 2> found{};
+    const std::int32_t count =
+        lsl_.resolve(found.data(), 2, name_.c_str(), 2, answered_after_ + kSecondFor);
+    const StreamInfo first(lsl_, found[0]);
+    const StreamInfo second(lsl_, found[1]);
     if (count > 1) {
       throw RunError(fmt::format(
           "two streams of the Lab Streaming Layer have {}: '{}' of {} and '{}' of {}; state "
           "source_id or more of name and type",
           name_, lsl_.get_name(first.get()), lsl_.get_host(first.get()),
           lsl_.get_name(second.get()), lsl_.get_host(second.get())));
-    }
-    // A lost stream is opened anew by the channel, so that its clock is measured anew, too.
-    inlet_ = lsl_.create_inlet(first.get(), kInletBuffer, 0, 0);
-    if (inlet_ == nullptr) {
-      throw RunError(
-          fmt::format("the stream with {} cannot be opened: {}", name_, lsl_.last_error()));
     }
   }
 
@@ -356,6 +369,7 @@ class LslSource final : public ChannelSource {
   LslLibrary lsl_;
   std::string name_;  // the predicate that finds it
   LslLibrary::Inlet inlet_{nullptr};
+  double answered_after_{0.0};  // time until the stream was found [s]
   std::size_t channels_{1};
   bool text_{false};
   double rate_{0.0};                  // 0: irregular [Hz]

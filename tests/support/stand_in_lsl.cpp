@@ -189,7 +189,7 @@ void lsl_destroy_outlet(void* outlet) {
 LslNetwork* stand_in_lsl_network() { return &network; }
 
 std::int32_t lsl_resolve_bypred(void** found, std::uint32_t room, const char* predicate,
-                                std::int32_t, double) {
+                                std::int32_t minimum, double timeout) {
   const std::lock_guard lock(network.mutex);
   std::int32_t count = 0;
   for (const auto& offer : network.offers) {
@@ -198,6 +198,7 @@ std::int32_t lsl_resolve_bypred(void** found, std::uint32_t room, const char* pr
       found[count++] = info_of(offer);
     }
   }
+  network.looked_for += count < minimum ? timeout : 0.0;
   return count;
 }
 void* lsl_create_inlet(void* info, std::int32_t, std::int32_t, std::int32_t) {

@@ -63,11 +63,13 @@ struct LslOffer {
 };
 
 /// The network of the stand-in; get it with dlsym("stand_in_lsl_network"). Offers are used under
-/// the mutex; `came` wakes an inlet that waits.
+/// the mutex; `came` wakes an inlet that waits. A search that finds too few streams takes its whole
+/// time, but for `looked_for` alone.
 struct LslNetwork {
   std::mutex mutex;
   std::condition_variable came;
   std::vector<std::shared_ptr<LslOffer>> offers;
+  double looked_for{0.0};  // time that searches took until they were answered or ran out [s]
   std::atomic<bool> has_clock{false};  // whether this is the layer's clock:
   std::atomic<double> clock{0.0};      // [s]
 };

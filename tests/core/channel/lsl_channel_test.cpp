@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -42,6 +43,7 @@ class LslChannelTest : public testing::Test {
     record_ = reinterpret_cast<test::LslRecord* (*)()>(dlsym(library_, "stand_in_lsl"))();
     *record_ = {};
     network_->offers.clear();
+    network_->looked_for = 0.0;
     network_->has_clock = true;
     set_time(0.0);
   }
@@ -193,6 +195,32 @@ TEST_F(LslChannelTest, AStreamThatIsGoneIsFoundAgainWithItsNewClock) {
   EXPECT_NEAR(1e-9 * static_cast<double>(rows[1].time_ns), 3.25, 1e-6);
   EXPECT_EQ(channel.incidents(Incident::kBack, 1)[0].amount, 2.0);
   EXPECT_THAT(channel.incidents(Incident::kClockOffset, 2), SizeIs(2));
+}
+
+TEST_F(LslChannelTest, AStreamThatIsThereIsNotWaitedFor) {
+  const auto looked_for = [&] {
+    const std::lock_guard lock(network_->mutex);
+    return std::exchange(network_->looked_for, 0.0);
+  };
+  const auto grip = offer_grip();
+  test::ChannelRun& channel = run("name = \"Grip\"\nquantities = { a = \"N\", b = \"N\" }");
+  ASSERT_EQ(channel.channel().wait_until_open(), "");
+  const double second = looked_for();
+  EXPECT_GT(second, 0.0) << "another one is looked for";
+  EXPECT_LE(second, 0.5);
+  offer_grip();
+  leave(grip);
+  channel.incidents(Incident::kLost, 1);
+  {
+    const std::lock_guard lock(network_->mutex);
+    network_->offers.back()->sent.push_back({sender_clock(1.0), {1.0, 2.0}, {}});
+  }
+  channel.rows(1);
+  EXPECT_LE(looked_for(), 0.5) << "one that is back";
+  run_.reset();
+  leave(network_->offers.back());
+  EXPECT_NE(run("name = \"Grip\"").channel().wait_until_open(), "");
+  EXPECT_EQ(looked_for(), 2.0) << "one that is absent";
 }
 
 TEST_F(LslChannelTest, TextsAreMessagesAtTheirOwnTime) {
