@@ -6,6 +6,20 @@
 namespace haptrial::analysis {
 namespace {
 
+/// The measured forces, each once: a slow sensor's are there for several ticks.
+std::vector<Eigen::Vector3d> each_measurement(const PartRecord& part) {
+  if (part.measured_at.size() != part.measured.size()) {
+    return part.measured;
+  }
+  std::vector<Eigen::Vector3d> each;
+  for (std::size_t i = 0; i < part.measured.size(); ++i) {
+    if (i == 0 || part.measured_at[i] != part.measured_at[i - 1]) {
+      each.push_back(part.measured[i]);
+    }
+  }
+  return each;
+}
+
 /// Standard deviation from differences of neighbours, so that a slow drift has no share in it.
 Interval white_noise(const std::vector<Eigen::Vector3d>& rows) {
   const auto n = static_cast<double>(rows.size());
@@ -94,8 +108,8 @@ std::optional<WallBracket> wall_bracket(const std::vector<WallStep>& walls) {
 CertificateResult identify_device(const CertificateRecord& record, const Excitation& excitation) {
   CertificateResult result;
   const PartRecord& rest = record.part(CertificatePart::kRest);
-  if (rest.measured.size() > 2) {
-    result.rest.sensor = white_noise(rest.measured);
+  if (const auto each = each_measurement(rest); each.size() > 2) {
+    result.rest.sensor = white_noise(each);
   }
   result.rest.position = piecewise_noise(rest.position);
   result.rest.velocity = piecewise_noise(rest.velocity);

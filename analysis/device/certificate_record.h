@@ -16,6 +16,9 @@ struct PartRecord {
   std::vector<Eigen::Vector3d> position;  // [m]
   std::vector<Eigen::Vector3d> velocity;  // as the device states it [m/s]
   std::vector<Eigen::Vector3d> measured;  // force on the hand; empty without a sensor [N]
+  // When each of them was measured, by the sensor's clock: the same time is the same measurement.
+  // Empty: each is another one, of its tick [s].
+  std::vector<double> measured_at;
 };
 
 /// A wall that the handle was pressed against.
@@ -28,7 +31,7 @@ struct WallStep {
 struct CertificateRecord {
   std::string device;
   bool simulated{false};
-  double sensor_age{0.0};    // mean age of a measured force [s]
+  double sensor_age{0.0};    // mean time from the measurement of a force to its tick [s]
   double stated_noise{0.0};  // of the sensor; 0: not stated [N]
   double mass{0.0};          // known mass on the handle in kLoaded; 0: none [kg]
   std::array<PartRecord, static_cast<std::size_t>(CertificatePart::kDone)> parts;

@@ -107,6 +107,9 @@ void Channel::take(const Measured& sample) {
   row.received_ns = now_();
   heard_ns_ = row.received_ns;
   heard_ = true;
+  if (!reading_.load(std::memory_order_relaxed)) {
+    return;
+  }
   const bool timed = std::isfinite(sample.device_time);
   const SampleTime time = sample.time ? stamped(*sample.time, options_.plan.clock)
                           : timed     ? clock_.time_of(sample.device_time, row.received_ns)
@@ -142,7 +145,7 @@ void Channel::run() {
            waited += kLook) {
         std::this_thread::sleep_for(kLook);
       }
-    } else if (reading_.load(std::memory_order_relaxed)) {
+    } else if (reading_.load(std::memory_order_relaxed) || !source_->keeps_samples()) {
       read();
     } else {
       heard_ns_ = now_();

@@ -35,8 +35,8 @@ class Channel final : private ChannelInbox {
   /// Time since the session's first tick [ns]; any thread.
   using Now = std::function<std::int64_t()>;
 
-  /// Starts the thread, which opens the instrument and waits for begin(). @param first  number of
-  /// the first sample: of those that an earlier run of the session has
+  /// Starts the thread, which opens the instrument; its samples count from begin() on. @param first
+  /// number of the first sample: of those that an earlier run of the session has
   Channel(ChannelOptions options, Now now, std::uint64_t first = 0);
   ~Channel() override;
   Channel(const Channel&) = delete;
@@ -47,7 +47,7 @@ class Channel final : private ChannelInbox {
   /// @returns why it could not, in a sentence; empty if it is open
   std::string wait_until_open();
 
-  /// Lets data count from now on: the session's clock runs. Session's thread.
+  /// Lets samples count from now on: the session's clock runs. Session's thread.
   void begin() { reading_.store(true, std::memory_order_relaxed); }
 
   /// The newest values; a channel that is lost has `live` false. Servo thread: wait-free.

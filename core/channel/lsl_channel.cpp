@@ -23,6 +23,7 @@ using stream::LslLibrary;
 
 constexpr double kResolveFor = 2.0;         // at most, for a stream [s]
 constexpr double kSecondFor = 0.3;          // for another, beyond what the first one took [s]
+constexpr double kWayTakes = 0.5;           // at most; a longer search waited for the sender [s]
 constexpr double kAnswerFor = 5.0;          // of the sender, while the stream is opened [s]
 constexpr std::int32_t kInletBuffer = 360;  // [s]
 constexpr std::uint32_t kRawStamps = 0;     // no flag of post-processing
@@ -132,14 +133,18 @@ std::string name_of_label(std::string label, std::size_t number,
 /// An open stream, and its clock against this machine's.
 class LslSource final : public ChannelSource {
  public:
-  explicit LslSource(const LslInletOptions& options)
+  /// @param alone  whether the stream was found to be the only one that fits; it then is
+  LslSource(const LslInletOptions& options, bool& alone)
       : lsl_(loaded(options.library)), name_(predicate_of(options)) {
     open_inlet();
     try {
       describe();
-      refuse_second();
+      if (!alone) {
+        refuse_second();
+      }
       check(options.quantities);
       measure_offset(kAnswerFor);
+      alone = true;
     } catch (...) {
       lsl_.destroy_inlet(inlet_);
       throw;
@@ -150,6 +155,7 @@ class LslSource final : public ChannelSource {
   LslSource& operator=(const LslSource&) = delete;
 
   bool may_be_silent() const override { return text_ || rate_ == 0.0; }
+  bool keeps_samples() const override { return true; }
 
   void read(ChannelInbox& into, milliseconds patience) override {
     if (std::exchange(is_new_, false) || lsl_.local_clock() - looked_ >= kCorrectEvery) {
@@ -201,8 +207,8 @@ class LslSource final : public ChannelSource {
   /// Looks for a second stream that fits, while the first one's samples are kept by the layer.
   void refuse_second() const {
     std::array<LslLibrary::Info, 2> found{};
-    const std::int32_t count =
-        lsl_.resolve(found.data(), 2, name_.c_str(), 2, answered_after_ + kSecondFor);
+    const std::int32_t count = lsl_.resolve(found.data(), 2, name_.c_str(), 2,
+                                            std::min(answered_after_, kWayTakes) + kSecondFor);
     const StreamInfo first(lsl_, found[0]);
     const StreamInfo second(lsl_, found[1]);
     if (count > 1) {
@@ -394,7 +400,10 @@ ChannelKind lsl_channel() {
             ChannelPlan plan;
             plan.quantities = options.quantities;
             plan.rate = options.rate;
-            plan.open = [options] { return std::make_unique<LslSource>(options); };
+            // One that is back is there at once.
+            plan.open = [options, alone = std::make_shared<bool>(false)] {
+              return std::make_unique<LslSource>(options, *alone);
+            };
             return plan;
           }};
 }

@@ -8,6 +8,8 @@ namespace haptrial::device {
 struct MeasuredForce {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the device on the hand, in W [N]
   double age{0.0};                                 // since it was measured >= 0 [s]
+  double time{
+      0.0};  // when it was measured, by a clock that only grows; of the same one the same [s]
   double noise{0.0};  // standard deviation that its maker states; 0: not stated [N]
 };
 

@@ -46,6 +46,7 @@ PointState SensedMount::step(const Eigen::Vector3d& motor_force, double dt) noex
 
 // Derivatives at the newest position, of third order in dt.
 void SensedMount::follow(const Eigen::Vector3d& motor_force, double dt) noexcept {
+  measured_.time += dt;
   std::rotate(path_.begin(), path_.end() - 1, path_.end());
   path_[0] = goal_;
   const auto& x = path_;

@@ -30,6 +30,7 @@ struct Cue {
   std::filesystem::path file;
   std::string actuator{};  // that gives it as a vibration; empty: loudspeakers play it
   double amplitude{0.0};  // of that vibration: a noise's root mean square, else the peak [its unit]
+  bool varies{false};  // its numbers follow from the trial (read_varied_cues); here they are none
 };
 
 /// Noise that keeps the device's own sounds from being heard.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,8 +16,15 @@ namespace {
 /// The sounds of the loudspeakers, or of one actuator, on a channel of their own.
 struct Output {
   std::size_t channel;            // from 0
-  std::vector<std::size_t> cues;  // of the set, which it plays
+  std::vector<std::size_t> cues;  // which it plays: those of the set, then those of the trial
+  std::size_t fixed{0};           // of them, of the set
   std::unique_ptr<Mixer> mixer;
+};
+
+/// Sounds of a trial, by output.
+struct VariedClips {
+  std::vector<std::vector<std::size_t>> cues;   // (outputs) their numbers
+  std::vector<std::vector<Mixer::Clip>> clips;  // likewise
 };
 
 /// Whether loudspeakers play the sound; else the actuator does.
@@ -26,14 +34,16 @@ bool plays_on(const Cue& cue, const Actuator* actuator) {
 
 /// @param actuator  null: the loudspeakers, which have the masking noise, too
 Output output_of(const CueSet& set, const Actuator* actuator, std::uint64_t seed) {
-  Output output{actuator == nullptr ? 0 : static_cast<std::size_t>(actuator->channel - 1), {}, {}};
+  Output output{
+      actuator == nullptr ? 0 : static_cast<std::size_t>(actuator->channel - 1), {}, 0, {}};
   std::vector<std::vector<float>> clips;
   for (std::size_t i = 0; i < set.cues.size(); ++i) {
-    if (plays_on(set.cues[i], actuator)) {
+    if (!set.cues[i].varies && plays_on(set.cues[i], actuator)) {
       output.cues.push_back(i);
       clips.push_back(rendered(set.cues[i], seed));
     }
   }
+  output.fixed = output.cues.size();
   const bool masked = actuator == nullptr && set.masking.has_value();
   output.mixer = std::make_unique<Mixer>(
       std::move(clips), masked ? rendered(*set.masking, seed) : std::vector<float>{},
@@ -64,8 +74,10 @@ unsigned channels_of(const CueSet& set) {
 }  // namespace
 
 struct CuePlayer::Impl {
-  Impl(const CueSet& set, std::uint64_t seed, std::function<std::int64_t()> clock)
-      : now(std::move(clock)),
+  Impl(const CueSet& from, std::uint64_t of_session, std::function<std::int64_t()> clock)
+      : set(from),
+        seed(of_session),
+        now(std::move(clock)),
         outputs(outputs_of(set, seed)),
         channels(channels_of(set)),
         player(
@@ -74,18 +86,23 @@ struct CuePlayer::Impl {
 
   void fill(std::span<float> part);
   void begin(std::size_t cue);
+  void begin_all(std::vector<std::pair<std::size_t, std::uint64_t>>& cues);
+  void take(const VariedClips& varied);
   bool is_felt(std::size_t cue) const;
   void spread(std::span<float> part);
   void hand_over();
 
+  CueSet set;
+  std::uint64_t seed;
   std::function<std::int64_t()> now;
   std::vector<Output> outputs;
   unsigned channels;
   std::vector<float> own;            // of one output
   std::vector<std::uint64_t> begun;  // with the samples that the card has not taken yet
 
-  mutable std::mutex mutex;  // all that follow
-  std::vector<std::pair<std::size_t, std::uint64_t>> asked;
+  mutable std::mutex mutex;                                                // all that follow
+  std::vector<std::pair<std::size_t, std::uint64_t>> asked, asked_before;  // varied were taken
+  std::optional<VariedClips> varied;                                       // not yet taken
   bool masked{false};
   bool stilled{false};  // before what is asked for
   std::vector<StartedCue> started;
@@ -94,7 +111,10 @@ struct CuePlayer::Impl {
 };
 
 bool CuePlayer::Impl::is_felt(std::size_t cue) const {
-  return std::ranges::find(outputs.front().cues, cue) == outputs.front().cues.end();
+  const std::vector<std::size_t>& fixed = outputs.front().cues;
+  const bool is_new = varied && cue >= set.cues.size();
+  const std::vector<std::size_t>& heard = is_new ? varied->cues.front() : fixed;
+  return std::ranges::find(heard, cue) == heard.end();
 }
 
 void CuePlayer::Impl::begin(std::size_t cue) {
@@ -106,6 +126,23 @@ void CuePlayer::Impl::begin(std::size_t cue) {
   }
 }
 
+/// Starts what was asked for.
+void CuePlayer::Impl::begin_all(std::vector<std::pair<std::size_t, std::uint64_t>>& cues) {
+  for (const auto& [cue, ticket] : cues) {
+    begin(cue);
+    begun.push_back(ticket);
+  }
+  cues.clear();
+}
+
+void CuePlayer::Impl::take(const VariedClips& taken) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    outputs[i].cues.resize(outputs[i].fixed);
+    outputs[i].cues.insert(outputs[i].cues.end(), taken.cues[i].begin(), taken.cues[i].end());
+    outputs[i].mixer->take_further(taken.clips[i]);
+  }
+}
+
 void CuePlayer::Impl::fill(std::span<float> part) {
   {
     const std::lock_guard lock(mutex);
@@ -114,11 +151,12 @@ void CuePlayer::Impl::fill(std::span<float> part) {
         output.mixer->still();
       }
     }
-    for (const auto& [cue, ticket] : asked) {
-      begin(cue);
-      begun.push_back(ticket);
+    begin_all(asked_before);
+    if (varied) {
+      take(*varied);
+      varied.reset();
     }
-    asked.clear();
+    begin_all(asked);
     outputs.front().mixer->mask(masked);
   }
   if (channels == 1) {
@@ -163,6 +201,25 @@ CuePlayer::CuePlayer(const CueSet& set, std::uint64_t seed, std::function<std::i
 
 CuePlayer::~CuePlayer() = default;
 
+void CuePlayer::take_varied(const std::vector<Cue>& cues) {
+  VariedClips varied{std::vector<std::vector<std::size_t>>(impl_->outputs.size()),
+                     std::vector<std::vector<Mixer::Clip>>(impl_->outputs.size())};
+  for (std::size_t i = 0; i < cues.size(); ++i) {
+    const auto clip = std::make_shared<const std::vector<float>>(rendered(cues[i], impl_->seed));
+    for (std::size_t output = 0; output < impl_->outputs.size(); ++output) {
+      const Actuator* actuator = output == 0 ? nullptr : &impl_->set.actuators[output - 1];
+      if (plays_on(cues[i], actuator)) {
+        varied.cues[output].push_back(impl_->set.cues.size() + i);
+        varied.clips[output].push_back(clip);
+      }
+    }
+  }
+  const std::lock_guard lock(impl_->mutex);
+  impl_->asked_before.insert(impl_->asked_before.end(), impl_->asked.begin(), impl_->asked.end());
+  impl_->asked.clear();
+  impl_->varied = std::move(varied);
+}
+
 void CuePlayer::start(std::size_t cue, std::uint64_t ticket) {
   const std::lock_guard lock(impl_->mutex);
   impl_->asked.emplace_back(cue, ticket);
@@ -172,7 +229,9 @@ void CuePlayer::start(std::size_t cue, std::uint64_t ticket) {
 void CuePlayer::still() {
   const std::lock_guard lock(impl_->mutex);
   impl_->stilled = true;
-  std::erase_if(impl_->asked, [this](const auto& each) { return impl_->is_felt(each.first); });
+  for (auto* asked : {&impl_->asked_before, &impl_->asked}) {
+    std::erase_if(*asked, [this](const auto& each) { return impl_->is_felt(each.first); });
+  }
 }
 
 void CuePlayer::mask(bool on) {

@@ -29,6 +29,9 @@ class CuePlayer {
   CuePlayer(const CuePlayer&) = delete;
   CuePlayer& operator=(const CuePlayer&) = delete;
 
+  /// Renders sounds of the coming trial, which start() takes as those behind the set's own; those
+  /// of the trial before are gone, but play to their end. Session's thread: it takes milliseconds.
+  void take_varied(const std::vector<Cue>& cues);
   void start(std::size_t cue, std::uint64_t ticket);
   /// Ends what the actuators give; what is started afterwards begins. Loudspeakers go on.
   void still();

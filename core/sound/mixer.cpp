@@ -22,11 +22,20 @@ float Limiter::limited(double sample) noexcept {
 
 Mixer::Mixer(std::vector<std::vector<float>> clips, std::vector<float> masking, double fade,
              double rate)
-    : clips_(std::move(clips)),
+    : fixed_(clips.size()),
       masking_(std::move(masking)),
       step_(fade * rate > 1.0 ? 1.0 / (fade * rate) : 1.0),
       fade_(std::max(1, static_cast<int>(0.005 * rate))),
-      limiter_(rate) {}
+      limiter_(rate) {
+  for (std::vector<float>& clip : clips) {
+    clips_.push_back(std::make_shared<const std::vector<float>>(std::move(clip)));
+  }
+}
+
+void Mixer::take_further(const std::vector<Clip>& clips) {
+  clips_.resize(fixed_);
+  clips_.insert(clips_.end(), clips.begin(), clips.end());
+}
 
 void Mixer::still() noexcept {
   for (Voice& voice : voices_) {
@@ -43,7 +52,7 @@ void Mixer::start(std::size_t clip) noexcept {
     voice = voices_.begin() + static_cast<std::ptrdiff_t>(oldest_);
     oldest_ = (oldest_ + 1) % kMostVoices;
   }
-  *voice = {&clips_[clip], 0};
+  *voice = {clips_[clip], 0};
 }
 
 double Mixer::next() noexcept {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,15 +27,20 @@ class Limiter {
 
 /// Adds the sounds of a session: clips that are started, each from its beginning, and a loop of
 /// masking noise that fades in and out. One thread; no allocation, lock or throw after the
-/// constructor.
+/// constructor but in take_further().
 class Mixer {
  public:
   static constexpr std::size_t kMostVoices = 16;  // that sound at once; the oldest gives way
+
+  using Clip = std::shared_ptr<const std::vector<float>>;
 
   /// @param masking  a loop; empty: none  @param fade  of it [s]
   Mixer(std::vector<std::vector<float>> clips, std::vector<float> masking, double fade,
         double rate);
 
+  /// Takes further clips, behind those of the constructor and in place of those that it took last;
+  /// what sounds goes on. It allocates.
+  void take_further(const std::vector<Clip>& clips);
   /// Starts a clip from the next sample on. @param clip  from 0; others are none
   void start(std::size_t clip) noexcept;
   /// What sounds now fades out over 5 ms; what is started afterwards does not.
@@ -47,13 +53,14 @@ class Mixer {
 
  private:
   struct Voice {
-    const std::vector<float>* clip{nullptr};
+    Clip clip{};
     std::size_t at{0};
     int left{-1};  // samples until it has faded out; -1: it plays on
   };
   double next() noexcept;
 
-  std::vector<std::vector<float>> clips_;
+  std::vector<Clip> clips_;
+  std::size_t fixed_;  // of them, for the whole session
   std::vector<float> masking_;
   double step_;  // of the masking's gain, a sample
   int fade_;     // of what is stilled [samples]

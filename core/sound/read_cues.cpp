@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -179,6 +180,37 @@ void fit_to_actuator(Table& table, const std::vector<Actuator>& actuators, Cue& 
   cue.level = 20.0 * std::log10(is_tone(cue) ? share / std::numbers::sqrt2 : share);
 }
 
+namespace {
+
+bool has_formula(const Table& table) {
+  return std::ranges::any_of(
+      std::array{"amplitude", "frequency", "level", "duration", "rise", "low", "high"},
+      [&](const char* key) { return table.has_text(key); });
+}
+
+Cue read_cue(Table& table, const std::string& name, const std::vector<Actuator>& actuators) {
+  Cue cue = cue_schema().read(table);
+  cue.name = name;
+  fit_to_actuator(table, actuators, cue);
+  return cue;
+}
+
+/// What is known of a sound that varies: its file, which can be checked.
+Cue varied_cue(Table& table, const std::string& name) {
+  Cue cue;
+  cue.name = name;
+  cue.actuator = table.whole_text("actuator").value_or("");
+  cue.varies = true;
+  if (const auto file = table.whole_text("file")) {
+    cue.kind = Cue::Kind::kFile;
+    cue.level = 0.0;
+    cue.file = *file;
+  }
+  return cue;
+}
+
+}  // namespace
+
 std::vector<std::string> cue_names(const Table& table) {
   std::vector<std::string> names;
   for (const std::string& name : table.keys_as_written()) {
@@ -194,16 +226,26 @@ CueSet read_cues(Table& table, std::vector<Actuator> actuators) {
   set.actuators = std::move(actuators);
   for (const std::string& name : cue_names(table)) {
     Table inner = table.table(name);
-    Cue cue = cue_schema().read(inner);
-    cue.name = name;
-    fit_to_actuator(inner, set.actuators, cue);
-    set.cues.push_back(std::move(cue));
+    set.cues.push_back(has_formula(inner) ? varied_cue(inner, name)
+                                          : read_cue(inner, name, set.actuators));
   }
   if (table.has(kMasking)) {
     Table masking = table.table(kMasking);
     set.masking = masking_schema().read(masking);
   }
   return set;
+}
+
+std::vector<Cue> read_varied_cues(Table& table, const CueSet& set) {
+  std::vector<Cue> cues;
+  for (const Cue& known : set.cues) {
+    if (known.varies) {
+      Table inner = table.table(known.name);
+      cues.push_back(read_cue(inner, known.name, set.actuators));
+      cues.back().file = known.file;
+    }
+  }
+  return cues;
 }
 
 }  // namespace haptrial::sound

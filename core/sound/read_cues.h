@@ -21,7 +21,14 @@ namespace haptrial::sound {
 ///
 /// A sound with `actuator`, the name of one of them, is a vibration: `amplitude` in the actuator's
 /// unit stands for level.
+///
+/// A sound with a text where a number is expected varies between trials. It is left to
+/// read_varied_cues(), which must read the same document.
 CueSet read_cues(Table& table, std::vector<Actuator> actuators = {});
+
+/// The sounds of the set that vary, in their order, with the numbers that their formulas have now.
+/// @param table  [sounds], whose texts stand for numbers (Table::with). Problems are noted in it
+std::vector<Cue> read_varied_cues(Table& table, const CueSet& set);
 
 /// The names of the sounds in the order of CueSet::cues, without reading them.
 std::vector<std::string> cue_names(const Table& table);

@@ -22,7 +22,7 @@ using File = std::unique_ptr<SNDFILE, CloseFile>;
 
 }  // namespace
 
-Recording read_recording(const std::filesystem::path& file) {
+std::vector<Recording> read_channels(const std::filesystem::path& file) {
   refuse_special_file(file);
   SF_INFO info{};
   const File source(sf_open(file.c_str(), SFM_READ, &info));
@@ -36,27 +36,37 @@ Recording read_recording(const std::filesystem::path& file) {
     throw InputError(fmt::format("{}: has {} samples; allowed: from 1 sample to an hour of samples",
                                  file.string(), info.frames));
   }
-  Recording recording;
-  recording.rate = info.samplerate;
-  recording.samples.reserve(static_cast<std::size_t>(info.frames));
+  const auto count = static_cast<std::size_t>(info.channels);
+  std::vector<Recording> channels(count, {static_cast<double>(info.samplerate), {}});
+  for (Recording& channel : channels) {
+    channel.samples.reserve(static_cast<std::size_t>(info.frames));
+  }
   constexpr sf_count_t kFrames = 16'384;
   std::vector<float> frames(static_cast<std::size_t>(kFrames * info.channels));
-  while (const sf_count_t count = sf_readf_float(source.get(), frames.data(), kFrames)) {
-    for (sf_count_t i = 0; i < count; ++i) {
-      const float* const frame = frames.data() + i * info.channels;
-      float sum = 0.0F;
-      for (int channel = 0; channel < info.channels; ++channel) {
-        sum += frame[channel];
-      }
-      if (!std::isfinite(sum)) {
+  while (const sf_count_t read = sf_readf_float(source.get(), frames.data(), kFrames)) {
+    for (std::size_t i = 0; i < count * static_cast<std::size_t>(read); ++i) {
+      std::vector<float>& samples = channels[i % count].samples;
+      if (!std::isfinite(frames[i])) {
         throw InputError(
             fmt::format("{}: sample {} is not a finite number; remove it from the recording",
-                        file.string(), recording.samples.size()));
+                        file.string(), samples.size()));
       }
-      recording.samples.push_back(sum / static_cast<float>(info.channels));
+      samples.push_back(frames[i]);
     }
   }
-  return recording;
+  return channels;
+}
+
+Recording read_recording(const std::filesystem::path& file) {
+  std::vector<Recording> channels = read_channels(file);
+  Recording mean = std::move(channels.front());
+  for (std::size_t i = 0; i < mean.samples.size(); ++i) {
+    for (std::size_t channel = 1; channel < channels.size(); ++channel) {
+      mean.samples[i] += channels[channel].samples[i];
+    }
+    mean.samples[i] /= static_cast<float>(channels.size());
+  }
+  return mean;
 }
 
 struct WavWriter::Impl {

@@ -20,6 +20,9 @@ struct Recording {
 /// @throws InputError when the file is absent, no sound, empty, not finite or over an hour long.
 Recording read_recording(const std::filesystem::path& file);
 
+/// The channels of a recording one by one. @throws InputError as read_recording() does
+std::vector<Recording> read_channels(const std::filesystem::path& file);
+
 /// A WAV file of 16 bits in one channel, written bit by bit: under another name first, which
 /// finish() changes; without that nothing is left.
 class WavWriter {

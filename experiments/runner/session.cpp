@@ -27,6 +27,7 @@
 #include "experiments/screen/screen_mirror.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/interface/session_task.h"
+#include "protocols/interface/trial_sounds.h"
 #include "protocols/interface/trials.h"
 #include "protocols/tutoring/tutored_trials.h"
 
@@ -309,7 +310,8 @@ SessionSummary Session::run() {
     if (real_) {
       servo_.thread.start();
     }
-    channels_.begin();
+    notices_.note_real_time();
+    channels_.begin();  // after the first tick: before it, the session's clock stands
     for (const std::string& notice : missing) {
       notices_.note(notice);
     }
@@ -322,7 +324,6 @@ SessionSummary Session::run() {
     for (const std::string& notice : trials_->notices()) {
       notices_.note(notice);
     }
-    notices_.note_real_time();
     notices_.say_plan(extent, trials_->extent(0).trials,
                       finished_trials(record_.earlier(), trials_->phases().back()));
     run_trials();
@@ -487,6 +488,7 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   }
   PlannedTrial row = trial;
   protocols::Pass& pass = trials_->make_pass(row, phase);
+  record_.markers().prepare(protocols::varied_cues_of(*trials_));
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
   servo_.task.start(pass, number);
   ++summary_.passes;

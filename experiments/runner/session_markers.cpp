@@ -99,6 +99,12 @@ std::string SessionMarkers::sound_state() const {
                  : "not played: the session is simulated";
 }
 
+void SessionMarkers::prepare(const std::vector<sound::Cue>& cues) {
+  if (player_ && !cues.empty()) {
+    player_->take_varied(cues);
+  }
+}
+
 void SessionMarkers::begin_pass(std::int32_t row, std::int32_t trial) {
   const std::lock_guard lock(mutex_);
   trials_[row] = trial;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -280,16 +281,17 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.said = said_.get();
   setup.left = rig_ != nullptr ? rig_->left() : nullptr;
   setup.contacts = contacts_.get();
-  setup.sound_right = d_.sound_right;
-  setup.sound_wrong = d_.sound_wrong;
   variables_.clear();
   stages_.clear();
+  varied_cues_.clear();
   give(*names_, d_, current_.values);
   note_variables(0, variables_);
   RandomStream random(current_.plan.stimulus_seed, "durations");
   for (std::size_t place = 0; place < current_.values.intervals.size(); ++place) {
     setup.intervals.push_back(make_interval(place, random));
   }
+  setup.sound_right = sound_of_interval(d_.sound_right);
+  setup.sound_wrong = sound_of_interval(d_.sound_wrong);
   give(*names_, d_, current_.values);
   setup.questions = make_questions();
   pass_ = std::make_unique<TrialPass>(std::move(setup));
@@ -338,9 +340,12 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
       derived_seed(current_.plan.stimulus_seed, fmt::format("dots {}", place));
   std::vector<Stage> stages;
   std::vector<StageSight> sights;
+  varied_cues_.insert(varied_cues_.end(), presented.varied_cues.begin(),
+                      presented.varied_cues.end());
   for (const NamedStage& stage : presented.stages) {
     stages.push_back(stage.stage);
     sights.push_back(sight_of(stage, presented, *names_, seed));
+    sights.back().sound = sound_of_interval(sights.back().sound);
   }
   number_bodies(presented.fields, sights);
   regions_ = presented.regions;
@@ -363,6 +368,17 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
       d_.intervals.size() > 1 ? static_cast<int>(current_.values.intervals[place]) : -1,
       recorded_of(d_, presented.fields.size()),
       presented.fields.size() - d_.objects.size()};
+}
+
+/// The number of a sound in the interval that was made last: one that varies has another in each.
+int DefinedTrials::sound_of_interval(int sound) const {
+  const std::vector<sound::Cue>& all = d_.cues.cues;
+  if (sound < 0 || !all[static_cast<std::size_t>(sound)].varies) {
+    return sound;
+  }
+  const auto behind =
+      std::count_if(all.begin() + sound, all.end(), std::mem_fn(&sound::Cue::varies));
+  return static_cast<int>(all.size() + varied_cues_.size()) - static_cast<int>(behind);
 }
 
 std::vector<PresentedQuestion> DefinedTrials::make_questions() {

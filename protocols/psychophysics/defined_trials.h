@@ -8,6 +8,7 @@
 #include "core/record/rows/late_window_row.h"
 #include "core/record/rows/object_file_row.h"
 #include "core/record/rows/trial_rows.h"
+#include "protocols/interface/trial_sounds.h"
 #include "protocols/interface/trials.h"
 #include "protocols/psychophysics/body_report.h"
 #include "protocols/psychophysics/definition/presented.h"
@@ -26,7 +27,7 @@ class TrialsRig;
 std::vector<std::string> blocks_of(const TrialsDefinition& definition, const SessionPlace& place);
 
 /// The trials of one session as a definition states them.
-class DefinedTrials final : public Trials {
+class DefinedTrials final : public Trials, public TrialSounds {
  public:
   DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place);
 
@@ -39,6 +40,7 @@ class DefinedTrials final : public Trials {
   void check_resumed(const record::SessionReader& file) const override;
   void prepare(const PlannedTrial& trial, SessionFile& file) override;
   MakeDrawing drawing() override;
+  std::vector<sound::Cue> varied_cues() const override { return varied_cues_; }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   std::vector<record::ResponseRow> responses() override;
   void close_pass(SessionFile& file, std::int32_t row) override;
@@ -67,6 +69,7 @@ class DefinedTrials final : public Trials {
   void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
   void be_late_again(std::size_t interval, std::vector<scene::Field>& fields) const;
   IntervalRun make_interval(std::size_t place, RandomStream& random);
+  int sound_of_interval(int sound) const;
   std::vector<PresentedQuestion> make_questions();
   void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
   double outcome_of(const std::vector<record::ResponseRow>& responses);
@@ -102,6 +105,7 @@ class DefinedTrials final : public Trials {
   std::vector<scene::Region> regions_;           // of the last interval
   std::vector<std::size_t> region_devices_;      // likewise
   std::vector<record::VariableRow> variables_;   // of the pass
+  std::vector<sound::Cue> varied_cues_;          // of its intervals, one after the other
   std::vector<int> right_;                       // choice of each question; -1: none
 };
 

@@ -1,12 +1,15 @@
-"""Channels of a live session under planted clocks: are the times right, is nothing lost, are ticks later?
+"""Channels and sounds of a live session that is killed: are times right, is nothing lost, are ticks later?
 
-A virtual participant's session on the real clock has a force sensor at 7 kHz (RDT over UDP) and a
-board at 100 Hz that prints lines with its own clock (a pseudo-terminal). Both clocks drift by 100
-millionths, the sensor loses records and sends some in bursts, the board's clock steps. Each sample
-carries the time at which it was measured, so that the session file says how far its time is wrong.
-Each session is killed after a random time.
+A virtual participant's session on the real clock has a force sensor at 7 kHz (RDT over UDP), a board
+at 100 Hz that prints lines with its own clock (a pseudo-terminal), a stream of the Lab Streaming
+Layer at 250 Hz (a stand-in for its library, in the session's process) and a sound with each trial
+(ALSA's card `null`). The three clocks drift by 100 millionths, the sensor loses records, all three
+send some samples together, the board's clock steps. Each sample carries the time at which it was
+measured, so that the session file says how far its time is wrong. Each session is killed after a
+random time, resumed, and killed again. Then whole sessions with all of it and without any of it
+alternate.
 
-    /usr/bin/python3 tests/benchmarks/channel_session.py build/haptrial [--kills 40]
+    /usr/bin/python3 tests/benchmarks/channel_session.py build/haptrial [--kills 40] [--pairs 5]
 """
 import argparse
 import os
@@ -39,6 +42,7 @@ force = [0.0, -0.5, 0.0]
 name = "feel"
 fields = ["pull"]
 until = { time = 1.0 }
+SOUND
 [response]
 question = "Did it pull?"
 choices = [{ value = "yes", keys = ["Y"] }, { value = "no", keys = ["N"] }]
@@ -63,6 +67,19 @@ quantities = { seconds = "s", microseconds = "us" }
 columns = ["t", "seconds", "microseconds"]
 clock = { column = "t", unit = "us" }
 rate = 100.0
+[channels.stream]
+kind = "lsl"
+name = "stand-in"
+library = "%s"
+quantities = { measured = "s" }
+rate = 250.0
+[sounds]
+device = "null"
+[sounds.go]
+type = "tone"
+frequency = 1000.0
+duration = 0.2
+level = -25.0
 """
 
 
@@ -137,24 +154,146 @@ class Board(threading.Thread):
                 pass
 
 
-def rows_of(file, channel, seconds, micros):
-    """Times [s]: as recorded, planted, received, and the stated uncertainty."""
-    table = file["channel_" + channel]
-    planted = table[seconds].astype(float) + 1e-6 * table[micros].astype(float)
-    return 1e-9 * table["time_ns"], planted, 1e-9 * table["received_ns"], table["uncertainty"][:]
+class Rows:
+    """Samples of a channel: their times [s], as recorded, planted and received."""
+
+    def __init__(self, file, channel):
+        table = file["channel_" + channel]
+        seconds, micros = PLANTED[channel]
+        self.number = table["sample"][:]
+        self.planted = table[seconds].astype(float)
+        if micros is not None:
+            self.planted = self.planted + 1e-6 * table[micros].astype(float)
+        self.recorded = 1e-9 * table["time_ns"]
+        self.received = 1e-9 * table["received_ns"]
+        self.uncertainty = table["uncertainty"][:]
+
+    def after(self, time):
+        """The rows of the process that was started after this time: a resume may have found more of the
+        one before than could be read just after its kill."""
+        some = Rows.__new__(Rows)
+        for name, value in vars(self).items():
+            setattr(some, name, value[self.planted > time])
+        return some
+
+    def within(self):
+        """Which planted times are within the uncertainty, and how far the worst is off. The session's
+        clock begins at an unknown time: the smallest delay, less than 0.2 ms here, says when."""
+        begin = numpy.min(self.received - self.planted)
+        error = numpy.abs(self.recorded - (self.planted + begin))
+        return int(numpy.sum(error <= self.uncertainty)), float(numpy.max(error))
 
 
-def share_within(recorded, planted, received, uncertainty):
-    """Share of samples whose planted time is within the uncertainty. The session's clock begins at
-    an unknown time: the smallest delay, less than 0.2 ms here, says when."""
-    begin = numpy.min(received - planted)
-    error = numpy.abs(recorded - (planted + begin))
-    return float(numpy.mean(error <= uncertainty)), float(numpy.max(error))
+PLANTED = {"force": ("fx", "fy"), "grip": ("seconds", "microseconds"), "stream": ("measured", None)}
 
 
-def start(haptrial, definition, out):
-    return subprocess.Popen([haptrial, "run", definition, "--subject", "S01", "--device", "virtual", "--out", out],
-                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+class Kept:
+    """What a session's file holds after a kill."""
+
+    def __init__(self, path):
+        with h5py.File(path, "r", swmr=True) as file:
+            self.channels = {channel: Rows(file, channel) for channel in PLANTED}
+            self.trials = file["trials"][:]
+            self.ticks = 1e-9 * file["samples"]["time_ns"]
+            markers = file["markers"][:]
+        heard = markers[markers["way"] == b"sound"]
+        self.heard = set(heard["trial"][numpy.isfinite(heard["written"])].tolist())
+
+
+def start(haptrial, definition, out, *more):
+    return subprocess.Popen([haptrial, "run", definition, "--subject", "S01", "--device", "virtual", "--out", out,
+                             *more], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def kill_after(process, seconds):
+    """Kills a session. @returns when"""
+    time.sleep(seconds)
+    process.send_signal(signal.SIGKILL)
+    killed = time.monotonic()
+    process.wait()
+    return killed
+
+
+class Tally:
+    """Figures of all killed sessions."""
+
+    def __init__(self):
+        self.samples = dict.fromkeys(PLANTED, 0)
+        self.within = dict.fromkeys(PLANTED, 0)
+        self.worst = dict.fromkeys(PLANTED, 0.0)
+        self.least = dict.fromkeys(PLANTED, 1.0)
+        self.lost = {name: [] for name in (*PLANTED, "ticks")}
+        self.trials = self.sounds = 0
+        self.wrong = []
+
+    def count_run(self, kept, began, killed):
+        """Counts what a process recorded that was started and killed at these times."""
+        begins = []
+        for channel, rows in kept.channels.items():
+            rows = rows.after(began)
+            if len(rows.number) == 0:
+                self.wrong.append(f"{channel} has no sample")
+                continue
+            within, worst = rows.within()
+            self.samples[channel] += len(rows.number)
+            self.within[channel] += within
+            self.worst[channel] = max(self.worst[channel], worst)
+            self.least[channel] = min(self.least[channel], within / len(rows.number))
+            self.lost[channel].append(killed - float(rows.planted[-1]))
+            begins.append(float(numpy.min(rows.received - rows.planted)))
+        self.lost["ticks"].append(killed + begins[0] - float(kept.ticks[-1]))
+
+    def count_whole(self, kept):
+        """Counts trials and their sounds."""
+        completed = kept.trials[kept.trials["status"] == b"completed"]
+        self.trials += len(completed)
+        self.sounds += sum(int(trial) in kept.heard for trial in completed["trial"])
+
+    def compare(self, before, after):
+        """What was there before a resume must be there after it, and be gone on with."""
+        for channel, rows in before.channels.items():
+            count = len(rows.number)
+            then = after.channels[channel]
+            if not (numpy.array_equal(then.number[:count], rows.number)
+                    and numpy.array_equal(then.planted[:count], rows.planted)):
+                self.wrong.append(f"{channel}: rows changed in the resume")
+            if not numpy.all(numpy.diff(then.number.astype(numpy.int64)) > 0):
+                self.wrong.append(f"{channel}: numbers do not grow")
+            if len(numpy.unique(then.planted)) != len(then.planted):
+                self.wrong.append(f"{channel}: a sample came twice")
+        count = len(before.trials)
+        for name in ("trial", "status", "first_sample", "last_sample"):
+            if not numpy.array_equal(after.trials[name][:count], before.trials[name]):
+                self.wrong.append(f"trials: {name} changed in the resume")
+
+    def show(self):
+        for channel in PLANTED:
+            share = self.within[channel] / max(1, self.samples[channel])
+            print(f"{channel}: {self.samples[channel]} samples, planted times within the stated uncertainty: "
+                  f"{100 * share:.2f} %, in the worst run {100 * self.least[channel]:.1f} %; largest error "
+                  f"{1e3 * self.worst[channel]:.2f} ms")
+        for name, lost in self.lost.items():
+            print(f"{name}: the last before a kill by {statistics.median(lost):.2f} s in the median, "
+                  f"{max(lost):.2f} s at most ({len(lost)} kills)")
+        print(f"{self.trials} completed trials, {self.sounds} with the time of their sound")
+        print(f"what is wrong: {'; '.join(self.wrong) if self.wrong else 'nothing'}")
+
+
+def killed_sessions(options, folder, definition):
+    tally, number = Tally(), random.Random(3)
+    for kill in range(options.kills):
+        out = os.path.join(folder, f"killed-{kill}")
+        partial = os.path.join(out, "S01.h5.partial")
+        killed = kill_after(start(options.haptrial, definition, out), number.uniform(2.5, 6.0))
+        before = Kept(partial)
+        tally.count_run(before, 0.0, killed)
+        began = killed
+        killed = kill_after(start(options.haptrial, definition, out, "--resume"), number.uniform(2.5, 6.0))
+        after = Kept(partial)
+        tally.count_run(after, began, killed)
+        tally.compare(before, after)
+        tally.count_whole(after)
+    tally.show()
 
 
 def lateness_of(haptrial, file):
@@ -162,53 +301,31 @@ def lateness_of(haptrial, file):
     return re.search(r"lateness +(.*)", said).group(1)
 
 
-def killed_sessions(options, folder, definition):
-    shares, worst, lost, number = [], [], [], random.Random(3)
-    for kill in range(options.kills):
-        out = os.path.join(folder, f"killed-{kill}")
-        process = start(options.haptrial, definition, out)
-        time.sleep(number.uniform(2.5, 6.0))
-        process.send_signal(signal.SIGKILL)
-        killed = time.monotonic()
-        process.wait()
-        with h5py.File(os.path.join(out, "S01.h5.partial"), "r", swmr=True) as file:
-            for channel, seconds, micros in (("force", "fx", "fy"), ("grip", "seconds", "microseconds")):
-                rows = rows_of(file, channel, seconds, micros)
-                if len(rows[0]) == 0:
-                    lost.append((channel, float("nan")))
-                    continue
-                share, largest = share_within(*rows)
-                shares.append((channel, share))
-                worst.append((channel, largest))
-                lost.append((channel, killed - float(rows[1][-1])))
-    for channel in ("force", "grip"):
-        mine = [s for c, s in shares if c == channel]
-        gone = [s for c, s in lost if c == channel]
-        print(f"{channel}: {len(mine)} killed sessions; planted times within the stated uncertainty: "
-              f"median {100 * statistics.median(mine):.1f} %, least {100 * min(mine):.1f} %; largest "
-              f"error {1e3 * max(w for c, w in worst if c == channel):.2f} ms; last sample before the "
-              f"kill by {statistics.median(gone):.2f} s in the median, {max(gone):.2f} s at most")
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("haptrial")
     parser.add_argument("--kills", type=int, default=40)
+    parser.add_argument("--pairs", type=int, default=5)
     options = parser.parse_args()
     options.haptrial = os.path.abspath(options.haptrial)
+    os.environ["STAND_IN_LSL_STREAM"] = "stand-in"
     sensor, board = ForceSensor(), Board()
     sensor.start()
     board.start()
     with tempfile.TemporaryDirectory() as folder:
-        channels = CHANNELS % (sensor.port, board.path)
-        for name, trials, more in (("with", 200, channels), ("short", 8, channels), ("without", 8, "")):
+        layer = os.path.join(os.path.dirname(options.haptrial), "libstand_in_lsl.so")
+        channels = CHANNELS % (sensor.port, board.path, layer)
+        sound = 'sound = "go"'
+        for name, trials, stage, more in (("with", 200, sound, channels), ("short", 8, sound, channels),
+                                          ("without", 8, "", "")):
             with open(os.path.join(folder, name + ".toml"), "w", encoding="utf-8") as file:
-                file.write(STUDY.replace("TRIALS", str(trials)) + more)
+                file.write(STUDY.replace("TRIALS", str(trials)).replace("SOUND", stage) + more)
         killed_sessions(options, folder, os.path.join(folder, "with.toml"))
-        for turn, name in enumerate(("without", "short", "without", "short")):
+        for turn in range(2 * options.pairs):
+            name = "short" if turn % 2 else "without"
             out = os.path.join(folder, f"lateness-{turn}")
             start(options.haptrial, os.path.join(folder, name + ".toml"), out).wait()
-            print(f"ticks {'with' if name == 'short' else 'without'} channels: "
+            print(f"ticks {'with all' if name == 'short' else 'without'}: "
                   f"{lateness_of(options.haptrial, os.path.join(out, 'S01.h5'))}")
     sensor.over = board.over = True
 

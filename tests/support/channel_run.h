@@ -84,11 +84,19 @@ class ChannelRun {
 
  private:
   void start() {
-    channel_ = std::make_unique<channel::Channel>(options_, [this] { return now_ns_.load(); });
+    // What an instrument gives from its opening on counts in a test.
+    channel::ChannelOptions options = options_;
+    options.plan.open = [this, open = options_.plan.open] {
+      wait_until([this] { return begun_.load(); });
+      return open();
+    };
+    channel_ = std::make_unique<channel::Channel>(options, [this] { return now_ns_.load(); });
     channel_->begin();
+    begun_ = true;
   }
 
   std::atomic<std::int64_t> now_ns_{0};
+  std::atomic<bool> begun_{false};
   channel::ChannelOptions options_;
   std::vector<channel::ChannelRow> rows_;
   std::vector<channel::IncidentRow> incidents_;

@@ -1,7 +1,10 @@
 // A stand-in for liblsl: the same C functions, which keep what was pushed, and inlets of streams
 // that a test offers. For a test in another process, STAND_IN_LSL_FILE names a file to which each
-// outlet writes what it got when it closes; the layer's clock then goes as the real one does.
+// outlet writes what it got when it closes; STAND_IN_LSL_STREAM names a stream that a sender offers
+// from then on. The layer's clock then goes as the real one does.
 #include "tests/support/stand_in_lsl.h"
+
+#include <dlfcn.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -9,6 +12,8 @@
 #include <fstream>
 #include <iomanip>
 #include <memory>
+#include <random>
+#include <thread>
 
 using haptrial::test::LslNetwork;
 using haptrial::test::LslOffer;
@@ -115,16 +120,75 @@ double pulled(void* inlet, double timeout, std::int32_t* error, Take take) {
   return sample.stamp + (from->processes ? offer.offset : 0.0);
 }
 
+double machine_clock() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 double layer_clock() {
   if (network.has_clock) {
     return network.clock;
   }
-  if (std::getenv("STAND_IN_LSL_FILE") == nullptr) {
+  if (std::getenv("STAND_IN_LSL_FILE") == nullptr &&
+      std::getenv("STAND_IN_LSL_STREAM") == nullptr) {
     return record.clock;
   }
   constexpr double kAhead = 12345.0;  // of the machine's clock, so that the two are not mixed up
-  return kAhead +
-         std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return kAhead + machine_clock();
+}
+
+/// The clock of a sender of another process: its seconds are 100 millionths longer.
+double sender_clock(double machine) { return 77777.0 + machine / (1.0 + 100e-6); }
+
+/// Offers a stream of 250 samples a second, each the machine's time at which it was measured. Some
+/// come together, up to 0.1 s late. The layer measures the sender's clock every 5 s, within 0.2 ms.
+void send_for_ever(const std::shared_ptr<LslOffer>& offer) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform;
+  double measured = machine_clock();
+  double next_offset = measured;
+  while (true) {
+    const bool together = uniform(random) < 5e-3;
+    std::this_thread::sleep_for(std::chrono::duration<double>(together ? 0.1 : 0.004));
+    const double now = machine_clock();
+    {
+      const std::lock_guard lock(network.mutex);
+      if (now >= next_offset) {
+        next_offset = now + 5.0;
+        offer->measured_at = sender_clock(now);
+        offer->uncertainty = 2e-4;
+        offer->offset = layer_clock() - offer->measured_at + 2e-4 * (2.0 * uniform(random) - 1.0);
+      }
+      for (; measured < now; measured += 0.004) {
+        offer->sent.push_back({sender_clock(measured), {measured}, {}});
+      }
+    }
+    network.came.notify_all();
+  }
+}
+
+/// Begins the stream that the environment asks for, once.
+void offer_stream() {
+  static const bool begun = [] {
+    const char* name = std::getenv("STAND_IN_LSL_STREAM");
+    if (name == nullptr) {
+      return false;
+    }
+    const auto offer = std::make_shared<LslOffer>();
+    offer->name = name;
+    offer->host = "stand-in";
+    offer->rate = 250.0;
+    offer->labels = {{"measured", "s"}};
+    {
+      const std::lock_guard lock(network.mutex);
+      network.offers.push_back(offer);
+    }
+    Dl_info here{};  // the thread needs this library to the end of the process
+    dladdr(reinterpret_cast<void*>(&offer_stream), &here);
+    dlopen(here.dli_fname, RTLD_NOW | RTLD_NODELETE);
+    std::thread(send_for_ever, offer).detach();
+    return true;
+  }();
+  static_cast<void>(begun);
 }
 
 }  // namespace
@@ -190,6 +254,7 @@ LslNetwork* stand_in_lsl_network() { return &network; }
 
 std::int32_t lsl_resolve_bypred(void** found, std::uint32_t room, const char* predicate,
                                 std::int32_t minimum, double timeout) {
+  offer_stream();
   const std::lock_guard lock(network.mutex);
   std::int32_t count = 0;
   for (const auto& offer : network.offers) {
@@ -223,11 +288,15 @@ std::int32_t lsl_set_postprocessing(void* inlet, std::uint32_t flags) {
   static_cast<Inlet*>(inlet)->processes = flags != 0;
   return 0;
 }
-double lsl_time_correction_ex(void* inlet, double* remote, double* uncertainty, double,
+double lsl_time_correction_ex(void* inlet, double* remote, double* uncertainty, double timeout,
                               std::int32_t* error) {
-  const std::lock_guard lock(network.mutex);
+  std::unique_lock lock(network.mutex);
   auto* const to = static_cast<Inlet*>(inlet);
   const LslOffer& offer = *to->offer;
+  if (std::getenv("STAND_IN_LSL_STREAM") != nullptr) {
+    network.came.wait_for(lock, std::chrono::duration<double>(timeout),
+                          [&] { return offer.measured_at != 0.0; });
+  }
   to->has_offset = to->has_offset || (offer.measured_at != 0.0 && !offer.silent);
   *error = to->has_offset ? 0 : -1;
   *remote = offer.measured_at;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/device/sensor_timing.h"
+
 namespace haptrial::experiments {
 namespace {
 
@@ -101,7 +103,10 @@ CertificateTask::CertificateTask(device::Device& device, device::ForceSensor* se
     columns.command.resize(ticks);
     columns.position.resize(ticks);
     columns.velocity.resize(ticks);
-    columns.measured.resize(sensor != nullptr && !is_free(part) ? ticks : 0);
+    const std::size_t measured = sensor != nullptr && !is_free(part) ? ticks : 0;
+    columns.measured.resize(measured);
+    columns.measured_at.resize(measured);
+    tick_at_[index(part)].resize(measured);
   }
   shown_.store(parts_.empty() ? CertificatePart::kDone : parts_.front());
 }
@@ -178,9 +183,9 @@ void CertificateTask::keep(const device::DeviceReading& reading, const Vector3d&
   }
   if (measured != nullptr) {
     columns.measured[row] = measured->force;
+    columns.measured_at[row] = measured->time;
+    tick_at_[index(parts_[at_])][row] = measured->time + measured->age;
     record_.stated_noise = measured->noise;
-    age_sum_ += measured->age;
-    age_count_ += 1.0;
   } else {
     unmeasured_[index(parts_[at_])] = true;
   }
@@ -197,12 +202,20 @@ void CertificateTask::end_part() noexcept {
 analysis::CertificateRecord CertificateTask::record() const {
   analysis::CertificateRecord record = record_;
   record.walls = walls_.steps();
-  record.sensor_age = age_count_ > 0.0 ? age_sum_ / age_count_ : 0.0;
+  double late = 0.0;
+  double ticks = 0.0;
   for (std::size_t part = 0; part < record.parts.size(); ++part) {
+    analysis::PartRecord& columns = record.parts[part];
     if (unmeasured_[part]) {
-      record.parts[part].measured.clear();  // a part with a gap says nothing
+      columns.measured.clear();  // a part with a gap says nothing
+      columns.measured_at.clear();
+    } else {
+      const auto count = static_cast<double>(columns.measured.size());
+      late += count * analysis::align_forces(columns, tick_at_[part]);
+      ticks += count;
     }
   }
+  record.sensor_age = ticks > 0.0 ? late / ticks : 0.0;
   return record;
 }
 

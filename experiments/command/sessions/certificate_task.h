@@ -84,7 +84,8 @@ class CertificateTask final : public realtime::ServoTask {
   WallLadder walls_;
   std::size_t at_{0};  // of the parts
   long tick_{0};       // of the part
-  double age_sum_{0.0}, age_count_{0.0};
+  std::array<std::vector<double>, static_cast<std::size_t>(analysis::CertificatePart::kDone)>
+      tick_at_;  // of each part, on the sensor's clock [s]
   const char* trouble_{""};
   std::array<bool, static_cast<std::size_t>(analysis::CertificatePart::kDone)> unmeasured_{};
   std::atomic<bool> start_{false};

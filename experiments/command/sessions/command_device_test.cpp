@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "experiments/command/sessions/certify_device.h"
+#include "experiments/command/sessions/measure_loopback.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
@@ -78,6 +79,9 @@ int device_test(const DeviceTestOptions& options) {
     throw InputError(fmt::format("--seconds is {}; allowed: a number from {} to {} [s]",
                                  options.seconds, kLeast, kMost));
   }
+  if (!options.loopback.empty()) {
+    return measure_loopback(options);
+  }
   const DeviceSetup setup = setup_of(options);
   if (!options.certificate.empty()) {
     return certify_device(options, setup);
@@ -117,7 +121,8 @@ void add_device_test(CLI::App& app, int& status) {
                              "haptrial device-test force-dimension", {"", "devices.md"});
   auto& o = options_of<DeviceTestOptions>(*sub, status, device_test);
   sub->add_option("NAME", o.name,
-                  fmt::format("Device: virtual, mouse, {} or one of this program's own",
+                  fmt::format("Device: virtual, mouse, {} or one of this program's own; with "
+                              "--loopback a sound of the definition",
                               fmt::join(device::vendor_names(), ", ")))
       ->required();
   sub->add_option(
@@ -136,6 +141,9 @@ void add_device_test(CLI::App& app, int& status) {
       with_default("Axes of the world along which the sensor's x, y and z point", o.sensor_axes));
   sub->add_flag("--without-sensor", o.without_sensor,
                 "Certificate of the virtual device without its simulated force sensor");
+  sub->add_option("--loopback", o.loopback,
+                  "Recording of a session with the sound NAME, whose latency is measured: markers' "
+                  "pulses in the first channel, the sound in the second");
   sub->add_option("--library", o.library,
                   "Path of the vendor's library (default: found by the system)");
 }

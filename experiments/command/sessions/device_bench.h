@@ -30,6 +30,7 @@ struct DeviceTestOptions {
   bool without_sensor{false};  // of the virtual device
   std::string sensor;          // channel of the definition that measures the force; empty: none
   std::string sensor_axes{"x,y,z"};  // along which its axes point
+  std::string loopback;              // recording of a sound's onsets; empty: none
 };
 
 /// A device, and who moves it where there is no person.

@@ -4,8 +4,10 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <chrono>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -26,6 +28,14 @@ std::array<std::size_t, 3> places_of_force(const channel::ChannelOptions& option
     places[i] = static_cast<std::size_t>(at - quantities.begin());
   }
   return places;
+}
+
+/// Time from now on [ns].
+channel::Channel::Now machine_clock() {
+  const auto start = std::chrono::steady_clock::now();
+  return [start] {
+    return std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
+  };
 }
 
 /// The axis of "-z"; zero for anything else.
@@ -61,18 +71,16 @@ Eigen::Matrix3d rotation_of_axes(const std::string& axes) {
   return rotation;
 }
 
-SensorChannel::SensorChannel(const channel::ChannelOptions& options, const std::string& axes)
-    : to_world_(rotation_of_axes(axes)),
+SensorChannel::SensorChannel(const channel::ChannelOptions& options, const std::string& axes,
+                             channel::Channel::Now now)
+    : now_(now ? std::move(now) : machine_clock()),
+      to_world_(rotation_of_axes(axes)),
       force_(places_of_force(options)),
-      channel_(options, [this] { return now(); }) {
+      channel_(options, now_) {
   if (const std::string why = channel_.wait_until_open(); !why.empty()) {
     throw RunError(why);
   }
   channel_.begin();
-}
-
-std::int64_t SensorChannel::now() const {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now() - start_).count();
 }
 
 bool SensorChannel::read(device::MeasuredForce& measured) noexcept {
@@ -83,7 +91,8 @@ bool SensorChannel::read(device::MeasuredForce& measured) noexcept {
     return false;
   }
   measured.force = to_world_ * force;
-  measured.age = std::max(0.0, 1e-9 * static_cast<double>(now() - state.time_ns));
+  measured.age = std::max(0.0, 1e-9 * static_cast<double>(now_() - state.time_ns));
+  measured.time = 1e-9 * static_cast<double>(state.time_ns);
   measured.noise = 0.0;
   return true;
 }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <string>
 
@@ -16,15 +15,15 @@ namespace haptrial::experiments {
 class SensorChannel final : public device::ForceSensor {
  public:
   /// Opens the instrument. @param axes  of W along which its x, y and z point: "x,-z,y"
+  /// @param now  clock by which measurements have their time [ns]; none: that of the machine
   /// @throws InputError for other quantities or axes, RunError if the instrument does not answer
-  SensorChannel(const channel::ChannelOptions& options, const std::string& axes);
+  SensorChannel(const channel::ChannelOptions& options, const std::string& axes,
+                channel::Channel::Now now = {});
 
   bool read(device::MeasuredForce& measured) noexcept override;
 
  private:
-  std::int64_t now() const;
-
-  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
+  channel::Channel::Now now_;
   Eigen::Matrix3d to_world_;          // of the sensor's axes
   std::array<std::size_t, 3> force_;  // places of fx, fy and fz
   channel::Channel channel_;

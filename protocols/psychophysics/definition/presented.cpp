@@ -125,6 +125,10 @@ Presented read_presented(Table& document, const Names& names, const TrialsDefini
       },
       channel::names_of_values(d.channels)};
   presented.stages = read_stages(root, source);
+  if (root.has("sounds")) {
+    Table sounds = root.table("sounds");
+    presented.varied_cues = sound::read_varied_cues(sounds, d.cues);
+  }
   return presented;
 }
 

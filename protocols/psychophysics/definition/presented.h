@@ -25,6 +25,7 @@ struct Presented {
   std::vector<std::size_t> region_devices;  // (regions) whose tool it is asked of, from 0
   std::vector<Look> looks;
   std::vector<NamedStage> stages;
+  std::vector<sound::Cue> varied_cues;  // those of the definition's that vary, in their order
 };
 
 /// Content of an interval with the values that the names have. Problems are noted.

@@ -12,8 +12,11 @@
 #include <cstring>
 #include <filesystem>
 #include <numbers>
+#include <optional>
+#include <string_view>
 #include <thread>
 
+#include "core/base/definition/number_source.h"
 #include "core/base/definition/table.h"
 #include "core/base/file_text.h"
 #include "core/sound/card_player.h"
@@ -107,14 +110,15 @@ TEST(ActuatorTest, TheLargestNoiseThatIsAllowedIsNotCutOff) {
 
 /// Samples of each channel that a card of four was given, for half a second or more.
 std::array<std::vector<float>, 4> played(const std::string& sounds,
-                                         const std::vector<std::size_t>& cues,
-                                         bool stilled = false) {
+                                         const std::vector<std::size_t>& cues, bool stilled = false,
+                                         const std::vector<Cue>& varied = {}) {
   const test::TemporaryFolder folder;
   const std::string file = (folder / "played.raw").string();
   {
     CueSet set = read(sounds);
     set.device = "tee:null," + file + ",raw";
     CuePlayer player(set, 1, [] { return 0; });
+    player.take_varied(varied);
     for (const std::size_t cue : cues) {
       player.start(cue, cue);
     }
@@ -162,6 +166,54 @@ TEST(ActuatorTest, AVibrationIsStilledAndASoundIsNot) {
             0.0);
   EXPECT_GT(largest({channels[0].begin() + static_cast<std::ptrdiff_t>(end), channels[0].end()}),
             0.1);
+}
+
+TEST(ActuatorTest, SoundsOfATrialArePlayedInThePlaceOfThoseBefore) {
+  const std::string sounds =
+      "[sounds.beep]\ntype = \"tone\"\nfrequency = 1000.0\nduration = 0.2\nlevel = -20.0\n" +
+      buzz("type = \"tone\"\nfrequency = 250.0\nduration = 0.2\namplitude = 15.0\n");
+  std::vector<Cue> varied = read(sounds).cues;
+  for (Cue& cue : varied) {
+    cue.level -= 20.0;
+  }
+  const auto channels = played(sounds, {2, 3}, false, varied);
+  EXPECT_NEAR(largest(channels[0]), 0.01 * std::numbers::sqrt2, 1e-4);
+  EXPECT_NEAR(largest(channels[3]), 0.05, 1e-4);
+}
+
+/// A trial's names: one of them.
+class TrialNames final : public NumberSource {
+ public:
+  explicit TrialNames(double level) : level_(level) {}
+  std::optional<double> value_of(std::string_view text) const override {
+    return text == "$level" ? std::optional(level_) : std::nullopt;
+  }
+  std::optional<Eigen::Vector3d> vector_of(std::string_view) const override { return {}; }
+
+ private:
+  double level_;
+};
+
+TEST(ActuatorTest, AnAmplitudeByAFormulaIsHeldToFullScaleInEachTrial) {
+  Table root = Table::parse(
+      kActuators + buzz("type = \"tone\"\nfrequency = 250.0\nduration = 0.5\namplitude = "
+                        "\"$level\"\n"),
+      "study.toml");
+  Table table = root.table("sounds");
+  const CueSet set = read_cues(table, read_actuators(root));
+  ASSERT_TRUE(set.cues.at(0).varies);
+  const auto rendered_with = [&](double level) {
+    const TrialNames names(level);
+    Table named = root.with(names).table("sounds");
+    const std::vector<Cue> cues = read_varied_cues(named, set);
+    root.finish();
+    return rendered(cues.at(0), 1);
+  };
+  for (const double level : {0.5, 12.0, 30.0}) {
+    EXPECT_NEAR(30.0 * largest(rendered_with(level)), level, 1e-3 * level);
+  }
+  EXPECT_THAT(test::message_of([&] { rendered_with(31.0); }),
+              HasSubstr("sounds.buzz.amplitude is 31; allowed: at most 30 [m/s²]"));
 }
 
 TEST(ActuatorTest, EachSoundIsOnItsChannelOfTheCard) {

@@ -1,0 +1,94 @@
+// The latency of sounds in loopback recordings with planted onsets.
+
+#include "core/sound/onset_latency.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/random.h"
+#include "core/sound/card_player.h"
+#include "core/sound/cue.h"
+
+namespace haptrial::sound {
+namespace {
+
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr double kRate = CardPlayer::kRate;
+constexpr double kNoise = 0.02;  // of both channels, beside a pulse of 0.5 and a sound of 0.3
+
+Cue cue_of(Cue::Kind kind, double frequency, double duration, double rise) {
+  Cue cue;
+  cue.kind = kind;
+  cue.frequency = frequency;
+  cue.duration = duration;
+  cue.rise = rise;
+  return cue;
+}
+
+struct Loopback {
+  std::vector<float> pulses, sound;
+};
+
+/// Four onsets, one a second, through an input that lets no direct current pass.
+Loopback loopback(const std::vector<float>& cue, double latency, double noise = kNoise) {
+  RandomStream random(3, "loopback");
+  const auto count = static_cast<std::size_t>(4.5 * kRate);
+  Loopback made{std::vector<float>(count), std::vector<float>(count)};
+  float largest = 0.0F;
+  for (const float sample : cue) {
+    largest = std::max(largest, std::abs(sample));
+  }
+  double charge = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double since = std::fmod(static_cast<double>(i) / kRate, 1.0) - 0.25;
+    const double level = since >= 0.0 && since < 0.01 ? 0.5 : 0.0;
+    charge += (level - charge) / (0.02 * kRate);  // 50 Hz
+    made.pulses[i] = static_cast<float>(level - charge + noise * random.normal());
+    const auto at = std::lround((since - latency) * kRate);
+    const bool sounds = at >= 0 && at < static_cast<long>(cue.size());
+    made.sound[i] = static_cast<float>(
+        (sounds ? -0.3 * cue[static_cast<std::size_t>(at)] / largest : 0.0) +  // turned round
+        noise * random.normal());
+  }
+  return made;
+}
+
+TEST(OnsetLatencyTest, PlantedLatenciesAreFoundWithinATenthOfAMillisecond) {
+  const Cue tone = cue_of(Cue::Kind::kTone, 250.0, 0.4, 0.02);
+  const Cue beep = cue_of(Cue::Kind::kTone, 1000.0, 0.05, 0.005);
+  const Cue click = cue_of(Cue::Kind::kClick, 0.0, 0.001, 0.0);
+  for (const Cue& cue : {tone, beep, click}) {
+    const std::vector<float> samples = rendered(cue, 1);
+    for (const double latency : {0.0, 0.005, 0.0373}) {
+      const Loopback made = loopback(samples, latency);
+      const auto found = onset_latencies(made.pulses, made.sound, samples, kRate);
+      ASSERT_THAT(found, SizeIs(4)) << cue.duration;
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_TRUE(found[i].heard) << cue.duration;
+        EXPECT_NEAR(found[i].pulse, 0.25 + static_cast<double>(i), 1e-4) << cue.duration;
+        EXPECT_NEAR(found[i].latency, latency, 1e-4) << cue.duration;
+      }
+    }
+  }
+}
+
+TEST(OnsetLatencyTest, WhatIsNotInTheRecordingIsNotFound) {
+  const Cue beep = cue_of(Cue::Kind::kTone, 1000.0, 0.05, 0.005);
+  const std::vector<float> samples = rendered(beep, 1);
+  Loopback made = loopback(samples, 0.6);  // later than is looked for
+  for (const HeardOnset& onset : onset_latencies(made.pulses, made.sound, samples, kRate)) {
+    EXPECT_FALSE(onset.heard);
+  }
+  EXPECT_THAT(onset_latencies(made.sound, made.sound, samples, kRate), testing::Not(IsEmpty()));
+  const std::vector<float> noise(made.sound.begin(), made.sound.begin() + 10'000);
+  EXPECT_THAT(onset_latencies(noise, noise, samples, kRate), IsEmpty());
+  const std::vector<float> silence(10'000);
+  EXPECT_THAT(onset_latencies(silence, silence, samples, kRate), IsEmpty());
+}
+
+}  // namespace
+}  // namespace haptrial::sound

@@ -1,0 +1,209 @@
+// A certificate through a force sensor's channel beside that of the built-in sensor: the same arm
+// with planted faults, measured by an instrument with a rate, a latency and noise of its own.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "analysis/device/certificate.h"
+#include "core/base/random.h"
+#include "core/device/sensed_mount.h"
+#include "core/device/virtual_device.h"
+#include "experiments/command/sessions/certificate_task.h"
+#include "experiments/command/sessions/sensor_channel.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using analysis::CertificatePart;
+using analysis::CertificateResult;
+using analysis::Interval;
+using Eigen::Vector3d;
+
+constexpr double kTicksPerSecond = 1000.0;
+constexpr double kNoise = 0.02;      // of both sensors [N]
+constexpr double kLatency = 0.6e-3;  // of the instrument's samples [s]
+
+/// Samples on their way to the channel that reads them.
+class Wire {
+ public:
+  struct Sample {
+    double time{0.0};  // when it was measured [s]
+    Vector3d force{Vector3d::Zero()};
+  };
+  void send(std::vector<Sample> samples) {
+    {
+      const std::lock_guard lock(mutex_);
+      samples_.insert(samples_.end(), samples.begin(), samples.end());
+    }
+    came_.notify_all();
+  }
+  std::vector<Sample> take(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    came_.wait_for(lock, patience, [this] { return !samples_.empty(); });
+    return std::exchange(samples_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::vector<Sample> samples_;
+};
+
+class WireSource final : public channel::ChannelSource {
+ public:
+  explicit WireSource(Wire& wire) : wire_(wire) {}
+  void read(channel::ChannelInbox& into, std::chrono::milliseconds patience) override {
+    for (const Wire::Sample& sample : wire_.take(patience)) {
+      channel::Measured measured;
+      measured.values = {sample.force.data(), 3};
+      measured.time = channel::SampleTime{std::llround(1e9 * sample.time), 1e-6};
+      into.take(measured);
+    }
+  }
+
+ private:
+  Wire& wire_;
+};
+
+/// The mount's force as an instrument measures it, of which the certificate knows the channel
+/// alone.
+class InstrumentOnMount final : public device::ForceSensor {
+ public:
+  InstrumentOnMount(device::SensedMount& mount, double rate)
+      : mount_(mount),
+        period_(1.0 / rate),
+        sensor_(options(), "x,y,z", [this] { return now_.load(); }) {}
+
+  bool read(device::MeasuredForce& measured) noexcept override {
+    device::MeasuredForce clean;
+    mount_.read(clean);
+    send_until(static_cast<double>(++tick_) / kTicksPerSecond, clean.force);
+    before_ = clean.force;
+    while (sensor_.read(measured) ? measured.time != arrived_ : arrived_ >= 0.0) {
+      std::this_thread::yield();
+    }
+    return arrived_ >= 0.0;
+  }
+
+ private:
+  channel::ChannelOptions options() {
+    channel::ChannelOptions options;
+    options.name = "force";
+    options.plan.quantities = {{"fx", "N"}, {"fy", "N"}, {"fz", "N"}};
+    options.plan.patience = 1e9;
+    options.plan.open = [this] { return std::make_unique<WireSource>(wire_); };
+    return options;
+  }
+  /// Measures between the tick before and this one, and lets arrive what has had the time to.
+  void send_until(double tick, const Vector3d& force) {
+    for (; next_ <= tick; next_ += period_) {
+      const double share = 1.0 - (tick - next_) * kTicksPerSecond;
+      Vector3d measured = before_ + share * (force - before_);
+      for (double& axis : measured) {
+        axis += kNoise * random_.normal();
+      }
+      waiting_.push_back({next_, measured});
+    }
+    std::vector<Wire::Sample> arrive;
+    while (!waiting_.empty() && waiting_.front().time + kLatency <= tick) {
+      arrive.push_back(waiting_.front());
+      waiting_.erase(waiting_.begin());
+      arrived_ = 1e-9 * static_cast<double>(std::llround(1e9 * arrive.back().time));
+    }
+    now_ = std::llround(1e9 * tick);
+    wire_.send(std::move(arrive));
+  }
+
+  device::SensedMount& mount_;
+  double period_;
+  RandomStream random_{5, "instrument"};
+  Wire wire_;
+  std::vector<Wire::Sample> waiting_;
+  Vector3d before_{Vector3d::Zero()};
+  double next_{0.0};      // when it measures next [s]
+  double arrived_{-1.0};  // when the newest sample that has come was measured [s]
+  long tick_{0};
+  std::atomic<std::int64_t> now_{0};
+  SensorChannel sensor_;
+};
+
+device::VirtualDeviceParameters faulty_arm() {
+  device::VirtualDeviceParameters arm;
+  arm.force_delay = 4;
+  arm.faults.gain = 0.87;
+  arm.faults.dead_zone = 0.15;
+  arm.faults.resonance = 90.0;
+  arm.faults.resonance_damping = 0.12;
+  return arm;
+}
+
+/// @param instrument_rate  of the channel's samples [Hz]; 0: the built-in sensor
+CertificateResult certificate(const std::vector<CertificatePart>& parts, double instrument_rate) {
+  const analysis::Excitation excitation(kTicksPerSecond, 4.8);
+  const bool built_in = instrument_rate == 0.0;
+  device::SensedMount mount({.noise = built_in ? kNoise : 0.0}, 7);
+  device::VirtualDevice device(faulty_arm(), mount, kTicksPerSecond);
+  std::unique_ptr<InstrumentOnMount> instrument;
+  if (!built_in) {
+    instrument = std::make_unique<InstrumentOnMount>(mount, instrument_rate);
+  }
+  device::ForceSensor* sensor =
+      built_in ? static_cast<device::ForceSensor*>(&mount) : instrument.get();
+  CertificateTask task(device, sensor, excitation, parts, [&](CertificatePart part, long tick) {
+    mount.hold(excitation.position(part, tick + 1, 0.04));
+  });
+  realtime::ServoLoop loop(realtime::ClockKind::kSimulated, kTicksPerSecond);
+  loop.run(task);
+  EXPECT_EQ(task.fault(), device::Fault::kNone);
+  return identify_device(task.record(), excitation);
+}
+
+void expect_equal(const Interval& one, const Interval& other, const std::string& what) {
+  const double both = std::hypot(one.high - one.low, other.high - other.low) / 2.0;
+  EXPECT_GT(both, 0.0) << what;
+  EXPECT_LE(std::abs(one.value - other.value), 1.5 * both)
+      << what << ": " << one.value << " and " << other.value;
+}
+
+TEST(SensorCertificateTest, AChannelsCertificateEqualsThatOfTheBuiltInSensor) {
+  const std::vector<CertificatePart> parts{CertificatePart::kRest, CertificatePart::kGrid,
+                                           CertificatePart::kFrequency};
+  const CertificateResult built_in = certificate(parts, 0.0);
+  const CertificateResult channel = certificate(parts, 7003.0);
+  ASSERT_TRUE(built_in.statics && channel.statics);
+  expect_equal(channel.statics->gain, built_in.statics->gain, "gain");
+  expect_equal(channel.statics->dead_zone, built_in.statics->dead_zone, "dead zone");
+  ASSERT_EQ(channel.statics->levels.size(), built_in.statics->levels.size());
+  for (std::size_t i = 0; i < channel.statics->levels.size(); ++i) {
+    expect_equal(channel.statics->levels[i].error, built_in.statics->levels[i].error,
+                 "error of the force at " + std::to_string(channel.statics->levels[i].level));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const analysis::AxisResponse& one = channel.response.at(axis);
+    const analysis::AxisResponse& other = built_in.response.at(axis);
+    expect_equal(one.gain, other.gain, "gain of the response");
+    expect_equal(one.delay, other.delay, "delay");
+    ASSERT_TRUE(one.resonance && other.resonance);
+    expect_equal(*one.resonance, *other.resonance, "resonance");
+    expect_equal(*one.damping, *other.damping, "damping");
+  }
+  ASSERT_TRUE(channel.rest.sensor && built_in.rest.sensor);
+  expect_equal(*channel.rest.sensor, *built_in.rest.sensor, "noise");
+}
+
+TEST(SensorCertificateTest, TheNoiseOfASlowSensorIsThatOfItsMeasurements) {
+  const CertificateResult found = certificate({CertificatePart::kRest}, 307.0);
+  ASSERT_TRUE(found.rest.sensor);
+  EXPECT_LE(found.rest.sensor->low, kNoise);
+  EXPECT_GE(found.rest.sensor->high, kNoise);
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
