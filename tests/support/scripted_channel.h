@@ -38,10 +38,16 @@ class ScriptedInstrument {
       throw RunError(refusal_);
     }
   }
+  /// Whether everything was given on.
+  bool is_idle() {
+    const std::lock_guard lock(mutex_);
+    return steps_.empty() && waits_;
+  }
   void read(channel::ChannelInbox& into, std::chrono::milliseconds patience) {
     Step step;
     {
       std::unique_lock lock(mutex_);
+      waits_ = steps_.empty();
       if (!changed_.wait_for(lock, patience, [this] { return !steps_.empty(); })) {
         return;
       }
@@ -59,6 +65,7 @@ class ScriptedInstrument {
   std::condition_variable changed_;
   std::deque<Step> steps_;
   std::string refusal_;
+  bool waits_{false};  // the last reading began without a step
 };
 
 /// A kind of channel of the tests' own: kind = "scripted", with quantities and a rate.

@@ -106,6 +106,26 @@ TEST(ChannelTest, SamplesComeWithTheirNumbersAndTheNewestReachesATick) {
   EXPECT_EQ(set.alarm(), Alarm::kNone);
 }
 
+TEST(ChannelTest, SamplesFromBeforeTheFirstTickAreLeftOut) {
+  const auto instrument = play();
+  ChannelSet set(read(kGrip), {}, true);
+  std::atomic<std::int64_t> now{0};
+  EXPECT_THAT(set.start([&] { return now.load(); }, {}), IsEmpty());
+  instrument->give({{1.0, 1.0}});
+  wait_until([&] { return instrument->is_idle(); });
+  now = 1'000'000;
+  set.begin();
+  instrument->give({{2.0, 1.0}});
+  Kept kept;
+  wait_until([&] {
+    kept.take_from(set);
+    return !kept.rows.empty();
+  });
+  EXPECT_EQ(kept.rows[0].values[0], 2.0);
+  EXPECT_EQ(kept.rows[0].sample, 0u);
+  EXPECT_EQ(kept.rows[0].received_ns, 1'000'000);
+}
+
 TEST(ChannelTest, ALostInstrumentIsOpenedAnewAndAnAlarmWhereItIsNeeded) {
   const auto instrument = play();
   ChannelSet set(read(kGrip + "required = true\n"), {}, true);
