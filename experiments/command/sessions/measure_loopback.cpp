@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/sound/card_player.h"
+#include "core/sound/cue.h"
 #include "core/sound/onset_latency.h"
 #include "core/sound/wav.h"
 #include "experiments/studies/experiment.h"
