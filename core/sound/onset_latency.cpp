@@ -52,44 +52,73 @@ std::vector<long> begins_of(std::span<const float> channel, double rate) {
   return begins;
 }
 
-/// How well the sound fits behind the silence before `at`.
-double fit_at(std::span<const float> recorded, std::span<const float> sound, long at,
-              long silence) {
-  double product = 0.0;
-  double own = 0.0;
-  double all = 0.0;
-  for (long i = std::max(-silence, -at); i < static_cast<long>(sound.size()); ++i) {
-    const double x = recorded[static_cast<std::size_t>(at + i)];
-    const double t = i < 0 ? 0.0 : sound[static_cast<std::size_t>(i)];
-    product += t * x;
-    own += t * t;
-    all += x * x;
+/// Sums of the squares of the samples before each.
+std::vector<double> energies_of(std::span<const float> samples) {
+  std::vector<double> sums{0.0};
+  for (const float sample : samples) {
+    sums.push_back(sums.back() + static_cast<double>(sample) * sample);
   }
-  return own > 0.0 && all > 0.0 ? product * product / (own * all) : 0.0;
+  return sums;
 }
+
+double product_of(std::span<const float> one, std::span<const float> other) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    sum += static_cast<double>(one[i]) * other[i];
+  }
+  return sum;
+}
+
+/// A recorded channel and the sound that is looked for in it.
+class Search {
+ public:
+  Search(std::span<const float> recorded, std::span<const float> sound, double rate)
+      : recorded_(recorded),
+        sound_(sound.first(std::min(sound.size(), static_cast<std::size_t>(kCompared * rate)))),
+        rate_(rate),
+        energies_(energies_of(recorded)),
+        own_(energies_of(sound_).back()) {}
+
+  HeardOnset after(long pulse) const {
+    HeardOnset onset{static_cast<double>(pulse) / rate_};
+    const long first = std::max(0L, pulse - samples(kBefore));
+    const long last = static_cast<long>(recorded_.size()) - static_cast<long>(sound_.size());
+    double best = kLeastFit;
+    for (long at = first; at <= std::min(last, pulse + samples(kAfter)); ++at) {
+      if (const double fit = fit_at(at); fit > best) {
+        best = fit;
+        onset.latency = static_cast<double>(at - pulse) / rate_;
+        onset.heard = true;
+      }
+    }
+    return onset;
+  }
+
+ private:
+  long samples(double seconds) const { return std::lround(seconds * rate_); }
+  double fit_at(long at) const {
+    const auto from = static_cast<std::size_t>(at);
+    const auto silence = static_cast<std::size_t>(std::max(0L, at - samples(kSilence)));
+    const double product = product_of(sound_, recorded_.subspan(from, sound_.size()));
+    const double all = own_ * (energies_[from + sound_.size()] - energies_[silence]);
+    return all > 0.0 ? product * product / all : 0.0;
+  }
+
+  std::span<const float> recorded_, sound_;
+  double rate_;
+  std::vector<double> energies_;
+  double own_;  // energy of the sound
+};
 
 }  // namespace
 
 std::vector<HeardOnset> onset_latencies(std::span<const float> pulses,
                                         std::span<const float> recorded,
                                         std::span<const float> sound, double rate) {
-  const auto samples = [rate](double seconds) { return std::lround(seconds * rate); };
-  sound = sound.first(std::min(sound.size(), static_cast<std::size_t>(samples(kCompared))));
-  const long last = static_cast<long>(recorded.size()) - static_cast<long>(sound.size());
+  const Search search(recorded, sound, rate);
   std::vector<HeardOnset> onsets;
   for (const long pulse : begins_of(pulses, rate)) {
-    HeardOnset onset{static_cast<double>(pulse) / rate};
-    double best = kLeastFit;
-    for (long at = std::max(0L, pulse - samples(kBefore));
-         at <= std::min(last, pulse + samples(kAfter)); ++at) {
-      const double fit = fit_at(recorded, sound, at, samples(kSilence));
-      if (fit > best) {
-        best = fit;
-        onset.latency = static_cast<double>(at - pulse) / rate;
-        onset.heard = true;
-      }
-    }
-    onsets.push_back(onset);
+    onsets.push_back(search.after(pulse));
   }
   return onsets;
 }

@@ -3,13 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "analysis/device/certificate.h"
 #include "core/base/random.h"
@@ -28,7 +33,7 @@ using Eigen::Vector3d;
 
 constexpr double kTicksPerSecond = 1000.0;
 constexpr double kNoise = 0.02;      // of both sensors [N]
-constexpr double kLatency = 0.6e-3;  // of the instrument's samples [s]
+constexpr double kLatency = 1.6e-3;  // of the instrument's samples [s]
 
 /// Samples on their way to the channel that reads them.
 class Wire {
@@ -84,8 +89,10 @@ class InstrumentOnMount final : public device::ForceSensor {
   bool read(device::MeasuredForce& measured) noexcept override {
     device::MeasuredForce clean;
     mount_.read(clean);
-    send_until(static_cast<double>(++tick_) / kTicksPerSecond, clean.force);
-    before_ = clean.force;
+    std::rotate(forces_.begin(), forces_.begin() + 1, forces_.end());
+    forces_.back() = clean.force;
+    measure();
+    arrive();
     while (sensor_.read(measured) ? measured.time != arrived_ : arrived_ >= 0.0) {
       std::this_thread::yield();
     }
@@ -101,24 +108,34 @@ class InstrumentOnMount final : public device::ForceSensor {
     options.plan.open = [this] { return std::make_unique<WireSource>(wire_); };
     return options;
   }
-  /// Measures between the tick before and this one, and lets arrive what has had the time to.
-  void send_until(double tick, const Vector3d& force) {
-    for (; next_ <= tick; next_ += period_) {
-      const double share = 1.0 - (tick - next_) * kTicksPerSecond;
-      Vector3d measured = before_ + share * (force - before_);
-      for (double& axis : measured) {
+  double tick_time(long ticks_ago) const {
+    return static_cast<double>(tick_ - ticks_ago) / kTicksPerSecond;
+  }
+  /// Measures between the last tick but one and the last one: the cubic through four ticks.
+  void measure() {
+    ++tick_;
+    for (; next_ <= tick_time(1); next_ += period_) {
+      const double u = (next_ - tick_time(2)) * kTicksPerSecond;
+      Vector3d force = -u * (u - 1.0) * (u - 2.0) / 6.0 * forces_[0] +
+                       (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0 * forces_[1] -
+                       (u + 1.0) * u * (u - 2.0) / 2.0 * forces_[2] +
+                       (u + 1.0) * u * (u - 1.0) / 6.0 * forces_[3];
+      for (double& axis : force) {
         axis += kNoise * random_.normal();
       }
-      waiting_.push_back({next_, measured});
+      waiting_.push_back({next_, force});
     }
-    std::vector<Wire::Sample> arrive;
-    while (!waiting_.empty() && waiting_.front().time + kLatency <= tick) {
-      arrive.push_back(waiting_.front());
+  }
+  /// Lets arrive what has had the time to.
+  void arrive() {
+    std::vector<Wire::Sample> samples;
+    while (!waiting_.empty() && waiting_.front().time + kLatency <= tick_time(0)) {
+      samples.push_back(waiting_.front());
       waiting_.erase(waiting_.begin());
-      arrived_ = 1e-9 * static_cast<double>(std::llround(1e9 * arrive.back().time));
+      arrived_ = 1e-9 * static_cast<double>(std::llround(1e9 * samples.back().time));
     }
-    now_ = std::llround(1e9 * tick);
-    wire_.send(std::move(arrive));
+    now_ = std::llround(1e9 * tick_time(0));
+    wire_.send(std::move(samples));
   }
 
   device::SensedMount& mount_;
@@ -126,8 +143,9 @@ class InstrumentOnMount final : public device::ForceSensor {
   RandomStream random_{5, "instrument"};
   Wire wire_;
   std::vector<Wire::Sample> waiting_;
-  Vector3d before_{Vector3d::Zero()};
-  double next_{0.0};      // when it measures next [s]
+  std::array<Vector3d, 4> forces_{Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
+                                  Vector3d::Zero()};  // of the last ticks, without noise
+  double next_{0.0};                                  // when it measures next [s]
   double arrived_{-1.0};  // when the newest sample that has come was measured [s]
   long tick_{0};
   std::atomic<std::int64_t> now_{0};
@@ -153,6 +171,9 @@ CertificateResult certificate(const std::vector<CertificatePart>& parts, double 
   std::unique_ptr<InstrumentOnMount> instrument;
   if (!built_in) {
     instrument = std::make_unique<InstrumentOnMount>(mount, instrument_rate);
+    device::MeasuredForce first;
+    while (!instrument->read(first)) {
+    }
   }
   device::ForceSensor* sensor =
       built_in ? static_cast<device::ForceSensor*>(&mount) : instrument.get();
