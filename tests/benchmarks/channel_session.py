@@ -320,7 +320,8 @@ def main():
                                           ("without", 8, "", "")):
             with open(os.path.join(folder, name + ".toml"), "w", encoding="utf-8") as file:
                 file.write(STUDY.replace("TRIALS", str(trials)).replace("SOUND", stage) + more)
-        killed_sessions(options, folder, os.path.join(folder, "with.toml"))
+        if options.kills > 0:
+            killed_sessions(options, folder, os.path.join(folder, "with.toml"))
         for turn in range(2 * options.pairs):
             name = "short" if turn % 2 else "without"
             out = os.path.join(folder, f"lateness-{turn}")

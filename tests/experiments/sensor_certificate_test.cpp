@@ -163,7 +163,8 @@ device::VirtualDeviceParameters faulty_arm() {
 }
 
 /// @param instrument_rate  of the channel's samples [Hz]; 0: the built-in sensor
-CertificateResult certificate(const std::vector<CertificatePart>& parts, double instrument_rate) {
+CertificateResult certificate_by(const std::vector<CertificatePart>& parts,
+                                 double instrument_rate) {
   const analysis::Excitation excitation(kTicksPerSecond, 4.8);
   const bool built_in = instrument_rate == 0.0;
   device::SensedMount mount({.noise = built_in ? kNoise : 0.0}, 7);
@@ -196,8 +197,8 @@ void expect_equal(const Interval& one, const Interval& other, const std::string&
 TEST(SensorCertificateTest, AChannelsCertificateEqualsThatOfTheBuiltInSensor) {
   const std::vector<CertificatePart> parts{CertificatePart::kRest, CertificatePart::kGrid,
                                            CertificatePart::kFrequency};
-  const CertificateResult built_in = certificate(parts, 0.0);
-  const CertificateResult channel = certificate(parts, 7003.0);
+  const CertificateResult built_in = certificate_by(parts, 0.0);
+  const CertificateResult channel = certificate_by(parts, 7003.0);
   ASSERT_TRUE(built_in.statics && channel.statics);
   expect_equal(channel.statics->gain, built_in.statics->gain, "gain");
   expect_equal(channel.statics->dead_zone, built_in.statics->dead_zone, "dead zone");
@@ -220,7 +221,7 @@ TEST(SensorCertificateTest, AChannelsCertificateEqualsThatOfTheBuiltInSensor) {
 }
 
 TEST(SensorCertificateTest, TheNoiseOfASlowSensorIsThatOfItsMeasurements) {
-  const CertificateResult found = certificate({CertificatePart::kRest}, 307.0);
+  const CertificateResult found = certificate_by({CertificatePart::kRest}, 307.0);
   ASSERT_TRUE(found.rest.sensor);
   EXPECT_LE(found.rest.sensor->low, kNoise);
   EXPECT_GE(found.rest.sensor->high, kNoise);
