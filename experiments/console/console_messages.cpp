@@ -82,7 +82,11 @@ json figures_json(const std::optional<record::LiveState>& state) {
 json channels_json(const std::vector<ChannelStatus>& channels) {
   json all = json::array();
   for (const ChannelStatus& channel : channels) {
-    all.push_back({{"name", channel.name}, {"values", channel.values}});
+    json values = json::array();
+    for (const ChannelStatus::Value& value : channel.values) {
+      values.push_back({{"name", value.name}, {"value", value.value}, {"unit", value.unit}});
+    }
+    all.push_back({{"name", channel.name}, {"live", channel.live}, {"values", values}});
   }
   return all;
 }

@@ -35,8 +35,14 @@ enum class Request : std::uint8_t {
 
 /// The newest values of a channel, for the console.
 struct ChannelStatus {
+  struct Value {
+    std::string name;
+    double value{0.0};  // not finite while the instrument gives none [unit]
+    std::string unit;
+  };
   std::string name;
-  std::string values;  // "fx 1.20 N, fy 0.03 N"; empty while it is lost
+  bool live{false};           // else it is lost
+  std::vector<Value> values;  // none of a stream of texts
 };
 
 /// Status of a session, sent about 20 times a second.

@@ -255,11 +255,10 @@ std::vector<std::string> Session::open_channels() {
 std::vector<ChannelStatus> Session::channel_status() const {
   std::vector<ChannelStatus> all;
   for (const auto& [options, state] : channels_.seen()) {
-    ChannelStatus status{options->name, ""};
+    ChannelStatus status{options->name, state.live, {}};
     const auto& quantities = options->plan.quantities;
     for (std::size_t i = 0; state.live && i < quantities.size(); ++i) {
-      status.values += fmt::format("{}{} {:.4g} {}", i > 0 ? ", " : "", quantities[i].name,
-                                   state.values[i], quantities[i].unit);
+      status.values.push_back({quantities[i].name, state.values[i], quantities[i].unit});
     }
     all.push_back(std::move(status));
   }

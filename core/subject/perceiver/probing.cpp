@@ -17,6 +17,7 @@ constexpr double kVelocityGain = 20.0;      // kd [N·s/m]
 constexpr double kIntegralGain = 2500.0;    // while a place is kept [N/(m·s)]
 constexpr double kMostFeedback = 6.0;       // [N]
 constexpr double kHoldBack = 300.0;         // of a press beyond its travel [N/m]
+constexpr double kMostTravel = 0.05;        // of a press while the hand strokes or palpates [m]
 constexpr double kPressOfStrokeRise = 0.3;  // [s]
 
 /// s of the minimum-jerk move at u = 0 to 1, and its derivatives by u.
@@ -87,6 +88,13 @@ struct Checker {
 
 constexpr double kLetGo = 0.1;  // after a reaction time people no longer resist what has gone [s]
 
+/// The push of an arm along `direction` (unit) that holds back beyond `travel` from where it began,
+/// so that a push into nothing ends. [N]
+Eigen::Vector3d press_to(double force, double travel, const Eigen::Vector3d& direction,
+                         const Eigen::Vector3d& way) noexcept {
+  return (force - kHoldBack * std::max(0.0, way.dot(direction) - travel)) * direction;
+}
+
 }  // namespace
 
 void check(const Probe& probe) { std::visit(Checker{}, probe); }
@@ -117,18 +125,19 @@ ExplorationController::Aim ExplorationController::aim(const Hold&, const Now&) n
 ExplorationController::Aim ExplorationController::aim(const Press& press, const Now& now) noexcept {
   Aim aim;
   aim.free = press.direction.normalized();
-  const double beyond = (now.hand.position - start_).dot(aim.free) - press.travel;
-  const double force = press.force * smooth_step(time_ / press.rise).s;
-  aim.push = (force - kHoldBack * std::max(0.0, beyond)) * aim.free;
+  aim.push = press_to(press.force * smooth_step(time_ / press.rise).s, press.travel, aim.free,
+                      now.hand.position - start_);
   return aim;
 }
 
-ExplorationController::Aim ExplorationController::aim(const Stroke& stroke, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Stroke& stroke,
+                                                      const Now& now) noexcept {
   Aim aim;
   Eigen::Vector3d u = stroke.direction.normalized();
   if (stroke.force > 0.0) {
     aim.free = stroke.normal.normalized();
-    aim.push = stroke.force * smooth_step(time_ / kPressOfStrokeRise).s * aim.free;
+    aim.push = press_to(stroke.force * smooth_step(time_ / kPressOfStrokeRise).s, kMostTravel,
+                        aim.free, now.hand.position - start_);
     u = (u - u.dot(aim.free) * aim.free).normalized();
   }
   // The product of the growth r and the sine, by its rule.
@@ -168,7 +177,8 @@ ExplorationController::Aim ExplorationController::aim(const Contour&, const Now&
 }
 
 /// Aim from place to place as in a reach; at a place it keeps to the line along which it presses.
-ExplorationController::Aim ExplorationController::aim(const Palpate& palpate, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Palpate& palpate,
+                                                      const Now& now) noexcept {
   Aim aim;
   const PalpationStep step = palpation_at(palpate, time_);
   const Eigen::Vector3d& from = step.place == 0 ? start_ : palpate.places[step.place - 1];
@@ -179,7 +189,8 @@ ExplorationController::Aim ExplorationController::aim(const Palpate& palpate, co
   aim.acceleration = s.second / (palpate.move * palpate.move) * way;
   if (step.pressing) {
     aim.free = palpate.direction.normalized();
-    aim.push = palpate.force * smooth_step(step.pressed).s * aim.free;
+    aim.push = press_to(palpate.force * smooth_step(step.pressed).s, kMostTravel, aim.free,
+                        now.hand.position - palpate.places[step.place]);
   }
   return aim;
 }

@@ -159,7 +159,7 @@ StageAction read_action(Table& table, const std::string& stage, const char* what
 void read_actions_of_stage(Table& table, const std::string& stage,
                            const std::vector<TrialDevice>& devices,
                            std::vector<StageAction>& actions) {
-  if (devices.empty() || table.has("do")) {
+  if (devices.empty() || table.has("do") || table.keys().empty()) {
     StageAction action = read_action(table, stage, "Action of the hand in the stage NAME",
                                      "needed, or a table for each device");
     for (std::size_t device = 0; device < std::max<std::size_t>(1, devices.size()); ++device) {

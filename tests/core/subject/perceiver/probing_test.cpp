@@ -114,6 +114,27 @@ TEST(ProberTest, AStrokePressesAndLosesWhatFrictionTakesFromTheFeedback) {
   }
 }
 
+TEST(ProberTest, AStrokeAndAPalpationThatPressIntoNothingEndAsAPressDoes) {
+  const Vector3d down(0.0, -1.0, 0.0);
+  Palpate palpation;
+  palpation.places[0] = Vector3d(0.0, -0.01, 0.0);
+  palpation.count = 1;
+  palpation.force = 2.0;
+  palpation.press = 10.0;
+  for (const Probe& probe :
+       {Probe{Press{down, 2.0, 0.3, 0.05}}, Probe{Stroke{{1.0, 0.0, 0.0}, 0.02, 0.5, down, 2.0}},
+        Probe{palpation}}) {
+    HandRig rig;
+    double deepest = 0.0;
+    rig.run(probe, 8.0, [&](double, const auto&, const PointState&) {
+      deepest = std::max(deepest, -rig.hand.state().position.y());
+    });
+    // 2 N against 300 N/m beyond 50 mm, which a palpation counts from its place.
+    EXPECT_GT(deepest, 0.05) << probe.index();
+    EXPECT_LT(deepest, 0.07) << probe.index();
+  }
+}
+
 TEST(ProberTest, AReachIsStraightBellShapedAndThere) {
   for (const double duration : {0.35, 0.5, 0.8}) {
     const Vector3d to(0.04, 0.0, -0.05);
