@@ -8,8 +8,9 @@
 #include <set>
 
 #include "core/base/definition/table.h"
+#include "protocols/definition/definition.h"
 #include "protocols/definition/speech_options.h"
-#include "protocols/psychophysics/definition/trials_definition.h"
+#include "protocols/psychophysics/definition/question.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -58,7 +59,8 @@ void add_choices(const TrialQuestion& question, std::vector<std::string>& senten
 
 }  // namespace
 
-std::vector<std::string> only_seen(const TrialsDefinition& definition) {
+std::vector<std::string> only_seen(const Definition& definition,
+                                   const std::vector<TrialQuestion>& questions) {
   std::vector<std::string> sentences;
   if (!speech_of(definition).spoken) {
     return sentences;
@@ -73,7 +75,7 @@ std::vector<std::string> only_seen(const TrialsDefinition& definition) {
           stage.text("name"), fmt::join(seen, ", ")));
     }
   }
-  for (const TrialQuestion& question : definition.questions) {
+  for (const TrialQuestion& question : questions) {
     add_choices(question, sentences);
   }
   return sentences;

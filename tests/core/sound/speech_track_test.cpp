@@ -63,7 +63,7 @@ Cue pulse() {
   return cue;
 }
 
-constexpr float kSpeech = 0.5F;
+constexpr float kSpeech = 0.55F;
 
 // A sound cuts speech, and speech waits for a sound: no sample is the sum of both.
 TEST(SpokenCuesTest, SpeechAndSoundsAreNeverHeardTogether) {
