@@ -89,8 +89,8 @@ SpeechLibrary::SpeechLibrary(const std::string& voice) : library_("libespeak-ng.
   if (set_voice_(voice.c_str()) != 0) {
     terminate_();
     throw InputError(fmt::format(
-        "display.voice is \"{}\", which espeak-ng does not have; `espeak-ng --voices` lists those "
-        "that it has",
+        "espeak-ng has no voice \"{}\", by which display.spoken would speak (display.voice, or the "
+        "language of the texts); `espeak-ng --voices` lists those that it has",
         voice));
   }
 }
