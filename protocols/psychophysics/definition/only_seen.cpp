@@ -48,7 +48,7 @@ std::vector<std::string> only_seen_in(Table& root, Table& stage) {
 
 void add_choices(const TrialQuestion& question, std::vector<std::string>& sentences) {
   for (std::size_t i = 0; i < question.means.size(); ++i) {
-    if (question.means[i].keys == 0) {
+    if (question.means[i].keys == 0 && !question.means[i].silent) {
       sentences.push_back(fmt::format(
           "the choice \"{}\" of \"{}\" has no key, and speech names keys alone; give it `keys`, or "
           "say in its label how it is given",
