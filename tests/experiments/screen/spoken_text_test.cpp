@@ -204,6 +204,21 @@ TEST(SpokenTextTest, StagesThatOnlyEyesCanDoAreNamed) {
   EXPECT_THAT(warnings_of_spoken("first_experiment"), Not(Contains(HasSubstr("shows"))));
 }
 
+TEST(SpokenTextTest, NoiseThatMasksThroughoutIsRefused) {
+  const std::string text =
+      test::read_text(test::shipped_definition().parent_path() / "first_experiment.toml") +
+      "[display]\nspoken = true\n[sounds.masking]\nlevel = -30.0\n";
+  EXPECT_TRUE(
+      protocols::speech_of(*parse_experiment(text + "stages = [\"feel\"]\n", "a.toml").definition)
+          .spoken);
+  try {
+    parse_experiment(text, "a.toml");
+    FAIL() << "nothing would be heard";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("add stages to [sounds.masking]"));
+  }
+}
+
 // The real library, which gives samples in both languages.
 TEST(SpeechLibraryTest, SpeaksEnglishAndGerman) {
   std::vector<std::vector<float>> spoken;
