@@ -13,7 +13,6 @@ namespace haptrial::questions {
 namespace {
 
 constexpr double kMostSteps = 200.0;
-constexpr int kNumberedSteps = 10;  // at most; more numbers would run into each other
 
 const Schema<Question>& ends_schema() {
   static const auto schema =
@@ -167,10 +166,9 @@ AnswerView ScaleKind::view(const Question& question, const AnswerDraft& draft) c
   if (question.low_end.empty()) {
     view.scale->low_end = fmt::format("{:g}", question.low);
     view.scale->high_end = fmt::format("{:g}", question.high);
-  } else if (steps <= kNumberedSteps) {
-    for (int step = 0; step <= steps; ++step) {
-      view.scale->numbers.push_back(fmt::format("{:g}", value_of_step(question, step)));
-    }
+  }
+  for (int step = 0; step <= steps; ++step) {
+    view.scale->numbers.push_back(fmt::format("{:g}", value_of_step(question, step)));
   }
   return view;
 }

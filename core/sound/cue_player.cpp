@@ -9,9 +9,16 @@
 
 #include "core/sound/card_player.h"
 #include "core/sound/mixer.h"
+#include "core/sound/speech_track.h"
 
 namespace haptrial::sound {
 namespace {
+
+/// A text that waits until nothing else is heard.
+struct WaitingText {
+  std::vector<float> clip;
+  std::uint64_t ticket{0};
+};
 
 /// The sounds of the loudspeakers, or of one actuator, on a channel of their own.
 struct Output {
@@ -85,9 +92,13 @@ struct CuePlayer::Impl {
             channels) {}
 
   void fill(std::span<float> part);
+  void fill_output(Output& output, std::span<float> samples);
+  void take_requests();
+  void take_speech();
   void begin(std::size_t cue);
   void begin_all(std::vector<std::pair<std::size_t, std::uint64_t>>& cues);
   void take(const VariedClips& varied);
+  bool is_asked() const { return !asked_before.empty() || !asked.empty(); }
   bool is_felt(std::size_t cue) const;
   void spread(std::span<float> part);
   void hand_over();
@@ -97,8 +108,10 @@ struct CuePlayer::Impl {
   std::function<std::int64_t()> now;
   std::vector<Output> outputs;
   unsigned channels;
-  std::vector<float> own;            // of one output
-  std::vector<std::uint64_t> begun;  // with the samples that the card has not taken yet
+  std::vector<float> own;                   // of one output
+  std::vector<std::uint64_t> begun;         // with the samples that the card has not taken yet
+  std::optional<std::uint64_t> begun_text;  // likewise
+  SpeechTrack speech{CardPlayer::kRate};
 
   mutable std::mutex mutex;                                                // all that follow
   std::vector<std::pair<std::size_t, std::uint64_t>> asked, asked_before;  // varied were taken
@@ -106,6 +119,10 @@ struct CuePlayer::Impl {
   bool masked{false};
   bool stilled{false};  // before what is asked for
   std::vector<StartedCue> started;
+  std::optional<WaitingText> waiting;
+  bool hushed{false};
+  bool speaking{false};  // as of the last part
+  std::vector<StartedCue> said;
 
   CardPlayer player;  // last: its thread uses the others
 };
@@ -143,24 +160,56 @@ void CuePlayer::Impl::take(const VariedClips& taken) {
   }
 }
 
+/// Speech is cut before a sound begins: what was asked for waits for the next part.
+void CuePlayer::Impl::take_requests() {
+  if (std::exchange(stilled, false)) {
+    for (Output& output : std::span(outputs).subspan(1)) {
+      output.mixer->still();
+    }
+  }
+  if (speech.sounds() && (is_asked() || masked)) {
+    speech.stop();
+    return;
+  }
+  begin_all(asked_before);
+  if (varied) {
+    take(*varied);
+    varied.reset();
+  }
+  begin_all(asked);
+  outputs.front().mixer->mask(masked);
+}
+
+void CuePlayer::Impl::take_speech() {
+  if (std::exchange(hushed, false)) {
+    speech.stop();
+  }
+  const bool heard = masked || std::ranges::any_of(outputs, [](const Output& output) {
+                       return output.mixer->sounds();
+                     });
+  if (waiting && !heard && !is_asked() && !speech.sounds()) {
+    speech.start(std::move(waiting->clip));
+    begun_text = waiting->ticket;
+    waiting.reset();
+  }
+  speaking = speech.sounds();
+}
+
+void CuePlayer::Impl::fill_output(Output& output, std::span<float> samples) {
+  output.mixer->fill(samples);
+  if (&output == &outputs.front()) {
+    speech.add(samples);
+  }
+}
+
 void CuePlayer::Impl::fill(std::span<float> part) {
   {
     const std::lock_guard lock(mutex);
-    if (std::exchange(stilled, false)) {
-      for (Output& output : std::span(outputs).subspan(1)) {
-        output.mixer->still();
-      }
-    }
-    begin_all(asked_before);
-    if (varied) {
-      take(*varied);
-      varied.reset();
-    }
-    begin_all(asked);
-    outputs.front().mixer->mask(masked);
+    take_requests();
+    take_speech();
   }
   if (channels == 1) {
-    outputs.front().mixer->fill(part);
+    fill_output(outputs.front(), part);
   } else {
     spread(part);
   }
@@ -172,7 +221,7 @@ void CuePlayer::Impl::spread(std::span<float> part) {
   std::ranges::fill(part, 0.0F);
   own.resize(part.size() / channels);
   for (Output& output : outputs) {
-    output.mixer->fill(own);
+    fill_output(output, own);
     const bool speakers = &output == &outputs.front();
     for (std::size_t channel = 0; channel < channels; ++channel) {
       if (speakers ? channel < kLoudspeakers : channel == output.channel) {
@@ -185,7 +234,7 @@ void CuePlayer::Impl::spread(std::span<float> part) {
 }
 
 void CuePlayer::Impl::hand_over() {
-  if (begun.empty()) {
+  if (begun.empty() && !begun_text) {
     return;
   }
   const std::int64_t time = now();
@@ -194,6 +243,10 @@ void CuePlayer::Impl::hand_over() {
     started.push_back({ticket, time});
   }
   begun.clear();
+  if (begun_text) {
+    said.push_back({*begun_text, time});
+    begun_text.reset();
+  }
 }
 
 CuePlayer::CuePlayer(const CueSet& set, std::uint64_t seed, std::function<std::int64_t()> now)
@@ -242,6 +295,33 @@ void CuePlayer::mask(bool on) {
 std::vector<StartedCue> CuePlayer::take_started() {
   const std::lock_guard lock(impl_->mutex);
   return std::exchange(impl_->started, {});
+}
+
+void CuePlayer::say(std::vector<float> clip, std::uint64_t ticket) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->hushed = true;
+  impl_->waiting = WaitingText{std::move(clip), ticket};
+}
+
+void CuePlayer::forget() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->waiting.reset();
+}
+
+void CuePlayer::hush() {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->waiting.reset();
+  impl_->hushed = true;
+}
+
+bool CuePlayer::speaks() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->waiting || impl_->speaking;
+}
+
+std::vector<StartedCue> CuePlayer::take_said() {
+  const std::lock_guard lock(impl_->mutex);
+  return std::exchange(impl_->said, {});
 }
 
 std::string CuePlayer::trouble() const {

@@ -12,14 +12,16 @@
 
 namespace haptrial::sound {
 
-/// A sound whose first samples the card has taken.
+/// A sound, or a text that is said, whose first samples the card has taken.
 struct StartedCue {
   std::uint64_t ticket{0};    // that it was started with
   std::int64_t handed_ns{0};  // when, on the clock that the player was given
 };
 
 /// Plays the sounds of a session on the sound card. Any thread but the servo thread may call; what
-/// is started begins with the next 5 ms that the card is given.
+/// is started begins with the next 5 ms that the card is given; a sound that meets speech begins 5
+/// ms later, when the speech has been cut. Speech is never heard together with a sound: a text
+/// waits until the loudspeakers and actuators are quiet, and the masking noise has faded.
 class CuePlayer {
  public:
   /// @param seed  of the session  @param now  a clock [ns], asked on the player's thread
@@ -37,6 +39,17 @@ class CuePlayer {
   void still();
   void mask(bool on);
   std::vector<StartedCue> take_started();
+
+  /// Says a text in place of the one before. @param clip  of the text, at CardPlayer::kRate
+  void say(std::vector<float> clip, std::uint64_t ticket);
+  /// A text that waits is not said any more.
+  void forget();
+  /// The same, and one that is being said is cut.
+  void hush();
+  /// Whether a text is being said, or waits.
+  bool speaks() const;
+  /// Texts that have begun.
+  std::vector<StartedCue> take_said();
 
   /// Whether the limiter acted, the card ran out of samples or was lost, in a sentence; else empty.
   std::string trouble() const;

@@ -55,6 +55,12 @@ void Mixer::start(std::size_t clip) noexcept {
   *voice = {clips_[clip], 0};
 }
 
+bool Mixer::sounds() const noexcept {
+  const bool clip =
+      std::ranges::any_of(voices_, [](const Voice& voice) { return voice.clip != nullptr; });
+  return clip || (!masking_.empty() && (masked_ || gain_ > 0.0));
+}
+
 double Mixer::next() noexcept {
   double sum = 0.0;
   for (Voice& voice : voices_) {

@@ -47,6 +47,8 @@ class Mixer {
   void still() noexcept;
   void mask(bool on) noexcept { masked_ = on; }
   void fill(std::span<float> samples) noexcept;
+  /// Whether a clip or the masking noise is heard.
+  bool sounds() const noexcept;
 
   /// Samples at which the limiter held the sum down. Any thread.
   std::uint64_t limited() const noexcept { return limited_.load(std::memory_order_relaxed); }

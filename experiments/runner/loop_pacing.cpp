@@ -266,9 +266,15 @@ void LoopPacing::wait_a_little(const char* state) {
 
 void LoopPacing::let_read(const std::string& text, const char* state) {
   constexpr double kTimeToRead = 5.0;  // [s]
+  constexpr std::chrono::seconds kLongestSpeech{60};
   show_text(text, "");
-  if (p_.screen != nullptr) {
-    wait(kTimeToRead, state, true);
+  if (p_.screen == nullptr) {
+    return;
+  }
+  wait(kTimeToRead, state, true);
+  const auto end = Clock::now() + kLongestSpeech;
+  while (p_.speaks && p_.speaks() && Clock::now() < end) {
+    wait_a_little(state);
   }
 }
 

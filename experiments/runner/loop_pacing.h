@@ -33,8 +33,9 @@ class LoopPacing {
     Screen* screen{nullptr};
     std::atomic<bool>* begin_pressed{nullptr};  // Enter or space, in the participant's window
     const record::LiveFigures* live{nullptr};
-    std::function<void()> hear{};  // what else may have happened, asked often
-    protocols::Rig* rig{nullptr};  // attended to while a pass runs
+    std::function<void()> hear{};    // what else may have happened, asked often
+    protocols::Rig* rig{nullptr};    // attended to while a pass runs
+    std::function<bool()> speaks{};  // whether a text is being spoken; empty: never
   };
   explicit LoopPacing(const Parts& parts);
 

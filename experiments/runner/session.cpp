@@ -25,7 +25,9 @@
 #include "experiments/runner/session_pages.h"
 #include "experiments/runner/session_record.h"
 #include "experiments/screen/screen_mirror.h"
+#include "experiments/screen/speaker.h"
 #include "protocols/definition/handle_loop.h"
+#include "protocols/definition/speech_options.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trial_sounds.h"
 #include "protocols/interface/trials.h"
@@ -66,6 +68,7 @@ class Session {
   std::vector<stimulus::Observer*> observers();
   SessionController::Actions controller_actions();
 
+  std::unique_ptr<Speaker> open_speaker();
   void watch_flashes();
   void hear_inputs();
   std::vector<std::string> open_channels();
@@ -100,12 +103,14 @@ class Session {
   protocols::SessionPlace place_;
   std::unique_ptr<protocols::Trials> trials_;
   std::unique_ptr<protocols::Rig> rig_;
-  ParticipantInput input_;  // before the screen, whose thread writes to it
+  ParticipantInput input_;                 // before the screen, whose thread writes to it
+  std::unique_ptr<SpeechLibrary> speech_;  // without it there is neither window nor file
   std::unique_ptr<Screen> screen_;
   std::optional<ScreenMirror> mirror_;  // of a screen
   std::unique_ptr<record::LiveFigures> live_;
   channel::ChannelSet channels_;
-  SessionRecord record_;  // opened when everything else is there
+  SessionRecord record_;              // opened when everything else is there
+  std::unique_ptr<Speaker> speaker_;  // plays on the record's sound card
   SessionController controller_;
   SessionServo servo_;
   LoopPacing pacing_;
@@ -166,10 +171,12 @@ Session::Session(const SessionRequest& request)
                notices_.note(
                    fmt::format("the participant says that the answer of {} is a mistake", trial));
              }),
+      speech_(open_speech(request)),
       screen_(open_screen(request, *rig_, input_, [this] { return loop_.elapsed_ns(); })),
       live_(open_live(request)),
       channels_(make_channels(request)),
       record_(request, rig_->device().info(), loop_, *trials_, onsets_, channels_, live_.get()),
+      speaker_(open_speaker()),
       controller_(request.control, controller_actions()),
       servo_(loop_,
              {.devices = rig_->arms(d_.envelope),
@@ -194,7 +201,7 @@ Session::Session(const SessionRequest& request)
                    controller_.status().figures = trials_->live();
                  }
                },
-               rig_.get()}),
+               rig_.get(), [this] { return speaker_ != nullptr && speaker_->speaks(); }}),
       pages_({request, record_, controller_, pacing_, input_.page_keys, screen_.get(),
               place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
@@ -210,6 +217,9 @@ Session::Session(const SessionRequest& request)
   status.force_limit = std::min(d_.envelope.max_force, rig_->device().info().max_force);
   status.has_target = d_.has_target();
   watch_flashes();
+  if (screen_) {
+    screen_->speak_with(speaker_.get());
+  }
   if (request.control != nullptr) {
     request.control->on_emergency([this] { servo_.task.emergency_stop(); });
     if (screen_) {
@@ -217,6 +227,14 @@ Session::Session(const SessionRequest& request)
       request.control->on_mirror([this] { return mirror_->picture(); });
     }
   }
+}
+
+std::unique_ptr<Speaker> Session::open_speaker() {
+  return speech_ == nullptr
+             ? nullptr
+             : std::make_unique<Speaker>(
+                   [this](const std::string& text) { return speech_->samples(text); },
+                   *record_.markers().player(), protocols::speech_of(d_).seconds);
 }
 
 /// The frames that show a photodiode what began.
@@ -240,6 +258,9 @@ void Session::hear_inputs() {
   }
   for (const std::string& news : channels_.take_news()) {
     notices_.note(news);
+  }
+  for (const SpokenText& spoken : speaker_ ? speaker_->take_spoken() : std::vector<SpokenText>{}) {
+    record_.event_at(spoken.begun_ns, "spoken", spoken.text);
   }
   if (!record_.in_pass()) {  // else its end shows whether it was answered before
     input_.mistakes.see_to(record_.pass());
@@ -272,6 +293,9 @@ void Session::note_warnings() {
 }
 
 Session::~Session() {
+  if (screen_) {
+    screen_->speak_with(nullptr);
+  }
   servo_.watched.reset();
   if (request_.control != nullptr) {
     request_.control->on_emergency(nullptr);

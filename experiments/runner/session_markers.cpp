@@ -29,6 +29,7 @@ SessionMarkers::SessionMarkers(const SessionRequest& request, markers::OnsetLog&
                                stream::LslOutlet* outlet, std::function<std::int64_t()> now)
     : definition_(*request.definition),
       real_(request.clock == realtime::ClockKind::kReal),
+      speech_(protocols::speech_of(definition_)),
       log_(log),
       now_(std::move(now)),
       meanings_(definition_.marker_meanings()) {
@@ -40,7 +41,7 @@ SessionMarkers::SessionMarkers(const SessionRequest& request, markers::OnsetLog&
 /// Masking noise fades before the card is let go.
 SessionMarkers::~SessionMarkers() {
   thread_.reset();
-  if (player_ && definition_.sounds()->masking) {
+  if (player_ && definition_.sounds() != nullptr && definition_.sounds()->masking) {
     constexpr double kLongestFade = 2.0;  // [s]
     player_->mask(false);
     const double fade = std::min(kLongestFade, definition_.sounds()->masking->fade);
@@ -53,7 +54,7 @@ void SessionMarkers::open_outputs(const SessionRequest& request, stream::LslOutl
   if (!options.serial.empty()) {
     line_ = std::make_unique<markers::SerialLine>(options.serial, options.baud);
   }
-  if (definition_.sounds() != nullptr) {
+  if (definition_.sounds() != nullptr || speech_.spoken) {
     open_sound(request);
   }
   if (!options.neon.empty()) {
@@ -70,9 +71,10 @@ void SessionMarkers::open_outputs(const SessionRequest& request, stream::LslOutl
       std::make_unique<markers::MarkerThread>(log_, options, meanings_, std::move(outputs), now_);
 }
 
-/// A session goes on without its sounds, and says so.
+/// A session goes on without its sounds, and says so; it does not begin without its speech.
 void SessionMarkers::open_sound(const SessionRequest& request) {
-  const sound::CueSet& set = *definition_.sounds();
+  const sound::CueSet set =
+      definition_.sounds() != nullptr ? *definition_.sounds() : sound::CueSet{{}, {}, speech_.card};
   if (set.masking) {
     for (const markers::MarkerMeaning& meaning : meanings_) {
       if (meaning.what == MarkerOf::kStage && !set.masking->stages.empty()) {
@@ -86,6 +88,9 @@ void SessionMarkers::open_sound(const SessionRequest& request) {
         set, derived_seed(request.seed, "participant " + request.subject), now_);
     player_->mask(set.masking && masked_.empty());
   } catch (const RunError& error) {
+    if (speech_.spoken) {
+      throw InputError(fmt::format("{}; display.spoken needs one", error.what()));
+    }
     notice_ = fmt::format("{}; the session goes on without its sounds", error.what());
   }
 }

@@ -16,6 +16,7 @@
 #include "core/stream/neon_events.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
+#include "protocols/definition/speech_options.h"
 
 namespace haptrial::experiments {
 
@@ -27,7 +28,8 @@ class SessionMarkers {
   /// @param log     of the servo thread's onsets; outlives the markers
   /// @param outlet  null: no stream; outlives the markers
   /// @param now     the session's clock [ns], asked by several threads
-  /// @throws InputError if the definition names a serial line that cannot be opened
+  /// @throws InputError if the definition names a serial line that cannot be opened, or is spoken
+  /// and there is no sound card
   SessionMarkers(const SessionRequest& request, markers::OnsetLog& log, stream::LslOutlet* outlet,
                  std::function<std::int64_t()> now);
   ~SessionMarkers();
@@ -37,6 +39,8 @@ class SessionMarkers {
   bool used() const { return definition_.markers.used; }
   /// Notice that the experimenter has to see from the beginning: no sound card. Empty: nothing.
   const std::string& notice() const { return notice_; }
+  /// The sound card; null: there is none.
+  sound::CuePlayer* player() { return player_.get(); }
   /// Whether sounds are played, in a sentence; empty if the definition has none.
   std::string sound_state() const;
 
@@ -74,6 +78,7 @@ class SessionMarkers {
 
   const protocols::Definition& definition_;
   const bool real_;
+  const protocols::SpeechOptions speech_;
   markers::OnsetLog& log_;
   std::function<std::int64_t()> now_;
   std::vector<markers::MarkerMeaning> meanings_;

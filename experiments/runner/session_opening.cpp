@@ -19,6 +19,7 @@
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
 #include "experiments/screen/frame_pacing.h"
+#include "protocols/definition/speech_options.h"
 #include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
@@ -332,6 +333,19 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
   const protocols::Definition& setup = *request.definition;
   return std::make_unique<Screen>(setup.screen, setup.display, std::move(callbacks),
                                   mark_of(request, rig));
+}
+
+std::unique_ptr<SpeechLibrary> open_speech(const SessionRequest& request) {
+  const protocols::SpeechOptions options = protocols::speech_of(*request.definition);
+  if (!options.spoken || request.clock != realtime::ClockKind::kReal) {
+    return nullptr;
+  }
+  if (!request.window) {
+    throw InputError(
+        "display.spoken speaks what the participant's window shows, and its keys answer; add "
+        "--window");
+  }
+  return std::make_unique<SpeechLibrary>(options.voice);
 }
 
 std::unique_ptr<stream::LslOutlet> open_outlet(const SessionRequest& request, bool simulated,

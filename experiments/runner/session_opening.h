@@ -17,6 +17,7 @@
 #include "experiments/runner/participant_input.h"
 #include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
+#include "experiments/screen/speech_library.h"
 #include "protocols/interface/trials.h"
 #include "protocols/interface/window_input.h"
 
@@ -72,6 +73,11 @@ std::filesystem::path resumed_file(const SessionRequest& request);
 /// @param now    ServoLoop::elapsed_ns(); called on the screen's thread
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     ParticipantInput& input, std::function<std::int64_t()> now);
+
+/// The voice that speaks the texts of the window; null if they are not spoken, as in a simulated
+/// session.
+/// @throws InputError if the session has no window, and as SpeechLibrary does
+std::unique_ptr<SpeechLibrary> open_speech(const SessionRequest& request);
 
 /// The streams, where they were asked for; null where they were not, and, with a sentence in
 /// `notice`, where they cannot be had and the session may do without them.

@@ -283,7 +283,12 @@ void SessionRecord::keep_channels() {
 }
 
 void SessionRecord::event(const std::string& kind, const std::string& text) {
-  const record::EventRow row{now_ns(), kind, text};
+  event_at(now_ns(), kind, text);
+}
+
+void SessionRecord::event_at(std::int64_t time_ns, const std::string& kind,
+                             const std::string& text) {
+  const record::EventRow row{time_ns, kind, text};
   for (record::Sink* sink : sinks_) {
     sink->event(row);
   }

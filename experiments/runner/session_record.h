@@ -87,6 +87,9 @@ class SessionRecord final : public protocols::SessionFile {
   /// @param frames  with times since this run's first tick
   void keep_frames(std::vector<record::FrameRow> frames);
   void event(const std::string& kind, const std::string& text) override;
+  /// An event that was noticed later than it happened. @param time_ns  since the session's first
+  /// tick
+  void event_at(std::int64_t time_ns, const std::string& kind, const std::string& text);
   /// Marks a trial on the stream only: the file's tables have it already. @param status  empty:
   /// none yet
   void mark_trial(const std::string& kind, const protocols::PlannedTrial& trial, int attempt,

@@ -54,16 +54,28 @@ void ParticipantCanvas::draw(const stimulus::Shown& shown, const std::string& wo
   if (drawing_) {
     drawing_->draw(shown);
   } else {
-    render::TextPage page = scene_.page;
-    if (page.countdown) {
-      page.countdown = std::max(0.0, *page.countdown - seconds_since(scene_.shown));
-    }
-    text_.draw(page);
+    text_.draw(page_now());
   }
   ++frames_;
   draw_mark();
   draw_words(words);
   draw_patch(shown);
+}
+
+render::TextPage ParticipantCanvas::page_now() const {
+  render::TextPage page = scene_.page;
+  if (page.countdown) {
+    page.countdown = std::max(0.0, *page.countdown - seconds_since(scene_.shown));
+  }
+  return page;
+}
+
+protocols::PictureText ParticipantCanvas::text(const stimulus::Shown& shown) const {
+  if (!drawing_) {
+    return {page_now()};
+  }
+  const auto* source = dynamic_cast<const protocols::TextSource*>(drawing_.get());
+  return source != nullptr ? source->text(shown) : protocols::PictureText{};
 }
 
 void ParticipantCanvas::draw_words(const std::string& words) {

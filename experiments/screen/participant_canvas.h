@@ -14,6 +14,7 @@
 #include "experiments/screen/session_mark.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
+#include "protocols/interface/text_source.h"
 
 namespace haptrial::render {
 class Window;
@@ -42,6 +43,8 @@ class ParticipantCanvas {
   std::uint64_t version() const noexcept { return scene_.version; }  // of the scene it draws
   /// @param words  over the picture, at its lower edge
   void draw(const stimulus::Shown& shown, const std::string& words);
+  /// The text of that picture.
+  protocols::PictureText text(const stimulus::Shown& shown) const;
   /// The square is white from this frame on. @returns the onsets that it shows first; 0: no new
   /// ones
   std::uint64_t flash(std::uint64_t onsets);
@@ -53,6 +56,7 @@ class ParticipantCanvas {
   ScreenPointer pointer(const device::PointerInput& input);
 
  private:
+  render::TextPage page_now() const;
   bool is_white(const stimulus::Shown& shown) const;
   void draw_patch(const stimulus::Shown& shown);
   void draw_mark();

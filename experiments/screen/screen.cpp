@@ -18,6 +18,7 @@
 #include "experiments/screen/frame_pacing.h"
 #include "experiments/screen/pad_pointer.h"
 #include "experiments/screen/participant_canvas.h"
+#include "experiments/screen/speaker.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -76,6 +77,9 @@ struct Screen::Impl {
   std::atomic<std::uint64_t> version_shown{0};   // of the scene, in a picture that was shown
   std::atomic<const markers::OnsetLog*> onsets{nullptr};
 
+  std::mutex speaker_mutex;
+  Speaker* speaker{nullptr};
+
   mutable std::mutex mutex;  // all below
   Scene scene;
   std::vector<record::FrameRow> frames;
@@ -92,6 +96,9 @@ struct Screen::Impl {
   void show_pictures(render::Window& window, ParticipantCanvas& canvas, const AgreedPace& agreed);
   bool take_scene(ParticipantCanvas& canvas);
   void give_picture(render::Window& window);
+  void speak(const ParticipantCanvas& canvas, const stimulus::Shown& seen,
+             const std::string& words);
+  bool says_again(const render::KeyPress& press);
   void count(const record::FrameRow& frame, std::uint64_t flashed);
   std::uint64_t onsets_so_far() const;
 };
@@ -101,9 +108,12 @@ namespace {
 /// Events at a window, told once: keys, held keys, the pointer, the close button.
 class WindowEvents {
  public:
-  WindowEvents(render::Window& window, const ScreenCallbacks& callbacks)
+  /// @param takes  a key that is nobody else's
+  WindowEvents(render::Window& window, const ScreenCallbacks& callbacks,
+               std::function<bool(const render::KeyPress&)> takes)
       : window_(window),
         callbacks_(callbacks),
+        takes_(std::move(takes)),
         pointer_(window.pointer()),
         pad_(window.width(), window.height()) {}
 
@@ -132,6 +142,9 @@ class WindowEvents {
   void tell_keys(ParticipantCanvas& canvas) {
     std::vector<int> held = window_.held_keys();
     for (const render::KeyPress& press : window_.take_keys()) {
+      if (takes_(press)) {
+        continue;
+      }
       if (callbacks_.key) {
         callbacks_.key(press);
       }
@@ -150,6 +163,7 @@ class WindowEvents {
 
   render::Window& window_;
   const ScreenCallbacks& callbacks_;
+  std::function<bool(const render::KeyPress&)> takes_;
   render::Pointer pointer_;
   PadPointer pad_;
   std::vector<int> held_;
@@ -188,7 +202,8 @@ void Screen::Impl::run() {
 void Screen::Impl::show_pictures(render::Window& window, ParticipantCanvas& canvas,
                                  const AgreedPace& agreed) {
   Pace pace(agreed);
-  WindowEvents happenings(window, callbacks);
+  WindowEvents happenings(window, callbacks,
+                          [this](const render::KeyPress& press) { return says_again(press); });
   stimulus::Shown seen;
   while (!stop.load(std::memory_order_relaxed)) {
     pace.wait();
@@ -196,12 +211,14 @@ void Screen::Impl::show_pictures(render::Window& window, ParticipantCanvas& canv
     const bool other_view = take_scene(canvas);
     shown.read(seen);
     const std::uint64_t flashed = canvas.flash(onsets_so_far());  // after what they belong to
-    canvas.draw(seen, callbacks.words ? callbacks.words() : "");
+    const std::string words = callbacks.words ? callbacks.words() : "";
+    canvas.draw(seen, words);
     give_picture(window);
     const std::int64_t drawn = screen_ns();
     window.swap();
     version_shown.store(canvas.version(), std::memory_order_release);
     count(pace.shown(drawn - start), flashed);
+    speak(canvas, seen, words);
     window.poll();
     happenings.tell(canvas, other_view);
   }
@@ -218,6 +235,24 @@ void Screen::Impl::give_picture(render::Window& window) {
     picture = window.read();
     picture_taken.notify_all();
   }
+}
+
+/// Words of a picture that is in the window.
+void Screen::Impl::speak(const ParticipantCanvas& canvas, const stimulus::Shown& seen,
+                         const std::string& words) {
+  const std::lock_guard lock(speaker_mutex);
+  if (speaker != nullptr) {
+    speaker->follow(canvas.text(seen), words);
+  }
+}
+
+bool Screen::Impl::says_again(const render::KeyPress& press) {
+  const std::lock_guard lock(speaker_mutex);
+  const bool again = speaker != nullptr && press.key == Speaker::kRepeatKey;
+  if (again) {
+    speaker->repeat();
+  }
+  return again;
 }
 
 std::uint64_t Screen::Impl::onsets_so_far() const {
@@ -291,6 +326,11 @@ std::vector<record::FrameRow> Screen::take_frames() {
 
 void Screen::flash_with(const markers::OnsetLog* log) {
   impl_->onsets.store(log, std::memory_order_release);
+}
+
+void Screen::speak_with(Speaker* speaker) {
+  const std::lock_guard lock(impl_->speaker_mutex);
+  impl_->speaker = speaker;
 }
 
 std::vector<Flash> Screen::take_flashes() {

@@ -22,6 +22,8 @@
 
 namespace haptrial::experiments {
 
+class Speaker;
+
 /// How a screen kept time.
 struct ScreenSummary {
   std::uint64_t frames{0};
@@ -90,6 +92,10 @@ class Screen final : public stimulus::Observer {
   /// Sets the log whose onsets make the photodiode's square white (Photodiode::kOnset). @param
   /// log  outlives the screen
   void flash_with(const markers::OnsetLog* log);
+
+  /// Has the texts of its pictures spoken from the next one on, and again at Speaker::kRepeatKey.
+  /// @param speaker  null: nobody speaks from when this returns; else outlives the screen
+  void speak_with(Speaker* speaker);
 
   /// Servo thread: hands the newest presentation over; no allocation, lock, I/O or throw.
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,

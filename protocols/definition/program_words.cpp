@@ -23,6 +23,7 @@ constexpr std::array kSessionInGerman{
     GermanText{"✗ Wrong", "✗ Falsch"},
     GermanText{"Too fast", "Zu schnell"},
     GermanText{"Too slow", "Zu langsam"},
+    GermanText{"seconds", "Sekunden"},
     GermanText{
         "Stopped\nThe forces are off. Please wait for the experimenter.",
         "Angehalten\nDie Kräfte sind abgeschaltet. Bitte warten Sie auf die Versuchsleitung."},

@@ -68,8 +68,16 @@ double TextScreen::picture_height(const TextPage& page) const {
 
 double TextScreen::figure_height() const { return kFigure * height_; }
 
+/// Whether the numbers of a scale are drawn: many would run into each other, and ends may be the
+/// numbers themselves.
+static bool draws_numbers(const questions::ScaleView& scale) {
+  constexpr std::size_t kMost = 11;
+  return !scale.numbers.empty() && scale.numbers.size() <= kMost &&
+         scale.numbers.front() != scale.low_end;
+}
+
 double TextScreen::scale_height(const questions::ScaleView& scale, const Sizes& sizes) {
-  const double lines = scale.numbers.empty() ? 2.0 : 3.0;
+  const double lines = draws_numbers(scale) ? 3.0 : 2.0;
   return lines * text_.line_height(sizes.body) + 2.0 * kTick * std::min(width_, height_);
 }
 
@@ -213,11 +221,12 @@ void TextScreen::draw_scale(const TextPage& page, const Sizes& sizes, double y) 
   }
   painter_.end();
   double below = middle + 1.2 * tick;
-  for (std::size_t i = 0; i < page.answer.scale->numbers.size(); ++i) {
+  const bool numbered = draws_numbers(*page.answer.scale);
+  for (std::size_t i = 0; numbered && i < page.answer.scale->numbers.size(); ++i) {
     const double x = left + 2.0 * half * static_cast<double>(i) / page.answer.scale->steps;
     text_.paragraphs(page.answer.scale->numbers[i], {x, below}, column(), sizes.body);
   }
-  below += page.answer.scale->numbers.empty() ? 0.0 : text_.line_height(sizes.body);
+  below += numbered ? text_.line_height(sizes.body) : 0.0;
   text_.paragraphs(page.answer.scale->low_end, {left, below}, half, sizes.body, Align::kCentre);
   text_.paragraphs(page.answer.scale->high_end, {left + 2.0 * half, below}, half, sizes.body,
                    Align::kCentre);

@@ -74,6 +74,8 @@ int key_of(int glfw_key) {
     case GLFW_KEY_ENTER:
     case GLFW_KEY_KP_ENTER:
       return KeyPress::kEnter;
+    case GLFW_KEY_TAB:  // says a spoken text again
+      return GLFW_KEY_TAB;
     case GLFW_KEY_BACKSPACE:
       return KeyPress::kBackspace;
     case GLFW_KEY_RIGHT:

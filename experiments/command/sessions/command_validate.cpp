@@ -2,9 +2,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/base/error.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/screen/speech_library.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/definition/languages.h"
+#include "protocols/definition/speech_options.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -12,6 +15,19 @@ namespace {
 void print_undrawable(const Experiment& experiment) {
   for (const std::string& sentence : undrawable_texts(experiment)) {
     fmt::print("warning: {}\n", sentence);
+  }
+}
+
+/// Says why this machine could not speak the definition.
+void print_missing_speech(const protocols::Definition& definition) {
+  const protocols::SpeechOptions options = protocols::speech_of(definition);
+  if (!options.spoken) {
+    return;
+  }
+  try {
+    const SpeechLibrary library(options.voice);
+  } catch (const InputError& error) {
+    fmt::print("warning: {}\n", error.what());
   }
 }
 
@@ -31,6 +47,7 @@ int validate(const std::string& file) {
   }
   print_warnings(experiment);
   print_undrawable(experiment);
+  print_missing_speech(definition);
   for (const std::string& language : protocols::languages_of(file)) {
     const Experiment translated = load_experiment(file, language);
     fmt::print("language {}: {}\n", language,
@@ -39,6 +56,7 @@ int validate(const std::string& file) {
       fmt::print("{}\n", sentence);
     }
     print_undrawable(translated);
+    print_missing_speech(*translated.definition);
   }
   return 0;
 }

@@ -10,6 +10,7 @@
 #include "core/psychometric/definition/read_tracks.h"
 #include "core/sound/read_cues.h"
 #include "protocols/definition/mirroring.h"
+#include "protocols/definition/speech_options.h"
 #include "protocols/definition/window_keys.h"
 #include "protocols/psychophysics/definition/check_definition.h"
 #include "protocols/psychophysics/definition/defaults.h"
@@ -92,6 +93,19 @@ const Schema<TrialsDefinition>& feedback_schema() {
   return schema;
 }
 
+/// Speech is never heard over noise that masks the device.
+void read_speech(Table& table, TrialsDefinition& d) {
+  if (!speech_schema().read(table).spoken) {
+    return;
+  }
+  d.markers.used = true;  // which have the sound card
+  if (d.cues.masking && d.cues.masking->stages.empty()) {
+    table.reject("spoken",
+                 "is true, but sounds.masking sounds throughout the session, and nothing "
+                 "is spoken over it; add stages to [sounds.masking]");
+  }
+}
+
 /// Reads [sounds] and, as feedback may name them, [display].
 void read_display(Table& root, TrialsDefinition& d) {
   if (root.has("sounds")) {
@@ -103,6 +117,7 @@ void read_display(Table& root, TrialsDefinition& d) {
   d.display = render::trial_display_schema().read(table);
   view_schema().read(table, d.view);
   feedback_schema().read(table, d);
+  read_speech(table, d);
   if (root.has("looks") && !d.view.stereo) {
     table.reject("stereo",
                  "is not true, but a bar of random dots is seen with two eyes only; add stereo = "

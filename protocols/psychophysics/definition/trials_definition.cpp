@@ -9,6 +9,7 @@
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/psychometric/definition/expectation.h"
+#include "protocols/psychophysics/definition/only_seen.h"
 #include "protocols/psychophysics/definition/unmatched_literals.h"
 
 namespace haptrial::protocols {
@@ -161,6 +162,7 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
 std::vector<std::string> TrialsDefinition::warnings() const {
   std::vector<std::string> all = unmatched_literals(text);
   all.insert(all.end(), underdamped.begin(), underdamped.end());
+  std::ranges::move(only_seen(*this, questions), std::back_inserter(all));
   for (const Track& track : tracks) {
     if (track.warnings) {
       std::ranges::move(track.warnings(track), std::back_inserter(all));

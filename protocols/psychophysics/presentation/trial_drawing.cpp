@@ -7,35 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "core/questions/question_kind.h"
 #include "core/render/flat/painter.h"
 #include "core/render/flat/shaded_surface.h"
 #include "core/render/flat/text.h"
 #include "core/render/flat/text_screen.h"
 #include "protocols/psychophysics/objects/deformable_sight.h"
 #include "protocols/psychophysics/objects/outline.h"
+#include "protocols/psychophysics/presentation/trial_page.h"
 #include "protocols/psychophysics/presentation/trial_view.h"
 
 namespace haptrial::protocols {
 namespace {
-
-/// A choice and before it the key that gives it.
-std::string line_of(const TrialQuestion& question, std::size_t choice) {
-  const std::string& hint = question.means[choice].hint;
-  return (hint.empty() ? "" : fmt::format("[{}]  ", hint)) + question.choices[choice].label;
-}
-
-/// How a question is answered, and its answer so far.
-questions::AnswerView answer_view(const TrialQuestion& question, const TrialView& view) {
-  questions::AnswerDraft draft;
-  draft.chosen = view.chosen;
-  draft.typed.set(view.typed.data());
-  questions::AnswerView shown = question.kind->view(question, draft);
-  for (std::size_t i = 0; i < question.means.size(); ++i) {
-    shown.choices[i] = line_of(question, i);  // made at once, by keys of its own
-  }
-  return shown;
-}
 
 /// The part of the window that one eye, or both, look at.
 struct Part {
@@ -43,7 +25,7 @@ struct Part {
   Eigen::Vector2d middle{Eigen::Vector2d::Zero()};  // [px]
 };
 
-class TrialDrawing final : public Drawing {
+class TrialDrawing final : public Drawing, public TextSource {
  public:
   TrialDrawing(const render::Gl& gl, int width, int height, const TrialsDefinition& d,
                std::shared_ptr<const SeenBodies> bodies)
@@ -76,6 +58,10 @@ class TrialDrawing final : public Drawing {
       painter_.end();
     }
   }
+  PictureText text(const stimulus::Shown& shown) const override {
+    const TrialView* view = shown.as<TrialView>();
+    return view != nullptr ? text_of(d_, *view) : PictureText{};
+  }
   std::optional<Eigen::Vector3d> to_world(const Eigen::Vector2d& pixel) const override {
     const Eigen::Vector2d p = (pixel - parts_.front().middle) / scale_;
     return d_.view.from_above ? Eigen::Vector3d(right_ * p.x(), 0.0, p.y())
@@ -96,27 +82,11 @@ class TrialDrawing final : public Drawing {
 
   void draw_question(const TrialView& view) {
     const TrialQuestion& question = d_.questions[view.question - 1U];
-    render::TextPage page;
-    page.title = question.text;
-    if (!view.told()) {
-      page.answer = answer_view(question, view);
-      page.hint = question.has_choices() ? "" : question.kind->hint(question, d_.texts);
-      page.hint_is_urgent = view.refused;
-    }
-    if (view.told()) {
-      const std::string pace = view.pace == Pace::kTooFast   ? question.fast_text
-                               : view.pace == Pace::kTooSlow ? question.slow_text
-                                                             : "";
-      const std::string verdict = view.verdict == Verdict::kRight   ? d_.feedback_right
-                                  : view.verdict == Verdict::kWrong ? d_.feedback_wrong
-                                                                    : "";
-      page.title = verdict.empty() ? pace : verdict;
-      page.body = verdict.empty() ? "" : pace;
-    } else if (question.touched()) {
+    if (question.touched() && !view.told()) {
       draw_places(question, view);
-      return;
+    } else {
+      page_.draw(text_of(d_, view).page);
     }
-    page_.draw(page);
   }
 
   /// The places to touch with their choices, the hand, and above them the question; below them the
