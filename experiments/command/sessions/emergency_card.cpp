@@ -1,0 +1,172 @@
+#include "experiments/command/sessions/emergency_card.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "analysis/document/document.h"
+#include "core/base/whole_file.h"
+#include "experiments/runner/version.h"
+#include "protocols/definition/room.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using analysis::Document;
+using protocols::Definition;
+
+/// The table of a device in definitions and lab files; empty: it has none.
+std::string table_of(const std::string& device) {
+  const auto& vendors = device::vendor_devices();
+  const auto at = std::ranges::find_if(
+      vendors, [&](const device::VendorDevice& vendor) { return vendor.name == device; });
+  if (at != vendors.end()) {
+    return at->table;
+  }
+  return device == "mouse" || device == "gamepad" ? device : "";
+}
+
+/// The button for emergency stops, as the definition or lab file says it; -1: none.
+int stop_button_of(const std::string& device, const Definition& d) {
+  const std::map<std::string, int> defaults{
+      {"force_dimension", d.vendor.force_dimension.stop_button},
+      {"open_haptics", d.vendor.open_haptics.stop_button},
+      {"haply", d.vendor.haply.stop_button},
+      {"mouse", d.mouse.stop_button},
+      {"gamepad", d.gamepad.stop_button}};
+  const std::string name = table_of(device);
+  if (const auto at = defaults.find(name); at != defaults.end()) {
+    return at->second;
+  }
+  Table root = d.root();
+  if (name.empty() || !root.has(name)) {
+    return -1;
+  }
+  Table table = root.table(name);
+  return table.integer_or("stop_button", -1, -1, 31);
+}
+
+/// The greatest force that a session may command with this device [N].
+double greatest_force(const std::string& device, const Definition& d) {
+  double force = d.envelope.max_force;
+  for (const device::VendorDevice& vendor : device::vendor_devices()) {
+    if (vendor.name == device) {
+      force = std::min(force, vendor.limits(d.vendor).max_force);
+    }
+  }
+  return force;
+}
+
+std::vector<std::string> ways_to_stop(const RunOptions& options, const Definition& d) {
+  std::vector<std::string> ways;
+  for (const std::string& device : options.devices) {
+    if (const int button = stop_button_of(device, d); button >= 0) {
+      ways.push_back(fmt::format("Press button {} of the {} (counted from 0).", button, device));
+    }
+  }
+  if (options.window) {
+    ways.emplace_back("Press Escape on the keyboard of the participant's window, or close it.");
+  }
+  if (options.console) {
+    ways.emplace_back("Press EMERGENCY STOP on the experimenter's page, or Escape there.");
+  }
+  ways.emplace_back(options.keyboard || options.console
+                        ? "Press Escape in the terminal; Ctrl-C there also ends the session."
+                        : "Press Ctrl-C in the terminal: it also ends the session.");
+  ways.emplace_back("Switch the device off at its power switch, or pull its plug.");
+  if (d.pedal_use() != protocols::PedalUse::kNone) {
+    ways.emplace_back("The pedal does NOT stop the force.");
+  }
+  return ways;
+}
+
+void add_help(const protocols::Room& room, Document& page) {
+  page.heading("If somebody is hurt");
+  page.points(
+      {"Stop the force, then switch the device off at its power switch.",
+       "Free the hand and help the person.",
+       room.contact.empty() && room.phone.empty()
+           ? "Call: ______________________________"
+           : fmt::format("Call {}{}{}.", room.contact,
+                         room.contact.empty() || room.phone.empty() ? "" : ", ", room.phone),
+       "Do not clear the stop and do not start again before the cause is known.",
+       "Write down what happened and when. The session's file holds every tick."});
+}
+
+void add_hang(Document& page) {
+  page.heading("If the program hangs");
+  page.points(
+      {"Switch the device off at its power switch first. A device without a watchdog holds "
+       "its last force.",
+       "Press Ctrl-C in the terminal. If nothing happens, close the terminal.",
+       "Switch the device on again only when nobody holds the handle."});
+}
+
+/// The options of the session that matter when it goes on.
+std::string options_of_session(const RunOptions& options) {
+  std::string words;
+  for (const std::string& device : options.devices) {
+    words += " --device " + device;
+  }
+  words += options.window ? " --window" : "";
+  words += options.console ? " --console" : "";
+  words += options.keyboard ? " --keyboard" : "";
+  words += options.out.empty() ? "" : " --out " + options.out;
+  return words;
+}
+
+void add_files(const RunOptions& options, const Definition& d, Document& page) {
+  const std::string backup = backup_folder(options, d);
+  page.heading("Files, and how to go on");
+  page.table(
+      {"What", "Where"},
+      {{"Finished session",
+        (fs::absolute(session_folder(options)) / "ID.h5").lexically_normal().string()},
+       {"Session that was stopped", "the same with .partial: do not rename, move or open it"},
+       {"Backup", backup.empty() ? "none is made: copy the file by hand"
+                                 : (fs::path(backup) / d.name / "ID.h5").string()},
+       {"To go on", fmt::format("haptrial run {}{} --subject ID --resume", options.definition,
+                                options_of_session(options))},
+       {"What the file holds", "haptrial info FILE"}});
+}
+
+Document card_of(const RunOptions& options, const Experiment& experiment) {
+  const Definition& d = *experiment.definition;
+  Document page;
+  page.title = "Emergency card: " + d.name;
+  page.subtitle = fmt::format("Device: {}. Made on {:%Y-%m-%d} by haptrial {}.",
+                              fmt::join(options.devices, ", "), fmt::localtime(std::time(nullptr)),
+                              program_version());
+  std::vector<std::string> forces;
+  for (const std::string& device : options.devices) {
+    forces.push_back(fmt::format("{:g} N", greatest_force(device, d)));
+  }
+  page.alarm(fmt::format("Greatest force on the hand: {}.", fmt::join(forces, " and ")));
+  page.heading("To stop the force at once");
+  page.points(ways_to_stop(options, d));
+  page.paragraph(
+      "After a stop the force stays zero until the experimenter clears it. Anybody may stop; the "
+      "participant may let go of the handle at any time.");
+  add_help(protocols::room_of(d), page);
+  add_hang(page);
+  add_files(options, d, page);
+  return page;
+}
+
+}  // namespace
+
+void write_emergency_card(const RunOptions& options, const Experiment& experiment,
+                          const fs::path& file) {
+  WholeFile out(file);
+  out.write(analysis::to_html(card_of(options, experiment)));
+  out.finish();
+}
+
+}  // namespace haptrial::experiments
