@@ -315,7 +315,8 @@ TEST_F(LiveChannelTest, RecordKeepsAChannelWithoutTrials) {
 nlohmann::json grip_check(const std::string& study, const std::string& out) {
   const auto printed =
       test::run_command("haptrial start " + study + " --check --json --out " + out);
-  for (const auto& check : nlohmann::json::parse(printed.output)["checks"]) {
+  const auto json = nlohmann::json::parse(printed.output);
+  for (const auto& check : json["checks"]) {
     if (check["what"].get<std::string>().starts_with("channel")) {
       return check;
     }

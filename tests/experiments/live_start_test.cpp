@@ -41,7 +41,8 @@ class LiveStartTest : public testing::Test {
   }
   /// The check of a name in what `start --check --json` printed.
   static nlohmann::json check_of(const CommandResult& result, const std::string& what) {
-    for (const auto& check : nlohmann::json::parse(result.output)["checks"]) {
+    const auto json = nlohmann::json::parse(result.output);
+    for (const auto& check : json["checks"]) {
       if (check["what"] == what) {
         return check;
       }

@@ -42,9 +42,8 @@ class MarkedTrialsReportTest : public testing::Test {
                        const std::string& options) {
     test::write_text(folder_ / "study.toml", text);
     fs::remove_all(out_);
-    const auto dry =
-        test::run_command("haptrial dry-run '" + (folder_ / "study.toml").string() +
-                          "' --subjects 1 " + options + " --out '" + out_.string() + "'");
+    const auto dry = test::run_command("haptrial dry-run '" + (folder_ / "study.toml").string() +
+                                       "' " + options + " --out '" + out_.string() + "'");
     EXPECT_EQ(dry.status, 0) << dry.errors;
     if (!marks.empty()) {
       mark(out_ / "S01.h5", marks);
@@ -71,13 +70,14 @@ TEST_F(MarkedTrialsReportTest, ForceTrainingFollowsTheRule) {
     return changed.insert(changed.find(at) + at.size(), rule);
   };
   ASSERT_NE(text.find("\n" + at), std::string::npos);
-  const std::string kept = analysed(text, kMarks, "--trials 6");
+  const std::string kept = analysed(text, kMarks, "--subjects 1 --trials 6");
   EXPECT_THAT(kept, HasSubstr("analysed all the same: 2 trials: S01, 2 marks (trial 2: hand "
                               "slipped; trial 3: phone)"));
   EXPECT_TRUE(statistics()["exclusions"].empty());
   const std::string rows = test::read_text(out_ / "scores.csv");
 
-  const std::string left = analysed(with("\nexclude_marked = true"), kMarks, "--trials 6");
+  const std::string left =
+      analysed(with("\nexclude_marked = true"), kMarks, "--subjects 1 --trials 6");
   EXPECT_THAT(left,
               HasSubstr("left out of the analysis as the definition's analysis.exclude_marked "
                         "says: 2 trials: S01, 2 marks"));
@@ -90,8 +90,8 @@ TEST_F(MarkedTrialsReportTest, ForceTrainingFollowsTheRule) {
   EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n') - 2,
             std::count(fewer.begin(), fewer.end(), '\n'));
 
-  const std::string words =
-      analysed(with("\nexclude_marked = true\nexclude_words = [\"phone\"]"), kMarks, "--trials 6");
+  const std::string words = analysed(with("\nexclude_marked = true\nexclude_words = [\"phone\"]"),
+                                     kMarks, "--subjects 1 --trials 6");
   EXPECT_THAT(words, HasSubstr("says: 1 trial: S01, 1 mark (trial 3: phone)"));
   EXPECT_THAT(words, HasSubstr("analysed all the same: 1 trial: S01, 1 mark (trial 2"));
   EXPECT_EQ(statistics()["exclusions"].size(), 1u);
@@ -100,6 +100,8 @@ TEST_F(MarkedTrialsReportTest, ForceTrainingFollowsTheRule) {
 const char* const kTrials = R"([experiment]
 protocol = "trials"
 name = "marked"
+[design]
+participants = 2
 [fields.pull]
 type = "constant"
 force = [0.0, "-$level", 0.0]
@@ -145,7 +147,7 @@ std::vector<std::string> counted_in(const fs::path& table) {
     return std::string("no column " + name);
   };
   for (std::string row; std::getline(lines, row);) {
-    if (column("counts", row) == "1") {
+    if (column("counted", row) == "1") {
       trials.push_back(column("trial", row));
     }
   }
@@ -153,11 +155,11 @@ std::vector<std::string> counted_in(const fs::path& table) {
 }
 
 TEST_F(MarkedTrialsReportTest, TrialsFollowTheRule) {
-  const std::string kept = analysed(kTrials, kMarks, "");
+  const std::string kept = analysed(kTrials, kMarks, "--subjects 1");
   EXPECT_THAT(kept, HasSubstr("analysed all the same: 2 trials: S01"));
   EXPECT_EQ(counted_in(out_ / "trials.csv").size(), 24u);
-  const std::string left =
-      analysed(std::string(kTrials) + "[analysis]\nexclude_marked = true\n", kMarks, "");
+  const std::string left = analysed(std::string(kTrials) + "[analysis]\nexclude_marked = true\n",
+                                    kMarks, "--subjects 1");
   EXPECT_THAT(left, HasSubstr("left out of the analysis"));
   const auto counted = counted_in(out_ / "trials.csv");
   EXPECT_EQ(counted.size(), 22u);
@@ -170,7 +172,7 @@ TEST_F(MarkedTrialsReportTest, DrillingsFollowTheRule) {
   const std::string text = test::read_text(study);
   const std::string marks = "[\"trial 1: table bumped\"]";
   const auto rows = [&](const std::string& definition) {
-    const std::string printed = analysed(definition, marks, "--trials 2");
+    const std::string printed = analysed(definition, marks, "--subjects 2");
     const std::string table = test::read_text(out_ / "metrics.csv");
     return std::pair(printed, std::count(table.begin(), table.end(), '\n'));
   };
@@ -187,7 +189,7 @@ TEST_F(MarkedTrialsReportTest, WordsAloneAreRefused) {
   const auto refused =
       test::run_command("haptrial validate '" + (folder_ / "study.toml").string() + "'");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.errors, HasSubstr("exclude_words stands without exclude_marked = true"));
+  EXPECT_THAT(refused.errors, HasSubstr("exclude_words is given without exclude_marked = true"));
 }
 
 }  // namespace

@@ -111,11 +111,11 @@ const Schema<MarkRule>& mark_rule_schema() {
           .otherwise("any reason")
           .check([](haptrial::Table& table, MarkRule& rule) {
             if (!rule.words.empty() && !rule.exclude) {
-              table.reject("exclude_words", "stands without exclude_marked = true",
+              table.reject("exclude_words", "given without exclude_marked = true",
                            "exclude_marked = true beside it, or neither key");
             }
             if (std::ranges::find(rule.words, "") != rule.words.end()) {
-              table.reject("exclude_words", "has an empty text", "words");
+              table.reject("exclude_words", "a list with an empty text", "a list of words");
             }
           });
   return schema;

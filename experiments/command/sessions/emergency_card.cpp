@@ -87,26 +87,24 @@ std::vector<std::string> ways_to_stop(const RunOptions& options, const Definitio
   return ways;
 }
 
-void add_help(const protocols::Room& room, Document& page) {
-  page.heading("If somebody is hurt");
-  page.points(
-      {"Stop the force, then switch the device off at its power switch.",
-       "Free the hand and help the person.",
-       room.contact.empty() && room.phone.empty()
-           ? "Call: ______________________________"
-           : fmt::format("Call {}{}{}.", room.contact,
-                         room.contact.empty() || room.phone.empty() ? "" : ", ", room.phone),
-       "Do not clear the stop and do not start again before the cause is known.",
-       "Write down what happened and when. The session's file holds every tick."});
+std::string call_line(const protocols::Room& room) {
+  if (room.contact.empty() && room.phone.empty()) {
+    return "Call: ______________________________";
+  }
+  const bool both = !room.contact.empty() && !room.phone.empty();
+  return fmt::format("Call {}{}{}.", room.contact, both ? ", " : "", room.phone);
 }
 
-void add_hang(Document& page) {
-  page.heading("If the program hangs");
-  page.points(
-      {"Switch the device off at its power switch first. A device without a watchdog holds "
-       "its last force.",
-       "Press Ctrl-C in the terminal. If nothing happens, close the terminal.",
-       "Switch the device on again only when nobody holds the handle."});
+void add_help(const protocols::Room& room, Document& page) {
+  page.table({"If", "Do this"},
+             {{"somebody is hurt",
+               "Stop the force, switch the device off, free the hand, help the person."},
+              {"", call_line(room)},
+              {"", "Do not clear the stop or start again before the cause is known."},
+              {"", "Write down what happened and when. The session's file holds every tick."},
+              {"the program hangs", "Switch the device off first: it may hold its last force."},
+              {"", "Press Ctrl-C in the terminal. If nothing happens, close the terminal."},
+              {"", "Switch the device on again only when nobody holds the handle."}});
 }
 
 /// The options of the session that matter when it goes on.
@@ -124,17 +122,15 @@ std::string options_of_session(const RunOptions& options) {
 
 void add_files(const RunOptions& options, const Definition& d, Document& page) {
   const std::string backup = backup_folder(options, d);
-  page.heading("Files, and how to go on");
+  page.subheading("Files, and how to go on");
   page.table(
-      {"What", "Where"},
-      {{"Finished session",
-        (fs::absolute(session_folder(options)) / "ID.h5").lexically_normal().string()},
-       {"Session that was stopped", "the same with .partial: do not rename, move or open it"},
+      {"Session", "Where"},
+      {{"Finished", (fs::absolute(session_folder(options)) / "ID.h5").lexically_normal().string()},
+       {"Stopped", "the same with .partial: do not rename, move or open it"},
        {"Backup", backup.empty() ? "none is made: copy the file by hand"
                                  : (fs::path(backup) / d.name / "ID.h5").string()},
        {"To go on", fmt::format("haptrial run {}{} --subject ID --resume", options.definition,
-                                options_of_session(options))},
-       {"What the file holds", "haptrial info FILE"}});
+                                options_of_session(options))}});
 }
 
 Document card_of(const RunOptions& options, const Experiment& experiment) {
@@ -149,13 +145,10 @@ Document card_of(const RunOptions& options, const Experiment& experiment) {
     forces.push_back(fmt::format("{:g} N", greatest_force(device, d)));
   }
   page.alarm(fmt::format("Greatest force on the hand: {}.", fmt::join(forces, " and ")));
-  page.heading("To stop the force at once");
+  page.subheading("To stop the force at once");
   page.points(ways_to_stop(options, d));
-  page.paragraph(
-      "After a stop the force stays zero until the experimenter clears it. Anybody may stop; the "
-      "participant may let go of the handle at any time.");
+  page.paragraph("Anybody may stop. The force stays zero until the experimenter clears the stop.");
   add_help(protocols::room_of(d), page);
-  add_hang(page);
   add_files(options, d, page);
   return page;
 }

@@ -12,7 +12,6 @@
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/device/catalog.h"
-#include "core/device/registered_devices.h"
 #include "experiments/command/sessions/channel_checks.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/sessions/run_checks.h"
@@ -97,13 +96,19 @@ MachineCheck check_consent(const RunOptions& options, const Definition& d) {
           "--consent DATE"};
 }
 
-/// The device itself is opened by the session: opening may move the handle.
-std::vector<MachineCheck> check_chosen_devices(const RunOptions& options) {
-  std::vector<MachineCheck> checks;
-  const std::vector<device::DeviceListing> all = device::list_devices(
+/// Every device, as the options' library finds it.
+using Listings = std::vector<device::DeviceListing>;
+
+Listings listed_devices(const RunOptions& options) {
+  return device::list_devices(
       options.library.empty()
           ? std::map<std::string, std::string>{}
           : std::map<std::string, std::string>{{options.devices.front(), options.library}});
+}
+
+/// The device itself is opened by the session: opening may move the handle.
+std::vector<MachineCheck> check_chosen_devices(const RunOptions& options, const Listings& all) {
+  std::vector<MachineCheck> checks;
   for (const std::string& name : options.devices) {
     const auto at = std::ranges::find(all, name, &device::DeviceListing::name);
     if (at == all.end()) {
@@ -136,7 +141,7 @@ MachineCheck check_certificate(const RunOptions& options, const Definition& d) {
 /// The nearest folder that is there: that of the files may not have been made yet.
 fs::path there_above(fs::path folder) {
   std::error_code ignored;
-  folder = fs::weakly_canonical(folder, ignored);
+  folder = fs::absolute(folder, ignored).lexically_normal();
   while (!fs::is_directory(folder, ignored) && folder.has_relative_path()) {
     folder = folder.parent_path();
   }
@@ -198,15 +203,15 @@ MachineCheck check_backup(const std::string& folder, const fs::path& files, doub
 
 /// The machine's checks that matter for this session: not other devices, nor what it does without.
 std::vector<MachineCheck> check_machine(const RunOptions& options, const Definition& d,
-                                        const fs::path& files) {
+                                        const fs::path& files, const Listings& devices) {
   std::vector<MachineCheck> checks = doctor_checks(&d, files);
-  const std::vector<std::string> names = device::device_names();
   std::erase_if(checks, [&](const MachineCheck& check) {
-    const bool device = std::ranges::find(names, check.what) != names.end();
+    const bool listed =
+        std::ranges::find(devices, check.what, &device::DeviceListing::name) != devices.end();
     const bool touch = check.what.starts_with("touch") && options.devices.front() != "open-haptics";
     const bool window = check.what == "window" && !options.window;
     const bool stream = check.what == "stream" && options.stream;
-    return device || touch || window ||
+    return listed || touch || window ||
            (!stream && (check.what == "video" || check.what == "stream")) ||
            (check.what == "sound" && !d.is_heard());
   });
@@ -237,11 +242,12 @@ SessionChecks session_checks(RunOptions& options, const Experiment& experiment) 
   add(check_definition(experiment));
   found.checks.push_back(check_consent(options, d));
   const fs::path files = there_above(session_folder(options));
-  add(check_machine(options, d, files));
+  const Listings devices = listed_devices(options);
+  add(check_machine(options, d, files, devices));
   const double needed = expected_bytes(d, found.seconds);
   found.checks.push_back(check_space("room for files", files, needed));
   found.checks.push_back(check_backup(backup_folder(options, d), files, needed));
-  add(check_chosen_devices(options));
+  add(check_chosen_devices(options, devices));
   found.checks.push_back(check_certificate(options, d));
   add(channel_checks(experiment));
   return found;
