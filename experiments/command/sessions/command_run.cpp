@@ -32,6 +32,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/backup.h"
+#include "experiments/study/session_name.h"
 #include "protocols/definition/button_uses.h"
 #include "protocols/definition/mirroring.h"
 

@@ -6,13 +6,13 @@
 
 #include <algorithm>
 #include <ctime>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "analysis/document/document.h"
 #include "core/base/whole_file.h"
 #include "experiments/runner/version.h"
+#include "protocols/definition/button_uses.h"
 #include "protocols/definition/room.h"
 
 namespace haptrial::experiments {
@@ -21,37 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using analysis::Document;
 using protocols::Definition;
-
-/// The table of a device in definitions and lab files; empty: it has none.
-std::string table_of(const std::string& device) {
-  const auto& vendors = device::vendor_devices();
-  const auto at = std::ranges::find_if(
-      vendors, [&](const device::VendorDevice& vendor) { return vendor.name == device; });
-  if (at != vendors.end()) {
-    return at->table;
-  }
-  return device == "mouse" || device == "gamepad" ? device : "";
-}
-
-/// The button for emergency stops, as the definition or lab file says it; -1: none.
-int stop_button_of(const std::string& device, const Definition& d) {
-  const std::map<std::string, int> defaults{
-      {"force_dimension", d.vendor.force_dimension.stop_button},
-      {"open_haptics", d.vendor.open_haptics.stop_button},
-      {"haply", d.vendor.haply.stop_button},
-      {"mouse", d.mouse.stop_button},
-      {"gamepad", d.gamepad.stop_button}};
-  const std::string name = table_of(device);
-  if (const auto at = defaults.find(name); at != defaults.end()) {
-    return at->second;
-  }
-  Table root = d.root();
-  if (name.empty() || !root.has(name)) {
-    return -1;
-  }
-  Table table = root.table(name);
-  return table.integer_or("stop_button", -1, -1, 31);
-}
 
 /// The greatest force that a session may command with this device [N].
 double greatest_force(const std::string& device, const Definition& d) {
@@ -67,8 +36,9 @@ double greatest_force(const std::string& device, const Definition& d) {
 std::vector<std::string> ways_to_stop(const RunOptions& options, const Definition& d) {
   std::vector<std::string> ways;
   for (const std::string& device : options.devices) {
-    if (const int button = stop_button_of(device, d); button >= 0) {
-      ways.push_back(fmt::format("Press button {} of the {} (counted from 0).", button, device));
+    if (const auto stop = protocols::stop_button_of(d, device); stop && stop->button >= 0) {
+      ways.push_back(
+          fmt::format("Press button {} of the {} (counted from 0).", stop->button, device));
     }
   }
   if (options.window) {

@@ -18,7 +18,9 @@
 #include "experiments/command/start/doctor_checks.h"
 #include "experiments/runner/devices.h"
 #include "experiments/study/session_length.h"
+#include "protocols/definition/button_uses.h"
 #include "protocols/definition/groups.h"
+#include "protocols/definition/mirroring.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -38,6 +40,10 @@ MachineCheck check_participant(RunOptions& options, const Experiment& experiment
     }
     check_recording(options, experiment.study->protocol(), d);
     check_pages(options, d);
+    const std::string& device = options.devices.front();
+    if (!options.resume && device != "virtual" && !replayed_file(device)) {
+      protocols::mirror_for(options.person.handedness, *experiment.definition);
+    }
     const fs::path file = session_file(options, d);
     check_session_file(options, file);
     const std::string changed =
@@ -68,8 +74,14 @@ MachineCheck check_group(const RunOptions& options, const Definition& d, std::st
   }
 }
 
-std::vector<MachineCheck> check_definition(const Experiment& experiment) {
+std::vector<MachineCheck> check_definition(const RunOptions& options,
+                                           const Experiment& experiment) {
   std::vector<std::string> warnings = warnings_of(experiment);
+  for (std::string& more : protocols::button_warnings(*experiment.definition, options.devices)) {
+    if (std::ranges::find(warnings, more) == warnings.end()) {
+      warnings.push_back(std::move(more));
+    }
+  }
   std::ranges::move(undrawable_texts(experiment), std::back_inserter(warnings));
   std::vector<MachineCheck> checks;
   for (const std::string& warning : warnings) {
@@ -239,7 +251,7 @@ SessionChecks session_checks(RunOptions& options, const Experiment& experiment) 
   found.checks.push_back(
       {"duration", State::kReady,
        "takes at most about " + planned_minutes(found.seconds) + ", pages and pauses not counted"});
-  add(check_definition(experiment));
+  add(check_definition(options, experiment));
   found.checks.push_back(check_consent(options, d));
   const fs::path files = there_above(session_folder(options));
   const Listings devices = listed_devices(options);
