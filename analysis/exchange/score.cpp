@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <string>
 
 #include "analysis/files/delimited.h"
 #include "core/base/error.h"
 #include "core/base/whole_file.h"
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::analysis {
@@ -33,6 +35,7 @@ std::string header() {
 
 int add_rows(const Score& score, const record::SessionReader& session, std::string& text) {
   const std::vector<record::PassRow> passes = session.passes();
+  const std::set<int> left_out = record::trials_left_out(session);
   int rows = 0;
   for (const ScoreValue& each : score.values(session)) {
     if (each.pass < 0 || static_cast<std::size_t>(each.pass) >= passes.size() ||
@@ -43,6 +46,9 @@ int add_rows(const Score& score, const record::SessionReader& session, std::stri
                       session.path().string(), score.name(), each.value, each.pass, passes.size()));
     }
     const record::PassRow& pass = passes[static_cast<std::size_t>(each.pass)];
+    if (!pass.practice && left_out.contains(pass.trial)) {
+      continue;
+    }
     exchange::RowText row(text, exchange::Delimited::kCsv);
     row.add(std::string_view(session.info().subject)).add(session.info().session);
     row.add(each.pass).add(static_cast<int>(pass.trial)).add(std::string_view(pass.phase.name()));

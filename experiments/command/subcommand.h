@@ -53,6 +53,7 @@ void add_keys(CLI::App& app, int& status);
 
 // sessions: to run them, look into them, mend and show them; definitions and devices
 void add_dry_run(CLI::App& app, int& status);
+void add_start(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);
 void add_secret(CLI::App& app, int& status);
 void add_roster(CLI::App& app, int& status);

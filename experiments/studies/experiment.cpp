@@ -13,6 +13,7 @@
 #include "core/base/file_text.h"
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
+#include "experiments/studies/mark_rule.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/button_uses.h"
@@ -38,6 +39,7 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
   experiment.study = &study_of(root);
   experiment.definition = experiment.study->protocol().read(root, file_name, folder);
   experiment.study->read_analysis(root, folder != nullptr);
+  read_mark_rule(root);
   protocols::check_markers(root, *experiment.definition);
   if (root.has("power")) {
     read_power_plan(root);

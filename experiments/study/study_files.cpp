@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
 #include "experiments/runner/version.h"
@@ -73,29 +76,68 @@ std::string remark_on_programs(const std::vector<fs::path>& files) {
                      program_version(), program_commit());
 }
 
-/// Adds notes and marks of the experimenters, and mistakes that participants reported.
+/// Marks of experimenters, in words by participant, and how many trials they are on.
+class MarkWords {
+ public:
+  void add(const std::string& subject, const record::MarkedTrial& mark) {
+    trials_.insert({subject, mark.practice, mark.trial});
+    own_[subject].push_back(fmt::format("{} {}: {}", mark.practice ? "practice trial" : "trial",
+                                        mark.trial, mark.reason));
+  }
+  /// Adds "BEGINNING: 3 trials: P01 2 (trial 5: slipped; trial 9: phone); P02 1 (…)."
+  void remark(const char* beginning, std::vector<std::string>& remarks) const {
+    std::vector<std::string> people;
+    for (const auto& [subject, marks] : own_) {
+      people.push_back(fmt::format("{}, {} ({})", subject, counted(marks.size(), "mark", "marks"),
+                                   fmt::join(marks, "; ")));
+    }
+    if (!people.empty()) {
+      remarks.push_back(fmt::format("{}: {}: {}.", beginning,
+                                    counted(trials_.size(), "trial", "trials"),
+                                    fmt::join(people, "; ")));
+    }
+  }
+
+ private:
+  std::map<std::string, std::vector<std::string>> own_;
+  std::set<std::tuple<std::string, bool, int>> trials_;
+};
+
+/// Adds what became of trials that experimenters marked as bad.
+void remark_on_marks(const std::vector<fs::path>& files, std::vector<std::string>& remarks) {
+  MarkWords left_out, kept, again;
+  for (const fs::path& file : files) {
+    const record::SessionReader reader(file);
+    for (const record::MarkedTrial& mark : record::marked_trials(reader)) {
+      (mark.left_out          ? left_out
+       : mark.presented_again ? again
+                              : kept)
+          .add(reader.info().subject, mark);
+    }
+  }
+  left_out.remark(
+      "Marked as bad by the experimenter, and left out of the analysis as the definition's "
+      "analysis.exclude_marked says",
+      remarks);
+  kept.remark("Marked as bad by the experimenter, and analysed all the same", remarks);
+  again.remark("Marked as bad by the experimenter, and presented again, which is what is analysed",
+               remarks);
+}
+
+/// Adds notes of the experimenters, and mistakes that participants reported.
 void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::string>& remarks) {
-  std::vector<std::string> bad;
   std::vector<std::string> mistakes;
   std::vector<std::string> notes;
   for (const fs::path& file : files) {
     const record::SessionReader reader(file);
     for (const record::EventRow& event : reader.events()) {
       const std::string line = fmt::format("{}, {}", reader.info().subject, event.text);
-      if (event.kind == "bad_trial") {
-        bad.push_back(line);
-      } else if (event.kind == "participant_error") {
+      if (event.kind == "participant_error") {
         mistakes.push_back(line);
       } else if (event.kind == "note" && !event.text.starts_with("console: ")) {
         notes.push_back(line);
       }
     }
-  }
-  if (!bad.empty()) {
-    remarks.push_back(
-        fmt::format("Marked as bad by the experimenter, and analysed all the same: "
-                    "{}: {}.",
-                    counted(bad.size(), "trial", "trials"), fmt::join(bad, "; ")));
   }
   if (!mistakes.empty()) {
     remarks.push_back(
@@ -185,6 +227,7 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
   if (const std::string remark = remark_on_consent(study.files); !remark.empty()) {
     study.remarks.push_back(remark);
   }
+  remark_on_marks(study.files, study.remarks);
   remark_on_trials(study.files, study.remarks);
   study.remarks.push_back(remark_on_programs(study.files));
   const std::vector<std::string> changed =

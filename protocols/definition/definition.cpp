@@ -8,6 +8,7 @@
 
 #include "core/base/definition/schema.h"
 #include "core/pages/read_pages.h"
+#include "protocols/definition/room.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -86,6 +87,10 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   if (root.has("lab")) {
     Table lab = root.table("lab");
     lab_schema().read(lab, definition);
+  }
+  if (root.has("room")) {
+    Table room = root.table("room");
+    room_schema().read(room);
   }
   definition.text = root.source();
   definition.document = std::make_shared<Table>(root.unread());

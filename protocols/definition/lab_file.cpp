@@ -95,8 +95,8 @@ std::optional<fs::path> certificate_of(Table& root, const fs::path& machines) {
 
 const std::vector<std::string>& machine_tables() {
   static const std::vector<std::string> kTables = [] {
-    std::vector<std::string> tables{"actuators", "certificate", "channels", "device",
-                                    "mouse",     "gamepad",     "pedal",    "screen"};
+    std::vector<std::string> tables{"actuators", "certificate", "channels", "device", "mouse",
+                                    "gamepad",   "pedal",       "room",     "screen"};
     for (const device::VendorDevice& vendor : device::vendor_devices()) {
       tables.emplace_back(vendor.table);
     }

@@ -14,6 +14,7 @@ DefinitionRules of_every_study() {
   DefinitionRules rules;
   rules.free = {"texts",
                 "lab",
+                "room",
                 "screen",
                 "certificate",
                 "device.certificate",

@@ -302,11 +302,41 @@ TEST_F(LiveChannelTest, AChannelWithoutASampleHasNeitherRateNorUncertainty) {
 TEST_F(LiveChannelTest, RecordKeepsAChannelWithoutTrials) {
   const GripOnAPipe grip((folder_ / "pipe").string());
   const std::string out = folder_ / "grip.h5";
-  const auto recorded =
-      test::run_command("haptrial record " + study(piped()) + " " + out + " --seconds 2");
+  const auto recorded = test::run_command("mkdir " + (folder_ / "disk").string() +
+                                          "; haptrial record " + study(piped()) + " " + out +
+                                          " --seconds 2 --backup " + (folder_ / "disk").string());
   ASSERT_EQ(recorded.status, 0) << recorded.errors;
+  EXPECT_EQ(file_text(folder_ / "disk/squeeze/grip.h5"), file_text(out)) << "the backup";
   EXPECT_FALSE(grip_of(record::SessionReader(out)).empty());
   EXPECT_THAT(test::run_command("haptrial info " + out).output, HasSubstr("channel     grip"));
+}
+
+/// The check of the channel in the list of `start`.
+nlohmann::json grip_check(const std::string& study, const std::string& out) {
+  const auto printed =
+      test::run_command("haptrial start " + study + " --check --json --out " + out);
+  const auto json = nlohmann::json::parse(printed.output);
+  for (const auto& check : json["checks"]) {
+    if (check["what"].get<std::string>().starts_with("channel")) {
+      return check;
+    }
+  }
+  return {};
+}
+
+TEST_F(LiveChannelTest, TheChecklistBeforeASessionListensToTheChannel) {
+  const std::string out = folder_ / "out";
+  {
+    const GripOnAPipe grip((folder_ / "pipe").string());
+    const auto answers = grip_check(study(piped()), out);
+    EXPECT_EQ(answers["state"], "ready") << answers;
+    EXPECT_THAT(answers["found"].get<std::string>(), HasSubstr("answers"));
+  }
+  const auto silent = grip_check(study("path = \"/dev/nowhere\"\n"), out);
+  EXPECT_EQ(silent["state"], "limited") << silent;
+  EXPECT_THAT(silent["found"].get<std::string>(), HasSubstr("/dev/nowhere"));
+  const auto needed = grip_check(study("path = \"/dev/nowhere\"\nrequired = true\n"), out);
+  EXPECT_EQ(needed["state"], "broken") << needed;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "analysis/bone_drilling/report/field_section.h"
@@ -18,6 +19,7 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/parallel.h"
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::analysis::drilling {
@@ -44,11 +46,16 @@ Sessions sessions_of(const ValidityStudy& study) {
     return [&](std::size_t first, std::size_t) {
       const record::SessionReader reader(study.files[first]);
       const ProcedureSetup setup = study.setup(reader);
+      const std::set<int> marked = record::trials_left_out(reader);
+      Sessions& own = by_file[first];
       for (const Procedure& p : load_procedures(reader, setup, &bones)) {
-        by_file[first].procedures.push_back(summarize(p, study.metrics, bones));
+        if (!marked.contains(p.number)) {
+          own.procedures.push_back(summarize(p, study.metrics, bones));
+        }
       }
-      by_file[first].nerves = load_nerves(reader, setup.group);
-      by_file[first].hints = load_hints(reader, by_file[first].procedures);
+      own.nerves = load_nerves(reader, setup.group);
+      own.hints = load_hints(reader, own.procedures);
+      std::erase_if(own.nerves, [&](const auto& nerve) { return marked.contains(nerve.number); });
     };
   });
   Sessions all;

@@ -17,6 +17,7 @@
 #include "core/base/error.h"
 #include "core/record/read/check_phases.h"
 #include "core/record/read/even_rows.h"
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
 #include "core/record/rows/session_tables.h"
@@ -111,6 +112,11 @@ class Extraction {
     result_.summary.info = reader.info();
     paths_ = ideal_paths(reader, result_.stimulus);
     counted_ = counted_passes(passes_);
+    for (const record::MarkedTrial& mark : record::marked_trials(reader)) {
+      if (mark.left_out) {
+        marked_.emplace(mark.trial, mark.reason);
+      }
+    }
     if (parameters.free_path && reader.has(record::table_of<record::TutoringRow>())) {
       expert_ = reader.rows<record::TutoringRow>();
     }
@@ -134,6 +140,13 @@ class Extraction {
     }
     const bool test = pass.phase == Phase::kTest;
     result_.summary.test_passes += test ? 1 : 0;
+    if (const auto mark = marked_.find(pass.trial); mark != marked_.end()) {
+      const auto counted = counted_.find(pass.trial);
+      if (test && (counted == counted_.end() || counted->second == i)) {
+        exclude(pass.trial, "it was marked as bad: " + mark->second);
+      }
+      return;
+    }
     if (pass.status != PassStatus::kCompleted) {
       if (test) {
         exclude(pass.trial, "the test pass was aborted");
@@ -333,6 +346,7 @@ class Extraction {
   std::vector<PassRow> passes_;
   std::map<std::int32_t, std::unique_ptr<PathPlaces>> places_;  // by block
   std::map<std::int32_t, IdealPath> paths_;                     // by block
+  std::map<std::int32_t, std::string> marked_;                  // why a trial is left out, by trial
   std::map<std::int32_t, std::size_t> counted_;                 // row of the test pass, by trial
   std::vector<record::TutoringRow> expert_;                     // ticks with an expert, in order
   std::map<std::int32_t, std::optional<double>> kept_;          // by trial

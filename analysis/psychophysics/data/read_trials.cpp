@@ -1,8 +1,10 @@
 #include "analysis/psychophysics/data/read_trials.h"
 
 #include <algorithm>
+#include <set>
 
 #include "core/base/parallel.h"
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_progress.h"
 #include "core/record/rows/moving_body_row.h"
@@ -17,7 +19,10 @@ namespace {
 class SessionTrials {
  public:
   explicit SessionTrials(const record::SessionReader& reader)
-      : reader_(reader), passes_(reader.passes()), trials_(passes_.size()) {
+      : reader_(reader),
+        left_out_(record::trials_left_out(reader)),
+        passes_(reader.passes()),
+        trials_(passes_.size()) {
     for (std::size_t i = 0; i < passes_.size(); ++i) {
       add_pass(i);
     }
@@ -79,6 +84,7 @@ class SessionTrials {
     trial.block = pass.block;
     trial.condition = pass.condition;
     trial.practice = pass.practice;
+    trial.left_out = !pass.practice && left_out_.contains(pass.trial);
     trial.completed = pass.status == record::PassStatus::kCompleted;
     trial.start = static_cast<double>(pass.first_sample) / reader_.info().rate;
     trial.first_sample = pass.first_sample;
@@ -138,6 +144,7 @@ class SessionTrials {
   }
 
   const record::SessionReader& reader_;
+  std::set<int> left_out_;
   std::vector<record::PassRow> passes_;
   std::vector<StudyTrial> trials_;
 };

@@ -154,7 +154,10 @@ void add_trial(std::string& text, const TrialsData& data, const StudyTrial& tria
   row.add(session.simulated ? 1 : 0).add(session.pilot ? 1 : 0);
   row.add(trial.trial).add(trial.attempt).add(trial.block).add(trial.condition).add(trial.probe);
   row.add(trial.practice ? 1 : 0);
-  row.add(!trial.completed ? "aborted" : trial.again ? "out of time" : "completed");
+  row.add(!trial.completed ? "aborted"
+          : trial.again    ? "out of time"
+          : trial.left_out ? "marked as bad"
+                           : "completed");
   row.add(trial.counts() ? 1 : 0).add(trial.start).add(trial.saturated);
   add_levels(row, trial, columns);
   add_answers(row, trial, columns);

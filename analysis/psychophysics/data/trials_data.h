@@ -90,6 +90,7 @@ struct StudyTrial {
   Word probe;  // empty: none
   bool practice{false};
   bool completed{true};
+  bool left_out{false};            // marked as bad, and the definition leaves such trials out
   bool again{false};               // an answer was too fast or too slow, and the trial came again
   double start{0.0};               // since the session's first tick [s]
   std::uint64_t first_sample{0};   // of the pass, in /samples of the session
@@ -101,8 +102,11 @@ struct StudyTrial {
   std::vector<TouchedBody> touched;
   std::vector<MovingBody> moving;
 
-  /// Whether it is part of the study: completed, not presented again, and no practice.
-  bool counts() const { return completed && !again && !practice; }
+  /// Whether it was a trial of the study: completed, not presented again, and no practice. Levels
+  /// of later trials may follow from it.
+  bool happened() const { return completed && !again && !practice; }
+  /// Whether it is analysed.
+  bool counts() const { return happened() && !left_out; }
 };
 
 /// All passes of a study, session after session, in the order of their recording.

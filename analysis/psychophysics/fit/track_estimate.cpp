@@ -161,8 +161,8 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
   std::vector<std::vector<psychometric::Level>> levels;
   for (std::size_t i = 0; i < data.trials.size(); ++i) {
     const StudyTrial& trial = data.trials[i];
-    if (!trial.counts() || trial.levels.empty()) {
-      continue;
+    if (!trial.happened() || trial.levels.empty()) {  // also of trials that are left out: the
+      continue;                                       // procedure went on from their answers
     }
     const GivenLevel& first = trial.levels.front();
     // Backwards: trials of a session lie together.

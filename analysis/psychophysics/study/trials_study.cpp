@@ -30,7 +30,7 @@ std::vector<ParticipantTrials> participants_of(const TrialsData& data, const Tri
       ++own.aborted;
     } else if (trial.practice) {
       ++own.practice;
-    } else {
+    } else if (!trial.left_out) {
       ++own.counted;
       std::set<std::string> limited;
       for (const StageTime& stage : trial.stages) {

@@ -35,6 +35,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_texts(app, status);
   add_doctor(app, status);
   add_dry_run(app, status);
+  add_start(app, status);
   add_run(app, status);
   add_secret(app, status);
   add_roster(app, status);

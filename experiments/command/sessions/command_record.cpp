@@ -17,6 +17,8 @@
 #include "experiments/control/signals.h"
 #include "experiments/runner/version.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/study/backup.h"
+#include "protocols/definition/room.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -26,6 +28,7 @@ struct RecordOptions {
   std::string file;
   std::string subject{"S01"};
   std::optional<double> seconds;
+  std::string backup;
 };
 
 record::SessionInfo info_of(const protocols::Definition& d, const RecordOptions& options) {
@@ -98,6 +101,11 @@ int record(const RecordOptions& options) {
   writer.set_timing({}, {0, 0, 0});
   writer.close();
   fmt::print("{}: {:.1f} s\n", options.file, watch.seconds());
+  const std::string folder = options.backup.empty() ? protocols::room_of(d).backup : options.backup;
+  if (!folder.empty()) {
+    const BackupResult backup = try_back_up(options.file, folder, d.name);
+    fmt::print(backup.kept ? stdout : stderr, "{}\n", backup.sentence);
+  }
   return 0;
 }
 
@@ -113,6 +121,8 @@ void add_record(CLI::App& app, int& status) {
   sub->add_option("--subject", o.subject, "Whom the recording is of")->capture_default_str();
   sub->add_option("--seconds", o.seconds, "End by itself after this time [s]")
       ->check(CLI::Range(0.1, 1e6));
+  sub->add_option("--backup", o.backup,
+                  "Folder on another disk for a copy of the file (default: backup of [room])");
 }
 
 }  // namespace haptrial::experiments

@@ -16,6 +16,7 @@
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
+#include "experiments/study/session_length.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -104,6 +105,17 @@ void print_roster(const Roster& roster) {
   }
   if (roster.next.empty()) {
     fmt::print("every planned participant has had every session\n");
+  }
+}
+
+/// How long the rest of the study takes in sessions.
+void print_to_come(const Roster& roster, const protocols::Definition& d) {
+  const int left = sessions_to_come(roster);
+  if (left > 0) {
+    const double seconds = session_seconds(d, d.design.trials);
+    fmt::print("to come: {} of at most about {} each, {:.1f} hours in all, pages not counted\n",
+               counted(left, "session", "sessions"), planned_minutes(seconds),
+               left * seconds / 3600.0);
   }
 }
 
@@ -196,6 +208,7 @@ int roster(const RosterOptions& options) {
   }
   const Roster roster = make_roster(request);
   print_roster(roster);
+  print_to_come(roster, *experiment.definition);
   write_new(options.json, json_of(roster));
   write_new(options.csv, csv_of(roster));
   return 0;

@@ -22,6 +22,7 @@
 #include "experiments/command/sessions/meet_partner.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/sessions/run_checks.h"
+#include "experiments/command/sessions/run_command.h"
 #include "experiments/command/sessions/run_options.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/console/console.h"
@@ -30,6 +31,7 @@
 #include "experiments/control/signals.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/study/backup.h"
 #include "experiments/study/session_name.h"
 #include "protocols/definition/button_uses.h"
 #include "protocols/definition/mirroring.h"
@@ -37,9 +39,6 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kSessions = "out/sessions";
-constexpr const char* kTeaching = "out/teaching";  // with --teach
 
 /// Several devices of one vendor are told apart by their order.
 void choose_devices(const RunOptions& options, SessionRequest& request) {
@@ -114,17 +113,6 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
   return run_session(request);
 }
 
-/// Somebody must be able to answer what pages ask.
-void check_pages(const RunOptions& options, const protocols::Definition& definition) {
-  const bool person = options.devices.front() != "virtual";
-  if (person && !definition.pages.empty() && !options.window && !options.console &&
-      !options.keyboard) {
-    throw InputError(
-        "the definition has [pages], which nobody could read or answer; add --window, --console "
-        "or --keyboard");
-  }
-}
-
 /// Those of the definition's pages that are to be served.
 protocols::AuxiliaryPages chosen_pages(const RunOptions& options,
                                        const protocols::Protocol& protocol,
@@ -165,13 +153,25 @@ bool has_better_hand(const std::string& device) {
   return device != "virtual" && !replayed_file(device);
 }
 
-int run(const RunOptions& asked) {
+/// Copies the file of an ended session, if the room or the command line has a folder for it.
+void keep_backup(const RunOptions& options, const protocols::Definition& setup,
+                 const fs::path& file) {
+  const std::string folder = backup_folder(options, setup);
+  if (folder.empty()) {
+    return;
+  }
+  const BackupResult result = try_back_up(file, folder, setup.name);
+  fmt::print(result.kept ? stdout : stderr, "{}\n", result.sentence);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+RunEnd run_command(const RunOptions& asked) {
   watch_for_interrupt();
   watch_fatal_signals();
   RunOptions options = asked;
-  if (options.out.empty()) {
-    options.out = options.teach ? kTeaching : kSessions;
-  }
+  options.out = session_folder(options);
   check_run_options(options);
   if (::isatty(STDERR_FILENO) != 0) {
     fmt::print(stderr, "preparing {}\n", options.definition);  // bones take seconds
@@ -221,8 +221,7 @@ int run(const RunOptions& asked) {
     request.tutor = protocols::read_tutor_choice(options.tutor);
     protocols::read_model(*request.tutor);  // before a folder is made
   }
-  request.file =
-      fs::path(options.out) / session_file_name(options.subject, request.session, setup.sessions());
+  request.file = session_file(options, setup);
   check_session_file(options, request.file);
   options.person.handedness = handedness_of(options, request.file);
   if (has_better_hand(options.devices.front())) {
@@ -265,6 +264,7 @@ int run(const RunOptions& asked) {
     fmt::print("stopped with trials left; the same command with --resume continues with them\n");
   }
   if (!done.stopped) {
+    keep_backup(options, setup, request.file);
     for (const std::string& line : experiment.study->after_session(
              setup, fs::path(options.definition).parent_path(), request.file)) {
       fmt::print("{}\n", line);
@@ -280,16 +280,22 @@ int run(const RunOptions& asked) {
   if (const auto late = record::too_many_overruns(done.ticks, done.overruns)) {
     fmt::print("WARNING: the servo loop did not keep its rate: {}\n", *late);
   }
-  return 0;
+  return {request.file, options.subject, done.stopped};
 }
-
-}  // namespace
 
 void add_run(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "run", "Run one participant's session in real time",
                              "haptrial run first_experiment --subject P01",
                              {"the session file ID.h5, for analyze", "guide-experimenter.md"});
-  auto& o = options_of<RunOptions>(*sub, status, run);
+  auto& options = options_of<RunOptions>(*sub, status, [](const RunOptions& asked) {
+    run_command(asked);
+    return 0;
+  });
+  declare_run_options(*sub, options);
+}
+
+void declare_run_options(CLI::App& app, RunOptions& o) {
+  CLI::App* sub = &app;
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
   sub->add_option("--subject", o.subject,
                   "Participant's identifier: letters, digits, '-', '_' (default: the next one of "
@@ -344,9 +350,14 @@ void add_run(CLI::App& app, int& status) {
                   "Participant's number, for the order of conditions (default: the one that ends "
                   "the identifier)");
   sub->add_option("--trials", o.trials, "Number of trials, from the first (default: all)");
+  RunOptions teaching;
+  teaching.teach = 1;
   sub->add_option("--out", o.out,
                   fmt::format("Folder for the session file (default: {}; with --teach {})",
-                              kSessions, kTeaching));
+                              session_folder({}), session_folder(teaching)));
+  sub->add_option("--backup", o.backup,
+                  "Folder on another disk for a copy of the ended session (default: backup of "
+                  "[room])");
 }
 
 }  // namespace haptrial::experiments

@@ -227,4 +227,13 @@ void check_recording(const RunOptions& options, const protocols::Protocol& proto
   protocol.check_replayed(setup, reader);
 }
 
+void check_pages(const RunOptions& options, const protocols::Definition& setup) {
+  const bool person = options.devices.front() != "virtual";
+  if (person && !setup.pages.empty() && !options.window && !options.console && !options.keyboard) {
+    throw InputError(
+        "the definition has [pages], which nobody could read or answer; add --window, --console "
+        "or --keyboard");
+  }
+}
+
 }  // namespace haptrial::experiments

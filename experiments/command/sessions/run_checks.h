@@ -32,4 +32,7 @@ std::string check_study(const RunOptions& options, const protocols::Protocol& pr
 void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
                      const protocols::Definition& setup);
 
+/// @throws InputError if nobody could read or answer the definition's pages.
+void check_pages(const RunOptions& options, const protocols::Definition& setup);
+
 }  // namespace haptrial::experiments

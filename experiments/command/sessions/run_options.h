@@ -1,10 +1,15 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/record/rows/session_types.h"
+
+namespace haptrial::protocols {
+struct Definition;
+}
 
 namespace haptrial::experiments {
 
@@ -18,6 +23,7 @@ struct RunOptions {
   std::optional<int> participant;
   std::optional<int> session;
   std::string out;
+  std::string backup;
   std::optional<int> trials;
   std::string tutor;
   std::optional<int> teach;
@@ -37,5 +43,12 @@ struct RunOptions {
   std::string language;
   record::Participant person;
 };
+
+/// Folder of the session files: `out`, or where they go if it is empty.
+std::string session_folder(const RunOptions& options);
+/// The session's file, of a subject that is chosen.
+std::filesystem::path session_file(const RunOptions& options, const protocols::Definition& setup);
+/// Folder for backups: the option's, or the room's; empty: none.
+std::string backup_folder(const RunOptions& options, const protocols::Definition& setup);
 
 }  // namespace haptrial::experiments

@@ -5,9 +5,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "experiments/command/start/doctor_checks.h"
 #include "experiments/command/start/examples.h"
-#include "experiments/command/start/machine_checks.h"
-#include "experiments/command/start/touch_checks.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 
@@ -17,36 +16,6 @@ namespace {
 struct DoctorOptions {
   std::string where{"."};
 };
-
-constexpr double kClockSeconds = 2.0;
-constexpr double kUsualRate = 1000.0;  // [Hz]
-
-const char* word_of(MachineCheck::State state) {
-  switch (state) {
-    case MachineCheck::State::kReady:
-      return "ready";
-    case MachineCheck::State::kLimited:
-      return "limited";
-    case MachineCheck::State::kAbsent:
-      return "absent";
-    case MachineCheck::State::kUnused:
-      return "unused";
-    case MachineCheck::State::kBroken:
-      break;
-  }
-  return "BROKEN";
-}
-
-/// Marks what sessions of a definition do without.
-void mark_unused(const protocols::Definition& definition, std::vector<MachineCheck>& checks) {
-  for (MachineCheck& check : checks) {
-    const bool sound = check.what == "sound" && !definition.is_heard();
-    const bool beside = check.what == "video" || check.what == "stream";  // asked for by options
-    if ((sound || beside) && check.state != MachineCheck::State::kReady) {
-      check.state = MachineCheck::State::kUnused;
-    }
-  }
-}
 
 /// A file of a definition, or the name of a shipped one, is no folder.
 bool is_definition(const std::string& where) {
@@ -62,30 +31,11 @@ int doctor(const DoctorOptions& options) {
   if (is_definition(where)) {
     experiment = load_experiment(definition_or_example(where));
   }
-  const std::string folder = experiment ? "." : where;
-  const double rate = experiment ? experiment->definition->rate : kUsualRate;
-  std::vector<MachineCheck> checks{check_clock(kClockSeconds, rate),
-                                   check_real_time(),
-                                   check_off_screen(),
-                                   check_window(),
-                                   check_sound(),
-                                   check_video(),
-                                   check_stream(),
-                                   check_disk(folder)};
-  for (MachineCheck& device : check_devices()) {
-    checks.push_back(std::move(device));
-  }
-  const TouchSearch here = this_machine(
-      experiment ? std::optional(experiment->definition->vendor.open_haptics.name) : std::nullopt);
-  for (MachineCheck& touch : check_touch(here)) {
-    checks.push_back(std::move(touch));
-  }
-  if (experiment) {
-    mark_unused(*experiment->definition, checks);
-  }
+  std::vector<MachineCheck> checks =
+      doctor_checks(experiment ? experiment->definition.get() : nullptr, experiment ? "." : where);
   std::ranges::stable_sort(checks, {}, &MachineCheck::state);  // what asks for something first
   for (const MachineCheck& check : checks) {
-    fmt::print("{:<15}  {:<7}  {}\n", check.what, word_of(check.state), check.found);
+    fmt::print("{:<15}  {:<7}  {}\n", check.what, name_of(check.state), check.found);
   }
   const auto broken =
       std::ranges::count(checks, MachineCheck::State::kBroken, &MachineCheck::state);

@@ -13,6 +13,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "experiments/studies/mark_rule.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
 
@@ -181,6 +182,7 @@ std::vector<KnownKey> keys_of(const Study& study) {
       // What the analysis asks for is asked for all the same.
     }
     study.read_analysis(root, true);
+    read_mark_rule(root);
     if (root.has("power")) {
       read_power_plan(root);
     }

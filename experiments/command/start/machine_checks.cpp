@@ -51,6 +51,22 @@ MachineCheck ready_unless(const char* what, const std::string& refusal, State ot
 
 }  // namespace
 
+const char* name_of(MachineCheck::State state) {
+  switch (state) {
+    case State::kReady:
+      return "ready";
+    case State::kLimited:
+      return "limited";
+    case State::kAbsent:
+      return "absent";
+    case State::kUnused:
+      return "unused";
+    case State::kBroken:
+      break;
+  }
+  return "BROKEN";
+}
+
 MachineCheck check_clock(double seconds, double rate) {
   realtime::ServoLoop loop(realtime::ClockKind::kReal, rate);
   CountedTicks task(seconds * rate);

@@ -20,6 +20,9 @@ struct MachineCheck {
   std::string found;  // a sentence
 };
 
+/// "ready", "limited", "absent", "unused", "BROKEN".
+const char* name_of(MachineCheck::State state);
+
 /// Some seconds of the servo loop, by an otherwise idle program: how late its ticks are.
 /// @param rate  of its ticks [Hz]
 MachineCheck check_clock(double seconds, double rate);

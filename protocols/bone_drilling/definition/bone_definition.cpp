@@ -280,6 +280,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     }
   }
   read_groups(root, d);
+  root.leave("analysis");  // of the rule on marked trials
   read_surgeons(root, d);
   bone_display_schema().read(display, d);
   read_sound(root, d, folder);

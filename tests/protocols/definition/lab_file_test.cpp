@@ -136,7 +136,8 @@ TEST_F(LabFileTest, HoldsOnlyTablesOfMachines) {
       (folder_ / "room/lab.toml").string() + ":" + std::to_string(line) +
           ": guidance is not a table of a lab file; allowed: actuators, certificate, channels, "
           "device, "
-          "force_dimension, gamepad, hapi, haply, mouse, open_haptics, paddle, pedal, screen; "
+          "force_dimension, gamepad, hapi, haply, mouse, open_haptics, paddle, pedal, room, "
+          "screen; "
           "what belongs to the study stays in the definition");
   lab_ = "[screem]\nmonitor = 0\n";
   EXPECT_THAT(refusal(), HasSubstr("lab.toml:1: screem is not a table of a lab file; did you mean "

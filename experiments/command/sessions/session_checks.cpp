@@ -1,0 +1,268 @@
+#include "experiments/command/sessions/session_checks.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <system_error>
+
+#include "core/base/counted.h"
+#include "core/base/error.h"
+#include "core/device/catalog.h"
+#include "experiments/command/sessions/channel_checks.h"
+#include "experiments/command/sessions/next_session.h"
+#include "experiments/command/sessions/run_checks.h"
+#include "experiments/command/start/doctor_checks.h"
+#include "experiments/runner/devices.h"
+#include "experiments/study/session_length.h"
+#include "protocols/definition/button_uses.h"
+#include "protocols/definition/groups.h"
+#include "protocols/definition/mirroring.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using protocols::Definition;
+using State = MachineCheck::State;
+
+constexpr double kMegabyte = 1e6;
+
+/// Chooses who comes, and refuses what `run` would refuse later.
+MachineCheck check_participant(RunOptions& options, const Experiment& experiment) {
+  const Definition& d = *experiment.definition;
+  try {
+    if (!options.pilot || options.subject.empty()) {
+      choose_session(options, experiment);
+    }
+    check_recording(options, experiment.study->protocol(), d);
+    check_pages(options, d);
+    const std::string& device = options.devices.front();
+    if (!options.resume && device != "virtual" && !replayed_file(device)) {
+      protocols::mirror_for(options.person.handedness, *experiment.definition);
+    }
+    const fs::path file = session_file(options, d);
+    check_session_file(options, file);
+    const std::string changed =
+        options.resume ? "" : check_study(options, experiment.study->protocol(), d, file);
+    std::string words = options.subject;
+    words += d.sessions() > 1
+                 ? fmt::format(", session {} of {}", options.session.value_or(1), d.sessions())
+                 : "";
+    words += options.pilot ? ", a pilot" : options.resume ? ", to be resumed" : "";
+    return {"participant", State::kReady,
+            words + ", into " + file.string() + (changed.empty() ? "" : "; " + changed)};
+  } catch (const InputError& error) {
+    return {"participant", State::kBroken, error.what()};
+  }
+}
+
+/// The group that the number at the end of the identifier says; empty: the study has none.
+MachineCheck check_group(const RunOptions& options, const Definition& d, std::string& group) {
+  const auto groups = protocols::study_groups(d.text, d.file_name);
+  if (groups.size() < 2 || options.subject.empty()) {
+    return {"group", State::kUnused, "the study has one group of everybody"};
+  }
+  try {
+    group = protocols::group_of(groups, options.subject);
+    return {"group", State::kReady, group};
+  } catch (const InputError& error) {
+    return {"group", options.pilot ? State::kLimited : State::kBroken, error.what()};
+  }
+}
+
+std::vector<MachineCheck> check_definition(const RunOptions& options,
+                                           const Experiment& experiment) {
+  std::vector<std::string> warnings = warnings_of(experiment);
+  for (std::string& more : protocols::button_warnings(*experiment.definition, options.devices)) {
+    if (std::ranges::find(warnings, more) == warnings.end()) {
+      warnings.push_back(std::move(more));
+    }
+  }
+  std::ranges::move(undrawable_texts(experiment), std::back_inserter(warnings));
+  std::vector<MachineCheck> checks;
+  for (const std::string& warning : warnings) {
+    checks.push_back({"definition", State::kLimited, warning});
+  }
+  if (checks.empty()) {
+    checks.push_back({"definition", State::kReady, "valid, without warnings"});
+  }
+  return checks;
+}
+
+MachineCheck check_consent(const RunOptions& options, const Definition& d) {
+  const bool page = std::ranges::any_of(d.pages.pages, [](const pages::Page& each) {
+    return each.kind == pages::PageKind::kConsent;
+  });
+  if (page) {
+    return {"consent", State::kReady, "the participant is asked on a page"};
+  }
+  if (!options.person.consent_confirmed.empty()) {
+    return {"consent", State::kReady, "confirmed by --consent"};
+  }
+  return {"consent", State::kLimited,
+          "the definition has no page of kind consent; let the participant sign a form and add "
+          "--consent DATE"};
+}
+
+/// Every device, as the options' library finds it.
+using Listings = std::vector<device::DeviceListing>;
+
+Listings listed_devices(const RunOptions& options) {
+  return device::list_devices(
+      options.library.empty()
+          ? std::map<std::string, std::string>{}
+          : std::map<std::string, std::string>{{options.devices.front(), options.library}});
+}
+
+/// The device itself is opened by the session: opening may move the handle.
+std::vector<MachineCheck> check_chosen_devices(const RunOptions& options, const Listings& all) {
+  std::vector<MachineCheck> checks;
+  for (const std::string& name : options.devices) {
+    const auto at = std::ranges::find(all, name, &device::DeviceListing::name);
+    if (at == all.end()) {
+      checks.push_back({"device", State::kReady, name + ", which the session opens"});
+    } else {
+      checks.push_back({"device", at->available ? State::kReady : State::kBroken,
+                        fmt::format("{}: {}", name, at->what)});
+    }
+  }
+  return checks;
+}
+
+MachineCheck check_certificate(const RunOptions& options, const Definition& d) {
+  const std::string& name = options.devices.front();
+  if (name == "virtual" || name == "mouse" || name == "gamepad" || replayed_file(name)) {
+    return {"certificate", State::kUnused, "none is needed for " + name};
+  }
+  if (!d.certificate) {
+    return {"certificate", State::kLimited,
+            fmt::format("[device] names none; haptrial device-test {} --certificate FOLDER makes "
+                        "one, so that reports give forces as measured",
+                        name)};
+  }
+  return {"certificate", d.certificate->simulated ? State::kLimited : State::kReady,
+          fmt::format("{}, of {}{}", d.certificate->file, d.certificate->device,
+                      d.certificate->simulated ? "; a simulated one: make one of the device itself"
+                                               : "; compare the name with the device's plate")};
+}
+
+/// The nearest folder that is there: that of the files may not have been made yet.
+fs::path there_above(fs::path folder) {
+  std::error_code ignored;
+  folder = fs::absolute(folder, ignored).lexically_normal();
+  while (!fs::is_directory(folder, ignored) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  return folder;
+}
+
+double free_bytes(const fs::path& folder) {
+  std::error_code error;
+  const auto space = fs::space(folder, error);
+  return error ? 0.0 : static_cast<double>(space.available);
+}
+
+/// Bytes that a session writes at most, roughly: the rows of its samples as they are in memory, and
+/// half as much for other tables.
+double expected_bytes(const Definition& d, double seconds) {
+  return 1.5 * static_cast<double>(sizeof(record::Sample)) * d.rate * seconds;
+}
+
+MachineCheck check_space(const char* what, const fs::path& folder, double needed) {
+  const double free = free_bytes(folder);
+  return {what,
+          free < needed         ? State::kBroken
+          : free < 2.0 * needed ? State::kLimited
+                                : State::kReady,
+          fmt::format("{}: {:.0f} MB are free, and the session needs about {:.0f} MB{}",
+                      folder.string(), free / kMegabyte, needed / kMegabyte,
+                      free < 2.0 * needed ? "; make room" : "")};
+}
+
+bool on_one_disk(const fs::path& a, const fs::path& b) {
+  struct stat first {};
+  struct stat second {};
+  return ::stat(a.c_str(), &first) == 0 && ::stat(b.c_str(), &second) == 0 &&
+         first.st_dev == second.st_dev;
+}
+
+/// A backup that fails spoils no session: never broken.
+MachineCheck check_backup(const std::string& folder, const fs::path& files, double needed) {
+  std::error_code ignored;
+  if (folder.empty()) {
+    return {"backup", State::kLimited,
+            "none is made; write backup in [room] of the lab file, or copy the file by hand"};
+  }
+  if (!fs::is_directory(folder, ignored)) {
+    return {"backup", State::kLimited,
+            folder + ": is not there; plug in its disk, or name another folder with --backup"};
+  }
+  if (const MachineCheck written = check_disk(folder); written.state == State::kBroken) {
+    return {"backup", State::kLimited, written.found};
+  }
+  if (on_one_disk(folder, files)) {
+    return {"backup", State::kLimited,
+            folder + ": is on the same disk as the session, so that both may be lost at once"};
+  }
+  MachineCheck space = check_space("backup", folder, needed);
+  space.state = space.state == State::kReady ? State::kReady : State::kLimited;
+  return space;
+}
+
+/// The machine's checks that matter for this session: not other devices, nor what it does without.
+std::vector<MachineCheck> check_machine(const RunOptions& options, const Definition& d,
+                                        const fs::path& files, const Listings& devices) {
+  std::vector<MachineCheck> checks = doctor_checks(&d, files);
+  std::erase_if(checks, [&](const MachineCheck& check) {
+    const bool listed =
+        std::ranges::find(devices, check.what, &device::DeviceListing::name) != devices.end();
+    const bool touch = check.what.starts_with("touch") && options.devices.front() != "open-haptics";
+    const bool window = check.what == "window" && !options.window;
+    const bool stream = check.what == "stream" && options.stream;
+    return listed || touch || window ||
+           (!stream && (check.what == "video" || check.what == "stream")) ||
+           (check.what == "sound" && !d.is_heard());
+  });
+  return checks;
+}
+
+}  // namespace
+
+bool SessionChecks::ready() const {
+  return std::ranges::find(checks, State::kBroken, &MachineCheck::state) == checks.end();
+}
+
+SessionChecks session_checks(RunOptions& options, const Experiment& experiment) {
+  const Definition& d = *experiment.definition;
+  options.out = session_folder(options);
+  SessionChecks found;
+  const auto add = [&found](std::vector<MachineCheck> more) {
+    std::ranges::move(more, std::back_inserter(found.checks));
+  };
+  found.checks.push_back(check_participant(options, experiment));
+  found.checks.push_back(check_group(options, d, found.group));
+  found.subject = options.subject;
+  found.session = options.session.value_or(1);
+  found.seconds = session_seconds(d, options.trials.value_or(d.design.trials));
+  found.checks.push_back(
+      {"duration", State::kReady,
+       "takes at most about " + planned_minutes(found.seconds) + ", pages and pauses not counted"});
+  add(check_definition(options, experiment));
+  found.checks.push_back(check_consent(options, d));
+  const fs::path files = there_above(session_folder(options));
+  const Listings devices = listed_devices(options);
+  add(check_machine(options, d, files, devices));
+  const double needed = expected_bytes(d, found.seconds);
+  found.checks.push_back(check_space("room for files", files, needed));
+  found.checks.push_back(check_backup(backup_folder(options, d), files, needed));
+  add(check_chosen_devices(options, devices));
+  found.checks.push_back(check_certificate(options, d));
+  add(channel_checks(experiment));
+  return found;
+}
+
+}  // namespace haptrial::experiments

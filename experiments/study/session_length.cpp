@@ -1,0 +1,36 @@
+#include "experiments/study/session_length.h"
+
+#include <algorithm>
+
+#include "experiments/study/roster.h"
+#include "protocols/definition/definition.h"
+
+namespace haptrial::experiments {
+
+double session_seconds(const protocols::Definition& d, int trials) {
+  const int breaks = d.design.break_after > 0 ? (trials - 1) / d.design.break_after : 0;
+  return d.longest(trials) + breaks * d.design.break_duration;
+}
+
+int sessions_to_come(const Roster& roster) {
+  int planned = 0;
+  for (const RosterGroup& group : roster.groups) {
+    planned += group.planned * roster.sessions;
+  }
+  int had = 0;
+  for (const RosterPerson& person : roster.persons) {
+    if (person.pilot || person.excluded || person.never_took_part()) {
+      continue;
+    }
+    if (person.declined()) {
+      had += roster.sessions;  // nothing more is to be run
+      continue;
+    }
+    had += static_cast<int>(std::ranges::count_if(person.sessions, [](const RosterSession& each) {
+      return each.state == SessionState::kDone || each.state == SessionState::kAborted;
+    }));
+  }
+  return std::max(0, planned - had);
+}
+
+}  // namespace haptrial::experiments

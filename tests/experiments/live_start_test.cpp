@@ -1,0 +1,186 @@
+// `haptrial start`: the checklist, the session behind it with its backup, and the emergency card.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/record/read/marked_trials.h"
+#include "core/record/read/session_reader.h"
+#include "tests/experiments/console_person.h"
+#include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::live_start_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::LiveCommand;
+using test::run_command;
+using testing::HasSubstr;
+using testing::Not;
+
+class LiveStartTest : public testing::Test {
+ protected:
+  void write_study(const std::string& room = "") {
+    fs::create_directory(folder_ / "disk");
+    test::write_text(folder_ / "study.toml", test::brisk_text() + room);
+  }
+  std::string room() const {
+    return "\n[room]\nbackup = \"" + (folder_ / "disk").string() + "\"\n";
+  }
+  std::string arguments(const std::string& more) const {
+    return "start '" + (folder_ / "study.toml").string() + "' --out '" +
+           (folder_ / "out").string() + "' --trials 1 " + more;
+  }
+  CommandResult start(const std::string& more) const {
+    return run_command("haptrial " + arguments(more) + " < /dev/null");
+  }
+  /// The check of a name in what `start --check --json` printed.
+  static nlohmann::json check_of(const CommandResult& result, const std::string& what) {
+    const auto json = nlohmann::json::parse(result.output);
+    for (const auto& check : json["checks"]) {
+      if (check["what"] == what) {
+        return check;
+      }
+    }
+    return {};
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LiveStartTest, WithoutATerminalItSaysWhatToDo) {
+  write_study();
+  const CommandResult refused = start("");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("needs a terminal; start --check prints the checklist"));
+  EXPECT_EQ(start("--json").status, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(LiveStartTest, TheChecklistSaysWhoComesAndWhatIsMissing) {
+  write_study(room());
+  const CommandResult good = start("--check --json");
+  ASSERT_EQ(good.status, 0) << good.output << good.errors;
+  const auto json = nlohmann::json::parse(good.output);
+  EXPECT_EQ(json["participant"], "P01");
+  EXPECT_TRUE(json["ready"]);
+  EXPECT_GE(json["minutes"], 1.0);
+  EXPECT_EQ(check_of(good, "participant")["state"], "ready");
+  EXPECT_EQ(check_of(good, "device")["state"], "ready");
+  EXPECT_EQ(check_of(good, "consent")["state"], "limited") << "the study has no such page";
+  EXPECT_EQ(check_of(good, "backup")["state"], "limited") << "the folders are on one disk";
+  EXPECT_EQ(check_of(good, "room for files")["state"], "ready");
+  EXPECT_EQ(check_of(start("--check --json --consent 2026-11-20"), "consent")["state"], "ready");
+
+  fs::remove(folder_ / "disk");
+  EXPECT_THAT(check_of(start("--check --json"), "backup")["found"].get<std::string>(),
+              HasSubstr("is not there; plug in its disk"));
+  fs::create_directory(folder_ / "out");
+  test::write_text(folder_ / "out/P05.h5.partial", "");
+  const CommandResult begun = start("--check --json --subject P05");
+  EXPECT_EQ(begun.status, 1) << begun.output;
+  EXPECT_FALSE(nlohmann::json::parse(begun.output)["ready"]);
+  EXPECT_EQ(check_of(begun, "participant")["state"], "broken");
+  EXPECT_EQ(start("--check --subject 'P 5'").status, 2) << "no identifier";
+}
+
+TEST_F(LiveStartTest, AfterTheQuestionItRunsTheSessionAndBacksItUp) {
+  if (!LiveCommand::has_terminals()) {
+    GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  }
+  write_study(room());
+  LiveCommand declined(arguments(""), "", LiveCommand::Where::kTerminal);
+  ASSERT_TRUE(declined.reaches([&] {
+    return declined.output().find("Begin the session of P01?") != std::string::npos;
+  })) << declined.output();
+  declined.press("n\r");
+  EXPECT_EQ(declined.wait().status, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "out/P01.h5"));
+
+  LiveCommand session(arguments(""), "", LiveCommand::Where::kTerminal);
+  ASSERT_TRUE(session.reaches(
+      [&] { return session.output().find("Begin the session") != std::string::npos; }));
+  session.press("y\r");
+  const CommandResult done = session.wait();
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_THAT(done.output, HasSubstr("compared byte by byte"));
+  EXPECT_THAT(done.output, HasSubstr("next: haptrial info"));
+  const fs::path copy = folder_ / "disk/force_training/P01.h5";
+  ASSERT_TRUE(fs::exists(copy)) << done.output;
+  EXPECT_EQ(test::read_text(copy), test::read_text(folder_ / "out/P01.h5"));
+}
+
+TEST_F(LiveStartTest, ARunWhoseBackupFailsIsWholeAndSaysSo) {
+  write_study();
+  const CommandResult done = run_command(
+      "haptrial run '" + (folder_ / "study.toml").string() + "' --subject P02 --trials 1 --out '" +
+      (folder_ / "out").string() + "' --backup '" + (folder_ / "unplugged").string() + "'");
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.errors, HasSubstr("WARNING: THE SESSION HAS NO BACKUP"));
+  EXPECT_THAT(done.errors, HasSubstr("is its disk plugged in?"));
+  EXPECT_EQ(run_command("haptrial info '" + (folder_ / "out/P02.h5").string() + "'").status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "unplugged"));
+}
+
+TEST_F(LiveStartTest, TheEmergencyCardIsFilledInFromDefinitionAndLabFile) {
+  write_study();
+  test::write_text(folder_ / "lab.toml",
+                   "[room]\nbackup = \"/mnt/backup\"\ncontact = \"Lab office <2>\"\n"
+                   "phone = \"0123 456\"\n");
+  test::write_text(
+      folder_ / "study.toml",
+      test::brisk_text({{"max_force", "max_force = 5.0"}, {"force_limit", "force_limit = 5.0"}}) +
+          "\n[lab]\nuse = \"lab.toml\"\n");
+  const std::string file = "'" + (folder_ / "card.html").string() + "'";
+  const CommandResult made = start("--device force-dimension --window --console --card " + file);
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const std::string page = test::read_text(folder_ / "card.html");
+  for (const char* words :
+       {"Greatest force on the hand: 5 N", "Press button 0 of the force-dimension",
+        "EMERGENCY STOP", "Escape", "power switch", "Lab office &lt;2&gt;", "0123 456",
+        "/mnt/backup/force_training/ID.h5", "--device force-dimension --window --console",
+        "--subject ID --resume"}) {
+    EXPECT_THAT(page, HasSubstr(words));
+  }
+  EXPECT_THAT(page, Not(HasSubstr("http"))) << "it needs nothing else";
+  EXPECT_EQ(start("--card " + file).status, 2) << "a card that is there stays";
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(LiveStartTest, AResumedSessionKeepsItsMarks) {
+  if (!LiveCommand::has_terminals()) {
+    GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  }
+  test::write_text(folder_ / "study.toml", test::attended_text());
+  const std::string run = "run '" + (folder_ / "study.toml").string() + "' --subject S01 --out '" +
+                          (folder_ / "out").string() + "' --keyboard --console";
+  {
+    LiveCommand session(run, "", LiveCommand::Where::kTerminal);
+    test::ConsolePerson person(session.line_after("console: "));
+    ASSERT_TRUE(person.sees("instructions")) << session.output();
+    session.press(" ");
+    ASSERT_TRUE(person.sees("running", "run"));
+    session.press("bhand slipped\r");
+    session.press("ay");
+    EXPECT_EQ(session.wait().status, 0);
+  }
+  ASSERT_TRUE(fs::exists(folder_ / "out/S01.h5.partial"));
+  LiveCommand resumed(run + " --resume", "", LiveCommand::Where::kTerminal);
+  test::ConsolePerson person(resumed.line_after("console: "));
+  ASSERT_TRUE(person.sees("instructions")) << resumed.output();
+  resumed.press("ae");
+  EXPECT_EQ(resumed.wait().status, 0);
+  const auto marks = record::marked_trials(record::SessionReader(folder_ / "out/S01.h5"));
+  ASSERT_EQ(marks.size(), 1u);
+  EXPECT_EQ(marks[0].trial, 1);
+  EXPECT_EQ(marks[0].reason, "hand slipped");
+  EXPECT_GT(marks[0].time_ns, 0);
+}
+
+}  // namespace
+}  // namespace haptrial::live_start_test
