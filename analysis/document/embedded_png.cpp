@@ -12,7 +12,7 @@
 namespace haptrial::analysis {
 namespace {
 
-std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
@@ -23,14 +23,11 @@ std::uint32_t big_endian(std::string_view bytes, std::size_t at) {
 }  // namespace
 
 std::string svg_of_png(const std::filesystem::path& png) {
-  return svg_of_png_bytes(file_text(png), png.string());
-}
-
-std::string svg_of_png_bytes(std::string_view bytes, std::string_view name) {
+  const std::string bytes = file_text(png);
   constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
   constexpr std::size_t kWidthAt = 16, kHeightAt = 20, kHeader = 24;
   if (bytes.size() < kHeader || bytes.compare(0, kSignature.size(), kSignature) != 0) {
-    throw InputError(fmt::format("{}: is not a PNG file", name));
+    throw InputError(fmt::format("{}: is not a PNG file", png.string()));
   }
   const std::uint32_t width = big_endian(bytes, kWidthAt), height = big_endian(bytes, kHeightAt);
   return fmt::format(

@@ -53,7 +53,7 @@ void add_components(const std::vector<double>& x, const std::vector<Eigen::Vecto
       continue;
     }
     analysis::Series series{
-        fmt::format("force {}{}", kAxisNames[static_cast<std::size_t>(component)], where),
+        fmt::format("{}-force{}", kAxisNames[static_cast<std::size_t>(component)], where),
         analysis::Mark::kLine, look_of(curves.series.size())};
     series.x = x;
     for (const Eigen::Vector3d& force : forces) {
@@ -76,12 +76,13 @@ double largest(const std::vector<Eigen::Vector3d>& forces) {
 analysis::Figure force_figure(const std::string& name, const std::string& title,
                               const std::string& x_label, Curves curves,
                               const std::string& caption) {
+  constexpr std::size_t kOneRow = 4;  // of the key
   analysis::Figure figure;
   figure.name = name;
   figure.title = title;
   figure.x_label = x_label;
   figure.y_label = "force on the hand [N]";
-  figure.height = 0.42;
+  figure.height = curves.series.size() > kOneRow ? 0.52 : 0.42;
   figure.caption = caption;
   figure.alt = fmt::format("{}.", fmt::join(curves.words, "; "));
   figure.series = std::move(curves.series);
@@ -148,16 +149,15 @@ void add_speeds(const FeltStage& stage, const std::string& name, Preview& previe
   }
   Curves curves;
   for (const protocols::SpeedCurve& curve : stage.speeds) {
-    add_components(
-        curve.speeds, curve.forces, most,
-        fmt::format(" moving along {}", kAxisNames[static_cast<std::size_t>(curve.axis)]), "m/s",
-        curves);
+    add_components(curve.speeds, curve.forces, most,
+                   fmt::format(" along {}", kAxisNames[static_cast<std::size_t>(curve.axis)]),
+                   "m/s", curves);
   }
   if (!curves.series.empty()) {
     preview.add(force_figure(
         name + "-speeds", "Force over velocity", "velocity [m/s]", std::move(curves),
         fmt::format("What a velocity adds to the force at {}, once filters have settled.",
-                    place_words(stage.touched))));
+                    place_words(stage.moved_at))));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include "analysis/document/figure_gnuplot.h"
@@ -12,12 +13,16 @@
 #include "experiments/preview/preview_pictures.h"
 #include "experiments/preview/trials_parts.h"
 #include "experiments/preview/virtual_trial.h"
+#include "experiments/study/study_run.h"
 #include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::experiments {
 namespace {
 
 namespace palette = analysis::palette;
+
+/// Longer trials are not simulated for a page: drillings, whose bone takes seconds to be made [s]
+constexpr double kLongestTrial = 60.0;
 
 constexpr std::array<analysis::Look, 3> kLooks{{{palette::kBlue, palette::kSolid, 7, 2.5, 1.0},
                                                 {palette::kOrange, palette::kLong, 7, 2.5, 1.0},
@@ -115,6 +120,57 @@ void add_virtual_table(const VirtualTrial& trial, Preview& preview) {
   }
 }
 
+/// The first session of a participant. @param participant  from 0
+protocols::SessionPlace session_of(int participant, std::uint64_t seed) {
+  protocols::SessionPlace place;
+  place.subject = participant_name(participant);
+  place.participant = participant;
+  place.seed = seed;
+  give_seeds(place);
+  return place;
+}
+
+/// Trials by condition over the participants of a study whose order of trials is known from the
+/// beginning.
+void add_fixed_plan(const Experiment& experiment, std::uint64_t seed, Preview& preview) {
+  struct Count {
+    int fewest{0}, most{0}, all{0}, participants{0};
+  };
+  constexpr int kMostParticipants = 200;
+  const protocols::Definition& d = *experiment.definition;
+  const int participants = std::min(d.design.participants, kMostParticipants);
+  std::map<std::string, Count> counts;
+  for (int participant = 0; participant < participants; ++participant) {
+    std::map<std::string, int> own;
+    const protocols::SessionPlace place = session_of(participant, seed);
+    const auto trials = experiment.study->protocol().trials(d, place);
+    for (auto trial = trials->next(nullptr); trial;) {
+      ++own[(trial->practice ? "practice: " : "") + trial->condition];
+      const protocols::Outcome done{*trial, protocols::TrialEnd::kCompleted, {}};
+      trial = trials->next(&done);
+    }
+    for (const auto& [condition, number] : own) {
+      Count& count = counts[condition];
+      count.fewest = count.participants == 0 ? number : std::min(count.fewest, number);
+      count.most = std::max(count.most, number);
+      count.all += number;
+      ++count.participants;
+    }
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [condition, count] : counts) {
+    rows.push_back({condition, fmt::format("{}", count.participants),
+                    count.fewest == count.most ? fmt::format("{}", count.most)
+                                               : fmt::format("{} to {}", count.fewest, count.most),
+                    fmt::format("{}", count.all)});
+  }
+  preview.document.heading("Trials of the study");
+  preview.document.paragraph(
+      "Counted in the first session of each participant, by the code that "
+      "plans sessions.");
+  preview.document.table({"condition", "participants", "trials of each", "trials in all"}, rows);
+}
+
 void add_trials_parts(const Experiment& experiment, const protocols::StudiedDefinition& definition,
                       const PreviewRequest& request, Preview& preview) {
   constexpr int kPictureWidth = 640;      // [px]
@@ -126,7 +182,6 @@ void add_trials_parts(const Experiment& experiment, const protocols::StudiedDefi
   add_felt(definition, trial, protocols::felt_stages(definition, trial), preview);
   add_planned(definition, protocols::planned_trials(definition, request.seed, kMostParticipants),
               preview);
-  static_cast<void>(experiment);
 }
 
 }  // namespace
@@ -152,13 +207,7 @@ void Preview::draw_figures() {
   }
 }
 
-protocols::SessionPlace previewed_session(std::uint64_t seed) {
-  protocols::SessionPlace place;
-  place.subject = "S01";
-  place.seed = seed;
-  give_seeds(place);
-  return place;
-}
+protocols::SessionPlace previewed_session(std::uint64_t seed) { return session_of(0, seed); }
 
 void add_checks(const Experiment& experiment, Preview& preview) {
   preview.document.heading("Checks");
@@ -175,10 +224,9 @@ void add_checks(const Experiment& experiment, Preview& preview) {
 
 void add_virtual_trial(const Experiment& experiment, const PreviewRequest& request,
                        Preview& preview) {
-  constexpr double kLongest = 60.0;  // of a trial that is simulated for a page [s]
   const protocols::Definition& definition = *experiment.definition;
   preview.document.heading("The trial of a virtual participant");
-  if (definition.longest(1) > kLongest) {
+  if (definition.longest(1) > kLongestTrial) {
     preview.document.paragraph(
         fmt::format("A trial takes up to {:.0f} s, which is too long to be simulated for a page; "
                     "haptrial dry-run simulates the study.",
@@ -187,7 +235,7 @@ void add_virtual_trial(const Experiment& experiment, const PreviewRequest& reque
   }
   const VirtualTrial trial =
       virtual_trial(experiment.study->protocol(), definition, previewed_session(request.seed),
-                    request.trial, kLongest);
+                    request.trial, kLongestTrial);
   preview.document.paragraph(
       "SIMULATED: nobody did this trial. A virtual participant, as in a dry run with the same "
       "seed, "
@@ -217,7 +265,9 @@ Preview preview_of(const Experiment& experiment, const PreviewRequest& request) 
   preview.document.simulated = request.virtual_trial;
   add_checks(experiment, preview);
   if (const auto* trials = dynamic_cast<const protocols::StudiedDefinition*>(&definition)) {
-    add_trials_parts(experiment, *trials, request, preview);
+    add_trials_parts(*trials, request, preview);
+  } else if (definition.longest(1) <= kLongestTrial) {
+    add_fixed_plan(experiment, request.seed, preview);
   }
   if (request.virtual_trial) {
     add_virtual_trial(experiment, request, preview);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/document/base64.h"
 #include "analysis/document/html.h"
 #include "analysis/document/palette.h"
 #include "protocols/psychophysics/preview/felt_forces.h"
@@ -50,6 +51,7 @@ double mark_step(double span, double marks) {
   return 10.0 * power;
 }
 
+constexpr double kLetter = 6.6;   // about the width of one, at 13 px [px]
 constexpr double kWaiting = 1.0;  // for which something that waits is drawn [s]
 
 double drawn_length(const TimelineBar& bar) { return bar.shortest + (bar.waits ? kWaiting : 0.0); }
@@ -82,7 +84,8 @@ std::string bar_of(const TimelineBar& bar, double begin, std::size_t at, const R
       fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:g}\" fill=\"{}\"/>",
                   x, y, std::max(solid, bar.waits ? 0.0 : 1.5), kThick, analysis::palette::kBlue);
   const double end = rows.x(begin + drawn_length(bar));
-  const bool left = end > 0.5 * (rows.left + rows.right);
+  const double room = kWide - end - 14.0;
+  const bool left = kLetter * static_cast<double>(bar.words.size()) > room && x - rows.left > room;
   return svg + text_at(left ? x - 7.0 : end + 7.0, y + 12.0, left ? "end" : "start", bar.words);
 }
 
@@ -133,6 +136,22 @@ std::string scale_of_shades(double most, double left, double top) {
   return svg + text_at(left + 44.0, top + 26.0 * kSteps + 12.5, "start", "none");
 }
 
+/// Words in lines of at most so many letters, if no word is longer.
+std::vector<std::string> lines_of_words(const std::string& words, std::size_t letters) {
+  std::vector<std::string> lines(1);
+  std::size_t at = 0;
+  while (at < words.size()) {
+    const std::size_t end = std::min(words.find(' ', at), words.size());
+    const std::string word = words.substr(at, end - at);
+    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > letters) {
+      lines.emplace_back();
+    }
+    lines.back() += (lines.back().empty() ? "" : " ") + word;
+    at = end + 1;
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string timeline_svg(const std::vector<TimelineBar>& bars) {
@@ -151,8 +170,38 @@ std::string timeline_svg(const std::vector<TimelineBar>& bars) {
   return svg + "</svg>\n";
 }
 
+std::string gallery_svg(const std::vector<GalleryPicture>& pictures) {
+  constexpr std::size_t kColumns = 3;
+  constexpr double kGap = 18.0, kLine = 15.0;
+  const double width = (kWide - kGap * (kColumns - 1)) / kColumns;
+  const auto letters = static_cast<std::size_t>(width / 6.1);
+  double top = 1.0;
+  std::string svg;
+  for (std::size_t first = 0; first < pictures.size(); first += kColumns) {
+    double tallest = 0.0;
+    for (std::size_t i = first; i < std::min(first + kColumns, pictures.size()); ++i) {
+      const GalleryPicture& each = pictures[i];
+      const double x = (width + kGap) * static_cast<double>(i - first);
+      const double height = width * each.height / each.width;
+      svg += fmt::format(
+          "<image x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{3:.1f}\" "
+          "href=\"data:image/png;base64,{4}\"/><rect x=\"{0:.1f}\" y=\"{1:.1f}\" "
+          "width=\"{2:.1f}\" height=\"{3:.1f}\" fill=\"none\" stroke=\"#5f6368\"/>",
+          x, top, width, height, analysis::base64(each.png));
+      double y = top + height + kLine;
+      for (const std::string& line : lines_of_words(each.words, letters)) {
+        svg += text_at(x, y, "start", line, 12.0);
+        y += kLine;
+      }
+      tallest = std::max(tallest, y - top);
+    }
+    top += tallest + 6.0;
+  }
+  return opening(kWide, top) + svg + "</svg>\n";
+}
+
 std::string arrows_svg(const protocols::ForcePlane& plane) {
-  constexpr double kLeft = 90.0, kTop = 20.0, kSide = 520.0;
+  constexpr double kLeft = 120.0, kTop = 20.0, kSide = 520.0;
   const Eigen::Vector3d first = plane.places.front(), last = plane.places.back();
   const double low = first[plane.across], high = last[plane.across];
   const double bottom = first[plane.up], top = last[plane.up];
@@ -179,7 +228,7 @@ std::string arrows_svg(const protocols::ForcePlane& plane) {
   }
   svg += text_at(kLeft + 0.5 * kSide, kTop + kSide + 54.0, "middle",
                  fmt::format("{} [mm]", kAxisNames[static_cast<std::size_t>(plane.across)]));
-  svg += text_at(8.0, kTop + 0.5 * kSide, "start",
+  svg += text_at(4.0, kTop + 0.5 * kSide - 10.0, "start",
                  fmt::format("{} [mm]", kAxisNames[static_cast<std::size_t>(plane.up)]));
   const double length = 0.8 * kSide / static_cast<double>(plane.columns - 1);
   for (std::size_t i = 0; i < plane.places.size(); ++i) {

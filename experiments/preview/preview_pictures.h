@@ -24,6 +24,16 @@ struct TimelineBar {
 /// than they must last, dashed.
 std::string timeline_svg(const std::vector<TimelineBar>& bars);
 
+/// A picture with words below it.
+struct GalleryPicture {
+  std::string png;          // bytes of a file
+  int width{1}, height{1};  // [px]
+  std::string words;
+};
+
+/// Pictures side by side in rows of three, as SVG.
+std::string gallery_svg(const std::vector<GalleryPicture>& pictures);
+
 /// Arrows of the same length along the force, darker where it is stronger, as SVG with a scale. A
 /// plane with z has it pointing down, as seen from above.
 std::string arrows_svg(const protocols::ForcePlane& plane);

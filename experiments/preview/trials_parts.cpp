@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/document/embedded_png.h"
 #include "core/base/counted.h"
 #include "core/questions/question_kind.h"
 #include "core/render/gl/image.h"
@@ -22,7 +21,7 @@ using protocols::PreviewedTrial;
 using protocols::TrialsDefinition;
 
 std::string listed(const std::vector<std::string>& words) {
-  return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
+  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string duration_of(const PreviewedStage& stage) {
@@ -67,14 +66,14 @@ void add_stage_table(const PreviewedTrial& trial, Preview& preview) {
     for (std::size_t s = 0; s < trial.intervals[i].stages.size(); ++s) {
       const PreviewedStage& stage = trial.intervals[i].stages[s];
       std::vector<std::string> ends{stage.ends};
-      for (const std::string& more : {stage.late, stage.requires_}) {
+      for (const std::string& more : {stage.late, stage.requirement}) {
         if (!more.empty()) {
           ends.push_back(more);
         }
       }
       rows.push_back({stage_name(trial, i, s), duration_of(stage),
                       fmt::format("{}", fmt::join(ends, "; ")), listed(stage.fields),
-                      listed(stage.shows), stage.sound.empty() ? "-" : stage.sound});
+                      listed(stage.shows), stage.sound.empty() ? "none" : stage.sound});
       if (marked) {
         rows.back().push_back(fmt::format("{}", stage.marker));
       }
@@ -98,10 +97,10 @@ void add_questions(const PreviewedTrial& trial, Preview& preview) {
     const protocols::TrialQuestion& question = *asked.question;
     rows.push_back(
         {question.text, answers_of(question),
-         asked.right < 0 ? "-" : question.choices[static_cast<std::size_t>(asked.right)].label,
+         asked.right < 0 ? "none" : question.choices[static_cast<std::size_t>(asked.right)].label,
          asked.feedback ? "yes" : "no",
          question.timeout > 0.0 ? fmt::format("after {:g} s the trial is aborted", question.timeout)
-                                : "-"});
+                                : "none"});
   }
   if (!rows.empty()) {
     preview.document.table({"question", "answers", "right here", "told", "time-out"}, rows);
@@ -153,6 +152,35 @@ void add_orders(const std::string& what, const std::vector<protocols::PlannedOrd
   }
 }
 
+/// What a picture shows, in words.
+std::string content_of(const PreviewedTrial& trial, const protocols::SeenStage& seen) {
+  if (seen.question >= 0) {
+    return trial.questions[static_cast<std::size_t>(seen.question)].question->text;
+  }
+  const auto& [interval, stage] = seen.where.front();
+  const std::vector<std::string>& shows = trial.intervals[interval].stages[stage].shows;
+  return shows.empty() ? "nothing" : listed(shows);
+}
+
+/// The conditions of a block together.
+void add_planned_blocks(const protocols::PlannedTrials& planned, Preview& preview) {
+  std::vector<std::pair<std::string, int>> blocks;
+  for (const protocols::PlannedCount& count : planned.counts) {
+    const std::string name = count.block + (count.probe.empty() ? "" : ", probe " + count.probe);
+    const auto known = std::ranges::find(blocks, name, &std::pair<std::string, int>::first);
+    if (known == blocks.end()) {
+      blocks.emplace_back(name, count.all);
+    } else {
+      known->second += count.all;
+    }
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [name, all] : blocks) {
+    rows.push_back({name, fmt::format("{}", all)});
+  }
+  preview.document.table({"block", "trials in all"}, rows);
+}
+
 }  // namespace
 
 std::string stage_name(const PreviewedTrial& trial, std::size_t interval, std::size_t stage) {
@@ -183,26 +211,25 @@ void add_timeline(const TrialsDefinition& d, const PreviewedTrial& trial, Previe
 void add_seen(const PreviewedTrial& trial, const std::vector<protocols::SeenStage>& seen,
               Preview& preview) {
   preview.document.heading("What the participant sees");
-  int number = 0;
+  std::vector<GalleryPicture> pictures;
+  std::vector<std::string> words;
   for (const protocols::SeenStage& each : seen) {
-    analysis::Figure figure;
-    figure.name = fmt::format("seen-{}", ++number);
-    const std::string what =
+    const std::string where =
         each.question >= 0
             ? "question " + trial.questions[static_cast<std::size_t>(each.question)].question->name
             : stage_names(trial, each.where);
-    figure.title = "Picture of " + what;
-    figure.caption = "Shown in " + what + ".";
-    figure.alt = each.question >= 0
-                     ? trial.questions[static_cast<std::size_t>(each.question)].question->text
-                     : "Shows: " +
-                           listed(trial.intervals[each.where.front().interval]
-                                      .stages[each.where.front().stage]
-                                      .shows) +
-                           ".";
-    preview.add(std::move(figure),
-                analysis::svg_of_png_bytes(render::png_bytes(each.picture), what));
+    pictures.push_back(
+        {render::png_bytes(each.picture), each.picture.width, each.picture.height, where});
+    words.push_back(where + ": " + content_of(trial, each));
   }
+  analysis::Figure figure;
+  figure.name = "seen";
+  figure.title = "Pictures of the stages and questions";
+  figure.caption =
+      "By the drawing of sessions; the hand is where the trial starts. Stages that look the same "
+      "share a picture.";
+  figure.alt = fmt::format("{}.", fmt::join(words, "; "));
+  preview.add(std::move(figure), gallery_svg(pictures));
 }
 
 void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& planned,
@@ -225,12 +252,10 @@ void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& plan
   std::vector<std::vector<std::string>> rows;
   for (const protocols::PlannedCount& count : planned.counts) {
     const std::string most = count.open ? "at most " : "";
-    std::vector<std::string> row{count.block + (count.practice ? " (practice)" : ""),
-                                 count.condition,
-                                 count.probe.empty() ? "-" : count.probe,
-                                 fmt::format("{}", count.participants),
-                                 most + number_or_range(count.fewest, count.most),
-                                 most + fmt::format("{}", count.all)};
+    std::vector<std::string> row{
+        count.block + (count.practice ? " (practice)" : ""), count.condition,
+        count.probe.empty() ? "none" : count.probe,          fmt::format("{}", count.participants),
+        most + number_or_range(count.fewest, count.most),    most + fmt::format("{}", count.all)};
     if (!planned.groups.empty()) {
       row.insert(row.begin(), count.group);
     }
@@ -239,7 +264,10 @@ void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& plan
     }
     rows.push_back(std::move(row));
   }
-  constexpr std::size_t kMany = 40;
+  constexpr std::size_t kMany = 24;
+  if (rows.size() > kMany) {
+    add_planned_blocks(planned, preview);
+  }
   preview.document.table(heading, rows, rows.size() > kMany ? "Trials of each condition" : "");
   add_orders("group", planned.groups, "participants", "", preview);
   add_orders("order of blocks", planned.block_orders, "sessions", "Orders of blocks", preview);

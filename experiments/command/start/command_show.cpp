@@ -23,7 +23,7 @@ struct ShowOptions {
   bool no_virtual_trial{false};
 };
 
-std::filesystem::path page_of(const ShowOptions& options) {
+std::filesystem::path preview_file(const ShowOptions& options) {
   if (options.out.empty()) {
     return std::filesystem::path(options.definition).stem().string() + "-preview.html";
   }
@@ -35,7 +35,7 @@ std::filesystem::path page_of(const ShowOptions& options) {
 }
 
 int show(const ShowOptions& options) {
-  const std::filesystem::path page = page_of(options);
+  const std::filesystem::path page = preview_file(options);
   const PreviewRequest request{options.trial, checked_seed(options.seed),
                                !options.no_virtual_trial};
   const Experiment experiment = load_experiment(options.definition, options.language);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "core/base/definition/table.h"
 #include "core/scene/needed_damping.h"
@@ -14,8 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kPlaces = 241;  // of a line
-constexpr double kFelt = 1e-6;        // [N]
+constexpr int kSteps = 240;     // of a line
+constexpr double kFelt = 1e-6;  // [N]
 
 scene::Scene scene_of(const FeltFields& felt) {
   std::vector<scene::Field> fields = felt.fields;
@@ -35,14 +37,28 @@ std::vector<double> spread(double from, double to, std::size_t count) {
   return values;
 }
 
+/// Forces on a hand that is led from the place outwards, once to either end.
 ForceLine line_along(const FeltFields& felt, const Vector3d& origin, int axis, double from,
                      double to) {
-  ForceLine line{axis, spread(from, to, kPlaces), {}};
-  std::vector<Vector3d> way;
-  for (const double offset : line.offsets) {
-    way.push_back(origin + offset * Vector3d::Unit(axis));
+  const double step = std::max((to - from) / kSteps, 1e-6);
+  const int below = static_cast<int>(std::lround(-from / step));
+  const int above = static_cast<int>(std::lround(to / step));
+  const auto led = [&](int steps, double each) {
+    std::vector<Vector3d> way;
+    for (int i = 0; i <= steps; ++i) {
+      way.push_back(origin + each * i * Vector3d::Unit(axis));
+    }
+    return forces_along(felt, way);
+  };
+  ForceLine line;
+  line.axis = axis;
+  for (int i = -below; i <= above; ++i) {
+    line.offsets.push_back(step * i);
   }
-  line.forces = forces_along(felt, way);
+  line.forces = led(below, -step);
+  std::ranges::reverse(line.forces);
+  line.forces.pop_back();  // the place itself
+  std::ranges::copy(led(above, step), std::back_inserter(line.forces));
   return line;
 }
 
@@ -73,19 +89,24 @@ std::pair<double, double> part_that_matters(const ForceLine& line, double reach)
   return {std::max(-reach, low - room), std::min(reach, high + room)};
 }
 
+using Part = std::pair<double, double>;  // of a line: its ends [m]
+
 /// Lines are as long as the longest part that matters, so that they can be compared.
-void draw_lines(FeltStage& stage, double reach) {
+/// @returns the part of each line that matters
+std::array<Part, 3> draw_lines(FeltStage& stage, double reach) {
+  std::array<Part, 3> parts;
   double low = 0.0, high = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const ForceLine whole = line_along(stage.felt, stage.origin, axis, -reach, reach);
-    const auto [from, to] = part_that_matters(whole, reach);
-    low = std::min(low, from);
-    high = std::max(high, to);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    parts[axis] = part_that_matters(
+        line_along(stage.felt, stage.origin, static_cast<int>(axis), -reach, reach), reach);
+    low = std::min(low, parts[axis].first);
+    high = std::max(high, parts[axis].second);
   }
   for (int axis = 0; axis < 3; ++axis) {
     stage.lines[static_cast<std::size_t>(axis)] =
         line_along(stage.felt, stage.origin, axis, low, high);
   }
+  return parts;
 }
 
 /// The place on the lines with about half of the largest force: a hand that touches, and whose
@@ -109,16 +130,27 @@ Vector3d place_that_touches(const FeltStage& stage) {
   return place;
 }
 
-void draw_speeds(FeltStage& stage, double fastest) {
+std::array<SpeedCurve, 3> speeds_at(const FeltFields& felt, const Vector3d& place, double fastest) {
   constexpr std::size_t kSpeeds = 21;
-  const Vector3d at_rest = settled_force(stage.felt, stage.touched, Vector3d::Zero());
+  const Vector3d at_rest = settled_force(felt, place, Vector3d::Zero());
+  std::array<SpeedCurve, 3> curves;
   for (int axis = 0; axis < 3; ++axis) {
     SpeedCurve curve{axis, spread(-fastest, fastest, kSpeeds), {}};
     for (const double speed : curve.speeds) {
-      curve.forces.push_back(
-          settled_force(stage.felt, stage.touched, speed * Vector3d::Unit(axis)) - at_rest);
+      curve.forces.push_back(settled_force(felt, place, speed * Vector3d::Unit(axis)) - at_rest);
     }
-    stage.speeds[static_cast<std::size_t>(axis)] = std::move(curve);
+    curves[static_cast<std::size_t>(axis)] = std::move(curve);
+  }
+  return curves;
+}
+
+/// At the start, where springs do not cut what the velocity adds, unless nothing resists there.
+void draw_speeds(FeltStage& stage, double fastest) {
+  stage.moved_at = stage.origin;
+  stage.speeds = speeds_at(stage.felt, stage.origin, fastest);
+  if (!stage.resists_motion()) {
+    stage.moved_at = stage.touched;
+    stage.speeds = speeds_at(stage.felt, stage.touched, fastest);
   }
 }
 
@@ -131,23 +163,71 @@ void draw_course(FeltStage& stage, double duration) {
   stage.course = changes ? std::move(course) : std::vector<Vector3d>();
 }
 
-void draw_plane(FeltStage& stage, bool from_above) {
-  constexpr std::size_t kArrows = 15;  // in each direction
-  const double low = stage.lines[0].offsets.front();
-  const double high = stage.lines[0].offsets.back();
-  ForcePlane& plane = stage.plane;
-  plane.across = 0;
-  plane.up = from_above ? 2 : 1;
-  plane.columns = kArrows;
-  for (const double up : spread(low, high, kArrows)) {
-    std::vector<Vector3d> row;
-    for (const double across : spread(low, high, kArrows)) {
-      row.push_back(stage.origin + across * Vector3d::Unit(plane.across) +
-                    up * Vector3d::Unit(plane.up));
+/// The axis along which the force differs most, and another one.
+void choose_plane(const FeltStage& stage, bool from_above, ForcePlane& plane) {
+  double most = -1.0;
+  int strongest = 0;
+  for (const ForceLine& line : stage.lines) {
+    double change = 0.0;
+    for (const Vector3d& force : line.forces) {
+      change = std::max(change, (force - line.forces.front()).norm());
     }
-    const std::vector<Vector3d> forces = forces_along(stage.felt, row);
-    plane.places.insert(plane.places.end(), row.begin(), row.end());
-    plane.forces.insert(plane.forces.end(), forces.begin(), forces.end());
+    if (change > 1.001 * most + kFelt) {
+      most = change;
+      strongest = line.axis;
+    }
+  }
+  plane.across = 0;
+  plane.up = strongest != 0 ? strongest : from_above ? 2 : 1;
+}
+
+/// Forces along a row, on a hand that is led from the origin to the row and along it to one end.
+void add_half_row(const FeltStage& stage, double up, std::span<const double> across,
+                  std::vector<Vector3d>& forces) {
+  constexpr int kWayToRow = 12;  // steps
+  const ForcePlane& plane = stage.plane;
+  const Vector3d across_unit = Vector3d::Unit(plane.across), up_unit = Vector3d::Unit(plane.up);
+  std::vector<Vector3d> way;
+  for (int i = 0; i < kWayToRow; ++i) {
+    way.push_back(stage.origin + up * i / kWayToRow * up_unit);
+  }
+  for (const double offset : across) {
+    way.push_back(stage.origin + offset * across_unit + up * up_unit);
+  }
+  const std::vector<Vector3d> felt = forces_along(stage.felt, way);
+  forces.insert(forces.end(), felt.begin() + kWayToRow, felt.end());
+}
+
+void add_row(FeltStage& stage, double up, const std::vector<double>& across) {
+  ForcePlane& plane = stage.plane;
+  for (const double offset : across) {
+    plane.places.push_back(stage.origin + offset * Vector3d::Unit(plane.across) +
+                           up * Vector3d::Unit(plane.up));
+  }
+  const auto middle = std::ranges::lower_bound(across, 0.0);
+  const std::vector<double> left(std::make_reverse_iterator(middle), across.rend());
+  std::vector<Vector3d> forces;
+  add_half_row(stage, up, left, forces);
+  std::ranges::reverse(forces);
+  add_half_row(stage, up, std::span(middle, across.end()), forces);
+  plane.forces.insert(plane.forces.end(), forces.begin(), forces.end());
+}
+
+void draw_plane(FeltStage& stage, const std::array<Part, 3>& parts, bool from_above) {
+  constexpr std::size_t kArrows = 15;  // in each direction
+  ForcePlane& plane = stage.plane;
+  choose_plane(stage, from_above, plane);
+  plane.columns = kArrows;
+  const Part& across = parts[static_cast<std::size_t>(plane.across)];
+  const Part& up = parts[static_cast<std::size_t>(plane.up)];
+  const double half = 0.5 * std::max(across.second - across.first, up.second - up.first);
+  const auto square = [&](const Part& part) {
+    const double centre = 0.5 * (part.first + part.second);
+    return spread(centre - half, centre + half, kArrows);
+  };
+  const std::vector<double> columns = square(across);
+  for (const double row : square(up)) {
+    add_row(stage, row, columns);
   }
 }
 
@@ -249,7 +329,7 @@ std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTri
           continue;
         }
         felt.origin = device == 0 ? shown.start : d.hands[device].start;
-        draw_lines(felt, arms[device].limits.workspace_radius);
+        const std::array<Part, 3> parts = draw_lines(felt, arms[device].limits.workspace_radius);
         felt.touched = place_that_touches(felt);
         draw_speeds(felt, std::min(kFast, arms[device].limits.max_speed));
         draw_course(felt, looked_at(shown.stages[stage]));
@@ -259,7 +339,7 @@ std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTri
           same->where.push_back(felt.where.front());
           continue;
         }
-        draw_plane(felt, d.view.from_above);
+        draw_plane(felt, parts, d.view.from_above);
         felt.fields = numbers_of(d, felt.felt);
         stages.push_back(std::move(felt));
       }

@@ -36,14 +36,16 @@ Eigen::Vector3d settled_force(const FeltFields& felt, const Eigen::Vector3d& pla
 std::vector<Eigen::Vector3d> forces_over_time(const FeltFields& felt, const Eigen::Vector3d& place,
                                               std::size_t ticks);
 
-/// Force along a line through a place, parallel to an axis of W.
+/// Force along a line through a place, parallel to an axis of W, on a hand that is led from the
+/// place to either end.
 struct ForceLine {
   int axis{0};                          // 0, 1, 2: x, y, z
   std::vector<double> offsets;          // from the place, ascending [m]
   std::vector<Eigen::Vector3d> forces;  // (offsets) [N]
 };
 
-/// Force in a plane through a place, row by row.
+/// Force in a plane through a place, row by row, on a hand that is led from the place to the row
+/// and along it.
 struct ForcePlane {
   int across{0}, up{1};  // axes of W
   std::size_t columns{0};
@@ -82,7 +84,8 @@ struct FeltStage {
   Eigen::Vector3d origin{Eigen::Vector3d::Zero()};  // of lines and plane: the start, in W [m]
   std::array<ForceLine, 3> lines;
   ForcePlane plane;
-  Eigen::Vector3d touched{Eigen::Vector3d::Zero()};  // place of the curves below, in W [m]
+  Eigen::Vector3d touched{Eigen::Vector3d::Zero()};   // place of `course`, in W [m]
+  Eigen::Vector3d moved_at{Eigen::Vector3d::Zero()};  // place of `speeds`, in W [m]
   std::array<SpeedCurve, 3> speeds;
   std::vector<Eigen::Vector3d> course;  // (ticks) at `touched`; empty: it does not change [N]
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-std::map<std::string, std::string> words_of(const Names& names) {
+std::map<std::string, std::string> values_in_words(const Names& names) {
   std::map<std::string, std::string> words;
   for (const auto& [name, value] : names.known()) {
     words[name] = names.word_of(value).value_or(fmt::format("{:.4g}", value));
@@ -58,7 +58,7 @@ class TrialReader {
 
   void read(PreviewedTrial& trial) {
     give(*names_, d_, next_.values);
-    common_ = words_of(*names_);
+    common_ = values_in_words(*names_);
     trial.values.assign(common_.begin(), common_.end());
     RandomStream random(next_.plan.stimulus_seed, "durations");
     for (std::size_t place = 0; place < next_.values.intervals.size(); ++place) {
@@ -77,7 +77,7 @@ class TrialReader {
     give_interval(*names_, stated, place);
     PreviewedInterval shown;
     shown.name = stated.name;
-    for (const auto& [name, word] : words_of(*names_)) {
+    for (const auto& [name, word] : values_in_words(*names_)) {
       const auto same = common_.find(name);
       if (name != "interval" && (same == common_.end() || same->second != word)) {
         shown.values.emplace_back(name, word);

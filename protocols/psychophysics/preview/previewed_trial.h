@@ -22,7 +22,7 @@ struct PreviewedStage {
   double longest{0.0};    // equal to shortest if fixed, else its time-out [s]
   std::string ends;       // "when the hand is inside start for 0.3 s"
   std::string late;       // "after 5 s the trial is aborted"; empty: it has no time-out
-  std::string requires_;  // "depth of floor at least 0.003 m, else the interval begins again"
+  std::string requirement;  // "depth of floor at least 0.003 m, else the interval begins again"
   std::string sound;      // that begins with it; empty: none
   int marker{0};          // code of its onset; 0: the session marks nothing
   std::vector<std::string> fields;

@@ -120,7 +120,7 @@ PreviewedStage previewed_stage(const TrialsDefinition& d, const Presented& prese
     shown.late = fmt::format("after {:g} s {}", stage.timeout, words_of(stage.late));
   }
   if (stage.require) {
-    shown.requires_ = words_of_requirement(presented, *stage.require);
+    shown.requirement = words_of_requirement(presented, *stage.require);
   }
   if (named.sound >= 0 && static_cast<std::size_t>(named.sound) < d.cues.cues.size()) {
     shown.sound = d.cues.cues[static_cast<std::size_t>(named.sound)].name;

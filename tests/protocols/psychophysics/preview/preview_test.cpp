@@ -160,11 +160,18 @@ TEST_P(ShippedPreviewTest, ForcesAreThoseOfASceneToTheBit) {
       field.fade_in = 0.0;
     }
     for (const ForceLine& line : stage.lines) {
-      scene::Scene scene(fields, d.rate);
-      scene.switch_to(stage.felt.mask);
-      for (std::size_t i = 0; i < line.offsets.size(); ++i) {
-        const Vector3d p = stage.origin + line.offsets[i] * Vector3d::Unit(line.axis);
-        ASSERT_EQ(scene.force({p, Vector3d::Zero()}), line.forces[i]);
+      const auto start =
+          static_cast<std::ptrdiff_t>(std::ranges::find(line.offsets, 0.0) - line.offsets.begin());
+      const auto count = static_cast<std::ptrdiff_t>(line.offsets.size());
+      ASSERT_LT(start, count);
+      for (const std::ptrdiff_t way : {-1, 1}) {
+        scene::Scene scene(fields, d.rate);
+        scene.switch_to(stage.felt.mask);
+        for (std::ptrdiff_t i = start; i >= 0 && i < count; i += way) {
+          const auto at = static_cast<std::size_t>(i);
+          const Vector3d p = stage.origin + line.offsets[at] * Vector3d::Unit(line.axis);
+          ASSERT_EQ(scene.force({p, Vector3d::Zero()}), line.forces[at]);
+        }
       }
     }
   }
@@ -290,7 +297,7 @@ TEST(PreviewTest, AStageSaysHowItEnds) {
   EXPECT_EQ("when the hand is inside start for 0.3 s", stages[0].ends);
   EXPECT_EQ("after 5 s the trial is aborted", stages[0].late);
   EXPECT_EQ("after 2.5 s", stages[1].ends);
-  EXPECT_EQ("depth of floor at least 0.003 m, else the interval begins again", stages[1].requires_);
+  EXPECT_EQ("depth of floor at least 0.003 m, else the interval begins again", stages[1].requirement);
   EXPECT_THAT(stages[0].fields, ElementsAre("guide"));
 }
 
