@@ -171,8 +171,8 @@ void add_fixed_plan(const Experiment& experiment, std::uint64_t seed, Preview& p
   preview.document.table({"condition", "participants", "trials of each", "trials in all"}, rows);
 }
 
-void add_trials_parts(const Experiment& experiment, const protocols::StudiedDefinition& definition,
-                      const PreviewRequest& request, Preview& preview) {
+void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
+                      Preview& preview) {
   constexpr int kPictureWidth = 640;      // [px]
   constexpr int kMostParticipants = 200;  // that are counted
   const protocols::PreviewedTrial trial =

@@ -51,7 +51,6 @@ double mark_step(double span, double marks) {
   return 10.0 * power;
 }
 
-constexpr double kLetter = 6.6;   // about the width of one, at 13 px [px]
 constexpr double kWaiting = 1.0;  // for which something that waits is drawn [s]
 
 double drawn_length(const TimelineBar& bar) { return bar.shortest + (bar.waits ? kWaiting : 0.0); }
@@ -59,7 +58,7 @@ double drawn_length(const TimelineBar& bar) { return bar.shortest + (bar.waits ?
 /// Layout of a timeline [px].
 struct Rows {
   double left{210.0};   // where time begins
-  double right{880.0};  // and ends
+  double right{740.0};  // and ends
   double row{26.0};
   double top{8.0};
   double seconds{1.0};  // in all
@@ -67,6 +66,20 @@ struct Rows {
   double x(double time) const { return left + (right - left) * time / seconds; }
   double y(std::size_t at) const { return top + row * static_cast<double>(at); }
 };
+
+/// Words on the side that has room, else smaller on the right.
+/// @param room_left  [px]  @param right, left  where the words begin or end
+std::string words_beside(const std::string& words, double room_left, double right, double left,
+                         double y) {
+  constexpr double kLetter = 6.0;  // about the width of one at 13 px [px]
+  constexpr double kSmallest = 8.0;
+  const double needed = kLetter * static_cast<double>(words.size());
+  const double room = kWide - right;
+  if (needed > room && needed < room_left) {
+    return text_at(left, y, "end", words);
+  }
+  return text_at(right, y, "start", words, std::clamp(13.0 * room / needed, kSmallest, 13.0));
+}
 
 std::string bar_of(const TimelineBar& bar, double begin, std::size_t at, const Rows& rows) {
   constexpr double kThick = 15.0;
@@ -83,10 +96,8 @@ std::string bar_of(const TimelineBar& bar, double begin, std::size_t at, const R
   svg +=
       fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:g}\" fill=\"{}\"/>",
                   x, y, std::max(solid, bar.waits ? 0.0 : 1.5), kThick, analysis::palette::kBlue);
-  const double end = rows.x(begin + drawn_length(bar));
-  const double room = kWide - end - 14.0;
-  const bool left = kLetter * static_cast<double>(bar.words.size()) > room && x - rows.left > room;
-  return svg + text_at(left ? x - 7.0 : end + 7.0, y + 12.0, left ? "end" : "start", bar.words);
+  return svg + words_beside(bar.words, x - 7.0 - rows.left, rows.x(begin + drawn_length(bar)) + 7.0,
+                            x - 7.0, y + 12.0);
 }
 
 std::string time_axis(const Rows& rows, std::size_t count) {
