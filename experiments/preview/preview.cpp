@@ -8,7 +8,6 @@
 #include <map>
 #include <utility>
 
-#include "analysis/document/figure_gnuplot.h"
 #include "analysis/document/palette.h"
 #include "experiments/preview/preview_pictures.h"
 #include "experiments/preview/trials_parts.h"
@@ -185,27 +184,6 @@ void add_trials_parts(const protocols::StudiedDefinition& definition, const Prev
 }
 
 }  // namespace
-
-void Preview::add(analysis::Figure figure, std::string svg) {
-  drawings_.push_back({std::move(figure), std::move(svg)});
-  document.picture(drawings_.back());
-}
-
-void Preview::draw_figures() {
-  std::vector<analysis::Figure> waiting;
-  for (const analysis::Drawing& drawing : drawings_) {
-    if (drawing.svg.empty()) {
-      waiting.push_back(drawing.figure);
-    }
-  }
-  std::vector<analysis::Drawing> drawn = analysis::drawn(waiting);
-  std::size_t next = 0;
-  for (analysis::Drawing& drawing : drawings_) {
-    if (drawing.svg.empty()) {
-      drawing.svg = std::move(drawn[next++].svg);
-    }
-  }
-}
 
 protocols::SessionPlace previewed_session(std::uint64_t seed) { return session_of(0, seed); }
 

@@ -1,11 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
-#include <string>
-#include <vector>
 
-#include "analysis/document/document.h"
+#include "experiments/preview/preview_page.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/interface/trials.h"
 
@@ -16,27 +13,6 @@ struct PreviewRequest {
   int trial{1};              // of the first session, practice included, from 1
   std::uint64_t seed{1};     // of the study
   bool virtual_trial{true};  // a virtual participant does the trial
-};
-
-/// A preview while it is put together: one or several of the parts below, then draw_figures().
-class Preview {
- public:
-  Preview() = default;
-  Preview(Preview&&) = default;
-  Preview& operator=(Preview&&) = default;
-  Preview(const Preview&) = delete;  // the document points to its drawings
-  Preview& operator=(const Preview&) = delete;
-
-  analysis::Document document;
-
-  /// Adds a figure that gnuplot is to draw, or one that is drawn already.
-  void add(analysis::Figure figure, std::string svg = "");
-  /// Draws all figures that are not drawn yet. @throws RunError without gnuplot
-  void draw_figures();
-  std::string html() const { return analysis::to_html(document); }
-
- private:
-  std::deque<analysis::Drawing> drawings_;
 };
 
 /// The session that a preview looks at: the first of the first participant.

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <string>
 #include <vector>
 
@@ -11,17 +8,10 @@
 namespace haptrial::experiments {
 
 /// "1 comparison: press"; without the interval in a trial of one.
-std::string stage_name(const protocols::PreviewedTrial& trial, std::size_t interval,
-                       std::size_t stage);
+std::string stage_name(const protocols::PreviewedTrial& trial, const protocols::StagePlace& place);
 
 /// The names of stages, one after the other.
-template <class Where>
-std::string stage_names(const protocols::PreviewedTrial& trial, const std::vector<Where>& where) {
-  std::vector<std::string> names;
-  for (const Where& each : where) {
-    names.push_back(stage_name(trial, each.interval, each.stage));
-  }
-  return fmt::format("{}", fmt::join(names, "; "));
-}
+std::string stage_names(const protocols::PreviewedTrial& trial,
+                        const std::vector<protocols::StagePlace>& places);
 
 }  // namespace haptrial::experiments

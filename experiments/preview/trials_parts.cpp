@@ -15,7 +15,6 @@
 namespace haptrial::experiments {
 namespace {
 
-using protocols::PreviewedInterval;
 using protocols::PreviewedStage;
 using protocols::PreviewedTrial;
 using protocols::TrialsDefinition;
@@ -45,7 +44,7 @@ std::vector<TimelineBar> bars_of(const PreviewedTrial& trial) {
     const std::vector<PreviewedStage>& stages = trial.intervals[i].stages;
     for (std::size_t s = 0; s < stages.size(); ++s) {
       bars.push_back(
-          {stage_name(trial, i, s), beside_bar(stages[s]), stages[s].shortest, !stages[s].fixed});
+          {stage_name(trial, {i, s}), beside_bar(stages[s]), stages[s].shortest, !stages[s].fixed});
     }
   }
   for (const protocols::PreviewedQuestion& asked : trial.questions) {
@@ -71,7 +70,7 @@ void add_stage_table(const PreviewedTrial& trial, Preview& preview) {
           ends.push_back(more);
         }
       }
-      rows.push_back({stage_name(trial, i, s), duration_of(stage),
+      rows.push_back({stage_name(trial, {i, s}), duration_of(stage),
                       fmt::format("{}", fmt::join(ends, "; ")), listed(stage.fields),
                       listed(stage.shows), stage.sound.empty() ? "none" : stage.sound});
       if (marked) {
@@ -182,13 +181,6 @@ void add_planned_blocks(const protocols::PlannedTrials& planned, Preview& previe
 }
 
 }  // namespace
-
-std::string stage_name(const PreviewedTrial& trial, std::size_t interval, std::size_t stage) {
-  const PreviewedInterval& shown = trial.intervals[interval];
-  return trial.intervals.size() == 1
-             ? shown.stages[stage].name
-             : fmt::format("{} {}: {}", interval + 1, shown.name, shown.stages[stage].name);
-}
 
 void add_timeline(const TrialsDefinition& d, const PreviewedTrial& trial, Preview& preview) {
   static_cast<void>(d);

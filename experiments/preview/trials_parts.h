@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "experiments/preview/preview.h"
+#include "experiments/preview/preview_page.h"
 #include "protocols/psychophysics/preview/felt_forces.h"
 #include "protocols/psychophysics/preview/planned_trials.h"
 #include "protocols/psychophysics/preview/previewed_trial.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/scene/field.h"
+#include "protocols/psychophysics/preview/stage_words.h"
 
 namespace haptrial::protocols {
 
@@ -74,10 +75,7 @@ struct FieldNumbers {
 
 /// What is felt in a stage; stages that feel the same share one.
 struct FeltStage {
-  struct Where {
-    std::size_t interval{0}, stage{0};  // from 0
-  };
-  std::vector<Where> where;
+  std::vector<StagePlace> where;
   std::size_t device{0};
   FeltFields felt;
   std::vector<FieldNumbers> fields;

@@ -12,7 +12,6 @@
 #include "core/base/random.h"
 #include "protocols/psychophysics/definition/read_definition.h"
 #include "protocols/psychophysics/presentation/stage_sight.h"
-#include "protocols/psychophysics/preview/stage_words.h"
 
 namespace haptrial::protocols {
 namespace {

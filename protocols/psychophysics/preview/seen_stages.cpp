@@ -55,7 +55,7 @@ class PictureMaker {
     drawing_->draw(stimulus::Shown(view));
     return render::coarser(context_.read(), scale_);
   }
-  void add_stage(const SeenStage::Where& where, render::Image picture) {
+  void add_stage(const StagePlace& where, render::Image picture) {
     const auto same = std::ranges::find_if(
         seen_, [&](const SeenStage& seen) { return seen.picture.rgb == picture.rgb; });
     if (same == seen_.end()) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/render/gl/image.h"
+#include "protocols/psychophysics/preview/stage_words.h"
 
 namespace haptrial::protocols {
 
@@ -12,11 +13,8 @@ struct TrialsDefinition;
 
 /// Picture of what the participant sees.
 struct SeenStage {
-  struct Where {
-    std::size_t interval{0}, stage{0};  // from 0
-  };
-  std::vector<Where> where;  // stages that look the same; none: a question
-  int question{-1};          // from 0; -1: none
+  std::vector<StagePlace> where;  // stages that look the same; none: a question
+  int question{-1};               // from 0; -1: none
   render::Image picture;
 };
 
