@@ -20,8 +20,9 @@ namespace {
 
 namespace palette = analysis::palette;
 
-/// Longer trials are not simulated for a page: drillings, whose bone takes seconds to be made [s]
-constexpr double kLongestTrial = 60.0;
+/// Longer trials are not simulated for a page, nor are their plans made: those of drillings, whose
+/// bone takes seconds to be made [s]
+constexpr double kLongestTrial = 50.0;
 
 constexpr std::array<analysis::Look, 3> kLooks{{{palette::kBlue, palette::kSolid, 7, 2.5, 1.0},
                                                 {palette::kOrange, palette::kLong, 7, 2.5, 1.0},

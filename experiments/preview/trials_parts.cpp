@@ -90,6 +90,13 @@ std::string answers_of(const protocols::TrialQuestion& question) {
   return answers.empty() ? question.kind->word() : fmt::format("{}", fmt::join(answers, ", "));
 }
 
+std::string words_of_timeout(const protocols::TrialQuestion& question) {
+  const int silent = question.silent_choice();
+  return silent < 0 ? fmt::format("after {:g} s the trial is aborted", question.timeout)
+                    : fmt::format("after {:g} s the answer is {}", question.timeout,
+                                  question.choices[static_cast<std::size_t>(silent)].label);
+}
+
 void add_questions(const PreviewedTrial& trial, Preview& preview) {
   std::vector<std::vector<std::string>> rows;
   for (const protocols::PreviewedQuestion& asked : trial.questions) {
@@ -98,8 +105,7 @@ void add_questions(const PreviewedTrial& trial, Preview& preview) {
         {question.text, answers_of(question),
          asked.right < 0 ? "none" : question.choices[static_cast<std::size_t>(asked.right)].label,
          asked.feedback ? "yes" : "no",
-         question.timeout > 0.0 ? fmt::format("after {:g} s the trial is aborted", question.timeout)
-                                : "none"});
+         question.timeout > 0.0 ? words_of_timeout(question) : "none"});
   }
   if (!rows.empty()) {
     preview.document.table({"question", "answers", "right here", "told", "time-out"}, rows);
