@@ -214,7 +214,7 @@ function(haptrial_layer_tests)
   target_link_libraries(own_kinds PRIVATE haptrial_command_line)
   add_dependencies(test_experiments own_kinds)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/protocols/psychophysics/*.cpp)
-  haptrial_test(psychophysics psychophysics ${sources})  # needs no other protocol
+  haptrial_test(psychophysics psychophysics_preview ${sources})  # needs no other protocol
   # A protocol that only the tests and a page of the documents have.
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -211,25 +212,76 @@ std::string first_words_of(const fs::path& log) {
   return line.empty() ? "it said nothing" : line;
 }
 
+std::string plot_command(const Figure& figure) {
+  std::string plot = "plot ";
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    plot += (i == 0 ? "" : ", \\\n  ") + plot_element(figure.series[i], i);
+  }
+  return plot;
+}
+
+/// Style, data, and the picture as SVG.
+std::string svg_script(const Figure& figure) {
+  std::string text = kStyle + layout(figure) + headings(figure) + axes(figure);
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    text += data_block(figure.series[i], i);
+  }
+  return text +
+         fmt::format(
+             "set terminal svg size {},{} dynamic noenhanced font "
+             "'Helvetica,Arial,sans-serif,14' background rgb 'white'\nset output '{}.svg'\n{}\n",
+             kWidth, static_cast<int>(figure.height * kWidth), figure.name, plot_command(figure));
+}
+
+/// Runs a script in the folder. @throws RunError if gnuplot is absent or fails
+void draw_script(const std::string& script, const fs::path& folder) {
+  write_text(folder / kScriptName, script);
+  const int status = run_gnuplot(folder);
+  if (status != 0) {
+    throw RunError(fmt::format("gnuplot failed with status {} while drawing the figures: {}",
+                               status, first_words_of(folder / kLogName)));
+  }
+}
+
+/// A folder of this process alone, gone at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "haptrial-figures-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw RunError(fmt::format("{}: could not be made: {}", name, std::strerror(errno)));
+    }
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+[[noreturn]] void fail_unfinished(const fs::path& file) {
+  throw RunError(
+      fmt::format("{}: gnuplot did not finish this picture; is the disk full?", file.string()));
+}
+
 }  // namespace
 
 std::string gnuplot_script(const Figure& figure, int paper) {
   check(figure);
-  std::string text = kStyle + layout(figure) + headings(figure) + axes(figure);
-  std::string plot = "plot ";
-  for (std::size_t i = 0; i < figure.series.size(); ++i) {
-    text += data_block(figure.series[i], i);
-    plot += (i == 0 ? "" : ", \\\n  ") + plot_element(figure.series[i], i);
-  }
+  const std::string plot = plot_command(figure);
   const int height = static_cast<int>(figure.height * kWidth);
-  text += fmt::format(
-      "set terminal svg size {},{} dynamic noenhanced font 'Helvetica,Arial,sans-serif,14' "
-      "background rgb 'white'\nset output '{}.svg'\n{}\n",
-      kWidth, height, figure.name, plot);
-  text += fmt::format(
-      "set terminal pngcairo size {},{} noenhanced font 'sans,14' fontscale 1.8 linewidth 2 "
-      "pointscale 2 background rgb 'white'\nset output '{}.png'\n{}\nset output\n",
-      2 * kWidth, 2 * height, figure.name, plot);
+  std::string text =
+      svg_script(figure) +
+      fmt::format(
+          "set terminal pngcairo size {},{} noenhanced font 'sans,14' fontscale 1.8 linewidth 2 "
+          "pointscale 2 background rgb 'white'\nset output '{}.png'\n{}\nset output\n",
+          2 * kWidth, 2 * height, figure.name, plot);
   if (paper > 0) {
     text += paper_plot(figure, plot, paper);
   }
@@ -244,12 +296,7 @@ void draw_figures(const std::vector<Figure>& figures, const fs::path& folder, in
   for (const auto& figure : figures) {
     script += gnuplot_script(figure, paper);
   }
-  write_text(folder / kScriptName, script);
-  const int status = run_gnuplot(folder);
-  if (status != 0) {
-    throw RunError(fmt::format("gnuplot failed with status {} while drawing the figures: {}",
-                               status, first_words_of(folder / kLogName)));
-  }
+  draw_script(script, folder);
   std::vector<std::pair<const char*, const char*>> kinds{{".svg", "</svg>"}, {".png", "IEND"}};
   if (paper > 0) {
     kinds.emplace_back(".pdf", "%%EOF");
@@ -258,13 +305,34 @@ void draw_figures(const std::vector<Figure>& figures, const fs::path& folder, in
     for (const auto& [extension, ending] : kinds) {
       const fs::path file = folder / (figure.name + extension);
       if (!ends_with(file, ending)) {
-        throw RunError(fmt::format("{}: gnuplot did not finish this picture; is the disk full?",
-                                   file.string()));
+        fail_unfinished(file);
       }
     }
   }
   fs::remove(folder / kScriptName);
   fs::remove(folder / kLogName);
+}
+
+std::vector<Drawing> drawn(const std::vector<Figure>& figures) {
+  std::vector<Drawing> drawings;
+  if (figures.empty()) {
+    return drawings;
+  }
+  const ScratchFolder folder;
+  std::string script;
+  for (const Figure& figure : figures) {
+    check(figure);
+    script += svg_script(figure);
+  }
+  draw_script(script, folder.path());
+  for (const Figure& figure : figures) {
+    const fs::path file = folder.path() / (figure.name + ".svg");
+    if (!ends_with(file, "</svg>")) {
+      fail_unfinished(file);
+    }
+    drawings.push_back({figure, file_text(file)});
+  }
+  return drawings;
 }
 
 }  // namespace haptrial::analysis

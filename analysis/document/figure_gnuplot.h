@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/document/document.h"
 #include "analysis/document/figure.h"
 
 namespace haptrial::analysis {
@@ -20,5 +21,9 @@ std::string gnuplot_script(const Figure& figure, int paper = 0);
 /// @throws RunError when gnuplot is absent or fails, or a picture is missing or cut short.
 void draw_figures(const std::vector<Figure>& figures, const std::filesystem::path& folder,
                   int paper = 0);
+
+/// The figures with their pictures, without files that stay: for a page that has them inside.
+/// @throws RunError as above
+std::vector<Drawing> drawn(const std::vector<Figure>& figures);
 
 }  // namespace haptrial::analysis

@@ -250,9 +250,9 @@ bool DefinedTrials::comes_again(const std::vector<record::ResponseRow>& response
 }
 
 /// Value that the procedure learns from a trial. A session that is resumed computes it from what is
-/// recorded, so it follows from the responses alone.
+/// recorded, so it follows from the responses alone. Without a response it learns nothing.
 double DefinedTrials::outcome_of(const std::vector<record::ResponseRow>& responses) {
-  if (current_.track < 0) {
+  if (current_.track < 0 || responses.empty()) {
     return kNone;
   }
   const Track& track = *sequence_.running()[static_cast<std::size_t>(current_.track)].track;

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/whole_file.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/subcommand.h"
+#include "experiments/preview/preview.h"
+#include "experiments/studies/experiment.h"
+
+namespace haptrial::experiments {
+namespace {
+
+struct ShowOptions {
+  std::string definition;
+  std::string out;
+  int trial{1};
+  std::string seed{"1"};
+  std::string language;
+  bool no_virtual_trial{false};
+};
+
+std::filesystem::path preview_file(const ShowOptions& options) {
+  if (options.out.empty()) {
+    return std::filesystem::path(options.definition).stem().string() + "-preview.html";
+  }
+  std::filesystem::path page(options.out);
+  if (page.extension() != ".html") {
+    throw InputError(fmt::format("--out is '{}'; allowed: a name that ends in .html", options.out));
+  }
+  return page;
+}
+
+int show(const ShowOptions& options) {
+  const std::filesystem::path page = preview_file(options);
+  const PreviewRequest request{options.trial, checked_seed(options.seed),
+                               !options.no_virtual_trial};
+  const Experiment experiment = load_experiment(options.definition, options.language);
+  write_whole(page, preview_of(experiment, request).html());
+  fmt::print("preview: {}\n", page.string());
+  return 0;
+}
+
+}  // namespace
+
+void add_show(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "show",
+                             "Show an experiment before anybody runs it, as one page for a browser",
+                             "haptrial show first_experiment --out preview.html",
+                             {"an HTML file that needs nothing else", "guide-own-experiment.md"});
+  auto& o = options_of<ShowOptions>(*sub, status, show);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("--out", o.out, "The page to be written (default: NAME-preview.html)");
+  sub->add_option("--trial", o.trial,
+                  with_default("Number of the trial in the first session, practice included",
+                               std::to_string(o.trial)));
+  sub->add_option("--seed", o.seed, with_default("Seed of every random number", o.seed));
+  sub->add_option("--language", o.language,
+                  "Language of what participants read, such as de (default: the definition's)");
+  sub->add_flag("--no-virtual-trial", o.no_virtual_trial,
+                "Leave out the trial of a virtual participant");
+}
+
+}  // namespace haptrial::experiments

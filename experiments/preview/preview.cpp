@@ -1,0 +1,259 @@
+#include "experiments/preview/preview.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "analysis/document/palette.h"
+#include "experiments/preview/preview_pictures.h"
+#include "experiments/preview/trials_parts.h"
+#include "experiments/preview/virtual_trial.h"
+#include "experiments/study/study_run.h"
+#include "protocols/psychophysics/studied_definition.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace palette = analysis::palette;
+
+/// Longer trials are not simulated for a page, nor are their plans made: those of drillings, whose
+/// bone takes seconds to be made [s]
+constexpr double kLongestTrial = 50.0;
+
+constexpr std::array<analysis::Look, 3> kLooks{{{palette::kBlue, palette::kSolid, 7, 2.5, 1.0},
+                                                {palette::kOrange, palette::kLong, 7, 2.5, 1.0},
+                                                {palette::kGreen, palette::kMixed, 7, 2.5, 1.0}}};
+
+/// So many samples draw a curve as well as all of them.
+std::size_t every_so_many(std::size_t samples) {
+  constexpr std::size_t kDrawn = 1500;
+  return std::max<std::size_t>(1, samples / kDrawn);
+}
+
+analysis::Series curve(const VirtualTrial& trial, const std::string& label,
+                       const analysis::Look& look, const auto& value) {
+  analysis::Series series{label, analysis::Mark::kLine, look};
+  const std::size_t step = every_so_many(trial.times.size());
+  for (std::size_t i = 0; i < trial.times.size(); i += step) {
+    series.x.push_back(trial.times[i]);
+    series.y.push_back(value(i));
+  }
+  return series;
+}
+
+/// Lines where stages begin.
+analysis::Series stage_marks(const VirtualTrial& trial, double low, double high) {
+  analysis::Series marks{
+      "", analysis::Mark::kSegments, {palette::kGrey, palette::kShort, 7, 1.0, 1.0}};
+  for (const VirtualStage& stage : trial.stages) {
+    marks.x.push_back(stage.begin);
+    marks.x2.push_back(stage.begin);
+    marks.y.push_back(low);
+    marks.y2.push_back(high);
+  }
+  return marks;
+}
+
+analysis::Figure figure_of(const VirtualTrial& trial, const std::string& name,
+                           const std::string& what, const std::string& unit,
+                           std::vector<analysis::Series> series) {
+  double low = 0.0, high = 0.0;
+  for (const analysis::Series& each : series) {
+    for (const double y : each.y) {
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  }
+  analysis::Figure figure;
+  figure.name = "virtual-" + name;
+  figure.title = what + " over time";
+  figure.x_label = "time in the trial [s]";
+  figure.y_label = fmt::format("{} [{}]", name, unit);
+  figure.x_range = {0.0, std::max(trial.times.back(), 1e-3)};
+  figure.height = 0.38;
+  figure.simulated = true;
+  figure.who = "PARTICIPANT";
+  figure.caption = trial.stages.empty() ? "Simulated." : "Simulated. Grey lines: a stage begins.";
+  figure.alt =
+      fmt::format("{} of a virtual participant, from {:.3g} to {:.3g} {}.", what, low, high, unit);
+  series.push_back(stage_marks(trial, low, high));
+  figure.series = std::move(series);
+  return figure;
+}
+
+std::vector<analysis::Series> curves_of(const VirtualTrial& trial,
+                                        const std::vector<Eigen::Vector3d>& vectors, double unit) {
+  std::vector<analysis::Series> all;
+  for (int axis = 0; axis < 3; ++axis) {
+    all.push_back(curve(trial, kAxisNames[static_cast<std::size_t>(axis)],
+                        kLooks[static_cast<std::size_t>(axis)],
+                        [&](std::size_t i) { return vectors[i][axis] / unit; }));
+  }
+  return all;
+}
+
+void add_virtual_figures(const VirtualTrial& trial, Preview& preview) {
+  constexpr double kMillimetre = 1e-3;  // [m]
+  preview.add(figure_of(trial, "position", "Position of the tip", "mm",
+                        curves_of(trial, trial.positions, kMillimetre)));
+  preview.add(figure_of(
+      trial, "speed", "Speed of the tip", "m/s",
+      {curve(trial, "", kLooks[0], [&](std::size_t i) { return trial.velocities[i].norm(); })}));
+  preview.add(
+      figure_of(trial, "force", "Force of the device", "N", curves_of(trial, trial.forces, 1.0)));
+}
+
+void add_virtual_table(const VirtualTrial& trial, Preview& preview) {
+  std::vector<std::vector<std::string>> rows;
+  for (const VirtualStage& stage : trial.stages) {
+    rows.push_back({fmt::format("{}: {}", stage.interval, stage.name),
+                    fmt::format("{:.3f}", stage.begin),
+                    fmt::format("{:.3f}", stage.end - stage.begin)});
+  }
+  if (!rows.empty()) {
+    preview.document.table({"interval: stage", "begins [s]", "lasts [s]"}, rows,
+                           "Stages of the simulated trial");
+  }
+}
+
+/// The first session of a participant. @param participant  from 0
+protocols::SessionPlace session_of(int participant, std::uint64_t seed) {
+  protocols::SessionPlace place;
+  place.subject = participant_name(participant);
+  place.participant = participant;
+  place.seed = seed;
+  give_seeds(place);
+  return place;
+}
+
+/// Trials by condition over the participants of a study whose order of trials is known from the
+/// beginning.
+void add_fixed_plan(const Experiment& experiment, std::uint64_t seed, Preview& preview) {
+  struct Count {
+    int fewest{0}, most{0}, all{0}, participants{0};
+  };
+  constexpr int kMostParticipants = 200;
+  const protocols::Definition& d = *experiment.definition;
+  const int participants = std::min(d.design.participants, kMostParticipants);
+  std::map<std::string, Count> counts;
+  for (int participant = 0; participant < participants; ++participant) {
+    std::map<std::string, int> own;
+    const protocols::SessionPlace place = session_of(participant, seed);
+    const auto trials = experiment.study->protocol().trials(d, place);
+    for (auto trial = trials->next(nullptr); trial;) {
+      ++own[(trial->practice ? "practice: " : "") + trial->condition];
+      const protocols::Outcome done{*trial, protocols::TrialEnd::kCompleted, {}};
+      trial = trials->next(&done);
+    }
+    for (const auto& [condition, number] : own) {
+      Count& count = counts[condition];
+      count.fewest = count.participants == 0 ? number : std::min(count.fewest, number);
+      count.most = std::max(count.most, number);
+      count.all += number;
+      ++count.participants;
+    }
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [condition, count] : counts) {
+    rows.push_back({condition, fmt::format("{}", count.participants),
+                    count.fewest == count.most ? fmt::format("{}", count.most)
+                                               : fmt::format("{} to {}", count.fewest, count.most),
+                    fmt::format("{}", count.all)});
+  }
+  preview.document.heading("Trials of the study");
+  preview.document.paragraph(
+      "Counted in the first session of each participant, by the code that "
+      "plans sessions.");
+  preview.document.table({"condition", "participants", "trials of each", "trials in all"}, rows);
+}
+
+void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
+                      Preview& preview) {
+  constexpr int kPictureWidth = 640;      // [px]
+  constexpr int kMostParticipants = 200;  // that are counted
+  const protocols::PreviewedTrial trial =
+      protocols::previewed_trial(definition, previewed_session(request.seed), request.trial);
+  add_timeline(definition, trial, preview);
+  add_seen(trial, protocols::seen_stages(definition, trial, kPictureWidth), preview);
+  add_felt(definition, trial, protocols::felt_stages(definition, trial), preview);
+  add_planned(definition, protocols::planned_trials(definition, request.seed, kMostParticipants),
+              preview);
+}
+
+}  // namespace
+
+protocols::SessionPlace previewed_session(std::uint64_t seed) { return session_of(0, seed); }
+
+void add_checks(const Experiment& experiment, Preview& preview) {
+  preview.document.heading("Checks");
+  std::vector<std::string> warnings = warnings_of(experiment);
+  std::ranges::move(undrawable_texts(experiment), std::back_inserter(warnings));
+  for (const std::string& warning : warnings) {
+    preview.document.alarm("Warning: " + warning);
+  }
+  if (warnings.empty()) {
+    preview.document.paragraph("The definition is valid, and nothing is warned about.");
+  }
+  preview.document.points(experiment.definition->description());
+}
+
+void add_virtual_trial(const Experiment& experiment, const PreviewRequest& request,
+                       Preview& preview) {
+  const protocols::Definition& definition = *experiment.definition;
+  preview.document.heading("The trial of a virtual participant");
+  if (definition.longest(1) > kLongestTrial) {
+    preview.document.paragraph(
+        fmt::format("A trial takes up to {:.0f} s, which is too long to be simulated for a page; "
+                    "haptrial dry-run simulates the study.",
+                    definition.longest(1)));
+    return;
+  }
+  const VirtualTrial trial =
+      virtual_trial(experiment.study->protocol(), definition, previewed_session(request.seed),
+                    request.trial, kLongestTrial);
+  preview.document.paragraph(
+      "SIMULATED: nobody did this trial. A virtual participant, as in a dry run with the same "
+      "seed, "
+      "holds a virtual device; earlier trials of the session are taken as done, without answers.");
+  if (!trial.completed) {
+    preview.document.alarm("The simulated trial was not completed: " + trial.why);
+  }
+  if (trial.times.empty()) {
+    return;
+  }
+  if (!trial.answers.empty()) {
+    preview.document.paragraph(
+        fmt::format("Simulated answers: {}.", fmt::join(trial.answers, "; ")));
+  }
+  add_virtual_figures(trial, preview);
+  add_virtual_table(trial, preview);
+}
+
+Preview preview_of(const Experiment& experiment, const PreviewRequest& request) {
+  Preview preview;
+  const protocols::Definition& definition = *experiment.definition;
+  preview.document.title = "Preview of " + definition.name;
+  preview.document.subtitle = fmt::format(
+      "{}, trial {} of the first session of participant S01, seed {}. Nobody has run it: "
+      "what is shown is computed from the definition.",
+      definition.file_name, request.trial, request.seed);
+  preview.document.simulated = request.virtual_trial;
+  add_checks(experiment, preview);
+  if (const auto* trials = dynamic_cast<const protocols::StudiedDefinition*>(&definition)) {
+    add_trials_parts(*trials, request, preview);
+  } else if (definition.longest(1) <= kLongestTrial) {
+    add_fixed_plan(experiment, request.seed, preview);
+  }
+  if (request.virtual_trial) {
+    add_virtual_trial(experiment, request, preview);
+  }
+  preview.document.source(definition.file_name, definition.text);
+  preview.draw_figures();
+  return preview;
+}
+
+}  // namespace haptrial::experiments

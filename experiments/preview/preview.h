@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "experiments/preview/preview_page.h"
+#include "experiments/studies/experiment.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::experiments {
+
+/// Choice of what a preview shows.
+struct PreviewRequest {
+  int trial{1};              // of the first session, practice included, from 1
+  std::uint64_t seed{1};     // of the study
+  bool virtual_trial{true};  // a virtual participant does the trial
+};
+
+/// The session that a preview looks at: the first of the first participant.
+protocols::SessionPlace previewed_session(std::uint64_t seed);
+
+// The parts of every experiment. Each adds a heading and what stands below it.
+
+/// Description, warnings and texts that cannot be drawn: the lines of `haptrial validate`.
+void add_checks(const Experiment& experiment, Preview& preview);
+/// A trial of a virtual participant. An experiment whose trials are long gets a sentence instead.
+/// @throws InputError for a trial beyond the session
+void add_virtual_trial(const Experiment& experiment, const PreviewRequest& request,
+                       Preview& preview);
+
+/// All parts that the experiment has, drawn.
+/// @throws InputError for a trial beyond the session; RunError where a picture cannot be made
+Preview preview_of(const Experiment& experiment, const PreviewRequest& request);
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,31 @@
+#include "experiments/preview/preview_page.h"
+
+#include <utility>
+#include <vector>
+
+#include "analysis/document/figure_gnuplot.h"
+
+namespace haptrial::experiments {
+
+void Preview::add(analysis::Figure figure, std::string svg) {
+  drawings_.push_back({std::move(figure), std::move(svg)});
+  document.picture(drawings_.back());
+}
+
+void Preview::draw_figures() {
+  std::vector<analysis::Figure> waiting;
+  for (const analysis::Drawing& drawing : drawings_) {
+    if (drawing.svg.empty()) {
+      waiting.push_back(drawing.figure);
+    }
+  }
+  std::vector<analysis::Drawing> drawn = analysis::drawn(waiting);
+  std::size_t next = 0;
+  for (analysis::Drawing& drawing : drawings_) {
+    if (drawing.svg.empty()) {
+      drawing.svg = std::move(drawn[next++].svg);
+    }
+  }
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace haptrial::protocols {
+struct ForcePlane;
+}
+
+namespace haptrial::experiments {
+
+inline constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
+
+/// A row of a timeline.
+struct TimelineBar {
+  std::string label;     // left of the bars
+  std::string words;     // beside the bar
+  double shortest{0.0};  // [s]
+  bool waits{false};     // for something that the participant does
+};
+
+/// Bars one after the other, each in a row of its own, as SVG. Parts that wait are drawn 1 s longer
+/// than they must last, dashed.
+std::string timeline_svg(const std::vector<TimelineBar>& bars);
+
+/// A picture with words below it.
+struct GalleryPicture {
+  std::string png;          // bytes of a file
+  int width{1}, height{1};  // [px]
+  std::string words;
+};
+
+/// Pictures side by side in rows of three, as SVG.
+std::string gallery_svg(const std::vector<GalleryPicture>& pictures);
+
+/// Arrows of the same length along the force, darker where it is stronger, as SVG with a scale. A
+/// plane with z has it pointing down, as seen from above.
+std::string arrows_svg(const protocols::ForcePlane& plane);
+
+}  // namespace haptrial::experiments

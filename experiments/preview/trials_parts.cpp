@@ -1,0 +1,276 @@
+#include "experiments/preview/trials_parts.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/counted.h"
+#include "core/questions/question_kind.h"
+#include "core/render/gl/image.h"
+#include "experiments/preview/preview_pictures.h"
+#include "experiments/preview/stage_names.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using protocols::PreviewedStage;
+using protocols::PreviewedTrial;
+using protocols::TrialsDefinition;
+
+std::string listed(const std::vector<std::string>& words) {
+  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string duration_of(const PreviewedStage& stage) {
+  return stage.fixed ? fmt::format("{:g}", stage.shortest)
+         : std::isfinite(stage.longest)
+             ? fmt::format("{:.3g} to {:g}", stage.shortest, stage.longest)
+             : fmt::format("{:.3g} or more", stage.shortest);
+}
+
+std::string beside_bar(const PreviewedStage& stage) {
+  std::string words = stage.fixed ? fmt::format("{:g} s", stage.shortest) : stage.ends;
+  if (!stage.fixed && std::isfinite(stage.longest)) {
+    words += fmt::format(", at most {:g} s", stage.longest);
+  }
+  return words + (stage.sound.empty() ? "" : ", sound " + stage.sound);
+}
+
+std::vector<TimelineBar> bars_of(const PreviewedTrial& trial) {
+  std::vector<TimelineBar> bars;
+  for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
+    const std::vector<PreviewedStage>& stages = trial.intervals[i].stages;
+    for (std::size_t s = 0; s < stages.size(); ++s) {
+      bars.push_back(
+          {stage_name(trial, {i, s}), beside_bar(stages[s]), stages[s].shortest, !stages[s].fixed});
+    }
+  }
+  for (const protocols::PreviewedQuestion& asked : trial.questions) {
+    bars.push_back({"question: " + asked.question->name, "until it is answered", 0.0, true});
+  }
+  return bars;
+}
+
+void add_stage_table(const PreviewedTrial& trial, Preview& preview) {
+  const bool marked = std::ranges::any_of(trial.intervals.front().stages,
+                                          [](const auto& stage) { return stage.marker > 0; });
+  std::vector<std::string> heading{"stage", "lasts [s]", "ends", "fields", "shows", "sound"};
+  if (marked) {
+    heading.emplace_back("marker");
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
+    for (std::size_t s = 0; s < trial.intervals[i].stages.size(); ++s) {
+      const PreviewedStage& stage = trial.intervals[i].stages[s];
+      std::vector<std::string> ends{stage.ends};
+      for (const std::string& more : {stage.late, stage.requirement}) {
+        if (!more.empty()) {
+          ends.push_back(more);
+        }
+      }
+      rows.push_back({stage_name(trial, {i, s}), duration_of(stage),
+                      fmt::format("{}", fmt::join(ends, "; ")), listed(stage.fields),
+                      listed(stage.shows), stage.sound.empty() ? "none" : stage.sound});
+      if (marked) {
+        rows.back().push_back(fmt::format("{}", stage.marker));
+      }
+    }
+  }
+  preview.document.table(heading, rows);
+}
+
+std::string answers_of(const protocols::TrialQuestion& question) {
+  std::vector<std::string> answers;
+  for (std::size_t i = 0; i < question.choices.size(); ++i) {
+    const std::string& hint = question.means[i].hint;
+    answers.push_back(question.choices[i].label + (hint.empty() ? "" : " [" + hint + "]"));
+  }
+  return answers.empty() ? question.kind->word() : fmt::format("{}", fmt::join(answers, ", "));
+}
+
+std::string words_of_timeout(const protocols::TrialQuestion& question) {
+  const int silent = question.silent_choice();
+  return silent < 0 ? fmt::format("after {:g} s the trial is aborted", question.timeout)
+                    : fmt::format("after {:g} s the answer is {}", question.timeout,
+                                  question.choices[static_cast<std::size_t>(silent)].label);
+}
+
+void add_questions(const PreviewedTrial& trial, Preview& preview) {
+  std::vector<std::vector<std::string>> rows;
+  for (const protocols::PreviewedQuestion& asked : trial.questions) {
+    const protocols::TrialQuestion& question = *asked.question;
+    rows.push_back(
+        {question.text, answers_of(question),
+         asked.right < 0 ? "none" : question.choices[static_cast<std::size_t>(asked.right)].label,
+         asked.feedback ? "yes" : "no",
+         question.timeout > 0.0 ? words_of_timeout(question) : "none"});
+  }
+  if (!rows.empty()) {
+    preview.document.table({"question", "answers", "right here", "told", "time-out"}, rows);
+  }
+}
+
+void add_values(const PreviewedTrial& trial, Preview& preview) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [name, value] : trial.values) {
+    rows.push_back({name, "trial", value});
+  }
+  for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
+    for (const auto& [name, value] : trial.intervals[i].values) {
+      rows.push_back({name, fmt::format("{} {}", i + 1, trial.intervals[i].name), value});
+    }
+  }
+  preview.document.table({"name", "holds in", "value"}, rows, "Values of the names in this trial");
+}
+
+std::string sentence_about(const PreviewedTrial& trial) {
+  const protocols::PlannedTrial& plan = trial.next.plan;
+  std::string words =
+      fmt::format("Trial {} of at most {} in the session: {} {} of block {}, condition {}",
+                  trial.number, trial.most, plan.practice ? "practice" : "trial", plan.trial,
+                  plan.block_name, plan.condition);
+  words +=
+      trial.next.values.probe.empty() ? "" : fmt::format(", probe {}", trial.next.values.probe);
+  words += ".";
+  for (const auto& [name, level] : trial.next.values.levels) {
+    words += fmt::format(" {} = {:g}, asked for by {} before any answer.", name, level,
+                         trial.track.empty() ? "a procedure" : trial.track);
+  }
+  return words;
+}
+
+std::string number_or_range(int low, int high) {
+  return low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high);
+}
+
+void add_orders(const std::string& what, const std::vector<protocols::PlannedOrder>& orders,
+                const char* counted_things, const std::string& folded, Preview& preview) {
+  constexpr std::size_t kFew = 8;
+  std::vector<std::vector<std::string>> rows;
+  for (const protocols::PlannedOrder& order : orders) {
+    rows.push_back({order.order, fmt::format("{}", order.count)});
+  }
+  if (!rows.empty()) {
+    preview.document.table({what, counted_things}, rows, rows.size() > kFew ? folded : "");
+  }
+}
+
+/// What a picture shows, in words.
+std::string content_of(const PreviewedTrial& trial, const protocols::SeenStage& seen) {
+  if (seen.question >= 0) {
+    return trial.questions[static_cast<std::size_t>(seen.question)].question->text;
+  }
+  const auto& [interval, stage] = seen.where.front();
+  const std::vector<std::string>& shows = trial.intervals[interval].stages[stage].shows;
+  return shows.empty() ? "nothing" : listed(shows);
+}
+
+/// The conditions of a block together.
+void add_planned_blocks(const protocols::PlannedTrials& planned, Preview& preview) {
+  std::vector<std::pair<std::string, int>> blocks;
+  for (const protocols::PlannedCount& count : planned.counts) {
+    const std::string name = count.block + (count.probe.empty() ? "" : ", probe " + count.probe);
+    const auto known = std::ranges::find(blocks, name, &std::pair<std::string, int>::first);
+    if (known == blocks.end()) {
+      blocks.emplace_back(name, count.all);
+    } else {
+      known->second += count.all;
+    }
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [name, all] : blocks) {
+    rows.push_back({name, fmt::format("{}", all)});
+  }
+  preview.document.table({"block", "trials in all"}, rows);
+}
+
+}  // namespace
+
+void add_timeline(const TrialsDefinition& d, const PreviewedTrial& trial, Preview& preview) {
+  static_cast<void>(d);
+  preview.document.heading("One trial, stage by stage");
+  preview.document.paragraph(sentence_about(trial));
+  const std::vector<TimelineBar> bars = bars_of(trial);
+  analysis::Figure figure;
+  figure.name = "timeline";
+  figure.title = "Stages of the trial";
+  figure.caption =
+      "Solid: time that passes in any case. Dashed: until something happens, drawn as 1 s.";
+  figure.alt = fmt::format("{} one after the other; the table below has them.",
+                           counted(bars.size(), "stage or question", "stages and questions"));
+  preview.add(std::move(figure), timeline_svg(bars));
+  add_stage_table(trial, preview);
+  add_questions(trial, preview);
+  add_values(trial, preview);
+}
+
+void add_seen(const PreviewedTrial& trial, const std::vector<protocols::SeenStage>& seen,
+              Preview& preview) {
+  preview.document.heading("What the participant sees");
+  std::vector<GalleryPicture> pictures;
+  std::vector<std::string> words;
+  for (const protocols::SeenStage& each : seen) {
+    const std::string where =
+        each.question >= 0
+            ? "question " + trial.questions[static_cast<std::size_t>(each.question)].question->name
+            : stage_names(trial, each.where);
+    pictures.push_back(
+        {render::png_bytes(each.picture), each.picture.width, each.picture.height, where});
+    words.push_back(where + ": " + content_of(trial, each));
+  }
+  analysis::Figure figure;
+  figure.name = "seen";
+  figure.title = "Pictures of the stages and questions";
+  figure.caption =
+      "By the drawing of sessions; the hand is where the trial starts. Stages that look the same "
+      "share a picture.";
+  figure.alt = fmt::format("{}.", fmt::join(words, "; "));
+  preview.add(std::move(figure), gallery_svg(pictures));
+}
+
+void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& planned,
+                 Preview& preview) {
+  preview.document.heading("Trials of the study");
+  preview.document.paragraph(fmt::format(
+      "Counted over {}{}, by the code that plans sessions.",
+      counted(planned.participants, "participant", "participants"),
+      planned.participants < d.design.participants ? fmt::format(" of {}", d.design.participants)
+                                                   : ""));
+  const bool sessions = d.order.sessions > 1;
+  std::vector<std::string> heading{"block",        "condition",      "probe",
+                                   "participants", "trials of each", "trials in all"};
+  if (!planned.groups.empty()) {
+    heading.insert(heading.begin(), "group");
+  }
+  if (sessions) {
+    heading.insert(heading.begin(), "session");
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const protocols::PlannedCount& count : planned.counts) {
+    const std::string most = count.open ? "at most " : "";
+    std::vector<std::string> row{
+        count.block + (count.practice ? " (practice)" : ""), count.condition,
+        count.probe.empty() ? "none" : count.probe,          fmt::format("{}", count.participants),
+        most + number_or_range(count.fewest, count.most),    most + fmt::format("{}", count.all)};
+    if (!planned.groups.empty()) {
+      row.insert(row.begin(), count.group);
+    }
+    if (sessions) {
+      row.insert(row.begin(), fmt::format("{}", count.session));
+    }
+    rows.push_back(std::move(row));
+  }
+  constexpr std::size_t kMany = 24;
+  if (rows.size() > kMany) {
+    add_planned_blocks(planned, preview);
+  }
+  preview.document.table(heading, rows, rows.size() > kMany ? "Trials of each condition" : "");
+  add_orders("group", planned.groups, "participants", "", preview);
+  add_orders("order of blocks", planned.block_orders, "sessions", "Orders of blocks", preview);
+  add_orders("order of intervals", planned.interval_orders, "trials", "Orders of intervals",
+             preview);
+}
+
+}  // namespace haptrial::experiments

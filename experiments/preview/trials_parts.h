@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "experiments/preview/preview_page.h"
+#include "protocols/psychophysics/preview/felt_forces.h"
+#include "protocols/psychophysics/preview/planned_trials.h"
+#include "protocols/psychophysics/preview/previewed_trial.h"
+#include "protocols/psychophysics/preview/seen_stages.h"
+
+namespace haptrial::experiments {
+
+// The parts of an experiment that a definition states whole (protocol "trials"), from the data that
+// protocols/psychophysics/preview computes. Each adds a heading and what stands below it.
+
+void add_timeline(const protocols::TrialsDefinition& definition,
+                  const protocols::PreviewedTrial& trial, Preview& preview);
+void add_seen(const protocols::PreviewedTrial& trial, const std::vector<protocols::SeenStage>& seen,
+              Preview& preview);
+/// With what the handle carries of the trial's forces (HandleReport).
+void add_felt(const protocols::TrialsDefinition& definition, const protocols::PreviewedTrial& trial,
+              const std::vector<protocols::FeltStage>& stages, Preview& preview);
+void add_planned(const protocols::TrialsDefinition& definition,
+                 const protocols::PlannedTrials& planned, Preview& preview);
+
+}  // namespace haptrial::experiments
