@@ -101,12 +101,16 @@ WebAnswer refusal(int status, const std::string& reason) {
   return {status, "text/plain; charset=utf-8", reason + "\n"};
 }
 
-WebAnswer page_answer(std::string_view html) {
+WebAnswer page_answer(std::string_view html, std::string_view more_policy) {
   const std::string nonce = make_token();
+  std::string policy = page_policy(nonce);
+  if (!more_policy.empty()) {
+    policy += fmt::format("; {}", more_policy);
+  }
   return {200,
           "text/html; charset=utf-8",
           page_with_nonce(html, nonce),
-          {{"Content-Security-Policy", page_policy(nonce)}}};
+          {{"Content-Security-Policy", policy}}};
 }
 
 class GuardedServer::Implementation {

@@ -42,7 +42,8 @@ struct WebAnswer {
 /// @param reason  a sentence without its full stop
 WebAnswer refusal(int status, const std::string& reason);
 /// A page with a nonce of its own and the policy that allows nothing else (page.h).
-WebAnswer page_answer(std::string_view html);
+/// @param more_policy  what the page may do besides, such as "frame-src 'self'"
+WebAnswer page_answer(std::string_view html, std::string_view more_policy = {});
 
 /// The next event of one page as one line of JSON.
 using WebEvents = std::function<std::string()>;
