@@ -52,7 +52,7 @@ async function show_results(main, file, folder) {
 function result_section(file, folder, chosen) {
   const of_file = (name, query = {}) => address("/file", {file: folder.folder + "/" + name, ...query});
   const section = make("section", {"aria-label": word("folder_of", {folder: folder.folder})}, make("h2", {}, folder.folder),
-    make("p", {class: folder.report_is_old ? "bad" : "soft"}, word(!folder.report ? "no_report" : folder.report_is_old ? "old_report" : "report_current")));
+    make("p", {class: folder.report_is_old ? "bad" : "soft"}, word(!folder.report ? "no_report" : folder.report_is_old ? "old_report" : "new_report")));
   section.append(make("div", {class: "row"}, folder.sessions.length > 0 ? analyze_button(file, folder.folder) : null,
     folder.report ? make("a", {href: of_file("report.html"), target: "_blank", rel: "noopener"}, word("open_report")) : null,
     folder.report && !chosen ? report_link(file, folder.folder) : null), command_line("haptrial analyze " + folder.folder));

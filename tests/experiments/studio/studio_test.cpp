@@ -6,12 +6,17 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "experiments/studio/studio_page.h"
+#include "tests/experiments/browser.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/console_client.h"
 #include "tests/support/temporary_folder.h"
@@ -359,6 +364,38 @@ TEST_F(StudioTest, AJobThatFailsSaysWhy) {
   EXPECT_EQ(failed["state"], "failed");
   EXPECT_EQ(failed["status"], 2);
   EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("haptrial: mine.toml"));
+}
+
+/// Folder for the pictures of docs/guide-studio.md.
+const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }
+
+TEST(StudioBrowserTest, AStudyFromTheGalleryToItsReport) {
+  const test::TemporaryFolder studies;
+  const test::TemporaryFolder pictures;
+  const test::TemporaryFolder empty;
+  const test::CommandResult made = test::run_command(
+      "cd '" + studies.path().string() +
+      "' && haptrial new other.toml && mv other.toml '<img src=x onerror=alert(1)>.toml'");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  StudioOptions options;
+  options.folder = studies.path();
+  options.program = HAPTRIAL_BINARY_DIR "/haptrial";
+  const Studio studio(options);
+  options.libraries = empty.path();
+  const Studio plain(options);
+  EXPECT_EQ(
+      test::run_browser("studio_browser.py", {studio.url(), plain.url(), pictures.path().string()}),
+      0);
+  EXPECT_THAT(file_text(studies / "pulls.toml"), HasSubstr("participants = 4\n"));
+  EXPECT_TRUE(fs::exists(studies / "out/pulls-rehearsal-001/report.html"));
+  EXPECT_THAT(studio.refusals(), IsEmpty());
+  for (const char* picture : {"studio-home.png", "studio-mistake.png", "studio-report.png"}) {
+    ASSERT_TRUE(fs::exists(pictures / picture)) << picture;
+    EXPECT_GT(fs::file_size(pictures / picture), 10'000u) << picture;
+    if (kept_pictures() != nullptr) {
+      fs::copy(pictures / picture, kept_pictures(), fs::copy_options::overwrite_existing);
+    }
+  }
 }
 
 TEST(StudioFolderTest, MustBeAFolder) {
