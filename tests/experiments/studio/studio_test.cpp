@@ -193,7 +193,7 @@ TEST_F(StudioTest, WordsThatAreOptionsOrPathsAreRefused) {
                  "whole number from 1 to 10000");
   expect_refused(posting("/cancel", {{"job", 7}}), 400, "there is no job 7");
   expect_refused(posting("/new", json::array()), 400, "not a JSON object");
-  expect_refused(posting("/new", {{"name", 3}}), 400, "lacks the text \"name\"");
+  expect_refused(posting("/new", {{"name", 3}, {"from", "first_experiment"}}), 400, "lacks the text \"name\"");
   expect_refused(reading("/library", "name=../../../etc/passwd"), 404, "libjs-codemirror");
 }
 
