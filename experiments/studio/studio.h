@@ -15,7 +15,7 @@ struct StudioOptions {
   std::filesystem::path libraries{"/usr/share/javascript"};  // where CodeMirror may be
   int port{0};                                               // 0: any that is free
   double request_time{20.0};  // a request, or the sending of an answer, that takes longer is cut
-                             // off [s]
+                              // off [s]
   std::function<void(const std::string&)> on_refusal{};
 };
 

@@ -45,6 +45,16 @@ void check_name(const std::string& name) {
   }
 }
 
+/// Whether a file of TOML defines an experiment; a lab's file does not.
+bool defines_experiment(const fs::path& file) {
+  constexpr std::size_t kLooked = 100'000;
+  try {
+    return file_head(file, kLooked).find("experiment") != std::string::npos;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 bool lies_in(const fs::path& file, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
          folder.end();
@@ -94,7 +104,8 @@ std::vector<std::string> StudyFolder::definitions() const {
     const std::string name = entry.path().filename().string();
     std::error_code ignored;
     if (name.ends_with(".toml") && name.front() != '.' &&
-        name.find(".texts.") == std::string::npos && entry.is_regular_file(ignored)) {
+        name.find(".texts.") == std::string::npos && entry.is_regular_file(ignored) &&
+        holds(name) && defines_experiment(entry.path())) {
       names.push_back(name);
     }
   }

@@ -30,8 +30,8 @@ class StudyFolder {
   /// The same of a definition. @throws InputError also for a name that does not end in .toml.
   std::filesystem::path definition(const std::string& name) const;
 
-  /// Names of the definitions at the top of the folder, in order. Files of texts in another
-  /// language are none.
+  /// Names of the definitions at the top of the folder, in order. Files of a lab, and of texts in
+  /// another language, are none.
   std::vector<std::string> definitions() const;
 
   /// Names of the folders of a definition's sessions and rehearsals, in order: out/STEM,

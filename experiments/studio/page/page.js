@@ -48,9 +48,9 @@ async function attempt(work) {
 }
 
 /// The command line that does what is shown.
-function command_line(command) {
-  return make("div", {class: "command"}, make("span", {}, word("same")), make("code", {lang: "en"}, command),
-    make("button", {type: "button", onclick: () => copy(command)}, word("copy")));
+function command_line(command, label = word("same")) {
+  return make("div", {class: "command"}, make("span", {}, label), make("code", {lang: "en"}, command),
+    make("button", {type: "button", "aria-label": word("copy") + ": " + command, onclick: () => copy(command)}, word("copy")));
 }
 async function copy(text) {
   await attempt(async () => { await navigator.clipboard.writeText(text); say(word("copied")); });

@@ -18,7 +18,7 @@ function next_session(study) {
     return section;
   }
   for (const next of study.roster.next) {
-    section.append(make("p", {}, word("next_is", {subject: next.subject, n: next.session}) + (next.group ? ", " + word("group", {name: next.group}) : "")), command_line(next.command));
+    section.append(make("p", {}, word("next_is", {subject: next.subject, n: next.session}) + (next.group ? ", " + word("group", {name: next.group}) : "")), command_line(next.command, word("in_terminal")));
   }
   section.append(make("p", {class: "soft"}, study.roster.next.length > 0 ? word("run_help") : word("nobody_next")),
     ...study.roster.remarks.map((remark) => make("p", {lang: "en"}, remark)), command_line(study.roster.command));

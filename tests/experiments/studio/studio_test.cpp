@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -19,6 +20,7 @@
 #include "tests/experiments/browser.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/console_client.h"
+#include "tests/experiments/live_command.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::studio_test {
@@ -193,7 +195,8 @@ TEST_F(StudioTest, WordsThatAreOptionsOrPathsAreRefused) {
                  "whole number from 1 to 10000");
   expect_refused(posting("/cancel", {{"job", 7}}), 400, "there is no job 7");
   expect_refused(posting("/new", json::array()), 400, "not a JSON object");
-  expect_refused(posting("/new", {{"name", 3}, {"from", "first_experiment"}}), 400, "lacks the text \"name\"");
+  expect_refused(posting("/new", {{"name", 3}, {"from", "first_experiment"}}), 400,
+                 "lacks the text \"name\"");
   expect_refused(reading("/library", "name=../../../etc/passwd"), 404, "libjs-codemirror");
 }
 
@@ -209,6 +212,7 @@ TEST_F(StudioTest, StudiesOfTheFolderHaveTheirState) {
   EXPECT_EQ(ready["roster"]["next"][0]["subject"], "P01");
   write_text(folder_ / "draft.toml", "[experiment]\nprotocol = \"trials\"\nname = 3\n");
   write_text(folder_ / "mine.texts.de.toml", "");  // no study
+  write_text(folder_ / "lab.toml", "[device]\n");  // nor this
   EXPECT_THAT(get("/studies")["files"], ElementsAre("draft.toml", "mine.toml"));
   EXPECT_FALSE(get("/study", "file=draft.toml")["valid"]);
 }
@@ -366,19 +370,33 @@ TEST_F(StudioTest, AJobThatFailsSaysWhy) {
   EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("haptrial: mine.toml"));
 }
 
+TEST(StudioCommandTest, ServesUntilItIsInterrupted) {
+  const test::TemporaryFolder folder;
+  test::LiveCommand studio("studio '" + folder.path().string() + "' --no-browser");
+  const std::string url = studio.line_after("studio: ");
+  EXPECT_THAT(url, testing::MatchesRegex("http://127.0.0.1:[0-9]+/.token=[0-9a-f]+"));
+  studio.signal(SIGINT);
+  EXPECT_EQ(studio.wait().status, 0);
+  const test::CommandResult none = test::run_command("haptrial studio /nowhere/at/all");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.errors, HasSubstr("/nowhere/at/all: not a folder"));
+}
+
 /// Folder for the pictures of docs/guide-studio.md.
 const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }
 
 TEST(StudioBrowserTest, AStudyFromTheGalleryToItsReport) {
-  const test::TemporaryFolder studies;
+  const test::TemporaryFolder home;
+  const fs::path studies = home / "my_studies";
+  fs::create_directory(studies);
   const test::TemporaryFolder pictures;
   const test::TemporaryFolder empty;
   const test::CommandResult made = test::run_command(
-      "cd '" + studies.path().string() +
+      "cd '" + studies.string() +
       "' && haptrial new other.toml && mv other.toml '<img src=x onerror=alert(1)>.toml'");
   ASSERT_EQ(made.status, 0) << made.errors;
   StudioOptions options;
-  options.folder = studies.path();
+  options.folder = studies;
   options.program = HAPTRIAL_BINARY_DIR "/haptrial";
   const Studio studio(options);
   options.libraries = empty.path();
