@@ -91,9 +91,18 @@ function(haptrial_stand_ins)
 endfunction()
 
 # haptrial_page(MODULE FILE FUNCTION HEADER): a page is built in, as what FUNCTION() of HEADER returns.
+# PART:NAME in it stands for the text of the style sheet or script NAME beside it.
 function(haptrial_page module file HAPTRIAL_PAGE_FUNCTION HAPTRIAL_PAGE_HEADER)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${file})
   file(READ ${CMAKE_SOURCE_DIR}/${file} HAPTRIAL_PAGE_HTML)
+  cmake_path(GET file PARENT_PATH folder)
+  string(REGEX MATCHALL "PART:[a-z_]+[.](css|js)" parts "${HAPTRIAL_PAGE_HTML}")
+  foreach(part ${parts})
+    string(REPLACE "PART:" "${CMAKE_SOURCE_DIR}/${folder}/" part_file ${part})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${part_file})
+    file(READ ${part_file} text)
+    string(REPLACE "${part}" "${text}" HAPTRIAL_PAGE_HTML "${HAPTRIAL_PAGE_HTML}")
+  endforeach()
   cmake_path(GET file STEM name)
   set(built ${CMAKE_BINARY_DIR}/${name}_page.cpp)
   configure_file(${CMAKE_SOURCE_DIR}/cmake/page.cpp.in ${built} @ONLY)

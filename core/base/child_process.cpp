@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <system_error>
 #include <utility>
@@ -187,28 +188,42 @@ bool write_fully(int to, const void* bytes, std::size_t count) noexcept {
   return true;
 }
 
-std::string read_to_end(int from, const std::function<bool()>& go_on) {
+void read_pieces(int from, const std::function<bool(std::string_view)>& take,
+                 const std::function<bool()>& go_on) {
   constexpr int kPause = 100;  // [ms]
-  std::string text;
   std::array<char, 4096> piece;
+  auto asked = std::chrono::steady_clock::now();
   for (;;) {
     pollfd wait{from, POLLIN, 0};
     const int ready = go_on ? poll(&wait, 1, kPause) : 1;
-    if (ready == 0 || (ready < 0 && errno == EINTR)) {
+    const auto now = std::chrono::steady_clock::now();
+    if (go_on && (ready <= 0 || now - asked > std::chrono::milliseconds(kPause))) {
+      asked = now;
       if (!go_on()) {
-        return text;
+        return;
       }
+    }
+    if (ready == 0 || (ready < 0 && errno == EINTR)) {
       continue;
     }
     const ssize_t size = read(from, piece.data(), piece.size());
     if (size < 0 && errno == EINTR) {
       continue;
     }
-    if (size <= 0) {
-      return text;
+    if (size <= 0 || !take({piece.data(), static_cast<std::size_t>(size)})) {
+      return;
     }
-    text.append(piece.data(), static_cast<std::size_t>(size));
   }
+}
+
+std::string read_to_end(int from, const std::function<bool()>& go_on) {
+  std::string text;
+  const auto keep = [&](std::string_view piece) {
+    text += piece;
+    return true;
+  };
+  read_pieces(from, keep, go_on);
+  return text;
 }
 
 }  // namespace haptrial

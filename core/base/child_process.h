@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace haptrial {
@@ -66,8 +67,13 @@ class ChildProcess {
 /// @returns whether all bytes went.
 bool write_fully(int to, const void* bytes, std::size_t count) noexcept;
 
+/// Takes what comes, piece by piece, until the other end is closed or `take` returns false.
+/// @param go_on  asked ten times a second; false ends the reading. Empty: never asked
+void read_pieces(int from, const std::function<bool(std::string_view)>& take,
+                 const std::function<bool()>& go_on = {});
+
 /// All that comes until the other end is closed.
-/// @param go_on  asked ten times a second while nothing comes; false ends the reading
+/// @param go_on  as of read_pieces()
 std::string read_to_end(int from, const std::function<bool()>& go_on = {});
 
 }  // namespace haptrial

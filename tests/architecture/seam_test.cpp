@@ -60,6 +60,7 @@ TEST(SeamTest, NothingThatServesEveryProtocolNamesOne) {
                                 "analysis/quality",
                                 "experiments/control",
                                 "experiments/screen",
+                                "experiments/server",
                                 "experiments/console",
                                 "experiments/runner",
                                 "experiments/study",

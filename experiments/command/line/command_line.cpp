@@ -34,6 +34,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_new(app, status);
   add_texts(app, status);
   add_doctor(app, status);
+  add_studio(app, status);
   add_dry_run(app, status);
   add_start(app, status);
   add_run(app, status);

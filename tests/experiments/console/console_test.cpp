@@ -13,11 +13,12 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "experiments/console/console_address.h"
-#include "experiments/console/console_door.h"
-#include "experiments/console/console_guard.h"
 #include "experiments/console/console_messages.h"
 #include "experiments/console/console_page.h"
+#include "experiments/server/address.h"
+#include "experiments/server/listener.h"
+#include "experiments/server/page.h"
+#include "experiments/server/request_filter.h"
 #include "tests/experiments/console_client.h"
 
 namespace haptrial::experiments {
@@ -127,7 +128,7 @@ TEST_F(ConsoleTest, ThePageIsTheSourceWithItsNonceAndLoadsNothingElse) {
   ASSERT_NE(at, std::string::npos);
   const std::string nonce = answer.substr(at + mark.size(), 32);
   const std::string page = answer.substr(answer.find("\r\n\r\n") + 4);
-  EXPECT_EQ(page, console_page(console_page_template(), nonce));
+  EXPECT_EQ(page, page_with_nonce(console_page_template(), nonce));
   EXPECT_THAT(page, HasSubstr("<script nonce=\"" + nonce));
   EXPECT_THAT(page, Not(HasSubstr(console.token())));
   for (const char* elsewhere : {"http://", "https://", "src=", "@import", "url("}) {
@@ -676,12 +677,12 @@ TEST_F(ConsoleTest, OtherAddressesNeedTheFlag) {
 }
 
 TEST_F(ConsoleTest, HostsAreSpeltAsBrowsersSpellThem) {
-  EXPECT_THAT(console_hosts("127.0.0.1", true, 80), ElementsAre("127.0.0.1:80", "localhost:80"));
-  EXPECT_THAT(console_hosts("0:0::0001", true, 80), ElementsAre("[::1]:80", "localhost:80"));
-  EXPECT_THAT(console_hosts("2001:DB8::a", false, 8080), ElementsAre("[2001:db8::a]:8080"));
-  EXPECT_TRUE(check_console_address("::1", false));
-  EXPECT_TRUE(check_console_address("127.255.0.1", false));
-  EXPECT_FALSE(check_console_address("2001:db8::a", true));
+  EXPECT_THAT(server_hosts("127.0.0.1", true, 80), ElementsAre("127.0.0.1:80", "localhost:80"));
+  EXPECT_THAT(server_hosts("0:0::0001", true, 80), ElementsAre("[::1]:80", "localhost:80"));
+  EXPECT_THAT(server_hosts("2001:DB8::a", false, 8080), ElementsAre("[2001:db8::a]:8080"));
+  EXPECT_TRUE(check_server_address("::1", false));
+  EXPECT_TRUE(check_server_address("127.255.0.1", false));
+  EXPECT_FALSE(check_server_address("2001:db8::a", true));
 }
 
 TEST_F(ConsoleTest, ATakenPortIsAnError) {

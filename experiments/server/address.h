@@ -9,9 +9,9 @@ namespace haptrial::experiments {
 ///                 since then nobody could say which Host is right.
 /// @returns whether it is of the loopback interface.
 /// @throws InputError also where it is not and `allow_remote` is false.
-bool check_console_address(const std::string& address, bool allow_remote);
+bool check_server_address(const std::string& address, bool allow_remote);
 
 /// Allowed Hosts of a request: "127.0.0.1:8080" and, on loopback, "localhost:8080".
-std::vector<std::string> console_hosts(const std::string& address, bool loopback, int port);
+std::vector<std::string> server_hosts(const std::string& address, bool loopback, int port);
 
 }  // namespace haptrial::experiments

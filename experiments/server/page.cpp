@@ -1,10 +1,10 @@
-#include "experiments/console/console_page.h"
+#include "experiments/server/page.h"
 
 #include <fmt/format.h>
 
 namespace haptrial::experiments {
 
-std::string console_page(std::string_view html, const std::string& nonce) {
+std::string page_with_nonce(std::string_view html, const std::string& nonce) {
   constexpr std::string_view kPlace = "NONCE";
   std::string page(html);
   for (auto at = page.find(kPlace); at != std::string::npos; at = page.find(kPlace, at)) {
@@ -13,7 +13,7 @@ std::string console_page(std::string_view html, const std::string& nonce) {
   return page;
 }
 
-std::string console_page_policy(const std::string& nonce) {
+std::string page_policy(const std::string& nonce) {
   return fmt::format(
       "default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; connect-src 'self'; "
       "img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",

@@ -10,7 +10,7 @@
 
 namespace haptrial::experiments {
 
-/// A non-blocking event that wakes every connection when the console closes.
+/// A non-blocking event that wakes every connection when the server closes.
 class StopEvent {
  public:
   /// @throws RunError when the system has no descriptor left.
@@ -36,7 +36,7 @@ class Connection {
   using Duration = std::chrono::duration<double>;
 
   /// @param crowded  others wait: a client that has not been trusted then gets 50 ms at most, so
-  ///                 that those who only occupy the console cannot keep an emergency stop out.
+  ///                 that those who only occupy the server cannot keep an emergency stop out.
   Connection(int socket, const StopEvent& stop, const std::atomic<bool>& crowded,
              std::size_t max_bytes, Duration time);
 
@@ -45,10 +45,10 @@ class Connection {
 
   /// @returns bytes read (at least 1), 0 when the peer closed, -1 with trouble().
   ssize_t read(char* data, std::size_t size);
-  /// @returns bytes written (at least 1) or -1 with trouble(). Once the console closes, only what
+  /// @returns bytes written (at least 1) or -1 with trouble(). Once the server closes, only what
   /// the peer takes at once is written: a last word.
   ssize_t write(const char* data, std::size_t size);
-  /// Waits without reading. @returns false when the peer or the console has gone.
+  /// Waits without reading. @returns false when the peer or the server has gone.
   bool wait(Duration time);
   /// Sets the time that the peer has from now on.
   void set_deadline(Duration time);

@@ -1,4 +1,4 @@
-#include "experiments/console/console_connection.h"
+#include "experiments/server/connection.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ int milliseconds_until(Clock::time_point deadline) {
 
 StopEvent::StopEvent() : descriptor_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (descriptor_ < 0) {
-    throw RunError(fmt::format("the console cannot make an event: {}", std::strerror(errno)));
+    throw RunError(fmt::format("the server cannot make an event: {}", std::strerror(errno)));
   }
 }
 

@@ -40,18 +40,23 @@ struct Refusal {
   std::string reason;  // a sentence without its full stop
 };
 
-/// Decides who may talk to the console. The browser of the experimenter also shows other pages, so
+/// Decides who may talk to a server. The browser of the experimenter also shows other pages, so
 /// the loopback address alone protects nothing:
 ///  - a foreign page that posts here is stopped by its Origin, and lacks the token's header;
 ///  - a name that is rebound to this address is stopped by its Host;
 ///  - there is no cookie that a browser would add by itself.
 class RequestFilter {
  public:
+  struct Place {
+    std::string path;     // "/events"
+    bool is_page{false};  // it is opened by its address
+    bool reads{true};     // GET; else POST
+  };
   struct Rules {
     std::string token;
     std::vector<std::string> hosts;  // "127.0.0.1:8080"
     std::size_t max_body{4096};      // [bytes]
-    std::vector<std::string> sides;  // names of the pages beside the console's
+    std::vector<Place> places;       // all that may be asked for
   };
   explicit RequestFilter(Rules rules) : rules_(std::move(rules)) {}
 
@@ -59,12 +64,8 @@ class RequestFilter {
   std::optional<Refusal> judge(const RequestHead& head) const;
 
  private:
-  struct Place {
-    bool page{false};   // that is opened by its address
-    bool reads{false};  // GET; else POST
-  };
-  /// Nothing where there is nothing.
-  std::optional<Place> place_of(const std::string& path) const;
+  /// Null if there is nothing.
+  const Place* place_of(const std::string& path) const;
   std::string places() const;
   std::optional<Refusal> judge_sender(const RequestHead& head) const;
   std::optional<Refusal> judge_body(const RequestHead& head) const;

@@ -1,4 +1,4 @@
-#include "experiments/console/console_door.h"
+#include "experiments/server/listener.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -11,7 +11,7 @@
 #include <map>
 #include <utility>
 
-#include "experiments/console/console_guard.h"
+#include "experiments/server/request_filter.h"
 
 namespace haptrial::experiments {
 

@@ -1,4 +1,4 @@
-#include "experiments/console/console_address.h"
+#include "experiments/server/address.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 
 namespace haptrial::experiments {
 
-std::vector<std::string> console_hosts(const std::string& address, bool loopback, int port) {
+std::vector<std::string> server_hosts(const std::string& address, bool loopback, int port) {
   in6_addr v6{};
   std::array<char, INET6_ADDRSTRLEN> text{};
   std::vector<std::string> hosts{fmt::format("{}:{}", address, port)};
@@ -24,7 +24,7 @@ std::vector<std::string> console_hosts(const std::string& address, bool loopback
   return hosts;
 }
 
-bool check_console_address(const std::string& address, bool allow_remote) {
+bool check_server_address(const std::string& address, bool allow_remote) {
   in_addr v4{};
   in6_addr v6{};
   const bool is_v4 = ::inet_pton(AF_INET, address.c_str(), &v4) == 1;
@@ -32,7 +32,7 @@ bool check_console_address(const std::string& address, bool allow_remote) {
   const bool any = (is_v4 && v4.s_addr == INADDR_ANY) || (is_v6 && IN6_IS_ADDR_UNSPECIFIED(&v6));
   if ((!is_v4 && !is_v6) || any) {
     throw InputError(
-        fmt::format("the console's address is '{}'; allowed: the numeric address of one network "
+        fmt::format("the page's address is '{}'; allowed: the numeric address of one network "
                     "interface, such as 127.0.0.1",
                     address));
   }
@@ -40,7 +40,7 @@ bool check_console_address(const std::string& address, bool allow_remote) {
       is_v4 ? (ntohl(v4.s_addr) >> 24) == IN_LOOPBACKNET : IN6_IS_ADDR_LOOPBACK(&v6) != 0;
   if (!loopback && !allow_remote) {
     throw InputError(
-        fmt::format("the console's address {} can be reached from other machines; add --remote, or "
+        fmt::format("the page's address {} can be reached from other machines; add --remote, or "
                     "choose 127.0.0.1 or ::1",
                     address));
   }

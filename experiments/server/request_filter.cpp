@@ -1,4 +1,4 @@
-#include "experiments/console/console_guard.h"
+#include "experiments/server/request_filter.h"
 
 #include <fmt/format.h>
 #include <sys/random.h>
@@ -41,7 +41,7 @@ bool is_same_secret(const std::string& a, const std::string& b) {
 std::string make_token() {
   std::array<unsigned char, 16> bits{};
   if (::getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size())) {
-    throw RunError("the system gave no random numbers for the console's token");
+    throw RunError("the system gave no random numbers for the page's token");
   }
   std::string token;
   for (const unsigned char byte : bits) {
@@ -54,8 +54,8 @@ std::optional<Refusal> RequestFilter::judge(const RequestHead& head) const {
   if (auto refusal = judge_sender(head)) {
     return refusal;
   }
-  const std::optional<Place> place = place_of(head.path);
-  if (!place) {
+  const Place* place = place_of(head.path);
+  if (place == nullptr) {
     return Refusal{404, "no such page; there are " + places()};
   }
   if (head.method != (place->reads ? "GET" : "POST")) {
@@ -64,31 +64,15 @@ std::optional<Refusal> RequestFilter::judge(const RequestHead& head) const {
   return judge_body(head);
 }
 
-std::optional<RequestFilter::Place> RequestFilter::place_of(const std::string& path) const {
-  if (path == "/") {
-    return Place{true, true};
-  }
-  if (path == "/events" || path == "/picture" || path == "/mirror") {
-    return Place{false, true};
-  }
-  if (path == "/ask" || path == "/note" || path == "/answer") {
-    return Place{false, false};
-  }
-  for (const std::string& side : rules_.sides) {
-    if (path == "/" + side) {
-      return Place{true, true};
-    }
-    if (path == "/" + side + "/events" || path == "/" + side + "/ask") {
-      return Place{false, path.ends_with("/events")};
-    }
-  }
-  return std::nullopt;
+const RequestFilter::Place* RequestFilter::place_of(const std::string& path) const {
+  const auto found = std::ranges::find(rules_.places, path, &Place::path);
+  return found == rules_.places.end() ? nullptr : &*found;
 }
 
 std::string RequestFilter::places() const {
-  std::string all = "/, /events, /picture, /mirror, /ask, /note and /answer";
-  for (const std::string& side : rules_.sides) {
-    all += fmt::format(", and /{0}, /{0}/events and /{0}/ask", side);
+  std::string all;
+  for (const Place& place : rules_.places) {
+    all += (all.empty() ? "" : ", ") + place.path;
   }
   return all;
 }
@@ -98,7 +82,7 @@ std::optional<Refusal> RequestFilter::judge_sender(const RequestHead& head) cons
     return std::find(rules_.hosts.begin(), rules_.hosts.end(), host) != rules_.hosts.end();
   };
   if (head.host_headers != 1 || !is_ours(head.host)) {
-    return Refusal{421, "the Host is not the console's address"};
+    return Refusal{421, "the Host is not the page's address"};
   }
   constexpr std::string_view kScheme = "http://";
   if (!head.origin.empty() &&
@@ -106,9 +90,9 @@ std::optional<Refusal> RequestFilter::judge_sender(const RequestHead& head) cons
     return Refusal{403, "the Origin is another page"};
   }
   // A link that is followed to the page itself comes from elsewhere, and that is fine.
-  const std::optional<Place> place = place_of(head.path);
-  if (!(place && place->page) && !head.fetch_site.empty() && head.fetch_site != "same-origin" &&
-      head.fetch_site != "none") {
+  const Place* place = place_of(head.path);
+  if ((place == nullptr || !place->is_page) && !head.fetch_site.empty() &&
+      head.fetch_site != "same-origin" && head.fetch_site != "none") {
     return Refusal{403, "the browser says that another site asks"};
   }
   // EventSource cannot send a header, so that reading may name the token in the address.

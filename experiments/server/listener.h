@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "experiments/console/console_connection.h"
+#include "experiments/server/connection.h"
 
 namespace haptrial::experiments {
 

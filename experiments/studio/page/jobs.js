@@ -1,0 +1,96 @@
+"use strict";
+// Rehearse: dry runs and analyses as jobs of the studio, which go on while pages come and go.
+const opened_jobs = new Set();  // whose output is unfolded
+
+async function show_rehearse(main, file) {
+  const subjects = make("input", {id: "subjects", type: "number", min: "1", max: "10000", value: "2", required: true});
+  main.append(make("h1", {}, file), make("section", {"aria-labelledby": "rehearse_title"}, make("h2", {id: "rehearse_title"}, word("rehearse")),
+    make("p", {}, word("rehearse_help")),
+    make("form", {class: "row", onsubmit: start}, make("label", {for: "subjects"}, word("virtual")), subjects, make("button", {class: "main", id: "rehearse"}, word("start")))));
+  const list = make("div", {id: "jobs"});
+  main.append(make("section", {"aria-labelledby": "jobs_title"}, make("h2", {id: "jobs_title"}, word("jobs")), list));
+  async function start(event) {
+    event.preventDefault();
+    await attempt(async () => {
+      const started = await post("/rehearse", {file, subjects: Number(subjects.value)});
+      opened_jobs.add(started.job);
+      say(word("started", {command: started.command}));
+      await watch_jobs(list);
+    });
+  }
+  await watch_jobs(list);
+}
+
+/// Shows the jobs, again and again while one of them runs and the list is in the page.
+async function watch_jobs(list) {
+  clearTimeout(list.timer);
+  const {jobs} = await get("/jobs");
+  if (!list.isConnected) return;
+  list.firstElementChild && jobs.length > 0 || list.replaceChildren(jobs.length === 0 ? make("p", {class: "soft"}, word("no_jobs")) : "");
+  for (const job of jobs) await show_job(list, job);
+  if (jobs.some((job) => job.state === "running")) {
+    list.timer = setTimeout(() => attempt(() => watch_jobs(list)), 400);
+  }
+}
+
+async function show_job(list, job) {
+  const id = "job_" + job.job;
+  let card = by_id(id);
+  if (!card) {
+    card = job_card(list, job, id);
+    list.prepend(card.element);
+    list.querySelectorAll("p.soft.none").forEach((each) => each.remove());
+  } else {
+    card = card.parts;
+  }
+  if (card.shown !== job.state + job.bytes + job.written) {
+    const ended = card.state === "running" && job.state !== "running";
+    card.shown = job.state + job.bytes + job.written;
+    card.state = job.state;
+    show_state(card, job);
+    if (card.details.open) await card.read();
+    if (ended) say(word("ended", {state: word(job.state), command: job.command}));
+  }
+  card.time.textContent = word("seconds", {n: job.seconds.toFixed(1)});
+}
+
+function job_card(list, job, id) {
+  const output = printed("", id + "_output");
+  const card = {state: job.state, shown: "", stateText: make("span", {id: id + "_state", role: "status"}), time: make("span", {class: "n soft"}),
+    bar: make("progress", {"aria-label": job.command, max: "1"}), count: make("span", {class: "soft"}), actions: make("span", {class: "row"})};
+  card.read = async () => { output.textContent = (await get("/job", {job: job.job})).output; output.scrollTop = output.scrollHeight; };
+  card.details = make("details", {open: opened_jobs.has(job.job), ontoggle: () => {
+    card.details.open ? opened_jobs.add(job.job) : opened_jobs.delete(job.job);
+    if (card.details.open) attempt(card.read);
+  }}, make("summary", {}, word("output")), output);
+  card.cancel = make("button", {type: "button", id: id + "_cancel", onclick: () => attempt(async () => { await post("/cancel", {job: job.job}); await watch_jobs(list); })}, word("stop"));
+  card.element = make("section", {id, "aria-label": word("job") + " " + job.job}, make("div", {class: "row"}, card.stateText, card.time, card.bar, card.count, card.cancel, card.actions),
+    command_line(job.command), card.details);
+  card.element.parts = card;
+  card.list = list;
+  return card;
+}
+
+function show_state(card, job) {
+  card.stateText.textContent = word(job.state);
+  card.stateText.className = job.state === "done" ? "good" : job.state === "running" ? "" : "bad";
+  card.cancel.hidden = job.state !== "running";
+  card.bar.hidden = job.state !== "running";
+  if (job.sessions > 0) {
+    card.bar.value = job.written / job.sessions;
+    card.count.textContent = word("sessions_of", {n: job.written, all: job.sessions});
+  }
+  if (job.state === "done") card.actions.replaceChildren(...(job.sessions > 0 ? [analyze_button(job.study, job.folder, card.list)] : [report_link(job.study, job.folder)]));
+}
+
+const report_link = (file, folder) => make("a", {class: "report", href: "#" + ["results", file, folder].map(encodeURIComponent).join("/")}, word("show_report"));
+/// Starts an analysis; @param list  of jobs to be shown anew, if the page has one
+function analyze_button(file, folder, list) {
+  return make("button", {type: "button", class: "analyze", onclick: () => attempt(async () => {
+    const started = await post("/analyze", {file, folder});
+    opened_jobs.add(started.job);
+    say(word("started", {command: started.command}));
+    if (list) await watch_jobs(list);
+    else location.hash = "#rehearse/" + encodeURIComponent(file);
+  })}, word("analyze"));
+}

@@ -1,0 +1,76 @@
+"use strict";
+// Every word of the page. What commands print stays as they print it, in English.
+const kWords = {
+  en: {
+    skip: "Skip to the contents", views: "Views", home: "Studies", definition: "Definition",
+    rehearse: "Rehearse", sessions: "Sessions", results: "Results", study: "Study", state: "State",
+    participants: "Participants", next: "Next", last: "Last event", report: "Report",
+    checking: "checking…", draft: "draft, {n} mistakes", draft_one: "draft, 1 mistake",
+    ready: "ready", under_way: "{done} of {all} participants done", all_done: "all participants done",
+    warnings: "{n} warnings", warnings_one: "1 warning", group: "group {name}",
+    report_none: "none", report_old: "older than the sessions", report_current: "current",
+    no_studies: "This folder has no definition yet. Begin one from a shipped experiment below.",
+    gallery: "Shipped experiments", begin: "New from this", begin_of: "New study from {name}",
+    name: "Name of the new study", name_help: "Letters, digits, _ and -; the file is NAME.toml",
+    create: "Create", cancel: "Cancel", machine: "This machine", check_again: "Check again",
+    part: "Part", found: "Found", same: "The same in a terminal:", in_terminal: "In a terminal:", copy: "Copy", copied: "Copied",
+    save: "Save", saved: "Saved", unsaved: "Not saved", as_saved: "As saved on disk",
+    valid: "No mistakes", mistakes: "{n} mistakes", mistakes_one: "1 mistake", line: "Line {n}: ",
+    text_of: "Text of {file}", key: "Key under the cursor", no_key: "Put the cursor on a key to read about it. Ctrl+Space lists the keys that may stand here.",
+    plain_editor: "CodeMirror is not installed (Debian's package libjs-codemirror), so the text has no colours and no completion here. Everything else works.",
+    plan: "What the definition plans", rehearse_help: "Virtual participants go through the whole study, faster than real time.",
+    virtual: "Virtual participants", start: "Start", jobs: "Jobs", no_jobs: "Nothing was started yet.",
+    running: "running", done: "done", failed: "failed", cancelled: "cancelled", stop: "Cancel",
+    seconds: "{n} s", sessions_of: "{n} of {all} sessions", output: "Output", analyze: "Analyse",
+    show_report: "Show the report", job: "Job", command: "Command", started: "Started: {command}",
+    ended: "Ended, {state}: {command}", file: "File", size: "Size", changed: "Changed", show: "Show",
+    info_of: "What {file} holds", no_sessions: "No session yet.", with_people: "Sessions with participants",
+    rehearsals: "Rehearsals", run_next: "The next session", nobody_next: "Every planned participant has had every session.",
+    run_help: "A session holds a device and needs real-time priority, so it is started in a terminal, not by this page. Add --console for the experimenter's page and --window for the participant's window.",
+    next_is: "{subject}, session {n}", new_report: "The report is newer than the sessions.", no_report: "There is no report of these sessions yet.",
+    old_report: "The report is older than the sessions: analyse them again.", open_report: "Open the report in a tab of its own",
+    files: "Files to keep", report_frame: "Report of {folder}", folder_of: "Sessions of {folder}",
+    gone: "The studio does not answer. Is it still running in its terminal?",
+    mend_first: "Mend the mistakes first.",
+  },
+  de: {
+    skip: "Zum Inhalt", views: "Ansichten", home: "Studien", definition: "Definition",
+    rehearse: "Proben", sessions: "Sitzungen", results: "Ergebnisse", study: "Studie", state: "Stand",
+    participants: "Teilnehmende", next: "Als Nächstes", last: "Letztes Ereignis", report: "Bericht",
+    checking: "wird geprüft …", draft: "Entwurf, {n} Fehler", draft_one: "Entwurf, 1 Fehler",
+    ready: "bereit", under_way: "{done} von {all} Teilnehmenden fertig", all_done: "alle Teilnehmenden fertig",
+    warnings: "{n} Warnungen", warnings_one: "1 Warnung", group: "Gruppe {name}",
+    report_none: "keiner", report_old: "älter als die Sitzungen", report_current: "aktuell",
+    no_studies: "In diesem Ordner ist noch keine Definition. Beginnen Sie eine aus einem mitgelieferten Experiment.",
+    gallery: "Mitgelieferte Experimente", begin: "Neu daraus", begin_of: "Neue Studie aus {name}",
+    name: "Name der neuen Studie", name_help: "Buchstaben, Ziffern, _ und -; die Datei heißt NAME.toml",
+    create: "Anlegen", cancel: "Abbrechen", machine: "Dieser Rechner", check_again: "Erneut prüfen",
+    part: "Teil", found: "Gefunden", same: "Dasselbe im Terminal:", in_terminal: "Im Terminal:", copy: "Kopieren", copied: "Kopiert",
+    save: "Speichern", saved: "Gespeichert", unsaved: "Nicht gespeichert", as_saved: "Wie auf der Platte",
+    valid: "Keine Fehler", mistakes: "{n} Fehler", mistakes_one: "1 Fehler", line: "Zeile {n}: ",
+    text_of: "Text von {file}", key: "Schlüssel unter der Schreibmarke", no_key: "Setzen Sie die Schreibmarke auf einen Schlüssel, um über ihn zu lesen. Strg+Leertaste zeigt, welche hier stehen dürfen.",
+    plain_editor: "CodeMirror ist nicht installiert (Debians Paket libjs-codemirror); der Text hat hier keine Farben und keine Vervollständigung. Alles andere geht.",
+    plan: "Was die Definition plant", rehearse_help: "Virtuelle Teilnehmende durchlaufen die ganze Studie, schneller als in Echtzeit.",
+    virtual: "Virtuelle Teilnehmende", start: "Starten", jobs: "Aufträge", no_jobs: "Noch nichts gestartet.",
+    running: "läuft", done: "fertig", failed: "misslungen", cancelled: "abgebrochen", stop: "Abbrechen",
+    seconds: "{n} s", sessions_of: "{n} von {all} Sitzungen", output: "Ausgabe", analyze: "Auswerten",
+    show_report: "Bericht zeigen", job: "Auftrag", command: "Befehl", started: "Gestartet: {command}",
+    ended: "Beendet, {state}: {command}", file: "Datei", size: "Größe", changed: "Geändert", show: "Zeigen",
+    info_of: "Was {file} enthält", no_sessions: "Noch keine Sitzung.", with_people: "Sitzungen mit Teilnehmenden",
+    rehearsals: "Proben", run_next: "Die nächste Sitzung", nobody_next: "Alle geplanten Teilnehmenden hatten alle Sitzungen.",
+    run_help: "Eine Sitzung hält ein Gerät und braucht Echtzeit-Vorrang; sie wird im Terminal gestartet, nicht von dieser Seite. --console gibt dazu die Seite der Versuchsleitung, --window das Fenster der Teilnehmenden.",
+    next_is: "{subject}, Sitzung {n}", new_report: "Der Bericht ist neuer als die Sitzungen.", no_report: "Zu diesen Sitzungen gibt es noch keinen Bericht.",
+    old_report: "Der Bericht ist älter als die Sitzungen: werten Sie erneut aus.", open_report: "Bericht in einem eigenen Tab öffnen",
+    files: "Dateien zum Behalten", report_frame: "Bericht zu {folder}", folder_of: "Sitzungen in {folder}",
+    gone: "Das Studio antwortet nicht. Läuft es noch in seinem Terminal?",
+    mend_first: "Beheben Sie zuerst die Fehler.",
+  },
+};
+const kLanguage = navigator.language.startsWith("de") ? "de" : "en";
+
+/// The word of a name; {n} and the like stand for values.
+function word(name, values = {}) {
+  const one = values.n === 1 ? kWords[kLanguage][name + "_one"] : undefined;
+  const text = one || kWords[kLanguage][name];
+  return text.replace(/\{(\w+)\}/g, (all, key) => key in values ? String(values[key]) : all);
+}

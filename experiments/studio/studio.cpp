@@ -1,0 +1,179 @@
+#include "experiments/studio/studio.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/base/error.h"
+#include "experiments/server/server.h"
+#include "experiments/studio/commands.h"
+#include "experiments/studio/studio_page.h"
+#include "experiments/studio/study_folder.h"
+#include "experiments/studio/views_internal.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using nlohmann::json;
+using Kind = WebRoute::Kind;
+
+constexpr std::size_t kMaxBody = 4'000'000;  // a definition, with its escapes [bytes]
+
+WebAnswer json_answer(const json& body) {
+  return {200, "application/json", body.dump(-1, ' ', false, json::error_handler_t::replace)};
+}
+
+/// What a request asks for, by name. @throws InputError for a name that is missing
+std::string asked(const WebRequest& request, const std::string& name) {
+  const auto found = request.query.find(name);
+  if (found == request.query.end()) {
+    throw InputError(fmt::format("the address lacks {}=", name));
+  }
+  return found->second;
+}
+
+json body_of(const WebRequest& request) {
+  json body = json::parse(request.body, nullptr, false);
+  if (!body.is_object()) {
+    throw InputError("the body is not a JSON object");
+  }
+  return body;
+}
+
+std::string string_in(const json& body, const char* key) {
+  const auto found = body.find(key);
+  if (found == body.end() || !found->is_string()) {
+    throw InputError(fmt::format("the body lacks the text \"{}\"", key));
+  }
+  return found->get<std::string>();
+}
+
+int number_in(const json& body, const char* key, int low, int high) {
+  const auto found = body.find(key);
+  const bool whole = found != body.end() && found->is_number_integer();
+  const auto number = whole ? found->get<std::int64_t>() : std::int64_t{low} - 1;
+  if (number < low || number > high) {
+    throw InputError(
+        fmt::format("the body's \"{}\" is not a whole number from {} to {}", key, low, high));
+  }
+  return static_cast<int>(number);
+}
+
+}  // namespace
+
+class Studio::Implementation {
+ public:
+  explicit Implementation(const StudioOptions& options)
+      : folder_(options.folder),
+        commands_(options.program, folder_.path()),
+        views_(folder_, commands_, options.libraries),
+        server_(server_options(options), routes()) {}
+  ~Implementation() { commands_.stop(); }
+
+  const GuardedServer& server() const { return server_; }
+
+ private:
+  static ServerOptions server_options(const StudioOptions& options) {
+    constexpr int kRequests = 8;  // at a time; most of them wait for a command
+    ServerOptions server;
+    server.port = options.port;
+    server.request_time = options.request_time;
+    server.own_workers = kRequests;
+    server.max_body = kMaxBody;
+    server.on_refusal = options.on_refusal;
+    return server;
+  }
+
+  static WebRoute get(const std::string& path, std::function<json(const WebRequest&)> view) {
+    return {path, Kind::kRead, [view = std::move(view)](const WebRequest& request) {
+              return json_answer(view(request));
+            }};
+  }
+  static WebRoute post(const std::string& path, std::function<json(const json&)> act) {
+    return {path, Kind::kPost, [act = std::move(act)](const WebRequest& request) {
+              return json_answer(act(body_of(request)));
+            }};
+  }
+
+  std::vector<WebRoute> routes() {
+    std::vector<WebRoute> all = looks();
+    for (WebRoute& act : acts()) {
+      all.push_back(std::move(act));
+    }
+    return all;
+  }
+
+  std::vector<WebRoute> looks() {
+    const auto page = [](const WebRequest&) {
+      return page_answer(studio_page_template(), "frame-src 'self'");
+    };
+    const auto file = [this](const WebRequest& r) {
+      return views_.file(asked(r, "file"), r.query.contains("download"));
+    };
+    const auto library = [this](const WebRequest& r) { return views_.library(asked(r, "name")); };
+    return {
+        {"/", Kind::kPage, page},
+        {"/library", Kind::kRead, library},
+        {"/file", Kind::kRead, file},
+        get("/studies", [this](const WebRequest&) { return views_.studies(); }),
+        get("/study", [this](const WebRequest& r) { return views_.study(asked(r, "file")); }),
+        get("/examples", [this](const WebRequest&) { return views_.examples(); }),
+        get("/machine", [this](const WebRequest&) { return views_.machine(); }),
+        get("/schema", [this](const WebRequest& r) { return views_.schema(asked(r, "protocol")); }),
+        get("/text", [this](const WebRequest& r) { return views_.text(asked(r, "file")); }),
+        get("/sessions", [this](const WebRequest& r) { return views_.sessions(asked(r, "file")); }),
+        get("/info", [this](const WebRequest& r) { return views_.info(asked(r, "file")); }),
+        get("/jobs", [this](const WebRequest&) { return views_.jobs(); }),
+        get("/job", [this](const WebRequest& r) { return views_.job(asked(r, "job")); })};
+  }
+
+  std::vector<WebRoute> acts() {
+    constexpr int kMostSubjects = 10'000;
+    return {post("/validate",
+                 [this](const json& body) {
+                   return views_.validate(string_in(body, "file"), string_in(body, "text"));
+                 }),
+            post("/save",
+                 [this](const json& body) {
+                   return views_.save(string_in(body, "file"), string_in(body, "text"),
+                                      string_in(body, "stamp"));
+                 }),
+            post("/new",
+                 [this](const json& body) {
+                   return views_.begin(string_in(body, "name"), string_in(body, "from"));
+                 }),
+            post("/rehearse",
+                 [this](const json& body) {
+                   return views_.rehearse(string_in(body, "file"),
+                                          number_in(body, "subjects", 1, kMostSubjects));
+                 }),
+            post("/analyze",
+                 [this](const json& body) {
+                   return views_.analyze(string_in(body, "file"), string_in(body, "folder"));
+                 }),
+            post("/cancel", [this](const json& body) {
+              commands_.cancel(number_in(body, "job", 1, 1'000'000));
+              return views_.jobs();
+            })};
+  }
+
+  StudyFolder folder_;
+  Commands commands_;
+  StudioViews views_;
+  GuardedServer server_;
+};
+
+Studio::Studio(const StudioOptions& options)
+    : implementation_(std::make_unique<Implementation>(options)) {}
+
+Studio::~Studio() = default;
+
+std::string Studio::url() const { return implementation_->server().url(); }
+int Studio::port() const { return implementation_->server().port(); }
+const std::string& Studio::token() const { return implementation_->server().token(); }
+std::uint64_t Studio::refused() const { return implementation_->server().refused(); }
+std::vector<std::string> Studio::refusals() const { return implementation_->server().refusals(); }
+
+}  // namespace haptrial::experiments

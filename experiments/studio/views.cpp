@@ -1,0 +1,365 @@
+#include <fmt/format.h>
+#include <stdlib.h>  // mkdtemp
+#include <unistd.h>
+
+#include <atomic>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/file_text.h"
+#include "core/base/utf8.h"
+#include "experiments/studio/views_internal.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::uintmax_t kMostDefinition = 2'000'000;  // [bytes]
+constexpr std::uintmax_t kMostFile = 100'000'000;
+
+/// A file that is removed at the end.
+class ShortLivedFile {
+ public:
+  explicit ShortLivedFile(fs::path file) : file_(std::move(file)) {}
+  ~ShortLivedFile() {
+    std::error_code ignored;
+    fs::remove(file_, ignored);
+  }
+  ShortLivedFile(const ShortLivedFile&) = delete;
+  ShortLivedFile& operator=(const ShortLivedFile&) = delete;
+  const fs::path& path() const { return file_; }
+
+ private:
+  fs::path file_;
+};
+
+/// A number that no other request has.
+int next_number() {
+  static std::atomic<int> number{0};
+  return ++number;
+}
+
+/// A word that a command cannot take for an option or a path.
+void check_word(const char* what, const std::string& word) {
+  static const std::regex kWord("[A-Za-z0-9_][A-Za-z0-9_-]{0,99}");
+  if (!std::regex_match(word, kWord)) {
+    throw InputError(fmt::format(
+        "{} is not a plain word; allowed: up to 100 letters A to Z, digits, '_' and '-'", what));
+  }
+}
+
+int number_of(const std::string& text) {
+  if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != text.npos) {
+    throw InputError("a number of the address is not a whole number from 0 to 999999999");
+  }
+  return std::stoi(text);
+}
+
+/// Rows of three columns that two or more spaces part, as lists of commands have them.
+json rows_of(const std::string& output) {
+  static const std::regex kRow(R"((\S.*?)\s{2,}(\S.*?)\s{2,}(.+))");
+  json rows = json::array();
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    if (std::smatch parts; std::regex_match(line, parts, kRow)) {
+      rows.push_back({parts.str(1), parts.str(2), parts.str(3)});
+    }
+  }
+  return rows;
+}
+
+json remarks_json(const std::vector<Remark>& remarks) {
+  json all = json::array();
+  for (const Remark& remark : remarks) {
+    all.push_back({{"mistake", remark.is_mistake},
+                   {"line", remark.line},
+                   {"column", remark.column},
+                   {"text", remark.text}});
+  }
+  return all;
+}
+
+json files_json(const std::vector<FolderFile>& files) {
+  json all = json::array();
+  for (const FolderFile& file : files) {
+    all.push_back({{"name", file.name}, {"bytes", file.bytes}, {"modified", file.modified}});
+  }
+  return all;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+}  // namespace
+
+StudioViews::StudioViews(const StudyFolder& folder, Commands& commands, fs::path libraries)
+    : folder_(folder), commands_(commands), libraries_(std::move(libraries)) {
+  std::string name = (fs::temp_directory_path() / "haptrial-studio-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr) {
+    throw RunError(
+        fmt::format("{}: no folder can be made there", fs::temp_directory_path().string()));
+  }
+  scratch_ = name;
+}
+
+StudioViews::~StudioViews() {
+  std::error_code ignored;
+  fs::remove_all(scratch_, ignored);
+}
+
+CommandResult StudioViews::run_good(const CommandWords& words) const {
+  CommandResult result = commands_.run(words);
+  if (result.status != 0) {
+    throw InputError(fmt::format("{}: {}", shown_command(words), result.output));
+  }
+  return result;
+}
+
+SessionFolder StudioViews::held_in(const std::string& name) const {
+  return folder_.holds(name) ? list_sessions(folder_.path() / name) : SessionFolder();
+}
+
+json StudioViews::studies() const {
+  return {{"folder", folder_.path().string()}, {"files", folder_.definitions()}};
+}
+
+json StudioViews::study(const std::string& file) const {
+  folder_.definition(file);
+  const CommandWords words{"validate", file};
+  const CommandResult checked = commands_.run(words);
+  const std::vector<Remark> remarks = read_remarks(checked.output, file, checked.status == 0);
+  json out{{"command", shown_command(words)},
+           {"valid", checked.status == 0},
+           {"remarks", remarks_json(remarks)}};
+  const std::string sessions = StudyFolder::sessions_of(file);
+  const SessionFolder held = held_in(sessions);
+  out["sessions"] = held.sessions.size();
+  out["report"] = !held.report ? "none" : held.report_is_old ? "old" : "current";
+  if (checked.status == 0) {
+    add_roster(file, out);
+  }
+  if (const FolderFile* newest = held.newest_session()) {
+    add_last_event(sessions + "/" + newest->name, out);
+  }
+  return out;
+}
+
+/// How many of how many participants are done, and who is next.
+void StudioViews::add_roster(const std::string& file, json& out) const {
+  const ShortLivedFile written(scratch_ / fmt::format("roster-{}.json", next_number()));
+  const CommandWords words{"roster", file, StudyFolder::sessions_of(file)};
+  CommandWords asked = words;
+  asked.insert(asked.end(), {"--json", written.path().string()});
+  const CommandResult result = commands_.run(asked);
+  const json roster =
+      result.status == 0 ? json::parse(file_text(written.path()), nullptr, false) : json();
+  if (!roster.is_object()) {
+    out["roster"] = {{"command", shown_command(words)}, {"failure", result.output}};
+    return;
+  }
+  out["roster"] = {{"command", shown_command(words)},
+                   {"groups", roster["groups"]},
+                   {"next", roster["next"]},
+                   {"remarks", roster["remarks"]}};
+}
+
+/// The last abort, alarm or loss that the newest session tells of.
+void StudioViews::add_last_event(const std::string& file, json& out) const {
+  const CommandResult result = commands_.run({"info", file});
+  static const std::regex kEvent(
+      "(aborted|interrupted|notice|emergency_stop|session_stopped|overruns|problem) .*");
+  std::istringstream lines(result.output);
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, kEvent)) {
+      out["last_event"] = {{"file", file}, {"text", line}};
+    }
+  }
+}
+
+json StudioViews::examples() const {
+  const CommandWords words{"examples"};
+  return {{"command", shown_command(words)}, {"rows", rows_of(run_good(words).output)}};
+}
+
+json StudioViews::machine() const {
+  const CommandWords words{"doctor"};
+  const CommandResult result = commands_.run(words);
+  const auto last = result.output.find_last_not_of('\n');
+  const auto begin = result.output.rfind('\n', last);
+  return {{"command", shown_command(words)},
+          {"fit", result.status == 0},
+          {"rows", rows_of(result.output)},
+          {"verdict", last == std::string::npos
+                          ? ""
+                          : result.output.substr(begin == std::string::npos ? 0 : begin + 1)}};
+}
+
+json StudioViews::begin(const std::string& name, const std::string& from) const {
+  check_word("the name of the study", name);
+  check_word("the name of the shipped definition", from);
+  const CommandWords words{"new", name + ".toml", "--from", from};
+  const CommandResult result = run_good(words);
+  return {{"command", shown_command(words)}, {"file", name + ".toml"}, {"output", result.output}};
+}
+
+json StudioViews::text(const std::string& file) const {
+  const StampedText read = folder_.read(folder_.definition(file), kMostDefinition);
+  if (!is_utf8(read.text)) {
+    throw InputError(fmt::format("{}: not a text in UTF-8; the studio does not open it", file));
+  }
+  return {{"text", read.text}, {"stamp", read.stamp}};
+}
+
+json StudioViews::validate(const std::string& file, const std::string& text) const {
+  const fs::path path = folder_.definition(file);
+  if (text.size() > kMostDefinition) {
+    throw InputError(
+        fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
+  }
+  // The text lies beside the definition, since it may name files that do.
+  const ShortLivedFile draft(path.parent_path() / fmt::format(".{}.draft-{}-{}.toml",
+                                                              path.stem().string(), ::getpid(),
+                                                              next_number()));
+  write_text(draft.path(), text);
+  const std::string given = draft.path().lexically_relative(folder_.path()).string();
+  const CommandResult result = commands_.run({"validate", given});
+  const std::string output = replaced(result.output, given, file);
+  return {{"command", shown_command({"validate", file})},
+          {"valid", result.status == 0},
+          {"remarks", remarks_json(read_remarks(output, file, result.status == 0))},
+          {"output", output}};
+}
+
+json StudioViews::save(const std::string& file, const std::string& text,
+                       const std::string& stamp) const {
+  if (text.size() > kMostDefinition) {
+    throw InputError(
+        fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
+  }
+  return {{"stamp", folder_.save(file, text, stamp)}};
+}
+
+json StudioViews::schema(const std::string& protocol) const {
+  check_word("the protocol", protocol);
+  const CommandWords words{"keys", "--json-schema", protocol};
+  return {{"command", shown_command(words)},
+          {"schema", json::parse(run_good(words).output, nullptr, false)}};
+}
+
+json StudioViews::rehearse(const std::string& file, int subjects) const {
+  folder_.definition(file);
+  const std::string out = folder_.fresh_rehearsal(file);
+  JobState about;
+  about.study = file;
+  about.folder = out;
+  about.sessions = subjects;
+  const CommandWords words{"dry-run", file, "--subjects", std::to_string(subjects), "--out", out};
+  return {{"command", shown_command(words)}, {"job", commands_.start(words, about)}};
+}
+
+json StudioViews::analyze(const std::string& file, const std::string& folder) const {
+  folder_.definition(file);
+  if (!fs::is_directory(folder_.inside(folder))) {
+    throw InputError(fmt::format("{}: not a folder of session files", folder));
+  }
+  JobState about;
+  about.study = file;
+  about.folder = folder;
+  const CommandWords words{"analyze", folder};
+  return {{"command", shown_command(words)}, {"job", commands_.start(words, about)}};
+}
+
+json StudioViews::jobs() const {
+  json all = json::array();
+  for (const JobState& job : commands_.jobs()) {
+    const auto written = job.sessions > 0 ? held_in(job.folder).sessions.size() : std::size_t{0};
+    all.push_back({{"job", job.number},
+                   {"command", job.command},
+                   {"study", job.study},
+                   {"folder", job.folder},
+                   {"sessions", job.sessions},
+                   {"written", written},
+                   {"state", name_of(job.state)},
+                   {"status", job.status},
+                   {"seconds", job.seconds},
+                   {"bytes", job.bytes}});
+  }
+  return {{"jobs", all}};
+}
+
+json StudioViews::job(const std::string& number) const {
+  return {{"output", commands_.output(number_of(number))}};
+}
+
+json StudioViews::sessions(const std::string& file) const {
+  folder_.definition(file);
+  json folders = json::array();
+  for (const std::string& name : folder_.session_folders(file)) {
+    const SessionFolder held = list_sessions(folder_.inside(name));
+    folders.push_back({{"folder", name},
+                       {"rehearsal", name != StudyFolder::sessions_of(file)},
+                       {"sessions", files_json(held.sessions)},
+                       {"results", files_json(held.results)},
+                       {"report", held.report},
+                       {"report_is_old", held.report_is_old}});
+  }
+  return {{"folders", folders}, {"own", StudyFolder::sessions_of(file)}};
+}
+
+json StudioViews::info(const std::string& file) const {
+  if (folder_.inside(file).extension() != ".h5") {
+    throw InputError(fmt::format("{}: not a session file; allowed: files that end in .h5", file));
+  }
+  const CommandWords words{"info", file};
+  const CommandResult result = commands_.run(words);
+  return {{"command", shown_command(words)},
+          {"complete", result.status == 0},
+          {"output", result.output}};
+}
+
+WebAnswer StudioViews::file(const std::string& name, bool download) const {
+  const fs::path path = folder_.inside(name);
+  const auto type = media_type(path.filename().string());
+  if (!type) {
+    throw InputError(fmt::format("{}: the studio shows reports, figures and tables alone", name));
+  }
+  WebAnswer answer{200, *type, folder_.read(path, kMostFile).text};
+  // A report is data: it runs nothing, loads nothing, and only the studio may frame it.
+  answer.headers = {{"Content-Security-Policy",
+                     "sandbox allow-popups; default-src 'none'; style-src 'unsafe-inline'; "
+                     "img-src data:; font-src data:; frame-ancestors 'self'"},
+                    {"X-Frame-Options", "SAMEORIGIN"},
+                    {"Cross-Origin-Opener-Policy", "unsafe-none"}};
+  if (download) {
+    static const std::regex kUnusual("[^A-Za-z0-9._-]");
+    answer.headers["Content-Disposition"] = fmt::format(
+        "attachment; filename=\"{}\"", std::regex_replace(path.filename().string(), kUnusual, "_"));
+  }
+  return answer;
+}
+
+WebAnswer StudioViews::library(const std::string& name) const {
+  static const std::set<std::string, std::less<>> kFiles{
+      "lib/codemirror.js",       "lib/codemirror.css",       "mode/toml/toml.js",
+      "addon/hint/show-hint.js", "addon/hint/show-hint.css", "addon/search/searchcursor.js",
+      "addon/search/search.js",  "addon/dialog/dialog.js",   "addon/dialog/dialog.css"};
+  const fs::path file = libraries_ / "codemirror" / name;
+  if (!kFiles.contains(name) || !fs::is_regular_file(file)) {
+    return refusal(404, "CodeMirror is not installed here (Debian's package libjs-codemirror)");
+  }
+  const bool script = name.ends_with(".js");
+  return {200, script ? "text/javascript; charset=utf-8" : "text/css; charset=utf-8",
+          file_text(file)};
+}
+
+}  // namespace haptrial::experiments

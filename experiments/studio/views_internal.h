@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "experiments/server/server.h"
+#include "experiments/studio/commands.h"
+#include "experiments/studio/remarks.h"
+#include "experiments/studio/session_files.h"
+#include "experiments/studio/study_folder.h"
+
+namespace haptrial::experiments {
+
+/// What the page gets and asks for, each by a command of the program. Every answer of a command has
+/// its line as "command". Any thread. InputError for what is not allowed, RunError for what failed.
+class StudioViews {
+ public:
+  /// @param folder, commands  outlive it
+  StudioViews(const StudyFolder& folder, Commands& commands, std::filesystem::path libraries);
+  ~StudioViews();
+  StudioViews(const StudioViews&) = delete;
+  StudioViews& operator=(const StudioViews&) = delete;
+
+  // Home
+  nlohmann::json studies() const;
+  nlohmann::json study(const std::string& file) const;
+  nlohmann::json examples() const;
+  nlohmann::json machine() const;
+  nlohmann::json begin(const std::string& name, const std::string& from) const;
+
+  // Definition
+  nlohmann::json text(const std::string& file) const;
+  nlohmann::json validate(const std::string& file, const std::string& text) const;
+  nlohmann::json save(const std::string& file, const std::string& text,
+                      const std::string& stamp) const;
+  nlohmann::json schema(const std::string& protocol) const;
+
+  // Rehearsal, sessions, results
+  nlohmann::json rehearse(const std::string& file, int subjects) const;
+  nlohmann::json analyze(const std::string& file, const std::string& folder) const;
+  nlohmann::json jobs() const;
+  nlohmann::json job(const std::string& number) const;
+  nlohmann::json sessions(const std::string& file) const;
+  nlohmann::json info(const std::string& file) const;
+
+  /// A report, figure or table. @param download  to be kept, not shown
+  WebAnswer file(const std::string& name, bool download) const;
+  /// A file of CodeMirror.
+  WebAnswer library(const std::string& name) const;
+
+ private:
+  /// Nothing, if the folder is not there or lies elsewhere.
+  SessionFolder held_in(const std::string& name) const;
+  CommandResult run_good(const CommandWords& words) const;
+  void add_roster(const std::string& file, nlohmann::json& out) const;
+  void add_last_event(const std::string& folder, nlohmann::json& out) const;
+
+  const StudyFolder& folder_;
+  Commands& commands_;
+  std::filesystem::path libraries_;
+  std::filesystem::path scratch_;  // for what commands write and nobody keeps
+};
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,376 @@
+// The studio's server: what it answers to each request, and what it refuses.
+
+#include "experiments/studio/studio.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/file_text.h"
+#include "experiments/studio/studio_page.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/console_client.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::studio_test {
+namespace {
+
+namespace fs = std::filesystem;
+using experiments::Studio;
+using experiments::StudioOptions;
+using nlohmann::json;
+using test::RawClient;
+using test::RawRequest;
+using test::status_of;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+std::string body_of(const std::string& answer) {
+  return answer.substr(answer.find("\r\n\r\n") + 4);
+}
+
+class StudioTest : public testing::Test {
+ protected:
+  StudioTest() {
+    const test::CommandResult made =
+        test::run_command("cd '" + folder_.path().string() + "' && haptrial new mine.toml");
+    EXPECT_EQ(made.status, 0) << made.errors;
+    StudioOptions options;
+    options.folder = folder_.path();
+    options.program = HAPTRIAL_BINARY_DIR "/haptrial";
+    options.libraries = libraries_.path();
+    studio_ = std::make_unique<Studio>(options);
+  }
+
+  RawRequest reading(const std::string& path, const std::string& query = "") const {
+    RawRequest request;
+    request.method = "GET";
+    request.host = "127.0.0.1:" + std::to_string(studio_->port());
+    request.target = path + "?token=" + studio_->token() + (query.empty() ? "" : "&" + query);
+    request.body.clear();
+    return request;
+  }
+  RawRequest posting(const std::string& path, const json& body) const {
+    RawRequest request;
+    request.host = "127.0.0.1:" + std::to_string(studio_->port());
+    request.target = path;
+    request.token = studio_->token();
+    request.body = body.dump();
+    return request;
+  }
+  std::string exchange(const RawRequest& request) const {
+    RawClient client(studio_->port());
+    client.send(request.text());
+    return client.receive(RawClient::kForever);
+  }
+  json got(const RawRequest& request) const {
+    const std::string answer = exchange(request);
+    EXPECT_EQ(status_of(answer), 200) << request.target << "\n" << answer;
+    return json::parse(body_of(answer));
+  }
+  json get(const std::string& path, const std::string& query = "") const {
+    return got(reading(path, query));
+  }
+  json post(const std::string& path, const json& body) const { return got(posting(path, body)); }
+  void expect_refused(const RawRequest& request, int status, const std::string& sentence) const {
+    const std::uint64_t before = studio_->refused();
+    const std::string answer = exchange(request);
+    EXPECT_EQ(status_of(answer), status) << request.target << "\n" << answer;
+    EXPECT_THAT(body_of(answer), HasSubstr(sentence)) << request.target;
+    EXPECT_EQ(studio_->refused(), before + 1) << request.target;
+  }
+  /// Waits until a job has ended. @returns it
+  json ended(int number) const {
+    for (;;) {
+      const json job = get("/jobs")["jobs"].at(static_cast<std::size_t>(number) - 1);
+      if (job["state"] != "running") {
+        return job;
+      }
+      ::usleep(20'000);
+    }
+  }
+  std::string text() const { return file_text(folder_ / "mine.toml"); }
+
+  test::TemporaryFolder folder_;
+  test::TemporaryFolder libraries_;
+  std::unique_ptr<Studio> studio_;
+};
+
+TEST_F(StudioTest, AnotherSenderIsRefused) {
+  RawRequest request = reading("/studies");
+  request.host = "evil.example:80";
+  expect_refused(request, 421, "the Host is not");
+  request = reading("/studies");
+  request.more = "Origin: http://evil.example\r\n";
+  expect_refused(request, 403, "the Origin is another page");
+  request = reading("/studies");
+  request.more = "Sec-Fetch-Site: cross-site\r\n";
+  expect_refused(request, 403, "another site asks");
+  request.more.clear();
+  request.target = "/studies";
+  expect_refused(request, 403, "the token is missing");
+  request.target = "/studies?token=" + std::string(32, '0');
+  expect_refused(request, 403, "the token is wrong");
+  request = posting("/save", {{"file", "mine.toml"}, {"text", ""}, {"stamp", ""}});
+  request.token.reset();
+  request.target += "?token=" + studio_->token();
+  expect_refused(request, 403, "the token is missing");  // a form of another page could name it so
+  expect_refused(reading("/nowhere"), 404, "no such page; there are /, /library, /file");
+  expect_refused(reading("/save"), 405, "POST only");
+  EXPECT_THAT(text(), Not(IsEmpty()));
+}
+
+TEST_F(StudioTest, ThePageLoadsNothingFromElsewhereAndNeverTheToken) {
+  const std::string answer = exchange(reading("/"));
+  ASSERT_EQ(status_of(answer), 200);
+  EXPECT_THAT(answer, AllOf(HasSubstr("script-src 'nonce-"), HasSubstr("frame-ancestors 'none'"),
+                            HasSubstr("frame-src 'self'")));
+  EXPECT_THAT(body_of(answer), Not(HasSubstr(studio_->token())));
+  const std::string page(experiments::studio_page_template());
+  for (const char* word : {"http://", "https://", "innerHTML", "outerHTML", "insertAdjacentHTML",
+                           "document.write", "PART:", "eval("}) {
+    EXPECT_THAT(page, Not(HasSubstr(word)));
+  }
+}
+
+TEST_F(StudioTest, NamesThatLeadOutAreRefused) {
+  const test::TemporaryFolder elsewhere;
+  write_text(elsewhere / "secret.toml", "secret = 1\n");
+  write_text(elsewhere / "report.html", "secret\n");
+  fs::create_directories(folder_ / "out");
+  fs::create_symlink(elsewhere / "secret.toml", folder_ / "link.toml");
+  fs::create_directory_symlink(elsewhere.path(), folder_ / "out/mine");
+  write_text(folder_ / ".hidden.toml", "x = 1\n");
+  write_text(folder_ / "-x.toml", "x = 1\n");
+  const std::string above = "../" + elsewhere.path().filename().string() + "/secret.toml";
+  for (const std::string& path : {std::string("/text"), std::string("/study"), std::string("/file"),
+                                  std::string("/sessions"), std::string("/info")}) {
+    for (const std::string& name :
+         {above, "out/../" + above, (elsewhere / "secret.toml").string(),
+          std::string("/etc/passwd"), std::string("%2e%2e/x.toml"), std::string(".hidden.toml"),
+          std::string("-x.toml"), std::string("a%00b.toml"), std::string("a%0ab.toml"),
+          std::string()}) {
+      expect_refused(reading(path, "file=" + name), 400, "allowed: names within the folder");
+    }
+    expect_refused(reading(path, "file=link.toml"), 400, "leads out of the folder");
+    expect_refused(reading(path, "file=nothing.toml"), 400, "nothing.toml: No such file");
+    expect_refused(reading(path), 400, "the address lacks file=");
+  }
+  expect_refused(reading("/file", "file=out/mine/report.html"), 400, "leads out of the folder");
+  EXPECT_THAT(get("/sessions", "file=mine.toml")["folders"], IsEmpty());
+  const json body{{"file", "link.toml"}, {"text", "x"}, {"stamp", ""}};
+  expect_refused(posting("/save", body), 400, "leads out of the folder");
+  expect_refused(posting("/validate", body), 400, "leads out of the folder");
+  expect_refused(posting("/analyze", {{"file", "mine.toml"}, {"folder", "out/mine"}}), 400,
+                 "leads out of the folder");
+  EXPECT_EQ(file_text(elsewhere / "secret.toml"), "secret = 1\n");
+}
+
+TEST_F(StudioTest, WordsThatAreOptionsOrPathsAreRefused) {
+  for (const char* name : {"--help", "../x", "a/b", "", "a b", "x.toml", "<b>"}) {
+    expect_refused(posting("/new", {{"name", name}, {"from", "first_experiment"}}), 400,
+                   "not a plain word");
+    expect_refused(posting("/new", {{"name", "x"}, {"from", name}}), 400, "not a plain word");
+  }
+  expect_refused(reading("/schema", "protocol=--json-schema"), 400, "not a plain word");
+  expect_refused(reading("/file", "file=mine.toml"), 400, "reports, figures and tables alone");
+  expect_refused(posting("/rehearse", {{"file", "mine.toml"}, {"subjects", 0}}), 400,
+                 "whole number from 1 to 10000");
+  expect_refused(posting("/rehearse", {{"file", "mine.toml"}, {"subjects", "2"}}), 400,
+                 "whole number from 1 to 10000");
+  expect_refused(posting("/cancel", {{"job", 7}}), 400, "there is no job 7");
+  expect_refused(posting("/new", json::array()), 400, "not a JSON object");
+  expect_refused(posting("/new", {{"name", 3}, {"from", "first_experiment"}}), 400,
+                 "lacks the text \"name\"");
+  expect_refused(reading("/library", "name=../../../etc/passwd"), 404, "libjs-codemirror");
+}
+
+TEST_F(StudioTest, StudiesOfTheFolderHaveTheirState) {
+  EXPECT_THAT(get("/studies")["files"], ElementsAre("mine.toml"));
+  const json ready = get("/study", "file=mine.toml");
+  EXPECT_EQ(ready["command"], "haptrial validate mine.toml");
+  EXPECT_TRUE(ready["valid"]);
+  EXPECT_THAT(ready["remarks"], IsEmpty());
+  EXPECT_EQ(ready["report"], "none");
+  EXPECT_EQ(ready["roster"]["command"], "haptrial roster mine.toml out/mine");
+  EXPECT_EQ(ready["roster"]["groups"][0]["planned"], 6);
+  EXPECT_EQ(ready["roster"]["next"][0]["subject"], "P01");
+  write_text(folder_ / "draft.toml", "[experiment]\nprotocol = \"trials\"\nname = 3\n");
+  write_text(folder_ / "mine.texts.de.toml", "");  // no study
+  write_text(folder_ / "lab.toml", "[device]\n");  // nor this
+  EXPECT_THAT(get("/studies")["files"], ElementsAre("draft.toml", "mine.toml"));
+  EXPECT_FALSE(get("/study", "file=draft.toml")["valid"]);
+}
+
+TEST_F(StudioTest, AScriptInANameIsAName) {
+  const std::string name = "<img src=x onerror=alert(1)>'\";&.toml";
+  fs::copy(folder_ / "mine.toml", folder_ / name);
+  EXPECT_THAT(get("/studies")["files"], ElementsAre(name, "mine.toml"));
+  const json state = get("/study", "file=%3Cimg%20src%3Dx%20onerror%3Dalert(1)%3E'%22%3B%26.toml");
+  EXPECT_TRUE(state["valid"]);
+  EXPECT_EQ(state["command"], "haptrial validate '<img src=x onerror=alert(1)>'\\''\";&.toml'");
+}
+
+TEST_F(StudioTest, MistakesHaveTheirLines) {
+  std::string wrong = text();
+  wrong.replace(wrong.find("participants = 6"), 16, "participants = -6");
+  const json checked = post("/validate", {{"file", "mine.toml"}, {"text", wrong}});
+  EXPECT_FALSE(checked["valid"]);
+  ASSERT_THAT(checked["remarks"], SizeIs(1));
+  EXPECT_EQ(checked["remarks"][0]["line"], 7);
+  EXPECT_EQ(checked["remarks"][0]["text"],
+            "design.participants is -6; allowed: a whole number from 1 to 100000");
+  EXPECT_THAT(text(), HasSubstr("participants = 6")) << "a check saves nothing";
+  EXPECT_TRUE(post("/validate", {{"file", "mine.toml"}, {"text", text()}})["valid"]);
+  for (const auto& entry : fs::directory_iterator(folder_.path())) {
+    EXPECT_EQ(entry.path().filename(), "mine.toml") << "nothing is left beside it";
+  }
+}
+
+TEST_F(StudioTest, ADefinitionOfAMegabyteIsCheckedAndSaved) {
+  const std::string large = text() + "# " + std::string(1'000'000, 'x') + "\n";
+  EXPECT_TRUE(post("/validate", {{"file", "mine.toml"}, {"text", large}})["valid"]);
+  const std::string stamp = get("/text", "file=mine.toml")["stamp"];
+  post("/save", {{"file", "mine.toml"}, {"text", large}, {"stamp", stamp}});
+  EXPECT_EQ(text(), large);
+  const std::string larger(2'000'001, 'x');
+  expect_refused(posting("/validate", {{"file", "mine.toml"}, {"text", larger}}), 400,
+                 "has 2000001 bytes; allowed: 2000000");
+  RawRequest huge = posting("/validate", json::object());
+  huge.length = "4000001";
+  expect_refused(huge, 413, "the body has 4000001 bytes; allowed: 4000000");
+}
+
+TEST_F(StudioTest, SavesOnlyOverWhatWasRead) {
+  const json read = get("/text", "file=mine.toml");
+  EXPECT_EQ(read["text"], text());
+  const json saved =
+      post("/save", {{"file", "mine.toml"}, {"text", "# first\n"}, {"stamp", read["stamp"]}});
+  EXPECT_EQ(text(), "# first\n");
+  write_text(folder_ / "mine.toml", "# by another\n");
+  expect_refused(
+      posting("/save", {{"file", "mine.toml"}, {"text", "x"}, {"stamp", saved["stamp"]}}), 400,
+      "was changed by another program");
+  EXPECT_EQ(text(), "# by another\n");
+  write_text(folder_ / "mine.toml", "# \xff\n");
+  expect_refused(reading("/text", "file=mine.toml"), 400, "not a text in UTF-8");
+}
+
+TEST_F(StudioTest, ANewStudyComesFromTheGallery) {
+  const json examples = get("/examples");
+  EXPECT_EQ(examples["command"], "haptrial examples");
+  const auto lists = [&](const std::string& name) {
+    return std::ranges::any_of(examples["rows"], [&](const json& row) { return row[0] == name; });
+  };
+  EXPECT_TRUE(lists("first_experiment"));
+  EXPECT_TRUE(lists("force_training"));
+  const json made = post("/new", {{"name", "walls"}, {"from", "wall_detection"}});
+  EXPECT_EQ(made["command"], "haptrial new walls.toml --from wall_detection");
+  EXPECT_EQ(made["file"], "walls.toml");
+  EXPECT_TRUE(get("/study", "file=walls.toml")["valid"]);
+  expect_refused(posting("/new", {{"name", "walls"}, {"from", "wall_detection"}}), 400,
+                 "exists already");
+}
+
+TEST_F(StudioTest, KeysAndTheMachineAreThoseOfTheCommands) {
+  const json schema = get("/schema", "protocol=trials");
+  EXPECT_EQ(schema["command"], "haptrial keys --json-schema trials");
+  EXPECT_THAT(schema["schema"]["properties"]["design"]["properties"]["participants"]["description"],
+              HasSubstr("articipants"));
+  const json machine = get("/machine");
+  EXPECT_EQ(machine["command"], "haptrial doctor");
+  EXPECT_TRUE(std::ranges::any_of(
+      machine["rows"], [](const json& row) { return row[0] == "virtual" && row[1] == "ready"; }));
+  EXPECT_THAT(machine["verdict"], HasSubstr("can"));
+}
+
+TEST_F(StudioTest, ARehearsalAndItsReport) {
+  const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 2}});
+  EXPECT_EQ(started["command"],
+            "haptrial dry-run mine.toml --subjects 2 --out out/mine-rehearsal-001");
+  const json done = ended(started["job"]);
+  EXPECT_EQ(done["state"], "done");
+  EXPECT_EQ(done["written"], 2);
+  EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("2 sessions, "));
+  json folder = get("/sessions", "file=mine.toml")["folders"][0];
+  EXPECT_EQ(folder["folder"], "out/mine-rehearsal-001");
+  EXPECT_TRUE(folder["rehearsal"]);
+  EXPECT_EQ(folder["sessions"][0]["name"], "S01.h5");
+  EXPECT_FALSE(folder["report"]);
+  const json info = get("/info", "file=out/mine-rehearsal-001/S01.h5");
+  EXPECT_THAT(std::string(info["output"]), HasSubstr("subject     S01 (simulated)"));
+  EXPECT_TRUE(info["complete"]);
+
+  const json analysis =
+      post("/analyze", {{"file", "mine.toml"}, {"folder", "out/mine-rehearsal-001"}});
+  EXPECT_EQ(analysis["command"], "haptrial analyze out/mine-rehearsal-001");
+  EXPECT_EQ(ended(analysis["job"])["state"], "done");
+  folder = get("/sessions", "file=mine.toml")["folders"][0];
+  EXPECT_TRUE(folder["report"]);
+  EXPECT_FALSE(folder["report_is_old"]);
+  const std::string report = exchange(reading("/file", "file=out/mine-rehearsal-001/report.html"));
+  EXPECT_EQ(body_of(report), file_text(folder_ / "out/mine-rehearsal-001/report.html"));
+  EXPECT_THAT(report, AllOf(HasSubstr("Content-Security-Policy: sandbox"),
+                            HasSubstr("X-Frame-Options: SAMEORIGIN"), Not(HasSubstr("DENY")),
+                            Not(HasSubstr("attachment"))));
+  EXPECT_THAT(exchange(reading("/file", "file=out/mine-rehearsal-001/trials.csv&download=1")),
+              HasSubstr("Content-Disposition: attachment; filename=\"trials.csv\""));
+  fs::last_write_time(folder_ / "out/mine-rehearsal-001/S01.h5",
+                      fs::file_time_type::clock::now() + std::chrono::hours(1));
+  EXPECT_TRUE(get("/sessions", "file=mine.toml")["folders"][0]["report_is_old"]);
+}
+
+TEST_F(StudioTest, HomeCountsWhoIsDone) {
+  const test::CommandResult run =
+      test::run_command("cd '" + folder_.path().string() +
+                        "' && haptrial dry-run mine.toml --subjects 2 --out out/mine");
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const json state = get("/study", "file=mine.toml");
+  EXPECT_EQ(state["sessions"], 2);
+  EXPECT_EQ(state["roster"]["groups"][0]["finished"], 2);
+  EXPECT_EQ(state["roster"]["next"][0]["subject"], "S03");
+  EXPECT_FALSE(state.contains("last_event"));
+}
+
+TEST_F(StudioTest, AJobCanBeCancelled) {
+  const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 10'000}});
+  EXPECT_EQ(get("/jobs")["jobs"][0]["state"], "running");
+  post("/cancel", {{"job", started["job"]}});
+  EXPECT_EQ(ended(started["job"])["state"], "cancelled");
+}
+
+TEST_F(StudioTest, WhatRunsEndsWithTheStudio) {
+  post("/rehearse", {{"file", "mine.toml"}, {"subjects", 10'000}});
+  studio_.reset();  // comes back, and nothing writes any more
+  fs::remove_all(folder_ / "out");
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(StudioTest, AJobThatFailsSaysWhy) {
+  write_text(folder_ / "mine.toml", "[experiment]\n");
+  const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 1}});
+  const json failed = ended(started["job"]);
+  EXPECT_EQ(failed["state"], "failed");
+  EXPECT_EQ(failed["status"], 2);
+  EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("haptrial: mine.toml"));
+}
+
+TEST(StudioFolderTest, MustBeAFolder) {
+  StudioOptions options;
+  options.folder = "/nowhere/at/all";
+  EXPECT_THROW(Studio{options}, InputError);
+}
+
+}  // namespace
+}  // namespace haptrial::studio_test

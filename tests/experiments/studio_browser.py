@@ -1,0 +1,174 @@
+"""A study from the gallery to its report on the studio's page, in headless Chromium.
+
+    studio_browser.py URL PLAIN_URL FOLDER
+
+The studio at PLAIN_URL has no CodeMirror. Leaves pictures in FOLDER. Exit status 0: all was as it
+should be.
+"""
+
+import pathlib
+import sys
+
+from browser import Driver, wait
+
+KEYS = {"Backspace": "\ue003", "Tab": "\ue004", "Enter": "\ue007"}
+CONTROL = "\ue009"
+
+
+def open_page(page, url):
+    page.call("POST", "/url", {"url": url})
+
+
+def press(page, *keys):
+    for key in keys:
+        page.key(KEYS.get(key, key))
+
+
+def press_with_control(page, key):
+    page.call("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": [
+        {"type": "keyDown", "value": CONTROL}, {"type": "keyDown", "value": key},
+        {"type": "keyUp", "value": key}, {"type": "keyUp", "value": CONTROL}]}]})
+
+
+def there(page, selector):
+    return page.run(f"return document.querySelector({selector!r}) !== null")
+
+
+def words(page, selector):
+    return page.run(f"const e = document.querySelector({selector!r}); return e ? e.innerText : ''")
+
+
+def home(page, url):
+    """The studies of the folder, one of them with a script for a name; nothing of it runs."""
+    open_page(page, url)
+    wait("the states", lambda: page.run(
+        "const rows = [...document.querySelectorAll('tbody')][0];"
+        "return rows ? rows.innerText.split('ready').length - 1 : 0") == 1)
+    assert "<img src=x onerror=alert(1)>.toml" in words(page, "table"), words(page, "table")
+    assert page.run("return document.images.length") == 0
+    wait("the gallery", lambda: there(page, "#begin_first_experiment"))
+    wait("the machine", lambda: there(page, "#verdict"))
+
+
+def begin(page):
+    page.click("begin_first_experiment")
+    page.type("new_name", "a b")
+    page.click("create")
+    assert there(page, "dialog"), "a name with a space is not taken"
+    page.run("document.getElementById('new_name').value = ''")
+    page.type("new_name", "pulls")
+    page.click("create")
+    wait("the text", lambda: "participants = 6" in words(page, ".CodeMirror"))
+    wait("the check", lambda: page.text("count") == "No mistakes")
+    assert page.text("saved") == "As saved on disk", page.text("saved")
+
+
+def to_participants(page):
+    """Puts the cursor behind the number of participants."""
+    return page.run(
+        "const editor = document.querySelector('.CodeMirror').CodeMirror;"
+        "const line = editor.getValue().split('\\n').findIndex((each) => each.startsWith('participants'));"
+        "editor.focus(); editor.setCursor({line, ch: editor.getLine(line).length}); return line + 1")
+
+
+def make_a_mistake_and_mend_it(page):
+    line = to_participants(page)
+    wait("the key", lambda: page.text("key_name") == "design.participants")
+    assert "articipants" in page.text("key_words"), page.text("key_words")
+    press(page, "Backspace", "0")
+    wait("the mistake", lambda: page.text("count") == "1 mistake")
+    wait("its sentence", lambda: "design.participants is 0" in words(page, ".at-line"))
+    at = page.run("const editor = document.querySelector('.CodeMirror').CodeMirror; let at = [];"
+                  "editor.eachLine((line) => { if (line.widgets) at.push(editor.getLineNumber(line) + 1); });"
+                  "return at")
+    assert at == [line], (at, line)
+    assert words(page, "#remarks button").startswith(f"Line {line}: "), words(page, "#remarks")
+    assert page.text("saved") == "Not saved", page.text("saved")
+
+
+def complete(page):
+    """Ctrl+Space lists the keys of the table; Tab leaves the text."""
+    line = to_participants(page)
+    page.run("const editor = document.querySelector('.CodeMirror').CodeMirror;"
+             "editor.replaceRange('\\nbre', editor.getCursor()); editor.focus()")
+    press_with_control(page, " ")
+    wait("completions", lambda: there(page, ".CodeMirror-hints"))
+    assert words(page, ".CodeMirror-hints").startswith("break_after"), words(page, ".CodeMirror-hints")
+    press(page, "Enter")
+    wait("the completed key", lambda: "break_after" in words(page, ".CodeMirror-code"))
+    page.run("const editor = document.querySelector('.CodeMirror').CodeMirror;"
+             f"editor.replaceRange('', {{line: {line}, ch: 0}}, {{line: {line + 1}, ch: 0}}); editor.focus()")
+    press(page, "Tab")
+    assert page.run("return document.activeElement.closest('.CodeMirror') === null")
+
+
+def mend_and_save(page):
+    to_participants(page)
+    press(page, "Backspace", "4")
+    wait("no mistake", lambda: page.text("count") == "No mistakes")
+    assert not there(page, ".at-line")
+    press_with_control(page, "s")
+    wait("it is saved", lambda: page.text("saved") == "As saved on disk")
+
+
+def rehearse(page, folder):
+    page.click("to_rehearse")
+    wait("the form", lambda: there(page, "#rehearse"))
+    page.click("rehearse")
+    wait("the rehearsal", lambda: words(page, "#job_1_state") == "done")
+    wait("its output", lambda: "2 sessions, " in words(page, "#job_1_output"))
+    page.call("POST", "/refresh")
+    wait("the jobs after a reload", lambda: words(page, "#job_1_state") == "done")
+    page.run("document.querySelector('#job_1 .analyze').click()")
+    wait("the analysis", lambda: words(page, "#job_2_state") == "done")
+    page.picture(folder / "studio-jobs.png")
+    page.run("document.querySelector('#job_2 .report').click()")
+    wait("the report", lambda: there(page, "iframe#report"))
+    page.call("POST", "/frame", {"id": {"element-6066-11e4-a52e-4f735466cecf": page.element("report")}})
+
+    def heading():
+        found = page.call("POST", "/elements", {"using": "css selector", "value": "h1"})
+        return [page.call("GET", f"/element/{next(iter(each.values()))}/text") for each in found]
+    wait("its heading", lambda: heading() == ["pulls"])
+    page.call("POST", "/frame", {"id": None})
+    page.picture(folder / "studio-report.png")
+
+
+def sessions(page):
+    page.click("to_sessions")
+    wait("the next session", lambda: "haptrial run pulls.toml --subject P01" in words(page, "main"))
+    wait("the rehearsals", lambda: "S01.h5" in words(page, "main"))
+    page.run("document.querySelector('table button').click()")
+    wait("what a session holds", lambda: "subject     S01 (simulated)" in words(page, "main"))
+
+
+def without_code_mirror(page, url):
+    open_page(page, url + "#definition/pulls.toml")
+    wait("the plain text", lambda: page.run(
+        "const text = document.querySelector('textarea'); return text ? text.value : ''") != "")
+    assert "libjs-codemirror" in page.text("plain_editor")
+    page.type("text", "\n[wrong]\nx = 1\n")
+    wait("the mistake", lambda: "[wrong] is not a known table" in words(page, "#remarks"))
+
+
+def main():
+    url, plain, folder = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+    page = Driver(folder, ["--lang=en-US"])
+    try:
+        home(page, url)
+        page.picture(folder / "studio-home.png")
+        begin(page)
+        make_a_mistake_and_mend_it(page)
+        page.picture(folder / "studio-mistake.png")
+        complete(page)
+        mend_and_save(page)
+        rehearse(page, folder)
+        sessions(page)
+        bad = page.complaints()
+        assert not bad, bad
+        without_code_mirror(page, plain)
+    finally:
+        page.close()
+
+
+main()
