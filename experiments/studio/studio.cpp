@@ -112,11 +112,15 @@ class Studio::Implementation {
     const auto file = [this](const WebRequest& r) {
       return views_.file(asked(r, "file"), r.query.contains("download"));
     };
+    const auto preview = [this](const WebRequest& r) {
+      return views_.preview_page(asked(r, "page"));
+    };
     const auto library = [this](const WebRequest& r) { return views_.library(asked(r, "name")); };
     return {
         {"/", Kind::kPage, page},
         {"/library", Kind::kRead, library},
         {"/file", Kind::kRead, file},
+        {"/preview_page", Kind::kRead, preview},
         get("/studies", [this](const WebRequest&) { return views_.studies(); }),
         get("/study", [this](const WebRequest& r) { return views_.study(asked(r, "file")); }),
         get("/examples", [this](const WebRequest&) { return views_.examples(); }),
@@ -134,6 +138,13 @@ class Studio::Implementation {
     return {post("/validate",
                  [this](const json& body) {
                    return views_.validate(string_in(body, "file"), string_in(body, "text"));
+                 }),
+            post("/preview",
+                 [this](const json& body) {
+                   constexpr int kMostTrials = 1'000'000;
+                   return views_.preview(string_in(body, "file"), string_in(body, "text"),
+                                         number_in(body, "trial", 1, kMostTrials),
+                                         body.value("virtual", json()) == true);
                  }),
             post("/save",
                  [this](const json& body) {

@@ -45,6 +45,29 @@ int next_number() {
   return ++number;
 }
 
+/// A definition as it is being written. It lies beside the saved one, since it may name files that
+/// do.
+class Draft {
+ public:
+  /// @param folder  of the studio, in which commands run
+  Draft(const fs::path& definition, const fs::path& folder, const std::string& text)
+      : file_(definition.parent_path() / fmt::format(".{}.draft-{}-{}.toml",
+                                                     definition.stem().string(), ::getpid(),
+                                                     next_number())),
+        name_(file_.path().lexically_relative(folder).string()) {
+    if (text.size() > kMostDefinition) {
+      throw InputError(
+          fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
+    }
+    write_text(file_.path(), text);
+  }
+  const std::string& name() const { return name_; }
+
+ private:
+  ShortLivedFile file_;
+  std::string name_;
+};
+
 /// A word that a command cannot take for an option or a path.
 void check_word(const char* what, const std::string& word) {
   static const std::regex kWord("[A-Za-z0-9_][A-Za-z0-9_-]{0,99}");
@@ -91,6 +114,17 @@ json files_json(const std::vector<FolderFile>& files) {
     all.push_back({{"name", file.name}, {"bytes", file.bytes}, {"modified", file.modified}});
   }
   return all;
+}
+
+/// A report is data: it runs nothing, loads nothing, and only the studio may frame it.
+WebAnswer framed(const std::string& type, std::string text) {
+  WebAnswer answer{200, type, std::move(text)};
+  answer.headers = {{"Content-Security-Policy",
+                     "sandbox allow-popups; default-src 'none'; style-src 'unsafe-inline'; "
+                     "img-src data:; font-src data:; frame-ancestors 'self'"},
+                    {"X-Frame-Options", "SAMEORIGIN"},
+                    {"Cross-Origin-Opener-Policy", "unsafe-none"}};
+  return answer;
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -221,19 +255,9 @@ json StudioViews::text(const std::string& file) const {
 }
 
 json StudioViews::validate(const std::string& file, const std::string& text) const {
-  const fs::path path = folder_.definition(file);
-  if (text.size() > kMostDefinition) {
-    throw InputError(
-        fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
-  }
-  // The text lies beside the definition, since it may name files that do.
-  const ShortLivedFile draft(path.parent_path() / fmt::format(".{}.draft-{}-{}.toml",
-                                                              path.stem().string(), ::getpid(),
-                                                              next_number()));
-  write_text(draft.path(), text);
-  const std::string given = draft.path().lexically_relative(folder_.path()).string();
-  const CommandResult result = commands_.run({"validate", given});
-  const std::string output = replaced(result.output, given, file);
+  const Draft draft(folder_.definition(file), folder_.path(), text);
+  const CommandResult result = commands_.run({"validate", draft.name()});
+  const std::string output = replaced(result.output, draft.name(), file);
   return {{"command", shown_command({"validate", file})},
           {"valid", result.status == 0},
           {"remarks", remarks_json(read_remarks(output, file, result.status == 0))},
@@ -247,6 +271,39 @@ json StudioViews::save(const std::string& file, const std::string& text,
         fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
   }
   return {{"stamp", folder_.save(file, text, stamp)}};
+}
+
+json StudioViews::preview(const std::string& file, const std::string& text, int trial,
+                          bool virtual_trial) const {
+  const Draft draft(folder_.definition(file), folder_.path(), text);
+  const int number = next_number();
+  CommandWords words{"show", file, "--trial", std::to_string(trial)};
+  if (!virtual_trial) {
+    words.emplace_back("--no-virtual-trial");
+  }
+  CommandWords asked = words;
+  asked[1] = draft.name();
+  asked.insert(asked.end(), {"--out", preview_file(number).string()});
+  const CommandResult result = commands_.run(asked);
+  json out{{"command", shown_command(words)}};
+  if (result.status == 0) {
+    out["page"] = number;
+  } else {
+    out["failure"] = replaced(result.output, draft.name(), file);
+  }
+  return out;
+}
+
+fs::path StudioViews::preview_file(int number) const {
+  return scratch_ / fmt::format("preview-{}.html", number);
+}
+
+WebAnswer StudioViews::preview_page(const std::string& number) const {
+  const ShortLivedFile page(preview_file(number_of(number)));
+  if (!fs::is_regular_file(page.path())) {
+    throw InputError("this preview was shown before; ask for a new one");
+  }
+  return framed("text/html; charset=utf-8", file_text(page.path()));
 }
 
 json StudioViews::schema(const std::string& protocol) const {
@@ -333,13 +390,7 @@ WebAnswer StudioViews::file(const std::string& name, bool download) const {
   if (!type) {
     throw InputError(fmt::format("{}: the studio shows reports, figures and tables alone", name));
   }
-  WebAnswer answer{200, *type, folder_.read(path, kMostFile).text};
-  // A report is data: it runs nothing, loads nothing, and only the studio may frame it.
-  answer.headers = {{"Content-Security-Policy",
-                     "sandbox allow-popups; default-src 'none'; style-src 'unsafe-inline'; "
-                     "img-src data:; font-src data:; frame-ancestors 'self'"},
-                    {"X-Frame-Options", "SAMEORIGIN"},
-                    {"Cross-Origin-Opener-Policy", "unsafe-none"}};
+  WebAnswer answer = framed(*type, folder_.read(path, kMostFile).text);
   if (download) {
     static const std::regex kUnusual("[^A-Za-z0-9._-]");
     answer.headers["Content-Disposition"] = fmt::format(

@@ -32,6 +32,11 @@ class StudioViews {
   // Definition
   nlohmann::json text(const std::string& file) const;
   nlohmann::json validate(const std::string& file, const std::string& text) const;
+  /// @param trial  from 1, of the first session  @param virtual_trial  with a virtual participant's
+  nlohmann::json preview(const std::string& file, const std::string& text, int trial,
+                         bool virtual_trial) const;
+  /// A preview that was made, once.
+  WebAnswer preview_page(const std::string& number) const;
   nlohmann::json save(const std::string& file, const std::string& text,
                       const std::string& stamp) const;
   nlohmann::json schema(const std::string& protocol) const;
@@ -52,6 +57,7 @@ class StudioViews {
  private:
   /// Nothing, if the folder is not there or lies elsewhere.
   SessionFolder held_in(const std::string& name) const;
+  std::filesystem::path preview_file(int number) const;
   CommandResult run_good(const CommandWords& words) const;
   void add_roster(const std::string& file, nlohmann::json& out) const;
   void add_last_event(const std::string& folder, nlohmann::json& out) const;

@@ -111,6 +111,33 @@ def mend_and_save(page):
     wait("it is saved", lambda: page.text("saved") == "As saved on disk")
 
 
+def heading_in_frame(page, frame):
+    """Waits for the heading of the page in a frame. @returns it"""
+    def headings():
+        page.call("POST", "/frame", {"id": None})
+        page.call("POST", "/frame", {"id": {"element-6066-11e4-a52e-4f735466cecf": page.element(frame)}})
+        found = page.call("POST", "/elements", {"using": "css selector", "value": "h1"})
+        return [page.call("GET", f"/element/{next(iter(each.values()))}/text") for each in found]
+    wait("a heading in the frame", lambda: headings() != [])
+    heading = headings()
+    page.call("POST", "/frame", {"id": None})
+    return heading
+
+
+def preview(page, folder):
+    """The preview is that of the text as it is being written."""
+    page.run("document.querySelector('#preview_beside summary').click()")
+    wait("the preview", lambda: page.run("return !document.getElementById('preview').hidden"))
+    assert any("first_experiment" in each or "pulls" in each for each in heading_in_frame(page, "preview"))
+    first = page.run("return document.getElementById('preview').src")
+    page.picture(folder / "studio-preview.png")
+    page.run("const editor = document.querySelector('.CodeMirror').CodeMirror;"
+             "editor.replaceRange('# a remark\\n', {line: 0, ch: 0})")
+    wait("another preview", lambda: page.run("return document.getElementById('preview').src") != first)
+    page.run("document.querySelector('.CodeMirror').CodeMirror.undo()")
+    wait("it is as saved", lambda: page.text("saved") == "As saved on disk")
+
+
 def rehearse(page, folder):
     page.click("to_rehearse")
     wait("the form", lambda: there(page, "#rehearse"))
@@ -124,13 +151,7 @@ def rehearse(page, folder):
     page.picture(folder / "studio-jobs.png")
     page.run("document.querySelector('#job_2 .report').click()")
     wait("the report", lambda: there(page, "iframe#report"))
-    page.call("POST", "/frame", {"id": {"element-6066-11e4-a52e-4f735466cecf": page.element("report")}})
-
-    def heading():
-        found = page.call("POST", "/elements", {"using": "css selector", "value": "h1"})
-        return [page.call("GET", f"/element/{next(iter(each.values()))}/text") for each in found]
-    wait("its heading", lambda: heading() == ["pulls"])
-    page.call("POST", "/frame", {"id": None})
+    assert heading_in_frame(page, "report") == ["pulls"]
     page.picture(folder / "studio-report.png")
 
 
@@ -162,6 +183,7 @@ def main():
         page.picture(folder / "studio-mistake.png")
         complete(page)
         mend_and_save(page)
+        preview(page, folder)
         rehearse(page, folder)
         sessions(page)
         bad = page.complaints()

@@ -14,6 +14,9 @@ async function show_definition(main, file) {
   const key = key_help(draft.editor);
   main.append(make("div", {class: "editor"}, make("section", {"aria-label": word("text_of", {file})}, draft.editor.element),
     make("aside", {}, key, make("section", {"aria-label": word("mistakes", {n: ""})}, remarks, plan))));
+  const preview = preview_part(file);
+  const beside = make("details", {id: "preview_beside", ontoggle: () => beside.open && preview.renew()}, make("summary", {}, word("preview")), preview.element);
+  main.append(make("section", {"aria-label": word("preview")}, beside));
   draft.editor.refresh();
   draft.show = () => {
     const changed = draft.editor.text() !== draft.text;
@@ -28,6 +31,7 @@ async function show_definition(main, file) {
     count.textContent = (checked.valid ? word("valid") : word("mistakes", {n: mistakes})) + (warnings > 0 ? ", " + word("warnings", {n: warnings}) : "");
     count.className = checked.valid ? "good" : "bad";
     remarks.replaceChildren(...checked.remarks.map((remark) => remark_item(remark, draft.editor)));
+    if (beside.open && checked.valid) preview.renew();
     plan.replaceChildren(make("details", {open: checked.valid}, make("summary", {}, word("plan")), printed(checked.output)), command_line(checked.command));
   };
   save_button.addEventListener("click", draft.save);

@@ -1,6 +1,6 @@
 "use strict";
 // Views by their name in the address: #NAME/FILE/MORE. A view more is one line here.
-const kViews = {home: show_home, definition: show_definition, rehearse: show_rehearse, sessions: show_sessions, results: show_results};
+const kViews = {home: show_home, definition: show_definition, preview: show_preview, rehearse: show_rehearse, sessions: show_sessions, results: show_results};
 let shown = "";
 
 function show_nav(view, file) {

@@ -31,7 +31,8 @@ const kWords = {
     old_report: "The report is older than the sessions: analyse them again.", open_report: "Open the report in a tab of its own",
     files: "Files to keep", report_frame: "Report of {folder}", folder_of: "Sessions of {folder}",
     gone: "The studio does not answer. Is it still running in its terminal?",
-    mend_first: "Mend the mistakes first.",
+    mend_first: "Mend the mistakes first.", preview: "Preview", preview_of: "Preview of {file}", trial: "Trial",
+    with_virtual: "with a virtual participant's trial",
   },
   de: {
     skip: "Zum Inhalt", views: "Ansichten", home: "Studien", definition: "Definition",
@@ -63,7 +64,8 @@ const kWords = {
     old_report: "Der Bericht ist älter als die Sitzungen: werten Sie erneut aus.", open_report: "Bericht in einem eigenen Tab öffnen",
     files: "Dateien zum Behalten", report_frame: "Bericht zu {folder}", folder_of: "Sitzungen in {folder}",
     gone: "Das Studio antwortet nicht. Läuft es noch in seinem Terminal?",
-    mend_first: "Beheben Sie zuerst die Fehler.",
+    mend_first: "Beheben Sie zuerst die Fehler.", preview: "Vorschau", preview_of: "Vorschau von {file}", trial: "Durchgang",
+    with_virtual: "mit dem Durchgang einer virtuellen Versuchsperson",
   },
 };
 const kLanguage = navigator.language.startsWith("de") ? "de" : "en";

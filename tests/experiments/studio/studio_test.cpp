@@ -238,6 +238,30 @@ TEST_F(StudioTest, MistakesHaveTheirLines) {
   }
 }
 
+TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
+  std::string other = text();
+  const std::string name = "name = \"";
+  other.insert(other.find(name) + name.size(), "seen_before_");
+  const json asked{{"file", "mine.toml"}, {"text", other}, {"trial", 2}};
+  const json made = post("/preview", asked);
+  EXPECT_EQ(made["command"], "haptrial show mine.toml --trial 2 --no-virtual-trial");
+  const std::string page = std::to_string(made["page"].get<int>());
+  const std::string shown = exchange(reading("/preview_page", "page=" + page));
+  EXPECT_THAT(shown, HasSubstr("seen_before_"));
+  EXPECT_THAT(shown, HasSubstr("Content-Security-Policy: sandbox"));
+  expect_refused(reading("/preview_page", "page=" + page), 400, "was shown before");
+  expect_refused(reading("/preview_page", "page=../../x"), 400, "is not a whole number");
+
+  json wrong = asked;
+  wrong["text"] = "# nothing\n";
+  const json refused = post("/preview", wrong);
+  EXPECT_FALSE(refused.contains("page"));
+  EXPECT_THAT(refused["failure"].get<std::string>(), HasSubstr("mine.toml"));
+  for (const auto& entry : fs::directory_iterator(folder_.path())) {
+    EXPECT_EQ(entry.path().filename(), "mine.toml") << "nothing is left beside it";
+  }
+}
+
 TEST_F(StudioTest, ADefinitionOfAMegabyteIsCheckedAndSaved) {
   const std::string large = text() + "# " + std::string(1'000'000, 'x') + "\n";
   EXPECT_TRUE(post("/validate", {{"file", "mine.toml"}, {"text", large}})["valid"]);
