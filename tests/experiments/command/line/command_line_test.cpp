@@ -139,10 +139,11 @@ TEST(CommandLineTest, AMistypedWordNamesTheNearestOne) {
                  "--colour is not an option of haptrial analyze; see haptrial analyze --help\n");
   expect_refused("haptrial analyze x -jobs 2",
                  "-jobs is not an option of haptrial analyze; did you mean --jobs? ");
-  expect_refused(
-      "haptrial anlayze x",
-      "'anlayze' is not a subcommand of haptrial; did you mean "
-      "analyze? allowed: examples, new, texts, doctor, dry-run, start, run, secret, roster, analyze, ");
+  expect_refused("haptrial anlayze x",
+                 "'anlayze' is not a subcommand of haptrial; did you mean "
+                 "analyze? allowed: examples, new, texts, doctor, studio, dry-run, start, run, "
+                 "secret, roster, "
+                 "analyze, ");
   expect_refused("haptrial mesh voxelise a b",
                  "'voxelise' is not a subcommand of haptrial mesh; "
                  "did you mean voxelize? allowed: ");
