@@ -43,7 +43,7 @@ class Mixer {
   void take_further(const std::vector<Clip>& clips);
   /// Starts a clip from the next sample on. @param clip  from 0; others are none
   void start(std::size_t clip) noexcept;
-  /// What sounds now fades out over 5 ms; what is started afterwards does not.
+  /// Lets everything that sounds now fade out over 5 ms; a sound that is started later does not.
   void still() noexcept;
   void mask(bool on) noexcept { masked_ = on; }
   void fill(std::span<float> samples) noexcept;

@@ -195,7 +195,7 @@ Cue read_cue(Table& table, const std::string& name, const std::vector<Actuator>&
   return cue;
 }
 
-/// What is known of a sound that varies: its file, which can be checked.
+/// Of a sound that varies only the file is known, which can be checked.
 Cue varied_cue(Table& table, const std::string& name) {
   Cue cue;
   cue.name = name;

@@ -6,14 +6,14 @@
 
 namespace haptrial::sound {
 
-/// What is said, one text at a time: a new one takes the place of the one before. One thread.
+/// Speech, one text at a time: a new one takes the place of the one before. One thread.
 class SpeechTrack {
  public:
   /// @param rate  of the samples [Hz]
   explicit SpeechTrack(double rate);
 
   void start(std::vector<float> clip);
-  /// What sounds now fades out over 5 ms.
+  /// Lets the text that sounds now fade out over 5 ms.
   void stop() noexcept;
   bool sounds() const noexcept { return at_ < clip_.size(); }
   /// Adds the next samples to those that are there; the sum stays within full scale.

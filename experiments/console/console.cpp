@@ -66,7 +66,7 @@ WebAnswer picture_answer(SessionControl& control) {
   return picture ? WebAnswer{200, "image/png", *picture} : refusal(404, "no picture is shown now");
 }
 
-/// What the participant sees. @throws RunError
+/// Gives a picture of the participant's window. @throws RunError
 WebAnswer mirror_answer(SessionControl& control) {
   const std::string picture = control.mirror();
   return picture.empty() ? refusal(404, "the participant has no window")

@@ -192,7 +192,7 @@ void add_numbers(const FeltStage& stage, Preview& preview) {
                          rows);
 }
 
-/// What `validate` says of the handle, for this trial alone.
+/// Says of the handle what `validate` says, for this trial alone.
 void add_handle(const TrialsDefinition& d, const PreviewedTrial& trial, Preview& preview) {
   preview.document.subheading("What hands and device carry");
   protocols::HandleReport report(d);

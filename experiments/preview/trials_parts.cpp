@@ -157,7 +157,7 @@ void add_orders(const std::string& what, const std::vector<protocols::PlannedOrd
   }
 }
 
-/// What a picture shows, in words.
+/// The content of a picture, in words.
 std::string content_of(const PreviewedTrial& trial, const protocols::SeenStage& seen) {
   if (seen.question >= 0) {
     return trial.questions[static_cast<std::size_t>(seen.question)].question->text;

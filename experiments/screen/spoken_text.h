@@ -6,7 +6,7 @@
 
 namespace haptrial::experiments {
 
-/// What follows from another text in the window.
+/// The consequence of another text in the window.
 struct SpeechChange {
   enum class Kind {
     kNone,    // what is being said goes on
@@ -22,8 +22,8 @@ struct SpeechChange {
 /// @param seconds  the word, for a countdown
 std::string words_of(const render::TextPage& page, const std::string& seconds);
 
-/// What is said when one picture follows another: all of a new text; of one that was there, the
-/// choice, mark or character that changed, and the hint when a key did nothing.
+/// The words to be said when one picture follows another: all of a new text; of one that was there,
+/// the choice, mark or character that changed, and the hint when a key did nothing.
 SpeechChange speech_between(const protocols::PictureText& before, const protocols::PictureText& now,
                             const std::string& seconds);
 

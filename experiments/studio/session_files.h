@@ -15,7 +15,7 @@ struct FolderFile {
   std::int64_t modified{0};  // since 1970 [ms]
 };
 
-/// What a folder of sessions holds; nothing, if it is not there.
+/// The files of a folder of sessions; none, if it is not there.
 struct SessionFolder {
   std::vector<FolderFile> sessions;  // by name
   std::vector<FolderFile> results;   // reports, figures and tables, by name

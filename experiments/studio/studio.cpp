@@ -25,7 +25,7 @@ WebAnswer json_answer(const json& body) {
   return {200, "application/json", body.dump(-1, ' ', false, json::error_handler_t::replace)};
 }
 
-/// What a request asks for, by name. @throws InputError for a name that is missing
+/// The value that a request has for a name. @throws InputError for a name that is missing
 std::string asked(const WebRequest& request, const std::string& name) {
   const auto found = request.query.find(name);
   if (found == request.query.end()) {

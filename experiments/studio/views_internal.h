@@ -12,7 +12,7 @@
 
 namespace haptrial::experiments {
 
-/// What the page gets and asks for, each by a command of the program. Every answer of a command has
+/// Answers to the page's requests, each by a command of the program. Every answer of a command has
 /// its line as "command". Any thread. InputError for what is not allowed, RunError for what failed.
 class StudioViews {
  public:

@@ -46,7 +46,7 @@ class StandInVrpn {
   void set_sensor(int sensor) { sensor_.store(sensor); }
   /// Closes its port and its connection, or listens again.
   void set_listening(bool listening) { listening_.store(listening); }
-  /// What the client sent first.
+  /// The first bytes of the client.
   std::string heard() const {
     const std::lock_guard lock(mutex_);
     return heard_;

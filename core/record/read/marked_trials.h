@@ -14,8 +14,8 @@ class Schema;
 
 namespace haptrial::record {
 
-/// What a definition states beforehand about trials that the experimenter marks as bad: keys of
-/// [analysis], in every protocol.
+/// The rule of a definition for trials that the experimenter marks as bad, stated beforehand: keys
+/// of [analysis], in every protocol.
 struct MarkRule {
   bool exclude{false};
   std::vector<std::string> words;  // only marks whose reason has one of them; empty: all

@@ -125,7 +125,7 @@ MachineCheck asked_distance(double distance) {
                             "move chair or screen until the eyes are " + where};
 }
 
-/// What only a person can say.
+/// Asks for that which only a person can say.
 void ask_person(const Experiment& experiment) {
   const protocols::Definition& d = *experiment.definition;
   if (d.is_heard()) {

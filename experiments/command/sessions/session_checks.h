@@ -9,7 +9,7 @@
 
 namespace haptrial::experiments {
 
-/// What stands between now and the first trial of a session.
+/// The session that comes next, and the checks before its first trial.
 struct SessionChecks {
   std::string subject;  // who comes; empty: nobody is next
   std::string group;    // empty: the study has none

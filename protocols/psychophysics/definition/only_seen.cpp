@@ -29,7 +29,7 @@ bool leads(Table& root, const std::string& field) {
   return type && kLeading.contains(*type);
 }
 
-/// What a stage shows and nothing else carries.
+/// Names everything that a stage shows and nothing else carries.
 std::vector<std::string> only_seen_in(Table& root, Table& stage) {
   const std::vector<std::string> fields = texts_or_none(stage, "fields");
   const bool led =

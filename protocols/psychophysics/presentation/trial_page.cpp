@@ -20,7 +20,7 @@ questions::AnswerView answer_view(const TrialQuestion& question, const TrialView
   return shown;
 }
 
-/// What the participant is told of an answer.
+/// The page that tells the participant about an answer.
 render::TextPage told_page(const TrialsDefinition& d, const TrialQuestion& question,
                            const TrialView& view) {
   const std::string pace = view.pace == Pace::kTooFast   ? question.fast_text

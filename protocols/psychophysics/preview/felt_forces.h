@@ -61,7 +61,7 @@ struct SpeedCurve {
   std::vector<Eigen::Vector3d> forces;  // (speeds) [N]
 };
 
-/// What a field asks of the loop, in numbers.
+/// The demands of a field on the loop, in numbers.
 struct FieldNumbers {
   std::string name;
   std::string type;       // as the definition says it
@@ -73,7 +73,7 @@ struct FieldNumbers {
   double fade_in{0.0}, fade_out{0.0};  // [s]
 };
 
-/// What is felt in a stage; stages that feel the same share one.
+/// The feeling of a stage; stages that feel the same share one.
 struct FeltStage {
   std::vector<StagePlace> where;
   std::size_t device{0};
@@ -91,7 +91,7 @@ struct FeltStage {
   bool resists_motion() const;  // some force changes with the velocity
 };
 
-/// What is felt in the stages of a trial, on each device that is a tip; stages without a field are
+/// The feeling of the stages of a trial, on each device that is a tip; stages without a field are
 /// left out. Bodies that give way are prepared, which may take long.
 /// @throws InputError as prepare_bodies()
 std::vector<FeltStage> felt_stages(const TrialsDefinition& definition, const PreviewedTrial& trial);
