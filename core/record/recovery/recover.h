@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/record/rows/common_tables.h"
+#include "core/record/rows/session_types.h"
 #include "core/record/table/table.h"
 
 namespace haptrial::record {
