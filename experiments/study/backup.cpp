@@ -107,7 +107,7 @@ bool same_bytes(const fs::path& a, const fs::path& b) {
   }
 }
 
-void refuse_other(const fs::path& session, const fs::path& copy) {
+void refuse_other_copy(const fs::path& session, const fs::path& copy) {
   refuse_special_file(copy);
   if (!same_bytes(session, copy)) {
     throw RunError(
@@ -142,7 +142,7 @@ fs::path back_up(const fs::path& session, const fs::path& folder, const std::str
   }
   const fs::path copied = own / session.filename();
   if (fs::exists(fs::symlink_status(copied, error))) {
-    refuse_other(session, copied);
+    refuse_other_copy(session, copied);
     return copied;
   }
   const fs::path part = copied.string() + ".copying";
