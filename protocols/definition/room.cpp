@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "core/base/definition/schema.h"
-#include "protocols/definition/definition.h"
 
 namespace haptrial::protocols {
 
@@ -29,8 +28,7 @@ const Schema<Room>& room_schema() {
   return schema;
 }
 
-Room room_of(const Definition& definition) {
-  Table root = definition.root();
+Room room_of(Table root) {
   if (!root.has("room")) {
     return {};
   }

@@ -10,8 +10,6 @@ class Table;
 
 namespace haptrial::protocols {
 
-struct Definition;
-
 /// The room in which sessions run: where their files are backed up, and who helps.
 struct Room {
   std::string backup;   // folder, an absolute path; empty: none
@@ -22,7 +20,8 @@ struct Room {
 /// The keys of [room].
 const Schema<Room>& room_schema();
 
-/// The room of a definition, which has been read; empty texts if it has no [room]. Any thread.
-Room room_of(const Definition& definition);
+/// The room of a definition that is good; empty texts if it has no [room]. Any thread.
+/// @param root  of the definition, of which nothing has been read (Definition::root())
+Room room_of(Table root);
 
 }  // namespace haptrial::protocols

@@ -118,7 +118,7 @@ Document card_of(const RunOptions& options, const Experiment& experiment) {
   page.subheading("To stop the force at once");
   page.points(ways_to_stop(options, d));
   page.paragraph("Anybody may stop. The force stays zero until the experimenter clears the stop.");
-  add_help(protocols::room_of(d), page);
+  add_help(protocols::room_of(d.root()), page);
   add_files(options, d, page);
   return page;
 }

@@ -16,7 +16,7 @@ std::filesystem::path session_file(const RunOptions& options, const protocols::D
 }
 
 std::string backup_folder(const RunOptions& options, const protocols::Definition& setup) {
-  return options.backup.empty() ? protocols::room_of(setup).backup : options.backup;
+  return options.backup.empty() ? protocols::room_of(setup.root()).backup : options.backup;
 }
 
 }  // namespace haptrial::experiments
