@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/definition/table.h"
 #include "core/channel/channel_set.h"
 #include "core/record/hdf5/session_writer.h"
 #include "experiments/command/subcommand.h"
@@ -101,7 +102,8 @@ int record(const RecordOptions& options) {
   writer.set_timing({}, {0, 0, 0});
   writer.close();
   fmt::print("{}: {:.1f} s\n", options.file, watch.seconds());
-  const std::string folder = options.backup.empty() ? protocols::room_of(d.root()).backup : options.backup;
+  const std::string folder =
+      options.backup.empty() ? protocols::room_of(d.root()).backup : options.backup;
   if (!folder.empty()) {
     const BackupResult backup = try_back_up(options.file, folder, d.name);
     fmt::print(backup.kept ? stdout : stderr, "{}\n", backup.sentence);

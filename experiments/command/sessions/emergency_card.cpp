@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/document/document.h"
+#include "core/base/definition/table.h"
 #include "core/base/whole_file.h"
 #include "experiments/runner/version.h"
 #include "protocols/definition/button_uses.h"

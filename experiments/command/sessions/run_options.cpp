@@ -1,5 +1,6 @@
 #include "experiments/command/sessions/run_options.h"
 
+#include "core/base/definition/table.h"
 #include "experiments/study/session_name.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/room.h"
