@@ -270,7 +270,10 @@ void GuardedServer::Implementation::send_events(httplib::Response& response, Web
           goes_on = connection.wait(period);
           open = send("");
         }
-        return false;
+        if (open) {
+          sink.done();  // of a stream that just breaks off a browser may drop the last event
+        }
+        return open;
       },
       [this](bool) { streams_.fetch_sub(1); });
 }
