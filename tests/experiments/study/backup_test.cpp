@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 
 #include "tests/experiments/shipped.h"
@@ -26,7 +27,7 @@ class BackupTest : public testing::Test {
   BackupTest() {
     fs::create_directory(disk_);
     for (int i = 0; i < 300'000; ++i) {
-      content_ += static_cast<char>(i * 7919 / 13);
+      content_ += static_cast<char>(std::uint64_t(i) * 7919 / 13);
     }
     write_text(session_, content_);
   }
