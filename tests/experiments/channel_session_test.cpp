@@ -249,6 +249,7 @@ TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
   std::size_t before = 0;
   for (int kill = 0; kill < 3; ++kill) {
     test::LiveCommand live(kill == 0 ? run : run + " --resume");
+    live.line_after("recording ");  // a file that is being read cannot be gone on with
     ASSERT_TRUE(live.reaches([&] {
       try {
         const record::SessionReader reader(partial);
