@@ -195,7 +195,7 @@ Cue read_cue(Table& table, const std::string& name, const std::vector<Actuator>&
   return cue;
 }
 
-/// Of a sound that varies only the file is known, which can be checked.
+/// A sound that varies, of which only the file is known and can be checked.
 Cue varied_cue(Table& table, const std::string& name) {
   Cue cue;
   cue.name = name;

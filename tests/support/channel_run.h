@@ -84,7 +84,7 @@ class ChannelRun {
 
  private:
   void start() {
-    // What an instrument gives from its opening on counts in a test.
+    // Tests count all samples from the opening of an instrument on.
     channel::ChannelOptions options = options_;
     options.plan.open = [this, open = options_.plan.open] {
       wait_until([this] { return begun_.load(); });

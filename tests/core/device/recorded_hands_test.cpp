@@ -1,4 +1,4 @@
-// What people's hands really did raises no alarm: against the forces that were measured there, and
+// Recorded movements of people's hands raise no alarm: against the forces that were measured there, and
 // through a medium. (The arm in csrl_ur_admittance_human oscillated itself, at 20 to 25 Hz, so that
 // its forces would.)
 

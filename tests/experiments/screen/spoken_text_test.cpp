@@ -1,4 +1,4 @@
-// What is said of a picture and of what follows it.
+// The words that are said of a picture and of the next one.
 
 #include "experiments/screen/spoken_text.h"
 

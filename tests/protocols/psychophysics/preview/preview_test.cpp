@@ -1,4 +1,4 @@
-// What a preview says of an experiment is what a session does: stages in their order, forces to the
+// A preview says of an experiment what a session does: stages in their order, forces to the
 // bit, trials counted.
 
 #include <gmock/gmock.h>
