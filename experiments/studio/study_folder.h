@@ -27,7 +27,8 @@ class StudyFolder {
   std::filesystem::path inside(const std::string& name) const;
   /// Whether inside() gives the name.
   bool holds(const std::string& name) const;
-  /// Looks for a definition in the same way. @throws InputError also for a name that does not end in .toml.
+  /// Looks for a definition in the same way. @throws InputError also for a name that does not end
+  /// in .toml.
   std::filesystem::path definition(const std::string& name) const;
 
   /// Names of the definitions at the top of the folder, in order. Files of a lab, and of texts in

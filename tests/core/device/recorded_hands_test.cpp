@@ -1,6 +1,6 @@
-// Recorded movements of people's hands raise no alarm: against the forces that were measured there, and
-// through a medium. (The arm in csrl_ur_admittance_human oscillated itself, at 20 to 25 Hz, so that
-// its forces would.)
+// Recorded movements of people's hands raise no alarm: against the forces that were measured there,
+// and through a medium. (The arm in csrl_ur_admittance_human oscillated itself, at 20 to 25 Hz, so
+// that its forces would.)
 
 #include <gtest/gtest.h>
 
