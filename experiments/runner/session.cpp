@@ -29,7 +29,6 @@
 #include "protocols/definition/handle_loop.h"
 #include "protocols/definition/speech_options.h"
 #include "protocols/interface/session_task.h"
-#include "protocols/interface/trial_sounds.h"
 #include "protocols/interface/trials.h"
 #include "protocols/tutoring/tutored_trials.h"
 
@@ -511,7 +510,7 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   }
   PlannedTrial row = trial;
   protocols::Pass& pass = trials_->make_pass(row, phase);
-  record_.markers().prepare(protocols::varied_cues_of(*trials_));
+  record_.markers().prepare(trials_->varied_cues());
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
   servo_.task.start(pass, number);
   ++summary_.passes;

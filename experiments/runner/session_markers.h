@@ -44,7 +44,7 @@ class SessionMarkers {
   /// Whether sounds are played, in a sentence; empty if the definition has none.
   std::string sound_state() const;
 
-  /// Prepares the sounds of the coming pass that follow from its trial (TrialSounds).
+  /// Prepares the sounds of the coming pass that follow from its trial (Trials::varied_cues).
   void prepare(const std::vector<sound::Cue>& cues);
   /// @param row  of /trials that the pass will have
   void begin_pass(std::int32_t row, std::int32_t trial);

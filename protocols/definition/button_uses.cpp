@@ -38,8 +38,7 @@ bool has_table(const Definition& d, const char* table) {
 /// With those that every protocol has: a recorded run is paused in stages, and not while a question
 /// is asked. Without the key, force training means all buttons, which is no second function.
 std::vector<ButtonUse> uses_of(const Definition& d) {
-  const auto* user = dynamic_cast<const ButtonUser*>(&d);
-  std::vector<ButtonUse> uses = user != nullptr ? user->button_uses() : std::vector<ButtonUse>();
+  std::vector<ButtonUse> uses = d.button_uses();
   if (has_table(d, "tutoring") && d.root().table("tutoring").has("pause_buttons")) {
     uses.push_back({"tutoring.pause_buttons", d.tutoring.pause_buttons, "stages"});
   }

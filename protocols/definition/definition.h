@@ -20,6 +20,7 @@
 #include "core/stream/marker_options.h"
 #include "core/stream/side_stream.h"
 #include "core/subject/hand_parameters.h"
+#include "protocols/definition/button_use.h"
 #include "protocols/definition/device_arm.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/definition/screen_options.h"
@@ -86,6 +87,8 @@ struct Definition {
   virtual std::vector<DeviceArm> arms() const { return {{envelope}}; }
   int devices() const { return static_cast<int>(arms().size()); }  // these parts
   virtual PedalUse pedal_use() const { return PedalUse::kNone; }
+  /// The protocol's own keys that give buttons a function.
+  virtual std::vector<ButtonUse> button_uses() const { return {}; }
   /// Lines that say what the definition asks for.
   virtual std::vector<std::string> description() const = 0;
   /// Lines on how firmly the loop lets the devices be held, for a check of a device.

@@ -16,6 +16,7 @@
 #include "core/record/rows/response.h"
 #include "core/record/rows/rows.h"
 #include "core/record/rows/session_types.h"
+#include "core/sound/cue.h"
 #include "core/stimulus/observer.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/interface/auxiliary_page.h"
@@ -140,6 +141,9 @@ class Trials {
   virtual bool waits_for_picture() const { return false; }
   /// @param trial  as planned; what its row is to say else may be changed
   virtual Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) = 0;
+  /// The sounds of the pass that make_pass() made last whose numbers follow from the trial. In its
+  /// onsets their numbers come behind those of the definition's own sounds.
+  virtual std::vector<sound::Cue> varied_cues() const { return {}; }
   /// The answers of the pass that ended last; their trial, pass and place in time are filled in.
   virtual std::vector<record::ResponseRow> responses() { return {}; }
   /// Closes a pass; called after it, before its row of /trials. @param row  its number

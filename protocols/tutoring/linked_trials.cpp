@@ -10,7 +10,6 @@
 #include "core/record/rows/link_row.h"
 #include "core/record/rows/network_row.h"
 #include "protocols/interface/session_file.h"
-#include "protocols/interface/trial_sounds.h"
 #include "protocols/tutoring/linked_pass.h"
 #include "protocols/tutoring/network_order.h"
 
@@ -23,7 +22,7 @@ using tutoring::PassBarrier;
 constexpr int kMostAgain = 3;
 
 /// Everything is the protocol's own but when a pass begins and ends, and what the hand feels.
-class LinkedTrials final : public Trials, public TrialSounds {
+class LinkedTrials final : public Trials {
  public:
   LinkedTrials(std::unique_ptr<Trials> inner, const TutoringOptions& options,
                const LinkChoice& link, const SessionPlace& place)
@@ -72,7 +71,7 @@ class LinkedTrials final : public Trials, public TrialSounds {
   }
   MakeDrawing drawing() override { return inner_->drawing(); }
   bool waits_for_picture() const override { return inner_->waits_for_picture(); }
-  std::vector<sound::Cue> varied_cues() const override { return varied_cues_of(*inner_); }
+  std::vector<sound::Cue> varied_cues() const override { return inner_->varied_cues(); }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   std::vector<record::ResponseRow> responses() override { return inner_->responses(); }
   void close_pass(SessionFile& file, std::int32_t row) override;

@@ -7,14 +7,13 @@
 
 #include "core/record/rows/tutoring_row.h"
 #include "protocols/interface/session_file.h"
-#include "protocols/interface/trial_sounds.h"
 #include "protocols/tutoring/tutored_pass.h"
 
 namespace haptrial::protocols {
 namespace {
 
 /// Everything is the protocol's own but the passes of its first phase.
-class TutoredTrials final : public Trials, public TrialSounds {
+class TutoredTrials final : public Trials {
  public:
   TutoredTrials(std::unique_ptr<Trials> inner, const TutoringOptions& options,
                 const TutorChoice& tutor)
@@ -59,7 +58,7 @@ class TutoredTrials final : public Trials, public TrialSounds {
   }
   MakeDrawing drawing() override { return inner_->drawing(); }
   bool waits_for_picture() const override { return inner_->waits_for_picture(); }
-  std::vector<sound::Cue> varied_cues() const override { return varied_cues_of(*inner_); }
+  std::vector<sound::Cue> varied_cues() const override { return inner_->varied_cues(); }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override {
     Pass& pass = inner_->make_pass(trial, phase);
     if (!(phase == phases().front())) {

@@ -23,7 +23,6 @@
 #include "core/subject/drilling/drilling_surgeon.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/bone_drilling/definition/placement.h"
-#include "protocols/definition/button_uses.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::protocols {
@@ -40,7 +39,7 @@ struct ParticipantGroup {
 
 /// An experiment of drillings (`protocol = "bone_drilling"`), read from a definition file and valid
 /// as a whole. A trial is one procedure on one bone.
-struct BoneDefinition : Definition, ButtonUser {
+struct BoneDefinition : Definition {
   std::vector<std::string>
       sources;                    // of bones: "procedural temporal", "procedural mandible", files
   std::uint64_t bone_seed{1};     // of procedural ones

@@ -7,7 +7,6 @@
 
 #include "core/psychometric/definition/track.h"
 #include "core/sound/cue.h"
-#include "protocols/definition/button_uses.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/psychophysics/definition/block.h"
@@ -40,7 +39,7 @@ struct TrialsView {
 
 /// An experiment that a definition file states whole: what can be felt, what a trial is made of,
 /// what is asked, and what follows from the answers (docs/guide-own-experiment.md).
-struct TrialsDefinition : Definition, ButtonUser {
+struct TrialsDefinition : Definition {
   TrialDesign order;
   std::vector<Interval> intervals;  // at least one
   bool random_intervals{false};     // their order, within each trial
