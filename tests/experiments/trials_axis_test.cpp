@@ -20,7 +20,9 @@ psychometric::Axis axis_with(const std::string& procedure) {
   Table root = Table::parse(text, "study.toml");
   const auto definition = protocols::trials_protocol().read(root, "study.toml", nullptr);
   root.check();
-  return plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition)).axis;
+  return plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition))
+      .procedures.at(0)
+      .axis;
 }
 
 constexpr const char* kPest =

@@ -40,6 +40,13 @@ void add_choice(LevelTrial& made, const StudyTrial& trial, const TrialsPlan& pla
 
 std::string AnsweredSeries::condition() const { return fmt::format("{}", fmt::join(levels, ", ")); }
 
+bool sets_other_level(const StudyTrial& trial, const TrialsPlan& plan) {
+  return plan.level_is_set && !trial.levels.empty() &&
+         std::ranges::none_of(trial.levels, [&](const GivenLevel& level) {
+           return level.variable == plan.level;
+         });
+}
+
 double level_of(const StudyTrial& trial, const TrialsPlan& plan) {
   if (plan.level.empty()) {
     return trial.levels.empty() ? kNotKnown : trial.levels.front().applied;
@@ -48,6 +55,9 @@ double level_of(const StudyTrial& trial, const TrialsPlan& plan) {
     if (level.variable == plan.level) {
       return level.applied;
     }
+  }
+  if (sets_other_level(trial, plan)) {
+    return kNotKnown;
   }
   const GivenVariable* variable = variable_of(trial, plan.level);
   return variable == nullptr ? kNotKnown : variable->value;

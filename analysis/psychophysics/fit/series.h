@@ -34,6 +34,8 @@ struct AnsweredSeries {
   std::string condition() const;  // levels joined by ", "; empty: there are no factors
 };
 
+/// Whether a procedure set another variable in the trial than the one that is the plan's level.
+bool sets_other_level(const StudyTrial& trial, const TrialsPlan& plan);
 /// The level that a trial presented; NaN: it has none.
 double level_of(const StudyTrial& trial, const TrialsPlan& plan);
 /// 1 or 0 as the plan counts answers; -1: not known.

@@ -148,14 +148,39 @@ void match_direction(Table& table, bool falls, TrialsPlan& plan) {
   }
 }
 
+/// The levels that the functions are of; else those of the first procedure. Null: there is none.
+const ProcedureLevels* levels_of(const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const auto own =
+      std::ranges::find(defaults.procedures, plan.level, &ProcedureLevels::variable);
+  return own != defaults.procedures.end()  ? &*own
+         : defaults.procedures.empty() ? nullptr
+                                       : &defaults.procedures.front();
+}
+
+psychometric::Axis axis_of(const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const ProcedureLevels* levels = levels_of(defaults, plan);
+  return levels != nullptr ? levels->axis : psychometric::Axis{};
+}
+
+/// Functions have one axis: with procedures of several variables that of the first, unless stated.
+void settle_level(const PlanDefaults& defaults, TrialsPlan& plan) {
+  plan.level_assumed = plan.level.empty() && defaults.procedures.size() > 1;
+  if (plan.level_assumed) {
+    plan.level = defaults.procedures.front().variable;
+  }
+  plan.level_is_set = std::ranges::find(defaults.procedures, plan.level,
+                                        &ProcedureLevels::variable) != defaults.procedures.end();
+}
+
 void check_function(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   try {
     psychometric::set_sigmoid(plan.function, plan.function_name, Scale::kNaturalLog);
   } catch (const std::invalid_argument& error) {
     table.reject("function", fmt::format("cannot be read: {}", error.what()));
   }
-  if (defaults.falls && plan.yes.empty() && plan.question.empty()) {
-    match_direction(table, *defaults.falls, plan);
+  const ProcedureLevels* levels = levels_of(defaults, plan);
+  if (levels != nullptr && levels->falls && plan.yes.empty() && plan.question.empty()) {
+    match_direction(table, *levels->falls, plan);
   }
 }
 
@@ -226,7 +251,7 @@ Schema<TrialsPlan> make_function_schema(const PlanDefaults& defaults) {
             "Sigmoid that is fitted; with neg_ before its name it falls")
       .otherwise("norm; neg_norm with right_raises")
       .check([&](Table& table, P& plan) {
-        plan.function.axis = defaults.axis;
+        plan.function.axis = axis_of(defaults, plan);
         check_function(table, defaults, plan);
         axis_schema().read(table, plan.function.axis);
         plan.guess_free = !defaults.guess.has_value();
@@ -279,9 +304,10 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
       .otherwise("what the procedure learnt, else the right one")
       .only_if(answers)
       .text("level", &P::level, "Variable that is the level of a trial")
-      .otherwise("the one that the procedure set")
+      .otherwise("the one that the procedure set; of several, the first procedure's")
       .only_if(answers)
       .derive([&](P& plan) {
+        settle_level(defaults, plan);
         plan.rating = may_rate(plan) ? defaults.rating : "";
         if (identifies(plan)) {
           plan.choices = defaults.choices;
@@ -359,11 +385,13 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   plan.functions = plan.kind == AnalysisKind::kPsychometric;
   plan.guess_free = !defaults.guess.has_value();
   plan.function.guess = defaults.guess.value_or(0.0);
-  plan.function.axis = defaults.axis;
+  settle_level(defaults, plan);
+  plan.function.axis = axis_of(defaults, plan);
   if (!root.has("analysis")) {
     plan.threshold_at = 0.5 * (1.0 + plan.function.guess);
     return plan;
   }
+  plan.level = {};
   Table table = root.table("analysis");
   make_plan_schema(defaults).read(table, plan);
   return plan;

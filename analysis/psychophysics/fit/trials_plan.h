@@ -32,6 +32,13 @@ enum class AnalysisKind {
 /// Levels by the name of their factor, as tables show them.
 using StatedLevels = std::map<std::string, std::vector<std::string>>;
 
+/// A variable whose levels procedures set.
+struct ProcedureLevels {
+  std::string variable;
+  psychometric::Axis axis;    // of its procedures, with its unit
+  std::optional<bool> falls;  // whether their answers 1 get rarer as the level rises
+};
+
 /// Values of the rest of a definition that stand in for keys that [analysis] does not have.
 struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
@@ -39,9 +46,8 @@ struct PlanDefaults {
   std::string rating;                // question of how sure somebody is; empty: none
   std::vector<std::string> choices;  // of the first question; none: a number
   std::vector<std::string> names;    // that `by` may name besides
-  psychometric::Axis axis;           // of the procedure, with its unit
+  std::vector<ProcedureLevels> procedures;  // one for each variable
   std::optional<double> guess;       // 1 / choices where an answer is right; else free
-  std::optional<bool> falls;         // answers 1 of the procedure get rarer as the level rises
   ReachingNames reaching;            // that the analysis of movements may name
   CueNames cues;                     // that the comparison of cues may name
   StatedLevels levels;               // of names of `by`, where the definition states all of them
@@ -60,6 +66,9 @@ struct TrialsPlan {
   std::string yes;              // the answer that counts 1; empty: what the procedure learnt, else
                                 // the right one
   std::string level;            // variable for the level; empty: the one that the procedure set
+  bool level_is_set{false};     // `level` is one that procedures set; trials in which another
+                                // procedure set another one have none
+  bool level_assumed{false};    // procedures set several variables, and `level` is the first
   std::string rating;           // question with a number: how sure; empty: none
   std::string stimulus;         // factor that says what was presented, of an identification
   std::vector<std::string> choices;  // of the question, likewise
@@ -81,6 +90,10 @@ struct TrialsPlan {
   std::optional<CuePlan> cues;  // two cues whose combination is compared with the best
   ReachingPlan reaching;        // where `kind` is kReaching
 
+  bool uses_level() const {
+    return functions || kind == AnalysisKind::kMagnitude || kind == AnalysisKind::kAdjustment ||
+           kind == AnalysisKind::kDetection;
+  }
   Task task() const {
     return guess_is_lapse ? Task::kEqualAsymptote : guess_free ? Task::kYesNo : Task::kForcedChoice;
   }

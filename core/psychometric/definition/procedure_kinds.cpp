@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/psychometric/definition/read_adjustment.h"
+#include "core/psychometric/definition/read_limits.h"
 #include "core/psychometric/definition/read_listed.h"
 #include "core/psychometric/definition/read_pest.h"
 #include "core/psychometric/definition/read_psi.h"
@@ -18,6 +19,7 @@ namespace {
 std::vector<ProcedureKind>& all_kinds() {
   static std::vector<ProcedureKind> kinds{
       {"staircase", read_staircase},
+      {"limits", read_limits},
       {"pest", read_pest},
       {"psi", read_psi},
       {"quest_plus", read_quest, OutcomeForm::kAnswer, "stimulus"},

@@ -43,6 +43,7 @@ const Schema<AdjustingParameters>& adjusting_schema() {
 
 void read_adjustment(const TrackKeys& keys, Track& track) {
   read_range_and_axis(keys, track);
+  track.finds_level = true;
   AdjustingParameters p;
   p.axis = track.axis;
   p.low = track.low;

@@ -36,6 +36,7 @@ const Schema<PestParameters>& pest_schema() {
 
 void read_pest(const TrackKeys& keys, Track& track) {
   read_range_and_axis(keys, track);
+  track.finds_level = true;
   PestParameters p;
   p.axis = track.axis;
   p.low = track.low;

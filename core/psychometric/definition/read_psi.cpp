@@ -113,6 +113,7 @@ void read_psi(const TrackKeys& keys, Track& track) {
   PsiParameters p = read_psi_function(keys, track);
   set_default_grids(track, p);
   psi_schema().read(keys.track, keys.procedure, p);
+  track.finds_level = p.threshold.values.size() > 1;
   try {
     const auto tables = std::make_shared<const QuestTables>(psi_definition(p));
     begin_with(keys, tables, stop, track);

@@ -128,6 +128,7 @@ void add_steps(const Track& track, const StaircaseParameters& p, std::vector<std
 
 void read_staircase(const TrackKeys& keys, Track& track) {
   read_range_and_axis(keys, track);
+  track.finds_level = true;
   StaircaseParameters p;
   p.axis = track.axis;
   p.low = track.low;

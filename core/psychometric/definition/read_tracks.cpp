@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <span>
 #include <stdexcept>
 
@@ -100,22 +99,6 @@ void read_all(Table& procedure, std::vector<Track>& tracks) {
   }
 }
 
-/// Each [[procedures]] sets variables of its own. @param taken  those of the ones before
-void check_own_variables(Table& procedure, std::span<const Track> tracks,
-                         std::set<std::string>& taken) {
-  std::set<std::string> own;
-  for (const Track& track : tracks) {
-    for (const std::string& variable : track.variables()) {
-      if (own.insert(variable).second && taken.contains(variable)) {
-        procedure.reject(kind_of_procedure(track.kind).variables, fmt::format("\"{}\"", variable),
-                         "a variable that no other procedure sets; tracks of one procedure are its "
-                         "[[procedures.tracks]]");
-      }
-    }
-  }
-  taken.merge(own);
-}
-
 }  // namespace
 
 std::vector<Track> read_tracks(Table& root) {
@@ -125,11 +108,14 @@ std::vector<Track> read_tracks(Table& root) {
     read_all(table, tracks);
   }
   if (root.has("procedures")) {
-    std::set<std::string> taken;
+    std::size_t procedure = 0;
     for (Table& table : root.tables("procedures")) {
       const std::size_t before = tracks.size();
       read_all(table, tracks);
-      check_own_variables(table, std::span(tracks).subspan(before), taken);
+      for (Track& track : std::span(tracks).subspan(before)) {
+        track.procedure = procedure;
+      }
+      ++procedure;
     }
   }
   if (tracks.size() > kMostTracks) {

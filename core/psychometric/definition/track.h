@@ -37,6 +37,7 @@ struct TrackPrediction {
 /// what came of it.
 struct Track {
   std::string name;
+  std::size_t procedure{0};     // that it belongs to, in the definition's order
   std::string kind;             // word of its kind (procedure_kinds.h)
   std::string variable;         // that it sets
   std::string unit;             // of the variable, as a text
@@ -48,6 +49,7 @@ struct Track {
   std::vector<TrackDimension> further;  // of a level with several dimensions
   int most_trials{0};                   // of one track
   bool listed{false};                   // its trials are known from the beginning
+  bool finds_level{false};              // its first estimate is a level of the variable
   OutcomeForm learns_from{OutcomeForm::kAnswer};
   std::size_t outcomes{2};        // that a track of answers tells apart
   std::optional<bool> falls;      // whether answers 1 get rarer as the level rises; none: not known

@@ -1,48 +1,16 @@
 #include "core/psychometric/procedure/adjusting.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
-#include <string>
+
+#include "core/psychometric/procedure/both_sides.h"
 
 namespace haptrial::psychometric {
 namespace {
 
 constexpr const char* kAdjusting = "Adjusting";
-
-/// Settings of adjustments that began on one side.
-struct Side {
-  std::vector<double> settings;
-
-  double count() const { return static_cast<double>(settings.size()); }
-  double mean() const { return std::accumulate(settings.begin(), settings.end(), 0.0) / count(); }
-  double squares() const {  // about the mean
-    double sum = 0.0;
-    for (const double setting : settings) {
-      sum += (setting - mean()) * (setting - mean());
-    }
-    return sum;
-  }
-};
-
-/// The mean of the sides' means, with the scatter within sides.
-Estimate estimate_of(const std::vector<Side>& sides, const std::string& name) {
-  double mean = 0.0, squares = 0.0, freedom = 0.0, inverse = 0.0;
-  const auto n = static_cast<double>(sides.size());
-  for (const Side& side : sides) {
-    mean += side.mean() / n;
-    squares += side.squares();
-    freedom += side.count() - 1.0;
-    inverse += 1.0 / side.count();
-  }
-  Estimate estimate{name, mean, {}};
-  if (freedom > 0.0) {
-    estimate.deviation = std::sqrt(squares / freedom * inverse) / n;
-    estimate.freedom = freedom;
-  }
-  return estimate;
-}
 
 }  // namespace
 
@@ -107,15 +75,14 @@ std::vector<Estimate> Adjusting::estimates() const {
   if (settings_.empty()) {
     return {};
   }
-  std::array<Side, 2> sides;
+  std::vector<double> below, above;
   for (std::size_t i = 0; i < settings_.size(); ++i) {
-    sides[from_above_[i] ? 1 : 0].settings.push_back(settings_[i]);
+    (from_above_[i] ? above : below).push_back(settings_[i]);
   }
-  const std::string count = std::to_string(settings_.size());
-  if (sides[0].settings.size() < 2 || sides[1].settings.size() < 2) {
-    return {estimate_of({{settings_}}, "mean of " + count + " settings")};
-  }
-  return {estimate_of({sides[0], sides[1]}, "mean of " + count + " settings, both sides alike")};
+  Estimate estimate = mean_of_sides(below, above);
+  estimate.name = fmt::format("mean of {} settings{}", settings_.size(),
+                              sides_count_alike(below, above) ? ", both sides alike" : "");
+  return {estimate};
 }
 
 }  // namespace haptrial::psychometric

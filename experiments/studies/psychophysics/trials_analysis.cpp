@@ -122,6 +122,23 @@ analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
   return names;
 }
 
+/// The variables of levels with one dimension, each with what its first procedure says.
+std::vector<analysis::trials::ProcedureLevels> levels_of_procedures(
+    const protocols::TrialsDefinition& d) {
+  using analysis::trials::ProcedureLevels;
+  std::vector<ProcedureLevels> all;
+  for (const protocols::Track& track : d.tracks) {
+    const auto known = std::ranges::find(all, track.variable, &ProcedureLevels::variable);
+    if (known == all.end()) {
+      all.push_back({track.variable, track.axis, track.falls});
+      all.back().axis.unit = track.unit;
+    } else if (known->falls != track.falls) {
+      known->falls.reset();
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
@@ -153,11 +170,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
                   : track.learns_from == OutcomeForm::kAdjustment ? AnalysisKind::kAdjustment
                                                                   : AnalysisKind::kPsychometric;
   defaults.guess = guess_of(d);
-  defaults.axis = track.axis;
-  if (std::ranges::all_of(d.tracks, [&](const auto& each) { return each.falls == track.falls; })) {
-    defaults.falls = track.falls;
-  }
-  defaults.axis.unit = track.unit;
+  defaults.procedures = levels_of_procedures(d);
   return defaults;
 }
 

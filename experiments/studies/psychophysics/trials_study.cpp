@@ -15,6 +15,7 @@
 #include "analysis/psychophysics/report/write_trials.h"
 #include "analysis/psychophysics/study/reach_quantities.h"
 #include "analysis/psychophysics/study/trials_study.h"
+#include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/studies/psychophysics/reach_routes.h"
@@ -100,6 +101,21 @@ void add_sessions_of(const std::string& participant, const std::multiset<int>& t
   }
 }
 
+/// A function of one variable has no trials in which a procedure set another.
+void add_other_levels(const trials::TrialsData& data, const trials::TrialsPlan& plan,
+                      std::vector<std::string>& remarks) {
+  const auto others = std::ranges::count_if(data.trials, [&](const trials::StudyTrial& trial) {
+    return trial.counts() && trials::sets_other_level(trial, plan);
+  });
+  if (others > 0 && plan.uses_level()) {
+    remarks.push_back(fmt::format(
+        "{}, in which a procedure set another variable than {}, {} not among the levels that are "
+        "analysed{}.",
+        counted(others, "trial", "trials"), plan.level, others == 1 ? "is" : "are",
+        plan.level_assumed ? "; analysis.level can name another" : ""));
+  }
+}
+
 /// Sentences about sessions that the study planned and the folder lacks.
 void add_missing(const AnalysisRequest& request, const TrialsDefinition& definition,
                  const trials::TrialsData& data, std::vector<std::string>& remarks) {
@@ -140,6 +156,13 @@ class TrialsStudy final : public Study {
 std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {
   const trials::TrialsPlan plan = plan_of(d);
   std::vector<std::string> warnings;
+  if (plan.level_assumed && plan.uses_level()) {
+    warnings.push_back(
+        fmt::format("procedures set several variables, and analysis.level names none of them; "
+                    "{0}, that of the first, is analysed, and trials of the others are left out; "
+                    "name the one that is meant (level = \"{0}\")",
+                    plan.level));
+  }
   for (const protocols::Track& track : trials_of(d).tracks) {
     const bool outside = plan.function.axis.scale != psychometric::Scale::kLinear &&
                          track.low <= plan.function.axis.origin;
@@ -166,6 +189,7 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   };
   trials::TrialsData data = trials::read_trials(request.files.files, group_of, request.threads);
   add_missing(request, definition, data, remarks);
+  add_other_levels(data, plan, remarks);
   std::ranges::move(trials::unlike_meshes(data.sessions), std::back_inserter(remarks));
   trials::TrialsResult result =
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);

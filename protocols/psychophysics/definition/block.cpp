@@ -57,8 +57,8 @@ Probe read_probe(Table& table) {
 }
 
 const std::vector<std::string>& block_keys() {
-  static const std::vector<std::string> keys{"name", "trials", "practice", "right_in_a_row",
-                                             "probe"};
+  static const std::vector<std::string> keys{"name",           "trials",     "practice",
+                                             "right_in_a_row", "procedures", "probe"};
   return keys;
 }
 
@@ -73,7 +73,10 @@ const Schema<Block>& block_schema() {
           .required()
           .flag("practice", &B::practice, "Whether the block is practice, which is not scored")
           .integer("right_in_a_row", &B::right_in_a_row, 1, 1000, kRightInARow)
-          .otherwise("all trials");
+          .otherwise("all trials")
+          .texts("procedures", &B::procedures,
+                 "Names of the procedures that choose the levels in the block")
+          .otherwise("all, unless the block gives one of their variables a value");
   return schema;
 }
 
@@ -127,6 +130,22 @@ std::vector<Factor> read_factors(Table& root) {
   return factors;
 }
 
+/// One number for combinations, or a table with a number for each factor.
+std::vector<RunLimit> read_run_limits(Table& table, const std::string& key) {
+  constexpr long kMostRun = 1000;
+  if (!table.is_table(key)) {
+    return {{"", static_cast<int>(table.integer(key, 1, kMostRun))}};
+  }
+  std::vector<RunLimit> limits;
+  Table factors = table.table(key);
+  for (const std::string& factor : factors.keys()) {
+    factors.describe(
+        {factor, "Most trials of one level of the factor NAME that follow each other", "", true});
+    limits.push_back({factor, static_cast<int>(factors.integer(factor, 1, kMostRun))});
+  }
+  return limits;
+}
+
 const Schema<TrialDesign>& trial_design_schema() {
   using D = TrialDesign;
   constexpr long kMostSessions = 100;
@@ -143,9 +162,20 @@ const Schema<TrialDesign>& trial_design_schema() {
                         table.choice(key, {"fixed", "latin", "williams", "full", "random"}));
                   })
           .otherwise("fixed")
-          .integer("most_in_a_row", &D::most_in_a_row, 1, 1000,
-                   "Most trials of one combination of factors that follow each other")
+          .custom("most_in_a_row",
+                  "Most trials of one combination of factors that follow each other, or of one "
+                  "level of a factor: 3, or { FACTOR = 3 }",
+                  [](Table& table, const std::string& key, D& d) {
+                    d.most_in_a_row = read_run_limits(table, key);
+                  })
           .otherwise("no limit")
+          .choice("trials", &D::trial_order,
+                  {{"cycles", TrialOrder::kCycles},
+                   {"shuffled", TrialOrder::kShuffled},
+                   {"random", TrialOrder::kRandom}},
+                  "Order of the trials of a block without procedures: every combination of factors "
+                  "once before any comes again, all equally often in one random order, or each "
+                  "trial drawn anew")
           .integer("sessions", &D::sessions, 1, kMostSessions,
                    "Sessions of each participant, on days of their own");
   return schema;
@@ -253,9 +283,14 @@ TrialDesign read_trial_design(Table& root, bool procedures) {
       d.blocks.push_back(read_block(table, procedures));
     }
   } else if (procedures) {
-    d.blocks.push_back({"main", 0, false, 0, {}, std::nullopt});
+    d.blocks.emplace_back().name = "main";
   } else {
     root.reject("design", "has nothing to present; add a [procedure] or [[blocks]]");
+  }
+  if (d.trial_order == TrialOrder::kRandom && !d.most_in_a_row.empty()) {
+    design.reject("most_in_a_row",
+                  "is a rule for the order, but trials = \"random\" draws each trial without one; "
+                  "keep one of the two");
   }
   read_sessions(design, d);
   return d;

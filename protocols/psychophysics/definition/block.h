@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +41,22 @@ struct Block {
   int right_in_a_row{0};  // practice ends with so many right answers in a row; 0: not before
   std::vector<GivenValue> values;
   std::optional<Probe> probe;
+  std::vector<std::string> procedures{};  // names of the tracks that it asks; empty: all, unless it
+                                        // gives one of their variables a value
+  std::vector<std::string> needs{};       // tracks whose threshold its trials use (every_value.h)
+};
+
+/// How the combinations of factors of a block without procedures follow each other.
+enum class TrialOrder : std::uint8_t {
+  kCycles,    // each once before any comes again
+  kShuffled,  // each equally often, in one random order
+  kRandom,    // each drawn anew, so that nothing tells which one comes
+};
+
+/// At most so many trials with the same level of a factor follow each other.
+struct RunLimit {
+  std::string factor;  // empty: with the same levels of all
+  int most{1};
 };
 
 /// Trials of a study, and their order.
@@ -49,7 +67,8 @@ struct TrialDesign {
   double break_duration{60.0};                       // [s]
   bool break_until_ready{false};                     // and then until somebody goes on
   Counterbalancing order{Counterbalancing::kFixed};  // of the blocks that are not practice
-  int most_in_a_row{0};  // trials of one combination of factors; 0: no matter
+  TrialOrder trial_order{TrialOrder::kCycles};
+  std::vector<RunLimit> most_in_a_row;
   std::vector<Factor> factors;
   std::vector<Block> blocks;                         // at least one; practice first
   std::vector<std::vector<std::size_t>> by_session;  // blocks of each; empty: all in each
@@ -62,11 +81,12 @@ struct TrialDesign {
 /// brackets are optional.
 ///
 ///     [design]    participants, [break_after], [break_duration], [break_until], [blocks],
-///                 [most_in_a_row], [sessions]
+///                 [most_in_a_row], [sessions], [trials]
 ///     [design.session.N]  blocks = ["practice", …]: those of session N; of all sessions or of none
 ///     [factors]   name = [level, level, …]: numbers, words, or formulas with $
 ///     [practice]  trials, [right_in_a_row], and values as of a block
-///     [[blocks]]  name, [trials], [practice], [right_in_a_row], [probe] = { name, share, … };
+///     [[blocks]]  name, [trials], [practice], [right_in_a_row], [procedures],
+///                 [probe] = { name, share, … };
 ///                 every other key gives the name its value in this block
 /// @param procedures  whether there are any: without them a block needs its number of trials
 TrialDesign read_trial_design(Table& root, bool procedures);

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 #include <set>
 #include <string>
 
@@ -69,6 +68,84 @@ void check_tracks(Table& root, const TrialsDefinition& d) {
   }
 }
 
+/// Tracks of several procedures may set one variable only if no block asks them both.
+void check_own_variables(Table& root, const Block& block, const std::vector<const Track*>& asked) {
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    for (std::size_t before = 0; before < i; ++before) {
+      const std::vector<std::string> variables = asked[i]->variables();
+      const auto shared = std::ranges::find_if(
+          variables, [&](const std::string& each) { return asked[before]->sets(each); });
+      if (asked[i]->procedure != asked[before]->procedure && shared != variables.end()) {
+        root.reject("procedures",
+                    fmt::format("set {} twice in the block {}, by {} and by {}; name the "
+                                "procedures of each block (procedures = [...]), or make them "
+                                "[[procedures.tracks]] of one",
+                                *shared, block.name, asked[before]->name, asked[i]->name));
+        return;
+      }
+    }
+  }
+}
+
+void check_named_procedures(Table& root, const TrialsDefinition& d, const Block& block) {
+  std::vector<std::string> names;
+  for (const Track& track : d.tracks) {
+    names.push_back(track.name);
+  }
+  for (const std::string& name : block.procedures) {
+    const auto track = std::ranges::find(d.tracks, name, &Track::name);
+    if (track == d.tracks.end()) {
+      root.reject("blocks", fmt::format("names the procedure \"{}\" in the block {}; allowed: {}",
+                                        name, block.name,
+                                        names.empty() ? "none, the definition has no procedure"
+                                                      : fmt::format("{}", fmt::join(names, ", "))));
+      continue;
+    }
+    const auto given = std::ranges::find_if(
+        block.values, [&](const GivenValue& value) { return track->sets(value.name); });
+    if (given != block.values.end()) {
+      root.reject("blocks", fmt::format("gives {} a value in the block {}, where {} is to set it; "
+                                        "keep one of the two",
+                                        given->name, block.name, name));
+    }
+  }
+}
+
+void check_blocks(Table& root, const TrialsDefinition& d) {
+  for (const Block& block : d.order.blocks) {
+    check_named_procedures(root, d, block);
+    const std::vector<const Track*> asked = d.tracks_in(block);
+    check_own_variables(root, block, asked);
+    if (asked.empty() && block.trials == 0) {
+      root.reject("blocks", fmt::format("asks no procedure in the block {}, which then needs its "
+                                        "number of trials; add trials = ...",
+                                        block.name));
+    }
+  }
+}
+
+/// A rule about a factor that no order keeps would be broken without a word.
+void check_run_limits(Table& root, const TrialsDefinition& d) {
+  for (const RunLimit& limit : d.order.most_in_a_row) {
+    if (limit.factor.empty()) {
+      continue;
+    }
+    if (!factor_names(d).contains(limit.factor)) {
+      root.reject("design", fmt::format("names the factor \"{}\" in most_in_a_row; allowed: {}",
+                                        limit.factor, fmt::join(factor_names(d), ", ")));
+    }
+    for (const Track& track : d.tracks) {
+      if (std::ranges::find(track.by, limit.factor) == track.by.end()) {
+        root.reject("design", fmt::format("limits {} in a row, but {} does not go by it, so that "
+                                          "its levels come in cycles; add it to `by`, or leave it "
+                                          "out of most_in_a_row",
+                                          limit.factor, track.name));
+        break;
+      }
+    }
+  }
+}
+
 /// A track that settles where guessing leads would go nowhere.
 void check_balance(Table& root, const Track& track, const TrialQuestion& question) {
   const double guess = 1.0 / static_cast<double>(question.choices.size());
@@ -103,18 +180,31 @@ void check_learning(Table& root, const TrialsDefinition& d, const Track& track) 
   }
 }
 
+/// The variables of the tracks of a block that some of them do not set.
+std::set<std::string> set_by_some(const std::vector<const Track*>& asked) {
+  std::set<std::string> some;
+  for (const Track* track : asked) {
+    for (const std::string& variable : track->variables()) {
+      if (!std::ranges::all_of(asked, [&](const Track* each) { return each->sets(variable); })) {
+        some.insert(variable);
+      }
+    }
+  }
+  return some;
+}
+
 /// In the trials of one procedure the variables of the others have what [variables] says.
 void check_variables(Table& root, const TrialsDefinition& d) {
   if (!root.has("procedures")) {
     return;
   }
   std::set<std::string> variables;
-  for (const Track& track : d.tracks) {
-    std::ranges::copy(track.variables(), std::inserter(variables, variables.end()));
+  for (const Block& block : d.order.blocks) {
+    variables.merge(set_by_some(d.tracks_in(block)));
   }
   Table stated = root.has("variables") ? root.table("variables") : root;
   for (const std::string& variable : variables) {
-    if (variables.size() > 1 && (!root.has("variables") || !stated.has(variable))) {
+    if (!root.has("variables") || !stated.has(variable)) {
       root.reject("procedures",
                   fmt::format("set {} in some trials only; add its value in the others to "
                               "[variables]",
@@ -165,6 +255,8 @@ void check_masking(Table& root, const TrialsDefinition& d) {
 
 void check_procedures(Table& root, const TrialsDefinition& d) {
   check_tracks(root, d);
+  check_blocks(root, d);
+  check_run_limits(root, d);
   for (const Track& track : d.tracks) {
     check_learning(root, d, track);
   }

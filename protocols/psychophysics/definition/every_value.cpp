@@ -199,9 +199,72 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
   return bodies;
 }
 
+/// Whether a trial of a block cannot be presented without what a track of another one found.
+bool needs_threshold(const TrialsDefinition& d, TrialValues values, const Track& track) {
+  std::erase_if(values.thresholds, [&](const auto& each) { return each.first == track.name; });
+  HandleReport handle(d);
+  PictureReport picture(d);
+  LeadReport lead;
+  try {
+    present_once(d, values, false, handle, picture, lead);
+  } catch (const InputError&) {
+    return true;
+  }
+  return false;
+}
+
+/// Blocks of a session that come before one in every order.
+std::vector<std::size_t> blocks_before(const TrialDesign& order, std::size_t block, int session) {
+  std::vector<std::size_t> before;
+  for (const std::size_t each : order.blocks_of(session)) {
+    const bool practice_first = order.blocks[each].practice && !order.blocks[block].practice;
+    if (practice_first || (order.order == Counterbalancing::kFixed && each < block)) {
+      before.push_back(each);
+    }
+  }
+  return before;
+}
+
+/// @throws InputError if a session presents the block without one before it that asks the track
+void check_found_before(const TrialsDefinition& d, std::size_t block, const Track& track) {
+  for (int session = 1; session <= d.order.sessions; ++session) {
+    const std::vector<std::size_t> presented = d.order.blocks_of(session);
+    const std::vector<std::size_t> before = blocks_before(d.order, block, session);
+    const bool found = std::ranges::any_of(before, [&](std::size_t each) {
+      const std::vector<const Track*> asked = d.tracks_in(d.order.blocks[each]);
+      return std::ranges::find(asked, &track) != asked.end();
+    });
+    if (std::ranges::find(presented, block) != presented.end() && !found) {
+      throw InputError(fmt::format(
+          "{}: block {} uses ${}, but in {} no block before it asks that procedure{}; put "
+          "one before it, or state \"{}\" in [variables]",
+          d.file_name, d.order.blocks[block].name, threshold_name(track.name),
+          d.order.sessions > 1 ? fmt::format("session {}", session) : "the session",
+          d.order.order == Counterbalancing::kFixed ? "" : " in every order of the blocks",
+          threshold_name(track.name)));
+    }
+  }
+}
+
+/// The tracks of other blocks whose thresholds the block needs.
+std::vector<std::string> needs_of(const TrialsDefinition& d, std::size_t block,
+                                  const TrialValues& values) {
+  std::vector<std::string> needs;
+  for (const auto& [name, level] : values.thresholds) {
+    const Track& track = *std::ranges::find(d.tracks, name, &Track::name);
+    const bool named = has_threshold_name(track) &&
+                       d.text.find('$' + threshold_name(name)) != std::string::npos;
+    if (named && needs_threshold(d, values, track)) {
+      check_found_before(d, block, track);
+      needs.push_back(name);
+    }
+  }
+  return needs;
+}
+
 }  // namespace
 
-HandleText check_every_value(const TrialsDefinition& d) {
+HandleText check_every_value(TrialsDefinition& d) {
   std::vector<std::string> bodies;
   HandleReport handle(d);
   PictureReport picture(d);
@@ -228,6 +291,9 @@ HandleText check_every_value(const TrialsDefinition& d) {
         }
         const Block& given = d.order.blocks[block];
         values.values.insert(values.values.end(), given.values.begin(), given.values.end());
+        if (c == 0 && !high) {
+          d.order.blocks[block].needs = needs_of(d, block, values);
+        }
         const bool first = block == 0 && c == 0 && !high;
         const std::vector<std::string> said = present_once(d, values, first, handle, picture, lead);
         bodies.insert(bodies.end(), said.begin(), said.end());

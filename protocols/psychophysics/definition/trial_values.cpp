@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "core/base/error.h"
 #include "protocols/psychophysics/definition/names.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
@@ -26,16 +29,26 @@ void give_value(Names& names, const GivenValue& value) {
 }  // namespace
 
 void give_corners(const TrialsDefinition& d, bool high, TrialValues& values) {
-  if (!d.asks_procedures(d.order.blocks[values.block])) {
-    return;
-  }
+  const std::vector<const Track*> asked = d.tracks_in(d.order.blocks[values.block]);
   for (const Track& track : d.tracks) {
     const std::vector<std::string> names = track.variables();
     const psychometric::Level corner = track.corner(high);
+    if (std::ranges::find(asked, &track) == asked.end()) {
+      values.thresholds.emplace_back(track.name, corner.front());
+      continue;
+    }
     for (std::size_t i = 0; i < names.size(); ++i) {
       values.levels.emplace_back(names[i], corner[i]);
     }
   }
+}
+
+std::string threshold_name(const std::string& track) { return track + ".threshold"; }
+
+bool has_threshold_name(const Track& track) {
+  const auto part = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  return track.finds_level && !track.name.empty() && std::isdigit(static_cast<unsigned char>(track.name.front())) == 0 &&
+         std::ranges::all_of(track.name, part);
 }
 
 void declare_names(Names& names, const TrialsDefinition& d) {
@@ -60,6 +73,9 @@ void declare_names(Names& names, const TrialsDefinition& d) {
     for (const std::string& name : track.variables()) {
       names.declare(name);
     }
+    if (has_threshold_name(track)) {
+      names.declare(threshold_name(track.name));
+    }
   }
   for (const TrialQuestion& question : d.questions) {
     if (question.is_number()) {
@@ -81,6 +97,11 @@ void give(Names& names, const TrialsDefinition& d, const TrialValues& v) {
   }
   for (const auto& [name, level] : v.levels) {
     names.set(name, level);
+  }
+  for (const auto& [track, threshold] : v.thresholds) {
+    if (names.knows(threshold_name(track))) {
+      names.set(threshold_name(track), threshold);
+    }
   }
   for (const GivenValue& value : v.values) {
     give_value(names, value);

@@ -25,12 +25,20 @@ std::vector<const Factor*> TrialsDefinition::varied_in(const Block& block) const
   return varied;
 }
 
-bool TrialsDefinition::asks_procedures(const Block& block) const {
-  const auto given = [&](const Track& track) {
-    return std::any_of(block.values.begin(), block.values.end(),
-                       [&](const GivenValue& value) { return track.sets(value.name); });
-  };
-  return !tracks.empty() && std::none_of(tracks.begin(), tracks.end(), given);
+std::vector<const Track*> TrialsDefinition::tracks_in(const Block& block) const {
+  std::vector<const Track*> asked;
+  for (const Track& track : tracks) {
+    const bool given = std::ranges::any_of(
+        block.values, [&](const GivenValue& value) { return track.sets(value.name); });
+    if (block.procedures.empty() && given) {
+      return {};
+    }
+    if (block.procedures.empty() || std::ranges::find(block.procedures, track.name) !=
+                                        block.procedures.end()) {
+      asked.push_back(&track);
+    }
+  }
+  return asked;
 }
 
 int TrialsDefinition::combinations(const Track& track, const Block& block) const {
@@ -66,8 +74,8 @@ int of_sessions(const TrialDesign& design, int session, Trials&& trials) {
 int TrialsDefinition::most_trials(int session) const {
   return of_sessions(order, session, [&](const Block& block) {
     int of_tracks = 0;
-    for (const Track& track : tracks) {
-      of_tracks += track.most_trials * combinations(track, block);
+    for (const Track* track : tracks_in(block)) {
+      of_tracks += track->most_trials * combinations(*track, block);
     }
     return block.practice ? 0 : block.trials > 0 ? block.trials : of_tracks;
   });
@@ -183,12 +191,12 @@ std::vector<std::string> TrialsDefinition::warnings() const {
                       "that nothing is shown",
                       question.name));
     }
-    if (question.again && order.most_in_a_row > 0) {
+    if (question.again && !order.most_in_a_row.empty()) {
       all.push_back(fmt::format(
           "trials with an answer to \"{}\" that is out of time come again at the end of their "
-          "block, in whatever order they come, so that more than design.most_in_a_row = {} trials "
-          "of one combination of factors may follow each other there",
-          question.name, order.most_in_a_row));
+          "block, in whatever order they come, so that more trials than design.most_in_a_row "
+          "says may follow each other there",
+          question.name));
     }
   }
   return all;

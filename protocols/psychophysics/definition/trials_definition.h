@@ -88,8 +88,9 @@ struct TrialsDefinition : Definition {
   int practice_trials(int session = 0) const;
   /// The factors that vary in a block: those that it gives no value of its own.
   std::vector<const Factor*> varied_in(const Block& block) const;
-  /// Whether its levels come from tracks: it gives none of their variables a value of its own.
-  bool asks_procedures(const Block& block) const;
+  /// The tracks that choose its levels: those that it names, or else all, unless it gives one of
+  /// their variables a value of its own.
+  std::vector<const Track*> tracks_in(const Block& block) const;
   /// How many combinations of its factors a track has in a block.
   int combinations(const Track& track, const Block& block) const;
 };

@@ -43,6 +43,15 @@ std::string label_of(const std::vector<GivenValue>& values) {
   return label;
 }
 
+/// What a rule looks at: the level of one factor, or all of them.
+std::string level_of(const std::vector<GivenValue>& values, const std::string& factor) {
+  if (factor.empty()) {
+    return label_of(values);
+  }
+  const auto found = std::ranges::find(values, factor, &GivenValue::name);
+  return found == values.end() ? std::string() : found->formula;
+}
+
 /// A procedure that learns nothing would never finish.
 bool is_open(const RunningTrack& running) {
   return !running.procedure->finished() && running.trials < 2 * running.track->most_trials;
@@ -95,11 +104,18 @@ void TrialSequence::begin_block() {
   probe_before_ = true;  // a block does not begin with a probe
   combinations_.clear();
   ++(block().practice ? practice_blocks_ : study_blocks_);
-  if (!d_.asks_procedures(block())) {
+  if (const std::string missing = missing_threshold(); !missing.empty()) {
+    ended_early_.push_back(fmt::format(
+        "block {} was left out, since {} found no threshold", block().name, missing));
+    return;
+  }
+  const std::vector<const Track*> asked = d_.tracks_in(block());
+  if (asked.empty()) {
     make_fixed();
     return;
   }
-  for (const Track& track : d_.tracks) {
+  for (const Track* each : asked) {
+    const Track& track = *each;
     std::vector<const Factor*> by;
     for (const Factor* factor : d_.varied_in(block())) {
       if (std::find(track.by.begin(), track.by.end(), factor->name) != track.by.end()) {
@@ -115,27 +131,105 @@ void TrialSequence::begin_block() {
   }
 }
 
-/// Cycles of all combinations, each in an order of its own, or one order under the rule.
+/// What the tracks of the block found; a later block of the same track stands before.
+void TrialSequence::end_block() {
+  for (const RunningTrack& running : running_) {
+    const auto estimates = running.procedure->estimates();
+    if (running.track->finds_level && !estimates.empty()) {
+      found_.push_back({running.track->name, running.values,
+                        running.track->applied(estimates.front().value)});
+    }
+  }
+}
+
+/// The first track whose threshold the block needs and that no earlier block found, with its
+/// combination of factors.
+std::string TrialSequence::missing_threshold() const {
+  for (const std::string& name : block().needs) {
+    const auto track = std::ranges::find(d_.tracks, name, &Track::name);
+    std::vector<const Factor*> by;
+    for (const Factor* factor : d_.varied_in(block())) {
+      if (std::ranges::find(track->by, factor->name) != track->by.end()) {
+        by.push_back(factor);
+      }
+    }
+    for (std::vector<GivenValue> values : crossed(by)) {
+      const std::string label = label_of(values);
+      values.insert(values.end(), block().values.begin(), block().values.end());
+      TrialValues trial;
+      trial.values = values;
+      give_thresholds(trial);
+      if (std::ranges::find(trial.thresholds, name, &std::pair<std::string, double>::first) ==
+          trial.thresholds.end()) {
+        return label.empty() ? name : name + ", " + label;
+      }
+    }
+  }
+  return {};
+}
+
+void TrialSequence::give_thresholds(TrialValues& trial) const {
+  const auto holds = [&](const GivenValue& of_track) {
+    const auto last = std::ranges::find(trial.values.rbegin(), trial.values.rend(), of_track.name,
+                                        &GivenValue::name);
+    return last != trial.values.rend() && last->formula == of_track.formula;
+  };
+  for (const FoundThreshold& found : found_) {
+    if (std::ranges::all_of(found.values, holds)) {
+      trial.thresholds.emplace_back(found.track, found.level);
+    }
+  }
+}
+
+/// The trials' combinations in an order that keeps the rules, if there are any.
+std::vector<int> TrialSequence::order_under_rules(
+    const std::vector<std::vector<GivenValue>>& combinations, const std::vector<int>& which) const {
+  std::vector<OrderRule> rules;
+  for (const RunLimit& limit : d_.order.most_in_a_row) {
+    std::vector<std::string> levels;
+    OrderRule rule{limit.factor.empty() ? "combination of factors" : limit.factor, {}, limit.most,
+                   -1, 0};
+    for (const int i : which) {
+      const std::string level = level_of(combinations[static_cast<std::size_t>(i)], limit.factor);
+      const auto known = std::ranges::find(levels, level);
+      rule.values.push_back(static_cast<int>(known - levels.begin()));
+      if (known == levels.end()) {
+        levels.push_back(level);
+      }
+    }
+    if (levels.size() > 1) {
+      rules.push_back(std::move(rule));
+    }
+  }
+  const bool shuffled = d_.order.trial_order == TrialOrder::kShuffled;
+  if (rules.empty() && !shuffled) {
+    return which;
+  }
+  RandomStream random(taker_.session_seed, fmt::format("order {}", at_));
+  std::vector<int> ordered;
+  for (const std::size_t i : constrained_order(which.size(), rules, random)) {
+    ordered.push_back(which[i]);
+  }
+  return ordered;
+}
+
+/// Every combination once before any comes again, or each drawn anew; then under the rules.
 void TrialSequence::make_fixed() {
   const auto combinations = crossed(d_.varied_in(block()));
   const auto count = static_cast<std::size_t>(block().trials);
   std::vector<int> which;
   for (std::size_t cycle = 0; which.size() < count; ++cycle) {
     RandomStream random(taker_.session_seed, fmt::format("cycle {} {}", at_, cycle));
+    if (d_.order.trial_order == TrialOrder::kRandom) {
+      which.push_back(static_cast<int>(random.below(combinations.size())));
+      continue;
+    }
     for (const std::size_t i : shuffled_indices(combinations.size(), random)) {
       which.push_back(static_cast<int>(i));
     }
   }
   which.resize(count);
-  if (d_.order.most_in_a_row > 0 && combinations.size() > 1) {
-    RandomStream random(taker_.session_seed, fmt::format("order {}", at_));
-    const OrderRule rule{"combination of factors", which, d_.order.most_in_a_row, -1, 0};
-    std::vector<int> ordered;
-    for (const std::size_t i : constrained_order(count, std::span(&rule, 1), random)) {
-      ordered.push_back(which[i]);
-    }
-    which = ordered;
-  }
+  which = order_under_rules(combinations, which);
   std::vector<int> probes(count, 0);
   if (block().probe) {
     const auto number =
@@ -185,6 +279,7 @@ std::optional<NextTrial> TrialSequence::next() {
           "block {} ended with trials left, after {} that were not completed or came too late",
           block().name, failed_));
     }
+    end_block();
     if (++at_ < blocks_.size()) {
       begin_block();
     }
@@ -234,6 +329,7 @@ NextTrial TrialSequence::make_next() {
   if (plan.condition.empty()) {
     plan.condition = block().name;
   }
+  give_thresholds(values);
   ++begun_;
   return next;
 }
@@ -250,21 +346,27 @@ bool TrialSequence::probe_comes(const Block& block) const {
   return random.uniform() < share / (1.0 - share);
 }
 
+/// Whether a trial with these values would be one too many in a row.
+bool TrialSequence::breaks_rule(const std::vector<GivenValue>& values) const {
+  return std::ranges::any_of(d_.order.most_in_a_row, [&](const RunLimit& limit) {
+    const auto most = static_cast<std::ptrdiff_t>(limit.most);
+    const std::string level = level_of(values, limit.factor);
+    return !level.empty() && std::ssize(combinations_) >= most &&
+           std::all_of(combinations_.end() - most, combinations_.end(), [&](const auto& each) {
+             return level_of(each, limit.factor) == level;
+           });
+  });
+}
+
 /// One of the open tracks, by the share of trials that each still has; not one that would break the
 /// rule, unless all would.
 std::size_t TrialSequence::pick(const std::vector<std::size_t>& open) const {
   if (open.size() == 1) {
     return open.front();
   }
-  const auto most = static_cast<std::size_t>(d_.order.most_in_a_row);
   std::vector<std::size_t> allowed;
   for (const std::size_t i : open) {
-    const std::string label = label_of(running_[i].values);
-    const bool full =
-        most > 0 && combinations_.size() >= most &&
-        std::all_of(combinations_.end() - static_cast<std::ptrdiff_t>(most), combinations_.end(),
-                    [&](const std::string& each) { return each == label; });
-    if (!full) {
+    if (!breaks_rule(running_[i].values)) {
       allowed.push_back(i);
     }
   }
@@ -313,7 +415,7 @@ void TrialSequence::choose_track(NextTrial& next) {
     next.values.probe = block().probe->name;
     next.track = -1;
   } else {
-    combinations_.push_back(label_of(running.values));
+    combinations_.push_back(running.values);
   }
 }
 

@@ -39,6 +39,13 @@ struct RunningTrack {
   int trials{0};  // begun
 };
 
+/// What a track of an earlier block found in one combination of its factors.
+struct FoundThreshold {
+  std::string track;
+  std::vector<GivenValue> values;  // of its factors
+  double level{0.0};
+};
+
 /// A trial that is to come.
 struct NextTrial {
   PlannedTrial plan;
@@ -74,7 +81,8 @@ class TrialSequence {
   void choose_by(LevelChooser& chooser) { chooser_ = &chooser; }
 
   const std::vector<RunningTrack>& running() const { return running_; }
-  /// A sentence for each block that ended with trials left, since too many were never completed.
+  /// A sentence for each block that ended with trials left, since too many were never completed,
+  /// or that was left out, since an earlier one did not find the threshold that it needs.
   const std::vector<std::string>& ended_early() const { return ended_early_; }
   /// The block that a trial belongs to, in the order of this participant.
   const std::vector<std::size_t>& blocks() const { return blocks_; }
@@ -86,6 +94,12 @@ class TrialSequence {
   };
   const Block& block() const { return d_.order.blocks[blocks_[at_]]; }
   void begin_block();
+  void end_block();
+  std::string missing_threshold() const;
+  void give_thresholds(TrialValues& values) const;
+  std::vector<int> order_under_rules(const std::vector<std::vector<GivenValue>>& combinations,
+                                     const std::vector<int>& which) const;
+  bool breaks_rule(const std::vector<GivenValue>& values) const;
   bool fails_for_ever() const;
   bool block_is_over() const;
   NextTrial make_next();
@@ -113,7 +127,8 @@ class TrialSequence {
   int practice_blocks_{0}, study_blocks_{0};
   bool probe_before_{false};
   std::vector<std::string> ended_early_;
-  std::vector<std::string> combinations_;  // of the last trials, for most_in_a_row
+  std::vector<FoundThreshold> found_;
+  std::vector<std::vector<GivenValue>> combinations_;  // of the block's trials, for most_in_a_row
 };
 
 }  // namespace haptrial::protocols

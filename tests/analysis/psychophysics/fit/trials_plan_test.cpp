@@ -17,7 +17,7 @@ PlanDefaults defaults() {
   d.kind = AnalysisKind::kPsychometric;
   d.factors = {"visual"};
   d.names = {"track", "condition"};
-  d.axis = {psychometric::Scale::kLog10, 300.0, "N/m"};
+  d.procedures = {{"level", {psychometric::Scale::kLog10, 300.0, "N/m"}, std::nullopt}};
   d.guess = 0.5;
   return d;
 }
@@ -87,7 +87,7 @@ resamples = 500
 
 TEST(TrialsPlanTest, ALogarithmicFunctionHasALogarithmicAxis) {
   PlanDefaults d = defaults();
-  d.axis = {};
+  d.procedures = {};
   EXPECT_EQ(read("[analysis]\nfunction = \"weibull\"\n", d).function.axis.scale,
             psychometric::Scale::kNaturalLog);
   EXPECT_EQ(read("[analysis]\nfunction = \"gumbel\"\n", d).function.axis.scale,
@@ -97,13 +97,30 @@ TEST(TrialsPlanTest, ALogarithmicFunctionHasALogarithmicAxis) {
 /// A comparison below the standard: right answers raise the level.
 TEST(TrialsPlanTest, AFunctionFallsAsTheProcedureDoes) {
   PlanDefaults d = defaults();
-  d.falls = true;
+  d.procedures.at(0).falls = true;
   EXPECT_TRUE(read("[analysis]\nbayesian = true\n", d).function.falling);
   EXPECT_EQ(read("[analysis]\nbayesian = true\n", d).function_name, "neg_norm");
   EXPECT_TRUE(read("[analysis]\nfunction = \"neg_logistic\"\n", d).function.falling);
   EXPECT_FALSE(read("[analysis]\nfunction = \"norm\"\nyes = \"firmer\"\n", d).function.falling);
   EXPECT_THAT(problems_of("[analysis]\nfunction = \"norm\"\n", d),
               HasSubstr("\"neg_norm\", which falls as the procedure's right answers do"));
+}
+
+/// Two procedures: one of a force, one of multiples of the threshold.
+TEST(TrialsPlanTest, FunctionsAreOfOneVariableOfSeveral) {
+  PlanDefaults d = defaults();
+  d.procedures.push_back({"times", {}, std::nullopt});
+  const TrialsPlan first = read("[analysis]\nbayesian = true\n", d);
+  EXPECT_EQ(first.level, "level");
+  EXPECT_TRUE(first.level_assumed);
+  EXPECT_EQ(first.function.axis.scale, psychometric::Scale::kLog10);
+  const TrialsPlan second = read("[analysis]\nlevel = \"times\"\n", d);
+  EXPECT_TRUE(second.level_is_set);
+  EXPECT_FALSE(second.level_assumed);
+  EXPECT_EQ(second.function.axis.scale, psychometric::Scale::kLinear);
+  const TrialsPlan derived = read("[analysis]\nlevel = \"strength\"\n", d);
+  EXPECT_FALSE(derived.level_is_set);
+  EXPECT_EQ(read("[analysis]\nbayesian = true\n").level, "");  // one procedure
 }
 
 TEST(TrialsPlanTest, LapsesAreFewerWhereTheyCountTwice) {

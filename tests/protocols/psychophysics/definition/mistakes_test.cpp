@@ -50,7 +50,7 @@ TEST(TrialMistakesTest, AStartIsComparedWithARangeThatIsOne) {
 
 TEST(TrialMistakesTest, OfAnUnknownProcedureNothingElseIsSaid) {
   EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"", "kind = \"stairs\"")),
-              ElementsAre(HasSubstr("procedure.kind is 'stairs'; allowed: staircase, pest")));
+              ElementsAre(HasSubstr("procedure.kind is 'stairs'; allowed: staircase, limits, pest")));
   EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"\n", "")),
               ElementsAre(HasSubstr("procedure.kind is missing")));
 }
@@ -219,7 +219,7 @@ TEST(TrialMistakesTest, RepeatedTrialsThatMayBreakTheOrderGetAWarning) {
   const std::string again = "too_slow = 2.0\nout_of_time = \"repeat\"\ncorrect =";
   read_small(with(with(kSmall, "[design]\n", rule), "correct =", again), repeats);
   EXPECT_THAT(repeats.warnings(),
-              ElementsAre(HasSubstr("more than design.most_in_a_row = 2 trials")));
+              ElementsAre(HasSubstr("more trials than design.most_in_a_row says")));
   read_small(with(kSmall, "correct =", again), free);
   EXPECT_THAT(free.warnings(), IsEmpty());
 }
@@ -350,8 +350,8 @@ TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
   std::string two = kSmallStaircase;
   two = with(two, "[procedure]", "[[procedures]]");
   EXPECT_THAT(problems_of_trials(small_trials(two + two)),
-              Contains(HasSubstr("procedures[2].variable is \"level\"; allowed: a variable that no "
-                                 "other procedure sets")));
+              Contains(HasSubstr("procedures set level twice in the block main, by track 1 and by track "
+                                 "2; name the procedures of each block")));
 }
 
 TEST(TrialMistakesTest, TracksOfSeveralProceduresMayEachNameTheirVariable) {
@@ -360,8 +360,8 @@ TEST(TrialMistakesTest, TracksOfSeveralProceduresMayEachNameTheirVariable) {
   const std::string named = "[[procedures.tracks]]\nvariable = \"level\"\n";
   EXPECT_THAT(problems_of_trials(small_trials(tracks + named)), IsEmpty());
   EXPECT_THAT(problems_of_trials(small_trials(tracks + named + tracks + named)),
-              Contains(HasSubstr("procedures[2].variable is \"level\"; allowed: a variable that no "
-                                 "other procedure sets")));
+              Contains(HasSubstr("procedures set level twice in the block main, by track 1 and by track "
+                                 "2; name the procedures of each block")));
 }
 
 TEST(TrialMistakesTest, TargetsThatGuessingReaches) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +12,8 @@
 
 #include "core/base/random.h"
 #include "core/psychometric/procedure/procedure.h"
+#include "protocols/psychophysics/definition/every_value.h"
+#include "protocols/psychophysics/definition/trial_values.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
 
 namespace haptrial::protocols {
@@ -234,6 +237,208 @@ TEST(TrialSequenceTest, NoCombinationThreeTimesInARow) {
   }
   // Only at the very end may one combination be all that is left.
   EXPECT_LE(broken, trials / 20);
+}
+
+/// Titrates with a staircase for each side, then tests multiples of what it found.
+const char* const kTitrated = R"([variables]
+level = 400.0
+times = 1.0
+[factors]
+side = ["left", "right"]
+[[procedures]]
+name = "titration"
+kind = "staircase"
+variable = "level"
+by = ["side"]
+range = [310.0, 600.0]
+start = 500.0
+steps = [40.0, 20.0]
+stop = { reversals = 6, trials = 40 }
+[[procedures]]
+name = "test"
+kind = "constant"
+variable = "times"
+by = ["side"]
+levels = [0.5, 1.0, 1.5]
+repetitions = 2
+[[blocks]]
+name = "find"
+procedures = ["titration"]
+hardness = "$level"
+[[blocks]]
+name = "use"
+procedures = ["test"]
+)";
+
+/// A definition whose second block presents multiples of what the first one found.
+std::string titrated(const std::string& used = "$times * $titration.threshold") {
+  std::string whole = small_trials(kTitrated + ("hardness = \"" + used + "\"\n"));
+  whole.replace(whole.find("\"$level\""), 8, "\"$hardness\"");
+  return whole;
+}
+
+/// Every threshold of a session with right answers from a level on, which may depend on the side.
+std::vector<double> thresholds_used(const TrialsDefinition& d, double left, double right,
+                                    std::vector<std::string>* ended = nullptr) {
+  TrialSequence sequence(d, taker());
+  std::map<std::string, std::unique_ptr<psychometric::Procedure>> alone;
+  std::vector<double> used;
+  while (const auto next = sequence.next()) {
+    const RunningTrack& track = sequence.running()[static_cast<std::size_t>(next->track)];
+    double answer = 1.0;
+    if (track.track->name == "titration") {
+      answer = next->applied[0] > (next->plan.condition == "left" ? left : right) ? 1.0 : 0.0;
+      auto& twin = alone[next->plan.condition];
+      twin = twin ? std::move(twin) : track.track->begin(1, "");
+      twin->report(answer, next->applied);
+    } else {
+      const double threshold = next->values.thresholds.back().second;
+      EXPECT_EQ(threshold, alone.at(next->plan.condition)->estimates().at(0).value);
+      used.push_back(threshold);
+    }
+    sequence.conclude(true, answer, answer == 1.0);
+  }
+  if (ended != nullptr) {
+    *ended = sequence.ended_early();
+  }
+  return used;
+}
+
+TEST(TrialSequenceTest, ABlockUsesTheThresholdThatAnEarlierOneFound) {
+  TrialsDefinition d;
+  read_small(titrated(), d);
+  check_every_value(d);
+  EXPECT_THAT(d.order.blocks[0].needs, testing::IsEmpty());
+  EXPECT_THAT(d.order.blocks[1].needs, ElementsAre("titration"));
+  const std::vector<double> used = thresholds_used(d, 350.0, 450.0);
+  ASSERT_EQ(used.size(), 12U);  // 3 levels twice, for each side
+  EXPECT_NEAR(*std::ranges::min_element(used), 350.0, 20.0);
+  EXPECT_NEAR(*std::ranges::max_element(used), 450.0, 20.0);
+}
+
+TEST(TrialSequenceTest, ABlockWhoseThresholdWasNotFoundIsLeftOutAndSaid) {
+  TrialsDefinition d;
+  read_small(titrated(), d);
+  check_every_value(d);
+  std::vector<std::string> ended;
+  // Always right: the level ends at the bottom of the range without a reversal.
+  EXPECT_THAT(thresholds_used(d, 0.0, 450.0, &ended), testing::IsEmpty());
+  EXPECT_THAT(ended, ElementsAre("block use was left out, since titration, left found no threshold"));
+}
+
+TEST(TrialSequenceTest, AStatedValueStandsInForAThresholdThatWasNotFound) {
+  std::string text = titrated();
+  text.replace(text.find("[variables]"), 11, "[variables]\n\"titration.threshold\" = 350.0");
+  TrialsDefinition d;
+  read_small(text, d);
+  check_every_value(d);
+  EXPECT_THAT(d.order.blocks[1].needs, testing::IsEmpty());
+}
+
+TEST(TrialSequenceTest, AThresholdIsFoundBeforeItIsUsed) {
+  std::string text = titrated();
+  text.replace(text.find("[[blocks]]"), 10,
+               "[[blocks]]\nname = \"use first\"\nprocedures = [\"test\"]\n"
+               "hardness = \"$titration.threshold\"\n[[blocks]]");
+  EXPECT_THAT(problems_of_trials(text),
+              testing::Contains(testing::HasSubstr(
+                  "block use first uses $titration.threshold, but in the session no block before "
+                  "it asks that procedure; put one before it, or state")));
+  EXPECT_THAT(problems_of_trials(titrated("$test.threshold")),
+              testing::Contains(testing::HasSubstr("there is no variable test.threshold")));
+}
+
+TEST(TrialSequenceTest, TwoProceduresSetOneVariableInDifferentBlocks) {
+  std::string text = titrated("$level");
+  const auto times = text.find("variable = \"times\"");
+  text.replace(times, 18, "variable = \"level\"");
+  text.replace(text.find("levels = [0.5, 1.0, 1.5]"), 24, "levels = [320.0, 400.0, 480.0]");
+  EXPECT_THAT(problems_of_trials(text), testing::IsEmpty());
+  text.replace(text.find("procedures = [\"test\"]"), 21, "procedures = [\"test\", \"titration\"]");
+  EXPECT_THAT(problems_of_trials(text),
+              testing::Contains(testing::HasSubstr(
+                  "procedures set level twice in the block use, by titration and by test; name the "
+                  "procedures of each block")));
+}
+
+/// Trials of one block without procedures, with two factors. @param design  more of [design]
+std::string two_factors(const std::string& design) {
+  std::string whole = small_trials(
+      "[variables]\nlevel = 400.0\n[factors]\nside = [\"left\", \"right\"]\nsize = [1, 2, 3]\n"
+      "[[blocks]]\nname = \"a\"\ntrials = 600\n");
+  whole.replace(whole.find("participants = 4"), 16, "participants = 4\n" + design);
+  return whole;
+}
+
+std::vector<TrialValues> trials_of(const std::string& text, int participant = 0) {
+  TrialsDefinition d;
+  read_small(text, d);
+  TrialSequence sequence(d, taker(participant));
+  std::vector<TrialValues> all;
+  while (const auto next = sequence.next()) {
+    all.push_back(next->values);
+    sequence.conclude(true, kNothing, true);
+  }
+  return all;
+}
+
+std::string label_of(const TrialValues& trial) {
+  return trial.values[0].formula + trial.values[1].formula;
+}
+
+TEST(TrialSequenceTest, ALevelOfAFactorMayBeLimitedByItself) {
+  int side_run = 0, size_run = 0, longest_size = 0;
+  std::string side, size;
+  for (const TrialValues& trial : trials_of(two_factors("most_in_a_row = { side = 2 }"))) {
+    side_run = trial.values[0].formula == side ? side_run + 1 : 1;
+    size_run = trial.values[1].formula == size ? size_run + 1 : 1;
+    side = trial.values[0].formula;
+    size = trial.values[1].formula;
+    EXPECT_LE(side_run, 2);
+    longest_size = std::max(longest_size, size_run);
+  }
+  EXPECT_GT(longest_size, 2);  // free
+}
+
+/// How often a trial repeats the combination of the one before.
+double repeats(const std::vector<TrialValues>& trials) {
+  double count = 0.0;
+  for (std::size_t i = 1; i < trials.size(); ++i) {
+    count += label_of(trials[i]) == label_of(trials[i - 1]) ? 1.0 : 0.0;
+  }
+  return count;
+}
+
+TEST(TrialSequenceTest, TrialsComeInCyclesShuffledOrAtRandom) {
+  const auto cycles = trials_of(two_factors("trials = \"cycles\""));
+  for (std::size_t begin = 0; begin < cycles.size(); begin += 6) {
+    std::set<std::string> seen;
+    for (std::size_t i = begin; i < begin + 6; ++i) {
+      seen.insert(label_of(cycles[i]));
+    }
+    EXPECT_EQ(seen.size(), 6U);
+  }
+  std::map<std::string, int> shuffled, random;
+  const auto shuffled_trials = trials_of(two_factors("trials = \"shuffled\""));
+  const auto random_trials = trials_of(two_factors("trials = \"random\""));
+  for (std::size_t i = 0; i < 600; ++i) {
+    ++shuffled[label_of(shuffled_trials[i])];
+    ++random[label_of(random_trials[i])];
+  }
+  double chi = 0.0;
+  for (const auto& [label, count] : shuffled) {
+    EXPECT_EQ(count, 100) << label;
+  }
+  for (const auto& [label, count] : random) {
+    chi += (count - 100.0) * (count - 100.0) / 100.0;
+  }
+  EXPECT_GT(chi, 0.0);
+  EXPECT_LT(chi, 20.5);  // chi-squared with 5 degrees of freedom, p = 0.001
+  const double deviation = std::sqrt(599.0 * 5.0 / 36.0);  // binomial
+  EXPECT_NEAR(repeats(shuffled_trials), 600.0 * 99.0 / 599.0, 4.0 * deviation);
+  EXPECT_NEAR(repeats(random_trials), 599.0 / 6.0, 4.0 * deviation);
+  EXPECT_THAT(problems_of_trials(two_factors("trials = \"random\"\nmost_in_a_row = 2")),
+              testing::Contains(testing::HasSubstr("draws each trial without one")));
 }
 
 TEST(TrialSequenceTest, IntervalsComeInEitherOrderEquallyOften) {
