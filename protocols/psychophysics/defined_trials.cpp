@@ -76,6 +76,12 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
   if (records_contacts(d_)) {
     contacts_ = std::make_unique<ContactLog>();
   }
+  if (root_.has("cursor")) {
+    cursors_ = std::make_unique<CursorLog>();
+  }
+  if (root_.has("targets")) {
+    targets_ = std::make_unique<TargetLog>();
+  }
   if (d_.script) {
     use_script();
   }
@@ -160,6 +166,12 @@ record::TableList DefinedTrials::tables() const {
   if (contacts_) {
     tables.push_back(&record::table_of<record::ContactRow>());
   }
+  if (cursors_) {
+    tables.push_back(&record::table_of<record::CursorRow>());
+  }
+  if (targets_) {
+    tables.push_back(&record::table_of<record::TargetRow>());
+  }
   touched_bodies_.add_tables(tables);
   if (!object_files_.empty()) {
     tables.push_back(&record::table_of<record::ObjectFileRow>());
@@ -204,6 +216,7 @@ void DefinedTrials::check_resumed(const record::SessionReader& file) const {
 std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
   said_ = std::make_unique<SimulatedAnswer>();
   TrialsRig::Briefing briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()};
+  briefing.screen = {d_.view.from_above};
   if (decisions_ != nullptr) {
     briefing.decide = [this](const LeftDecision::DecisionRequest& asked) {
       const PlannedTrial& plan = current_.plan;
@@ -281,6 +294,8 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.said = said_.get();
   setup.left = rig_ != nullptr ? rig_->left() : nullptr;
   setup.contacts = contacts_.get();
+  setup.cursors = cursors_.get();
+  setup.targets = targets_.get();
   variables_.clear();
   stages_.clear();
   varied_cues_.clear();
@@ -352,14 +367,18 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
   region_devices_ = presented.region_devices;
   std::vector<StageRegion> regions;
   for (std::size_t i = 0; i < presented.regions.size(); ++i) {
-    regions.push_back(
-        {scene::PlacedShape(presented.regions[i].shape), presented.region_devices[i]});
+    regions.push_back({scene::PlacedShape(presented.regions[i].shape), presented.region_devices[i],
+                       presented.of_cursor[i]});
   }
   std::vector<scene::Scene> scenes;
   for (std::size_t device = 0; device < presented.felt.size(); ++device) {
     scenes.emplace_back(presented.fields, d_.rate);
   }
   stages_.push_back(std::move(presented.stages));
+  std::vector<ShownTarget> targets;
+  for (const MovingTarget& target : presented.targets) {
+    targets.push_back({target});
+  }
   return {
       std::move(scenes),
       StageMachine(std::move(stages), std::move(regions), presented.fields.size(), presented.felt),
@@ -367,7 +386,19 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
       active_fields(presented.fields),
       d_.intervals.size() > 1 ? static_cast<int>(current_.values.intervals[place]) : -1,
       recorded_of(d_, presented.fields.size()),
-      presented.fields.size() - d_.objects.size()};
+      presented.fields.size() - d_.objects.size(),
+      cursor_of(presented, place),
+      std::move(targets)};
+}
+
+std::optional<Cursor> DefinedTrials::cursor_of(const Presented& presented,
+                                               std::size_t place) const {
+  if (!presented.cursor) {
+    return std::nullopt;
+  }
+  const std::uint64_t seed =
+      derived_seed(current_.plan.stimulus_seed, fmt::format("cursor {}", place));
+  return Cursor(*presented.cursor, ScreenPlane{d_.view.from_above}, d_.rate, seed);
 }
 
 /// The number of a sound in the interval that was made last: one that varies has another in each.
@@ -508,6 +539,12 @@ void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {
 void DefinedTrials::empty_logs(SessionFile& file) {
   if (contacts_) {
     contacts_->flush([&file](std::span<const record::ContactRow> rows) { file.add(rows); });
+  }
+  if (cursors_) {
+    cursors_->flush([&file](std::span<const record::CursorRow> rows) { file.add(rows); });
+  }
+  if (targets_) {
+    targets_->flush([&file](std::span<const record::TargetRow> rows) { file.add(rows); });
   }
 }
 

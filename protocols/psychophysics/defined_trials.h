@@ -44,7 +44,10 @@ class DefinedTrials final : public Trials {
   std::vector<record::ResponseRow> responses() override;
   void close_pass(SessionFile& file, std::int32_t row) override;
   void empty_logs(SessionFile& file) override;
-  std::uint64_t dropped() const override { return contacts_ ? contacts_->dropped() : 0; }
+  std::uint64_t dropped() const override {
+    return (contacts_ ? contacts_->dropped() : 0) + (cursors_ ? cursors_->dropped() : 0) +
+           (targets_ ? targets_->dropped() : 0);
+  }
   std::string why_aborted() const override;
   std::optional<record::LiveState> live() const override { return live_.state(); }
   std::vector<std::string> take_warnings() override;
@@ -67,6 +70,7 @@ class DefinedTrials final : public Trials {
   void use_decision_script();
   void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
   void be_late_again(std::size_t interval, std::vector<scene::Field>& fields) const;
+  std::optional<Cursor> cursor_of(const Presented& presented, std::size_t place) const;
   IntervalRun make_interval(std::size_t place, RandomStream& random);
   int sound_of_interval(int sound) const;
   std::vector<PresentedQuestion> make_questions();
@@ -90,9 +94,11 @@ class DefinedTrials final : public Trials {
   TrialSequence sequence_;
   NextTrial current_;
   LiveTrials live_;
-  mutable std::unique_ptr<SimulatedAnswer> said_;                       // of a virtual participant
-  mutable TrialsRig* rig_{nullptr};                                     // likewise; the runner's
-  std::unique_ptr<ContactLog> contacts_;                                // null: none are recorded
+  mutable std::unique_ptr<SimulatedAnswer> said_;  // of a virtual participant
+  mutable TrialsRig* rig_{nullptr};                // likewise; the runner's
+  std::unique_ptr<TargetLog> targets_;             // null: nothing that is seen moves by itself
+  std::unique_ptr<CursorLog> cursors_;             // null: there is no cursor
+  std::unique_ptr<ContactLog> contacts_;           // null: none are recorded
   std::shared_ptr<SeenBodies> bodies_{std::make_shared<SeenBodies>()};  // for the screen
   std::vector<record::ObjectFileRow> object_files_;
   std::vector<record::ArmRow> arms_;  // none where every arm is a tip

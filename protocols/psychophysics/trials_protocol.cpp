@@ -62,6 +62,8 @@ class TrialsProtocol final : public Protocol {
     tables.push_back(&record::table_of<record::AdaptationRow>());
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
     tables.push_back(&record::table_of<record::ContactRow>());
+    tables.push_back(&record::table_of<record::CursorRow>());
+    tables.push_back(&record::table_of<record::TargetRow>());
     tables.push_back(&record::table_of<record::TouchedBodyRow>());
     tables.push_back(&record::table_of<record::MovingBodyRow>());
     tables.push_back(&record::table_of<record::LateWindowRow>());

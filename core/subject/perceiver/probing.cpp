@@ -71,6 +71,7 @@ struct Checker {
     }
     require_above(p.duration, 0.0, false, "reach: duration");
   }
+  void operator()(const Pursue& p) const { require_above(p.lag, 0.0, false, "pursue: lag"); }
   void operator()(const Contour& p) const {
     require_direction(p.towards, "follow: towards");
     for (const Eigen::Vector3d& axis : p.around) {
@@ -106,6 +107,7 @@ void ExplorationController::begin(const Probe& probe, const PointState& hand) no
   carried_ += integral_;
   integral_.setZero();
   desired_ = {hand.position, Eigen::Vector3d::Zero()};
+  lead_ = hand.position;
   time_ = 0.0;
   if (const auto* contour = std::get_if<Contour>(&probe)) {
     follower_.begin(*contour, hand.position);
@@ -163,6 +165,16 @@ ExplorationController::Aim ExplorationController::aim(const Reach& reach, const 
   desired_.velocity = s.rate / reach.duration * way;
   aim.acceleration = s.second / (reach.duration * reach.duration) * way;
   aim.keeps_place = time_ >= reach.duration;
+  return aim;
+}
+
+ExplorationController::Aim ExplorationController::aim(const Pursue& pursue,
+                                                      const Now& now) noexcept {
+  Aim aim;
+  const double each = 0.5 * pursue.lag;  // time constant
+  aim.acceleration = (lead_ - desired_.position) / (each * each) - 2.0 / each * desired_.velocity;
+  desired_.velocity += now.dt * aim.acceleration;
+  desired_.position += now.dt * desired_.velocity;
   return aim;
 }
 

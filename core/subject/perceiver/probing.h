@@ -44,8 +44,14 @@ struct Reach {
   double duration{0.5};                         // > 0 [s]
 };
 
+/// The aim follows a place that moves (lead()) as two equal lags would, 1 / (1 + s lag / 2)², which
+/// is `lag` behind a slow movement.
+struct Pursue {
+  double lag{0.15};  // > 0 [s]
+};
+
 /// How the hand explores during a stage.
-using Probe = std::variant<Rest, Hold, Press, Stroke, Reach, Contour, Palpate>;
+using Probe = std::variant<Rest, Hold, Press, Stroke, Reach, Pursue, Contour, Palpate>;
 
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const Probe& probe);
@@ -67,6 +73,8 @@ class ExplorationController {
 
   /// Begins where the hand is. @param probe  passes check()
   void begin(const Probe& probe, const PointState& hand) noexcept;
+  /// The place that a pursuit follows, in W [m]; where the hand began, until it is told.
+  void lead(const Eigen::Vector3d& place) noexcept { lead_ = place; }
   /// One tick later. @param hand  as the device reads it, in W; @param dt  > 0 [s]
   /// @param felt  force on the hand in W, which a contour is followed by [N]
   HandCommand command(const PointState& hand, double dt,
@@ -94,6 +102,7 @@ class ExplorationController {
   Aim aim(const Press& press, const Now& now) noexcept;
   Aim aim(const Stroke& stroke, const Now& now) noexcept;
   Aim aim(const Reach& reach, const Now& now) noexcept;
+  Aim aim(const Pursue& pursue, const Now& now) noexcept;
   Aim aim(const Contour& contour, const Now& now) noexcept;
   Aim aim(const Palpate& palpate, const Now& now) noexcept;
   Eigen::Vector3d track(const Aim& aim, const PointState& hand, double dt) noexcept;
@@ -103,6 +112,7 @@ class ExplorationController {
   Probe probe_{Rest{}};
   ContourFollower follower_;
   PointState desired_;
+  Eigen::Vector3d lead_{Eigen::Vector3d::Zero()};      // [m]
   Eigen::Vector3d start_{Eigen::Vector3d::Zero()};     // where it began [m]
   Eigen::Vector3d posture_{Eigen::Vector3d::Zero()};   // e_d [m]
   Eigen::Vector3d integral_{Eigen::Vector3d::Zero()};  // i [N]

@@ -42,7 +42,7 @@ struct Block {
   std::vector<GivenValue> values;
   std::optional<Probe> probe;
   std::vector<std::string> procedures{};  // names of the tracks that it asks; empty: all, unless it
-                                        // gives one of their variables a value
+                                          // gives one of their variables a value
   std::vector<std::string> needs{};       // tracks whose threshold its trials use (every_value.h)
 };
 

@@ -252,8 +252,8 @@ std::vector<std::string> needs_of(const TrialsDefinition& d, std::size_t block,
   std::vector<std::string> needs;
   for (const auto& [name, level] : values.thresholds) {
     const Track& track = *std::ranges::find(d.tracks, name, &Track::name);
-    const bool named = has_threshold_name(track) &&
-                       d.text.find('$' + threshold_name(name)) != std::string::npos;
+    const bool named =
+        has_threshold_name(track) && d.text.find('$' + threshold_name(name)) != std::string::npos;
     if (named && needs_threshold(d, values, track)) {
       check_found_before(d, block, track);
       needs.push_back(name);

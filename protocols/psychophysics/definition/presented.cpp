@@ -64,6 +64,20 @@ void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presen
   presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
 }
 
+/// Regions that wait for the cursor in place of a tool.
+std::vector<bool> read_of_cursor(Table& regions, bool cursor) {
+  std::vector<bool> of_cursor;
+  for (const std::string& name : regions.keys()) {
+    Table region = regions.table(name);
+    region.describe({"of", "Whether the tool or the cursor must be in the region", "tool", false});
+    of_cursor.push_back(region.has("of") && region.choice("of", {"tool", "cursor"}) == "cursor");
+    if (of_cursor.back() && !cursor) {
+      region.reject("of", "is \"cursor\", but the definition has no [cursor]");
+    }
+  }
+  return of_cursor;
+}
+
 void read_all_regions(Table& root, const TrialsDefinition& d, Presented& presented) {
   if (!root.has("regions")) {
     return;
@@ -71,6 +85,7 @@ void read_all_regions(Table& root, const TrialsDefinition& d, Presented& present
   Table table = root.table("regions");
   const DeviceOf devices =
       devices_of(table, d.hands, "Device whose tool must be in the region", "the first device");
+  presented.of_cursor = read_of_cursor(table, presented.cursor.has_value());
   presented.regions = scene::read_regions(table);
   for (const scene::Region& region : presented.regions) {
     const auto own = devices.find(region.name);
@@ -89,8 +104,12 @@ void add_names(const std::vector<Named>& named, std::vector<std::string>& to) {
 std::vector<std::string> sights_of(const Presented& presented, const Names& names,
                                    const TrialsDefinition& d) {
   std::vector<std::string> sights{"hand", "interval_number"};
+  if (presented.cursor) {
+    sights.emplace_back("cursor");
+  }
   add_names(presented.regions, sights);
   add_names(presented.looks, sights);
+  add_names(presented.targets, sights);
   add_names(d.objects, sights);
   const std::vector<std::string> places = names.places();
   sights.insert(sights.end(), places.begin(), places.end());
@@ -104,6 +123,14 @@ Presented read_presented(Table& document, const Names& names, const TrialsDefini
   Table root = document.with(names);
   Presented presented;
   read_what_is_felt(root, d, presented);
+  if (root.has("cursor")) {
+    Table table = root.table("cursor");
+    presented.cursor = cursor_schema().read(table);
+  }
+  if (root.has("targets")) {
+    Table table = root.table("targets");
+    presented.targets = read_moving_targets(table);
+  }
   read_all_regions(root, d, presented);
   if (root.has("looks")) {
     Table table = root.table("looks");

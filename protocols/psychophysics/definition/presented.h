@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/scene/field.h"
 #include "core/scene/read/read_region.h"
+#include "protocols/psychophysics/definition/cursor_parameters.h"
+#include "protocols/psychophysics/definition/moving_target.h"
 #include "protocols/psychophysics/definition/names.h"
 #include "protocols/psychophysics/definition/read_stages.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
@@ -23,8 +26,11 @@ struct Presented {
   std::vector<std::uint64_t> felt;  // (devices) the fields that act on each, a bit each
   std::vector<scene::Region> regions;
   std::vector<std::size_t> region_devices;  // (regions) whose tool it is asked of, from 0
+  std::vector<bool> of_cursor;              // (regions) it is asked of the cursor
   std::vector<Look> looks;
   std::vector<NamedStage> stages;
+  std::optional<CursorParameters> cursor;
+  std::vector<MovingTarget> targets;
   std::vector<sound::Cue> varied_cues;  // those of the definition's that vary, in their order
 };
 

@@ -79,9 +79,9 @@ struct TrialQuestion : questions::Question {
   bool has_choices() const { return !choices.empty(); }
   /// Whether formulas know the answer by its name.
   bool is_number() const { return has_choices() || low < high; }
-  bool touched() const;     // whether a choice is given by touch
+  bool touched() const;                // whether a choice is given by touch
   int silent_choice() const noexcept;  // that no answer gives; -1: none
-  bool has_limits() const;  // whether an answer can be too fast or too slow
+  bool has_limits() const;             // whether an answer can be too fast or too slow
   /// @param reaction_time  [s]; NaN is in time
   Pace pace_of(double reaction_time) const noexcept;
   /// Each answer that has a marker of its own: the choices, or the word of the kind.

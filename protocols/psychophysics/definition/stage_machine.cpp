@@ -142,7 +142,7 @@ StageMachine::Outside StageMachine::first_outside(std::uint64_t regions,
   while (regions != 0) {
     const std::size_t index = take_lowest(regions);
     const StageRegion& region = regions_[index];
-    const Eigen::Vector3d& tip = readings[region.device].tool.position;
+    const Eigen::Vector3d& tip = region.of_cursor ? cursor_ : readings[region.device].tool.position;
     if (!region.shape.contains(tip)) {
       return {static_cast<int>(index), region.shape.distance(tip).distance};
     }
@@ -200,10 +200,12 @@ void StageMachine::measure(const Stage& stage, double speed, Scenes scenes) noex
   }
 }
 
-void StageMachine::tick(Readings readings, Scenes scenes, double dt) noexcept {
+void StageMachine::tick(Readings readings, Scenes scenes, double dt,
+                        const Eigen::Vector3d& cursor) noexcept {
   if (state_ != State::kRunning) {
     return;
   }
+  cursor_ = cursor;
   const Stage& stage = stages_[stage_];
   const double speed = fastest(readings);
   press(readings);

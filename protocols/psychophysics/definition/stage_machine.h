@@ -31,6 +31,7 @@ struct StageTimes {
 struct StageRegion {
   scene::PlacedShape shape;
   std::size_t device{0};
+  bool of_cursor{false};  // the cursor is to be in it, in place of the tool
 };
 
 /// Goes through the stages of one interval, a tick of the servo loop at a time. Each device has a
@@ -57,7 +58,9 @@ class StageMachine {
   /// The interval begins with the next tick. @param most_repeats  of the interval; then it aborts
   void begin(Scenes scenes, int most_repeats) noexcept;
   /// @param dt  since the tick before [s]
-  void tick(Readings readings, Scenes scenes, double dt) noexcept;
+  /// @param cursor  its place in W [m], for regions that wait for it
+  void tick(Readings readings, Scenes scenes, double dt,
+            const Eigen::Vector3d& cursor = Eigen::Vector3d::Zero()) noexcept;
   /// Enters a stage, whatever came before: for a replay, which knows when it began.
   void enter(std::size_t stage, Scenes scenes) noexcept;
 
@@ -97,6 +100,7 @@ class StageMachine {
   std::uint32_t buttons_before_{0}, keys_before_{0};
   std::uint32_t buttons_pressed_{0}, keys_pressed_{0};  // in this stage
   bool hands_known_{false};
+  Eigen::Vector3d cursor_{Eigen::Vector3d::Zero()};
   Outside outside_;
   int repeats_{0};
   int most_repeats_{0};

@@ -47,7 +47,8 @@ std::string threshold_name(const std::string& track) { return track + ".threshol
 
 bool has_threshold_name(const Track& track) {
   const auto part = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-  return track.finds_level && !track.name.empty() && std::isdigit(static_cast<unsigned char>(track.name.front())) == 0 &&
+  return track.finds_level && !track.name.empty() &&
+         std::isdigit(static_cast<unsigned char>(track.name.front())) == 0 &&
          std::ranges::all_of(track.name, part);
 }
 

@@ -24,7 +24,7 @@ struct TrialValues {
   std::string group;
   std::string probe;               // empty: none
   std::vector<GivenValue> values;  // of block, factors and probe; a later one stands before
-  std::vector<std::pair<std::string, double>> levels;  // that procedures set
+  std::vector<std::pair<std::string, double>> levels;      // that procedures set
   std::vector<std::pair<std::string, double>> thresholds;  // by the name of a track: what it found
   std::vector<std::size_t> intervals;  // of the definition, in the order of their presentation
 };
@@ -40,9 +40,8 @@ bool has_threshold_name(const Track& track);
 
 /// Everything that a trial may give a value: "trial", "block", "interval" (its place in the trial,
 /// from 1), "participant", "session", "group", "probe" (a word; 'no' of a trial without), what
-/// blocks, factors and intervals name, the variables of tracks, "NAME.threshold" of those that seek one,
-/// "interval.NAME" (the place of the
-/// interval NAME), and each question's name (its answer).
+/// blocks, factors and intervals name, the variables of tracks, "NAME.threshold" of those that seek
+/// one, "interval.NAME" (the place of the interval NAME), and each question's name (its answer).
 void declare_names(Names& names, const TrialsDefinition& definition);
 
 /// Gives the values that hold throughout the trial; all others are forgotten.

@@ -33,8 +33,8 @@ std::vector<const Track*> TrialsDefinition::tracks_in(const Block& block) const 
     if (block.procedures.empty() && given) {
       return {};
     }
-    if (block.procedures.empty() || std::ranges::find(block.procedures, track.name) !=
-                                        block.procedures.end()) {
+    if (block.procedures.empty() ||
+        std::ranges::find(block.procedures, track.name) != block.procedures.end()) {
       asked.push_back(&track);
     }
   }

@@ -10,7 +10,7 @@ namespace {
 
 Mark mark_at(const Eigen::Vector3d& p, double radius) {
   const Eigen::Vector3f f = p.cast<float>();
-  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius), 0};
+  return {{f.x(), f.y(), f.z()}, static_cast<float>(radius)};
 }
 
 /// Place and size of a region.
@@ -58,15 +58,21 @@ StageSight sight_of(const NamedStage& stage, const Presented& presented, const N
   sight.sound = stage.sound;
   for (const std::string& name : stage.show) {
     const auto region = std::ranges::find(presented.regions, name, &scene::Region::name);
+    const auto target = std::ranges::find(presented.targets, name, &MovingTarget::name);
     const auto look = std::ranges::find(presented.looks, name, &Look::name);
     if (name == "hand") {
       sight.hand = true;
+    } else if (name == "cursor") {
+      sight.cursor = true;
     } else if (name == "interval_number") {
       sight.interval_number = true;
     } else if (region != presented.regions.end()) {
       sight.marks.push_back(mark_of(region->shape));
       const auto index = static_cast<std::size_t>(region - presented.regions.begin());
       sight.marks.back().device = static_cast<std::uint8_t>(presented.region_devices[index]);
+    } else if (target != presented.targets.end()) {
+      sight.marks.push_back(mark_at(target->centre, target->radius));
+      sight.marks.back().target = static_cast<std::int8_t>(target - presented.targets.begin());
     } else if (look != presented.looks.end()) {
       sight.dots = {look->dots, seed, true};
     } else if (names.has_place(name)) {

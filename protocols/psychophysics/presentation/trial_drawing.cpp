@@ -255,10 +255,13 @@ class TrialDrawing final : public Drawing, public TextSource {
         painter_.disc(centre, kDot, d_.display.target_colour);
       }
     }
+    const double radius = scale_ * d_.view.hand_radius;
+    if (view.cursor_shown) {
+      painter_.disc(pixel_of(place_of(view.cursor), part), radius, d_.display.marker_colour);
+    }
     if (!view.hand_shown) {
       return;
     }
-    const double radius = scale_ * d_.view.hand_radius;
     painter_.disc(pixel_of(view.tool, part), radius, d_.display.marker_colour);
     for (std::size_t i = 0; i < view.other_count; ++i) {
       if (!d_.hands[i + 1].is_tip()) {

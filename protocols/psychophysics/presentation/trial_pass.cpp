@@ -144,6 +144,45 @@ void TrialPass::log_contacts(const IntervalRun& run, std::size_t device) noexcep
   }
 }
 
+/// Marks of moving targets are where those are on this tick.
+void TrialPass::move_targets(IntervalRun& run, double dt) noexcept {
+  for (ShownTarget& each : run.targets) {
+    each.ticks += each.ticks >= 0 ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < view_.mark_count; ++i) {
+    Mark& mark = view_.marks[i];
+    if (mark.target < 0) {
+      continue;
+    }
+    ShownTarget& shown = run.targets[static_cast<std::size_t>(mark.target)];
+    shown.ticks = std::max<std::int64_t>(shown.ticks, 0);
+    const Eigen::Vector3d place = shown.target.at(static_cast<double>(shown.ticks) * dt);
+    const Eigen::Vector3f drawn = place.cast<float>();
+    mark.place = {drawn.x(), drawn.y(), drawn.z()};
+    if (setup_.targets != nullptr) {
+      setup_.targets->push({sequence_, mark.target, place});
+    }
+  }
+}
+
+/// @returns the place of the cursor; that of the tool, if there is none
+Eigen::Vector3d TrialPass::move_cursor(IntervalRun& run, const StageSight& sight,
+                                       const Readings& readings) noexcept {
+  const Eigen::Vector3d& tool = readings[0].tool.position;
+  view_.cursor_shown = run.cursor && sight.cursor;
+  if (!run.cursor) {
+    return tool;
+  }
+  const Eigen::Vector3d place = run.cursor->follow(tool);
+  const Eigen::Vector3f shown = place.cast<float>(), about = run.cursor->about().cast<float>();
+  view_.cursor = {shown.x(), shown.y(), shown.z()};
+  view_.cursor_about = {about.x(), about.y(), about.z()};
+  if (setup_.cursors != nullptr) {
+    setup_.cursors->push({sequence_, place, view_.cursor_shown});
+  }
+  return place;
+}
+
 /// Shows the forces on the seen bodies, of all devices together.
 void TrialPass::show_pressed(const IntervalRun& run, const StageSight& sight,
                              std::size_t devices) noexcept {
@@ -203,7 +242,9 @@ void TrialPass::present(const Readings& readings, double dt, PassOutput& out) no
   const StageSight& sight = run.sights[stage];
   view_.show(sight.marks, sight.objects, sight.hand, sight.interval_number, sight.dots);
   show_pressed(run, sight, devices);
-  run.machine.tick(readings.all().first(devices), run.scenes, dt);
+  move_targets(run, dt);
+  const Eigen::Vector3d cursor = move_cursor(run, sight, readings);
+  run.machine.tick(readings.all().first(devices), run.scenes, dt, cursor);
   if (run.machine.state() == StageMachine::State::kAborted) {
     const StageEnd how = run.machine.times()[run.machine.stage()].how;
     abort(how == StageEnd::kLate ? "a stage was not done in time"
@@ -228,7 +269,7 @@ void TrialPass::end_interval() noexcept {
   view_.mark_count = 0;
   view_.objects = {};
   view_.pressed.counts = {};
-  view_.hand_shown = view_.number_shown = view_.dots.shown = false;
+  view_.hand_shown = view_.cursor_shown = view_.number_shown = view_.dots.shown = false;
   ask();
 }
 

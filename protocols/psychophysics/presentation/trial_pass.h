@@ -3,17 +3,22 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/realtime/block_log.h"
 #include "core/record/rows/contact_row.h"
+#include "core/record/rows/cursor_row.h"
 #include "core/record/rows/response.h"
+#include "core/record/rows/target_row.h"
 #include "core/scene/scene.h"
 #include "core/scene/shape.h"
 #include "protocols/interface/pass.h"
+#include "protocols/psychophysics/definition/moving_target.h"
 #include "protocols/psychophysics/definition/question.h"
 #include "protocols/psychophysics/definition/stage_machine.h"
+#include "protocols/psychophysics/presentation/cursor.h"
 #include "protocols/psychophysics/presentation/left_decision.h"
 #include "protocols/psychophysics/presentation/trial_view.h"
 
@@ -22,10 +27,22 @@ namespace haptrial::protocols {
 /// Log of the servo thread for contacts that are recorded.
 using ContactLog = realtime::BlockLog<record::ContactRow>;
 
+/// Log of the servo thread for the cursor.
+using CursorLog = realtime::BlockLog<record::CursorRow>;
+
 /// A field of a scene that is an object of the definition, both from 0.
 struct RecordedObject {
   std::size_t field{0};
   std::int32_t object{0};
+};
+
+/// Log of the servo thread for moving targets.
+using TargetLog = realtime::BlockLog<record::TargetRow>;
+
+/// A moving target, and how long it has been shown in the interval.
+struct ShownTarget {
+  MovingTarget target;
+  std::int64_t ticks{-1};  // since it was shown first; -1: not yet
 };
 
 /// Content of the screen during a stage.
@@ -34,6 +51,7 @@ struct StageSight {
   std::vector<SeenObject> objects;
   DotsShown dots;
   bool hand{false};
+  bool cursor{false};
   bool interval_number{false};
   int sound{-1};  // that begins with the stage; -1: none
 };
@@ -47,6 +65,8 @@ struct IntervalRun {
   int marker{-1};                  // index of its onset's marker; -1: it has none
   std::vector<RecordedObject> recorded{};
   std::size_t first_object{0};  // the field that is the definition's first object
+  std::optional<Cursor> cursor{};
+  std::vector<ShownTarget> targets{};
 };
 
 /// A place that gives a choice when the tip of the tool is moved into it.
@@ -96,6 +116,8 @@ class TrialPass final : public Pass {
     SimulatedAnswer* said{nullptr};        // null: a person answers
     const LeftDecision* left{nullptr};     // null: nothing is left to the session's thread
     ContactLog* contacts{nullptr};         // of recorded objects; null if there are none
+    CursorLog* cursors{nullptr};           // null if there is no cursor
+    TargetLog* targets{nullptr};           // null if nothing moves
     int sound_right{-1}, sound_wrong{-1};  // with the feedback; -1: none
   };
   explicit TrialPass(Setup setup);
@@ -151,6 +173,9 @@ class TrialPass final : public Pass {
   void feel(const Readings& readings) noexcept;
   void present(const Readings& readings, double dt, PassOutput& out) noexcept;
   void show_pressed(const IntervalRun& run, const StageSight& sight, std::size_t devices) noexcept;
+  void move_targets(IntervalRun& run, double dt) noexcept;
+  Eigen::Vector3d move_cursor(IntervalRun& run, const StageSight& sight,
+                              const Readings& readings) noexcept;
   void log_contacts(const IntervalRun& run, std::size_t device) noexcept;
   Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
   void end_interval() noexcept;

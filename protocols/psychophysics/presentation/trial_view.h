@@ -22,6 +22,7 @@ struct Mark {
   std::array<float, 3> place{};  // in W [m]
   float radius{0.0F};            // 0: a dot [m]
   std::uint8_t device{0};        // whose tool it is for, from 0
+  std::int8_t target{-1};        // of the trial's moving targets, from 0; -1: it stands still
 };
 
 /// A stereogram that is shown.
@@ -42,6 +43,8 @@ struct TrialView {
 
   Eigen::Vector3d tool{Eigen::Vector3d::Zero()};                // of the first device
   std::array<std::array<float, 3>, kMostDevices - 1> others{};  // tools of the others [m]
+  std::array<float, 3> cursor{};                                // in W [m]
+  std::array<float, 3> cursor_about{};  // place about which it is turned [m]
   DotsShown dots;
   std::array<Mark, kMostMarks> marks{};
   std::array<SeenObject, kMostSeenObjects> objects{};  // those that are seen come first
@@ -57,6 +60,7 @@ struct TrialView {
   Verdict verdict{Verdict::kNone};
   Pace pace{Pace::kInTime};  // of the answer that is told about
   bool hand_shown{false};
+  bool cursor_shown{false};
   bool number_shown{false};  // of the interval
   bool refused{false};       // enter was pressed, and the answer is none that is allowed
 

@@ -29,7 +29,7 @@ Schema<Adaptation> make_adaptation_schema(const ObserverNames& names) {
               [](Table& table, const std::string& key, A& a) {
                 a.field = read_matrix(table, key, {-1000.0, 1000.0}, "N·s/m");
               })
-      .required()
+      .otherwise("to the rotation of the cursor")
       .keys_of(&A::rates, subject::two_rate_schema());
 }
 
@@ -156,7 +156,8 @@ Schema<ObserverPlan> make_observer_schema(const ObserverNames& names,
                 Table actions = table.table(key);
                 plan.actions = read_actions(actions, names.stages, names.devices);
               })
-      .table("adaptation", &P::adaptation, adaptation, "Adaptation of reaches to a field")
+      .table("adaptation", &P::adaptation, adaptation,
+             "Adaptation of reaches to a field, or to the rotation of the cursor")
       .table("sight", &P::sight, subject::sight_schema(),
              "Precision with which virtual participants see sizes")
       .table("script", &P::script, decision_script_schema(),

@@ -24,9 +24,9 @@ struct TrialQuestion;
 /// How virtual participants of trials take what they feel for an answer.
 enum class Decides : std::uint8_t { kLargest, kSmallest, kYes, kNearest, kMagnitude, kAdjust };
 
-/// Motor adaptation to a field B v.
+/// Motor adaptation to a field B v, or to the rotation of the cursor.
 struct Adaptation {
-  Eigen::Matrix3d field{Eigen::Matrix3d::Zero()};  // B [N·s/m]
+  std::optional<Eigen::Matrix3d> field;  // B [N·s/m]; nothing: to the cursor
   subject::TwoRateParameters rates;
   std::string stage;  // of the reach that is learnt from
 };

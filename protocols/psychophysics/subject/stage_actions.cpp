@@ -62,6 +62,13 @@ const Schema<subject::Reach>& reach_schema() {
   return schema;
 }
 
+const Schema<subject::Pursue>& pursue_schema() {
+  using P = subject::Pursue;
+  static const auto schema = Schema<P>().number(
+      "lag", &P::lag, {0.01, 5.0}, "s", "Time by which the hand follows a target that moves");
+  return schema;
+}
+
 const Schema<subject::Contour>& contour_schema() {
   using C = subject::Contour;
   static const auto schema =
@@ -126,6 +133,7 @@ constexpr KindOfAction kActions[] = {
     {"press", read_probe<subject::Press, press_schema>},
     {"stroke", read_probe<subject::Stroke, stroke_schema>},
     {"reach", read_probe<subject::Reach, reach_schema>},
+    {"pursue", read_probe<subject::Pursue, pursue_schema>},
     {"follow", read_probe<subject::Contour, contour_schema>},
     {"palpate", read_probe<subject::Palpate, palpate_schema>},
 };
@@ -146,7 +154,8 @@ StageAction read_action(Table& table, const std::string& stage, const char* what
       action.probe = kind.read(table);
     }
   }
-  action.to_mark = std::holds_alternative<subject::Reach>(action.probe);
+  action.to_mark = std::holds_alternative<subject::Reach>(action.probe) ||
+                   std::holds_alternative<subject::Pursue>(action.probe);
   try {
     subject::check(action.probe);
   } catch (const std::invalid_argument& error) {

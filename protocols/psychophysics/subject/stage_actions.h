@@ -19,7 +19,7 @@ struct StageAction {
   std::string stage;
   std::size_t device{0};  // whose hand
   subject::Probe probe;
-  bool to_mark{false};  // a reach to the first mark for this device that is shown
+  bool to_mark{false};  // a reach to, or a pursuit of, the first mark for this device
 };
 
 /// Reads [observer.actions]: `STAGE = { do = "press", … }`; with [devices] also

@@ -20,6 +20,7 @@
 #include "protocols/psychophysics/definition/trials_definition.h"
 #include "protocols/psychophysics/subject/answer_by_hand.h"
 #include "protocols/psychophysics/subject/decider.h"
+#include "protocols/psychophysics/subject/reach_adaptation.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -88,8 +89,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
       sight_.emplace(*plan_.sight, derived_seed(person_seed, "subject"));
     }
     if (plan_.adaptation) {
-      adaptation_.emplace(plan_.adaptation->rates);
-      error_.emplace(plan_.adaptation->field);
+      adaptation_.emplace(*plan_.adaptation, briefing.screen);
       learnt_in_ = index_of(briefing.stages, plan_.adaptation->stage);
     }
   }
@@ -118,6 +118,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
       begin_trial(view->trial);
     }
     follow(*view);
+    lead(*view);
     feel(*view, forces, dt);
     answer(*view, dt);
     act(forces, dt);
@@ -160,10 +161,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (!adaptation_) {
       return;
     }
-    subject::TwoRate after = *adaptation_;
-    if (stage_ >= 0 && stage_ == learnt_in_) {
-      after.learn(error_->error());
-    }
+    const subject::TwoRate after = reaches() ? adaptation_->after_reach() : adaptation_->learnt();
     fast_.store(after.fast(), std::memory_order_relaxed);
     slow_.store(after.slow(), std::memory_order_relaxed);
   }
@@ -206,11 +204,11 @@ class TrialsRig::Participant final : public stimulus::Observer {
     }
     stage_ = stage;
     interval_ = interval;
+    if (reaches()) {
+      adaptation_->begin_reach();
+    }
     for (std::size_t i = 0; i < hands_.size(); ++i) {
       begin_probe(i, view);
-    }
-    if (error_ && stage == learnt_in_) {
-      error_->begin();
     }
   }
 
@@ -225,16 +223,35 @@ class TrialsRig::Participant final : public stimulus::Observer {
     seen_ = {};
   }
 
+  /// The first mark for a device that is shown [m].
+  static std::optional<Eigen::Vector3d> mark_for(std::size_t device,
+                                                 const TrialView& view) noexcept {
+    for (std::size_t i = 0; i < view.mark_count; ++i) {
+      if (view.marks[i].device == device) {
+        const auto& [x, y, z] = view.marks[i].place;
+        return Eigen::Vector3d(x, y, z);
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Pursuits follow their marks; every other probe takes no notice.
+  void lead(const TrialView& view) noexcept {
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+      if (const auto mark = mark_for(i, view)) {
+        hands_[i].prober.lead(*mark);
+      }
+    }
+  }
+
   void begin_probe(std::size_t device, const TrialView& view) noexcept {
     SimulatedHand& hand = hands_[device];
     const StageAction* action =
         stage_ >= 0 ? hand.actions[static_cast<std::size_t>(stage_)] : nullptr;
     subject::Probe probe = action != nullptr ? action->probe : subject::Probe{subject::Rest{}};
-    for (std::size_t i = view.mark_count; action != nullptr && action->to_mark && i-- > 0;) {
-      if (view.marks[i].device == device) {  // the first one is the last to be set
-        const auto& place = view.marks[i].place;
-        std::get<subject::Reach>(probe).to = {place[0], place[1], place[2]};
-      }
+    const auto mark = action != nullptr && action->to_mark ? mark_for(device, view) : std::nullopt;
+    if (auto* reach = std::get_if<subject::Reach>(&probe); reach != nullptr && mark) {
+      reach->to = device == 0 && reaches() ? adaptation_->aim(*mark, view) : *mark;
     }
     hand.prober.begin(probe, hand.state);
   }
@@ -245,8 +262,8 @@ class TrialsRig::Participant final : public stimulus::Observer {
         (felt_in_ < 0 || stage_ == felt_in_)) {
       percepts_[static_cast<std::size_t>(interval_)] = percept();
     }
-    if (adaptation_ && stage_ >= 0 && stage_ == learnt_in_) {
-      adaptation_->learn(error_->error());
+    if (reaches()) {
+      adaptation_->end_reach();
     }
     stage_ = interval_ = -1;
   }
@@ -287,16 +304,17 @@ class TrialsRig::Participant final : public stimulus::Observer {
       }
       seen_ = view.dots.shown ? view.dots : seen_;
     }
-    if (error_ && stage_ == learnt_in_) {
-      error_->feel(forces[0], compensation(), hands_.front().prober.desired().velocity);
+    if (reaches()) {
+      adaptation_->feel(view, forces[0], hands_.front().prober.desired().velocity);
     }
   }
 
+  /// In the stage of the reach that is learnt from.
+  bool reaches() const noexcept { return adaptation_ && stage_ >= 0 && stage_ == learnt_in_; }
+
   Eigen::Vector3d compensation() const noexcept {
-    return adaptation_ && stage_ >= 0 && stage_ == learnt_in_
-               ? adaptation_->compensation(plan_.adaptation->field,
-                                           hands_.front().prober.desired().velocity)
-               : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    return reaches() ? adaptation_->compensation(hands_.front().prober.desired().velocity)
+                     : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
 
   void act(const stimulus::Forces& forces, double dt) noexcept {
@@ -425,8 +443,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   Decider decider_;
   int felt_in_;  // stage; -1: all
   RandomStream reaction_;
-  std::optional<subject::TwoRate> adaptation_;
-  std::optional<subject::FieldError> error_;
+  std::optional<ReachAdaptation> adaptation_;
   int learnt_in_{-1};
   std::optional<CarriedOver> recalled_;  // until the first trial
   std::atomic<double> fast_{0.0}, slow_{0.0};

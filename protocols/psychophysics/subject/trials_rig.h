@@ -10,6 +10,7 @@
 #include "core/subject/hand_model.h"
 #include "protocols/definition/definition.h"
 #include "protocols/interface/rig.h"
+#include "protocols/psychophysics/definition/cursor_parameters.h"
 #include "protocols/psychophysics/presentation/left_decision.h"
 #include "protocols/psychophysics/presentation/trial_view.h"
 #include "protocols/psychophysics/subject/observer_plan.h"
@@ -41,6 +42,7 @@ class TrialsRig final : public Rig {
     SimulatedAnswer* said{nullptr};  // where answers go
     /// Answers on the session's thread in place of the participant; null: nobody does.
     std::function<LeftDecision::Answer(const LeftDecision::DecisionRequest&)> decide{};
+    ScreenPlane screen{};  // on which trials are seen
   };
   /// @param briefing  what it points to outlives the rig
   /// @param person_seed   who it is follows from it: the same person in every session

@@ -17,9 +17,13 @@
 #include "core/channel/channel_row.h"
 #include "core/record/rows/arm_row.h"
 #include "core/record/rows/common_tables.h"
+#include "core/record/rows/contact_row.h"
+#include "core/record/rows/cursor_row.h"
 #include "core/record/rows/late_window_row.h"
 #include "core/record/rows/moving_body_row.h"
+#include "core/record/rows/object_file_row.h"
 #include "core/record/rows/session_tables.h"
+#include "core/record/rows/target_row.h"
 #include "core/record/rows/touched_body_row.h"
 #include "core/record/rows/trial_rows.h"
 #include "core/record/table/table_page.h"
@@ -65,6 +69,10 @@ TEST(SessionPageTest, TablesOfTrials) {
   TableList tables = trial_tables();
   tables.insert(tables.end(), adaptation_tables().begin(), adaptation_tables().end());
   tables.insert(tables.end(), out_of_time_tables().begin(), out_of_time_tables().end());
+  tables.push_back(&table_of<ContactRow>());
+  tables.push_back(&table_of<CursorRow>());
+  tables.push_back(&table_of<TargetRow>());
+  tables.push_back(&table_of<ObjectFileRow>());
   tables.push_back(&table_of<TouchedBodyRow>());
   tables.push_back(&table_of<MovingBodyRow>());
   tables.push_back(&table_of<LateWindowRow>());
