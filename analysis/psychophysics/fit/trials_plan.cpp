@@ -25,6 +25,7 @@ const std::vector<std::pair<std::string, AnalysisKind>>& kinds() {
       {"magnitude", AnalysisKind::kMagnitude},
       {"adjustment", AnalysisKind::kAdjustment},
       {"reaching", AnalysisKind::kReaching},
+      {"pursuit", AnalysisKind::kPursuit},
       {"none", AnalysisKind::kNone}};
   return all;
 }
@@ -150,11 +151,10 @@ void match_direction(Table& table, bool falls, TrialsPlan& plan) {
 
 /// The levels that the functions are of; else those of the first procedure. Null: there is none.
 const ProcedureLevels* levels_of(const PlanDefaults& defaults, const TrialsPlan& plan) {
-  const auto own =
-      std::ranges::find(defaults.procedures, plan.level, &ProcedureLevels::variable);
-  return own != defaults.procedures.end()  ? &*own
-         : defaults.procedures.empty() ? nullptr
-                                       : &defaults.procedures.front();
+  const auto own = std::ranges::find(defaults.procedures, plan.level, &ProcedureLevels::variable);
+  return own != defaults.procedures.end() ? &*own
+         : defaults.procedures.empty()    ? nullptr
+                                          : &defaults.procedures.front();
 }
 
 psychometric::Axis axis_of(const PlanDefaults& defaults, const TrialsPlan& plan) {
@@ -288,7 +288,9 @@ Schema<TrialsPlan> make_function_schema(const PlanDefaults& defaults) {
 }
 
 bool reaches(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kReaching; }
-bool answers(const TrialsPlan& plan) { return !reaches(plan); }
+bool answers(const TrialsPlan& plan) {
+  return !reaches(plan) && plan.kind != AnalysisKind::kPursuit;
+}
 bool identifies(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kIdentification; }
 bool may_rate(const TrialsPlan& plan) {
   return plan.kind == AnalysisKind::kDetection || identifies(plan);
@@ -335,6 +337,9 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
       .check([&](Table& table, P& plan) {
         if (reaches(plan)) {
           plan.reaching = read_reaching_plan(table, defaults.reaching);
+        }
+        if (plan.kind == AnalysisKind::kPursuit) {
+          plan.pursuit = read_pursuit_plan(table, defaults.pursuit);
         }
         plan.by = usual_by(plan.kind, defaults);
       })

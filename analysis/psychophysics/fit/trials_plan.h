@@ -9,6 +9,7 @@
 #include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/likelihood_fit.h"
 #include "analysis/psychophysics/fit/cue_plan.h"
+#include "analysis/psychophysics/fit/pursuit_plan.h"
 #include "analysis/psychophysics/fit/reaching_plan.h"
 #include "analysis/statistics/design/analysis_plan.h"
 
@@ -27,6 +28,7 @@ enum class AnalysisKind {
   kMagnitude,       // numbers in proportion to what was felt: exponents
   kAdjustment,      // levels that participants set: means
   kReaching,        // movements, which have an analysis of their own
+  kPursuit,         // how the hand follows a target that moves
 };
 
 /// Levels by the name of their factor, as tables show them.
@@ -42,15 +44,16 @@ struct ProcedureLevels {
 /// Values of the rest of a definition that stand in for keys that [analysis] does not have.
 struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
-  std::vector<std::string> factors;  // that [factors] varies, and "group" of several groups
-  std::string rating;                // question of how sure somebody is; empty: none
-  std::vector<std::string> choices;  // of the first question; none: a number
-  std::vector<std::string> names;    // that `by` may name besides
+  std::vector<std::string> factors;         // that [factors] varies, and "group" of several groups
+  std::string rating;                       // question of how sure somebody is; empty: none
+  std::vector<std::string> choices;         // of the first question; none: a number
+  std::vector<std::string> names;           // that `by` may name besides
   std::vector<ProcedureLevels> procedures;  // one for each variable
-  std::optional<double> guess;       // 1 / choices where an answer is right; else free
-  ReachingNames reaching;            // that the analysis of movements may name
-  CueNames cues;                     // that the comparison of cues may name
-  StatedLevels levels;               // of names of `by`, where the definition states all of them
+  std::optional<double> guess;              // 1 / choices where an answer is right; else free
+  ReachingNames reaching;                   // that the analysis of movements may name
+  PursuitNames pursuit;                     // that the analysis of pursuits may name
+  CueNames cues;                            // that the comparison of cues may name
+  StatedLevels levels;  // of names of `by`, where the definition states all of them
 };
 
 /// The highest lapse rate, and guess rate without catch trials, unless stated: with lapses up to
@@ -89,6 +92,7 @@ struct TrialsPlan {
   std::uint64_t seed{1};
   std::optional<CuePlan> cues;  // two cues whose combination is compared with the best
   ReachingPlan reaching;        // where `kind` is kReaching
+  PursuitPlan pursuit;          // where `kind` is kPursuit
 
   bool uses_level() const {
     return functions || kind == AnalysisKind::kMagnitude || kind == AnalysisKind::kAdjustment ||

@@ -125,6 +125,15 @@ void add_methods(Document& document, const TrialsResult& result) {
         "and the tracks of a participant under a condition again. Settings from starts above and "
         "below count alike, and the difference of the two sides is no part of the interval.");
   }
+  if (plan.kind == AnalysisKind::kPursuit) {
+    document.paragraph(fmt::format(
+        "The tracking error of a pursuit is the root mean square distance of the hand from the "
+        "target in the directions in which the target moves, without the first {:g} s. Gain and "
+        "lag are those of sines fitted to target and hand (least squares) along the direction in "
+        "which the target moves most; a participant's trials under a condition are averaged as "
+        "complex numbers.",
+        plan.pursuit.settle));
+  }
   if (plan.kind == AnalysisKind::kReaching) {
     add_reaching_methods(document, plan.reaching);
     if (!result.quantities.empty()) {

@@ -122,6 +122,30 @@ analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
   return names;
 }
 
+/// The targets, with the frequencies that they have in every trial.
+analysis::trials::PursuitNames pursuit_names(const protocols::TrialsDefinition& d) {
+  analysis::trials::PursuitNames names{d.stages, {}};
+  Table root = d.root();
+  if (!root.has("targets")) {
+    return names;
+  }
+  Table targets = root.table("targets");
+  for (const std::string& name : targets.keys()) {
+    Table target = targets.table(name);
+    names.targets.push_back({name, {}});
+    const auto rows = target.has("frequencies") ? target.rows("frequencies", "")
+                                                : std::vector<std::vector<NumberOrText>>{};
+    for (std::size_t i = 0; rows.size() == 1 && i < rows[0].size(); ++i) {
+      if (!rows[0][i].number) {
+        names.targets.back().frequencies.clear();
+        break;
+      }
+      names.targets.back().frequencies.push_back(*rows[0][i].number);
+    }
+  }
+  return names;
+}
+
 /// The variables of levels with one dimension, each with what its first procedure says.
 std::vector<analysis::trials::ProcedureLevels> levels_of_procedures(
     const protocols::TrialsDefinition& d) {
@@ -145,6 +169,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   PlanDefaults defaults;
   add_names(d, defaults);
   defaults.reaching = reaching_names(d);
+  defaults.pursuit = pursuit_names(d);
   defaults.cues = cue_names(d);
   defaults.levels = defaults.cues.levels;
   for (const auto& group : d.groups) {

@@ -22,7 +22,7 @@ std::vector<MovingTarget> moving_targets_in(const std::string& text) {
 TEST(MovingTargetTest, ItMovesEvenlyAndSwingsAsASumOfSines) {
   const auto targets = moving_targets_in(
       "[targets.ball]\ncentre = [0.01, 0.0, 0.0]\nvelocity = [0.0, 0.0, 0.02]\n"
-      "direction = [0.0, 2.0, 0.0]\nfrequencies = [0.5, 2.0]\namplitudes = [0.03, 0.01]\n"
+      "direction = [0.0, 1.0, 0.0]\nfrequencies = [0.5, 2.0]\namplitudes = [0.03, 0.01]\n"
       "phases = [0.0, 1.5707963267948966]\n[targets.still]\n");
   ASSERT_EQ(targets.size(), 2u);
   // Half a cycle of the first, two of the second.

@@ -1,0 +1,56 @@
+#include "analysis/psychophysics/fit/pursuit_plan.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/base/definition/schema.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+void check_names(Table& table, const PursuitNames& names, PursuitPlan& plan) {
+  if (std::ranges::find(names.stages, plan.stage) == names.stages.end()) {
+    table.reject(table.has("stage") ? "stage" : "kind",
+                 fmt::format("of the stage \"{}\"", plan.stage),
+                 fmt::format("stage = one of: {}", fmt::join(names.stages, ", ")));
+  }
+  const auto target = std::ranges::find(names.targets, plan.target, &PursuedTarget::name);
+  if (target == names.targets.end()) {
+    std::vector<std::string> known;
+    std::ranges::transform(names.targets, std::back_inserter(known), &PursuedTarget::name);
+    table.reject(table.has("target") ? "target" : "kind",
+                 fmt::format("of the target \"{}\"", plan.target),
+                 known.empty() ? "a definition with [targets]"
+                               : fmt::format("target = one of: {}", fmt::join(known, ", ")));
+    return;
+  }
+  plan.number = static_cast<std::size_t>(target - names.targets.begin());
+  plan.frequencies = target->frequencies;
+}
+
+}  // namespace
+
+PursuitPlan read_pursuit_plan(Table& table, const PursuitNames& names) {
+  using P = PursuitPlan;
+  return Schema<P>()
+      .text("stage", &P::stage, "Stage in which the target is pursued")
+      .derive(
+          [&](P& plan) { plan.target = names.targets.empty() ? "" : names.targets.front().name; })
+      .text("target", &P::target, "Target that is pursued")
+      .otherwise("the first")
+      .check([&](Table& t, P& plan) {
+        if (!names.stages.empty()) {  // else the definition could not be read
+          check_names(t, names, plan);
+        }
+      })
+      .number("settle", &P::settle, {0.0, 600.0}, "s",
+              "Time from the beginning of a pursuit that is left out of its analysis")
+      .numbers("frequencies", &P::frequencies, {0.001, 20.0}, "Hz",
+               "Frequencies at which gain and lag of a pursuit are found")
+      .otherwise("the target's")
+      .read(table);
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,199 @@
+#include "analysis/psychophysics/study/pursuit_quantities.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "analysis/psychophysics/data/trials_data.h"
+#include "analysis/psychophysics/fit/series.h"
+#include "core/base/parallel.h"
+#include "core/record/read/session_reader.h"
+#include "core/record/rows/target_row.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using Places = std::vector<Eigen::Vector3d>;
+
+Eigen::MatrixXd matrix_of(const Places& places) {
+  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    matrix.row(static_cast<Eigen::Index>(i)) = places[i];
+  }
+  return matrix;
+}
+
+/// A constant, and cosine and sine of each frequency.
+Eigen::MatrixXd basis_of(Eigen::Index ticks, double rate, const std::vector<double>& frequencies) {
+  Eigen::MatrixXd basis(ticks, static_cast<Eigen::Index>(1 + 2 * frequencies.size()));
+  for (Eigen::Index i = 0; i < ticks; ++i) {
+    basis(i, 0) = 1.0;
+    for (std::size_t k = 0; k < frequencies.size(); ++k) {
+      const double angle = 2.0 * M_PI * frequencies[k] * static_cast<double>(i) / rate;
+      basis(i, static_cast<Eigen::Index>(1 + 2 * k)) = std::cos(angle);
+      basis(i, static_cast<Eigen::Index>(2 + 2 * k)) = std::sin(angle);
+    }
+  }
+  return basis;
+}
+
+std::complex<double> amplitude(const Eigen::VectorXd& fitted, std::size_t k) {
+  return {fitted[static_cast<Eigen::Index>(1 + 2 * k)],
+          -fitted[static_cast<Eigen::Index>(2 + 2 * k)]};
+}
+
+double variance(const Eigen::VectorXd& values) {
+  return (values.array() - values.mean()).square().mean();
+}
+
+/// The pursuits of one session.
+class SessionPursuits {
+ public:
+  SessionPursuits(const std::filesystem::path& file, const PursuitPlan& plan)
+      : reader_(file), plan_(plan), targets_(reader_.rows<record::TargetRow>()) {}
+
+  std::optional<PursuitResponse> of(const StudyTrial& trial) const {
+    const auto stage =
+        std::find_if(trial.stages.rbegin(), trial.stages.rend(),
+                     [&](const StageTime& each) { return each.stage == plan_.stage; });
+    if (stage == trial.stages.rend()) {
+      return std::nullopt;
+    }
+    const double rate = reader_.info().rate;
+    const auto settle = static_cast<std::uint64_t>(std::lround(plan_.settle * rate));
+    const std::uint64_t first = trial.first_sample + stage->first + settle;
+    const std::uint64_t end = trial.first_sample + stage->first + stage->ticks;
+    const auto begin = std::ranges::lower_bound(targets_, first, {}, &record::TargetRow::sequence);
+    const std::uint64_t ticks = end > first ? end - first : 0;
+    const std::vector<record::Sample> samples = reader_.samples(first, ticks);
+    Places target, hand;
+    for (auto row = begin; row != targets_.end() && row->sequence < end; ++row) {
+      if (std::cmp_equal(row->target, plan_.number)) {
+        target.push_back(row->place);
+        hand.push_back(samples.at(static_cast<std::size_t>(row->sequence - first)).position);
+      }
+    }
+    return target.size() < 2
+               ? std::nullopt
+               : std::optional(pursuit_response(target, hand, rate, plan_.frequencies));
+  }
+
+ private:
+  record::SessionReader reader_;
+  const PursuitPlan& plan_;
+  std::vector<record::TargetRow> targets_;
+};
+
+/// The trials of a participant under a condition.
+struct Cell {
+  double error{0.0}, followed{0.0}, trials{0.0};
+  std::vector<std::complex<double>> response;  // summed
+};
+
+std::vector<Quantity> quantities_of(
+    const std::map<std::pair<std::string, std::vector<std::string>>, Cell>& cells,
+    const TrialsPlan& plan) {
+  const auto values = [&](auto&& value) {
+    std::vector<QuantityValue> all;
+    for (const auto& [of, cell] : cells) {
+      all.push_back({of.first, of.second, value(cell)});
+    }
+    return all;
+  };
+  const std::vector<double>& frequencies = plan.pursuit.frequencies;
+  std::vector<Quantity> all{quantity("tracking_error", "tracking error", "m",
+                                     values([](const Cell& c) { return c.error / c.trials; }), plan,
+                                     ValueRange::kPositive)};
+  if (!frequencies.empty()) {
+    all.push_back(quantity("followed", "share of the movement that follows the target", "",
+                           values([](const Cell& c) { return c.followed / c.trials; }), plan,
+                           ValueRange::kShare));
+  }
+  for (std::size_t k = 0; k < frequencies.size(); ++k) {
+    const std::string at = fmt::format("at {:g} Hz", frequencies[k]);
+    all.push_back(
+        quantity(fmt::format("gain_{:g}_hz", frequencies[k]), "gain " + at, "",
+                 values([&](const Cell& c) { return std::abs(c.response[k]) / c.trials; }), plan,
+                 ValueRange::kPositive));
+    all.push_back(quantity(fmt::format("lag_{:g}_hz", frequencies[k]), "lag " + at, "s",
+                           values([&](const Cell& c) {
+                             return -std::arg(c.response[k]) / (2.0 * M_PI * frequencies[k]);
+                           }),
+                           plan));
+  }
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    all[i].headline = false;
+  }
+  return all;
+}
+
+}  // namespace
+
+PursuitResponse pursuit_response(const Places& target, const Places& hand, double rate,
+                                 const std::vector<double>& frequencies) {
+  const Eigen::MatrixXd seen = matrix_of(target), moved = matrix_of(hand);
+  const Eigen::MatrixXd centred = seen.rowwise() - seen.colwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(centred.transpose() * centred);
+  constexpr double kMoves = 1e-6;  // share of the greatest variance with which a direction counts
+  const Eigen::MatrixXd error = moved - seen;
+  PursuitResponse found;
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (spread.eigenvalues()[axis] > kMoves * spread.eigenvalues()[2]) {
+      const Eigen::VectorXd beside = error * spread.eigenvectors().col(axis);
+      square += beside.squaredNorm();
+    }
+  }
+  found.error = std::sqrt(square / static_cast<double>(target.size()));
+  if (frequencies.empty()) {
+    return found;
+  }
+  const Eigen::Vector3d along = spread.eigenvectors().col(2);
+  const Eigen::MatrixXd basis = basis_of(seen.rows(), rate, frequencies);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> solver(basis);
+  const Eigen::VectorXd shown = seen * along, followed = moved * along;
+  const Eigen::VectorXd of_target = solver.solve(shown), of_hand = solver.solve(followed);
+  const Eigen::VectorXd held = basis * of_hand;
+  found.followed = variance(held) / variance(followed);
+  for (std::size_t k = 0; k < frequencies.size(); ++k) {
+    found.response.push_back(amplitude(of_hand, k) / amplitude(of_target, k));
+  }
+  return found;
+}
+
+std::vector<Quantity> pursuit_quantities(const TrialsData& data,
+                                         const std::vector<std::filesystem::path>& files,
+                                         const TrialsPlan& plan, int threads) {
+  std::vector<std::optional<PursuitResponse>> responses(data.trials.size());
+  parallel_for(files.size(), threads_or_all(threads), [&](std::size_t session) {
+    const SessionPursuits pursuits(files[session], plan.pursuit);
+    for (std::size_t i = 0; i < data.trials.size(); ++i) {
+      if (data.trials[i].session == session && data.trials[i].counts()) {
+        responses[i] = pursuits.of(data.trials[i]);
+      }
+    }
+  });
+  std::map<std::pair<std::string, std::vector<std::string>>, Cell> cells;
+  for (std::size_t i = 0; i < data.trials.size(); ++i) {
+    if (!responses[i]) {
+      continue;
+    }
+    const StudyTrial& trial = data.trials[i];
+    Cell& cell = cells[{data.session_of(trial).participant, factors_of(data, trial, plan)}];
+    cell.response.resize(responses[i]->response.size());
+    cell.error += responses[i]->error;
+    cell.followed += responses[i]->followed;
+    cell.trials += 1.0;
+    for (std::size_t k = 0; k < cell.response.size(); ++k) {
+      cell.response[k] += responses[i]->response[k];
+    }
+  }
+  return quantities_of(cells, plan);
+}
+
+}  // namespace haptrial::analysis::trials
