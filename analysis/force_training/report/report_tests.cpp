@@ -24,7 +24,9 @@ std::string mean_of(const StudyStatistics& s, const std::string& side) {
 /// Sentence about a planned test as journals want it.
 std::string sentence(const StudyStatistics& s, const SideTest& test, const std::string& what) {
   constexpr double kAlpha = 0.05;
-  const auto& [a, b, tail] = test.sides;
+  const std::string& a = test.sides.a;
+  const std::string& b = test.sides.b;
+  const Tail tail = test.sides.tail;
   if (!test.t || !test.holm) {
     return fmt::format("The planned test {} is not defined, because {}.", text_of(test.sides),
                        test.t.because());

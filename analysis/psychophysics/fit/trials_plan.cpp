@@ -356,7 +356,14 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
           "Tests that were planned before the data: \"a < b\", \"a > b\" or \"a != b\" of levels "
           "of the factors in `by`",
           [&](Table& table, const std::string&, P& plan) { read_tests(table, defaults, plan); })
-      .otherwise("none");
+      .otherwise("none")
+      .custom("bayes_factors", kBayesFactorsText,
+              [](Table& table, const std::string& key, P& plan) {
+                if (table.boolean(key)) {
+                  ask_for_bayes_factors(plan.plan);
+                }
+              })
+      .otherwise("false");
   add_answers(schema, defaults);
   schema.check([&](Table& table, P& plan) {
     plan.functions = plan.kind == AnalysisKind::kPsychometric ||

@@ -97,6 +97,12 @@ std::string text_of(const PlannedTest& test) {
   return fmt::format("{}{}{}", test.a, sign->first, test.b);
 }
 
+void ask_for_bayes_factors(AnalysisPlan& plan) {
+  for (PlannedTest& test : plan.tests) {
+    test.bayes_factor = true;
+  }
+}
+
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {
   const auto check = [&](Table& table, const std::string& key, const std::string& name) {
     if (std::find(conditions.begin(), conditions.end(), name) == conditions.end()) {
@@ -126,6 +132,13 @@ AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>&
                 }
               })
       .otherwise("none")
+      .custom("bayes_factors", kBayesFactorsText,
+              [](Table& table, const std::string& key, P& plan) {
+                if (table.boolean(key)) {
+                  ask_for_bayes_factors(plan);
+                }
+              })
+      .otherwise("false")
       .custom("reference", "Condition with which the others are compared",
               [&](Table& table, const std::string& key, P& plan) {
                 plan.reference = table.text(key);

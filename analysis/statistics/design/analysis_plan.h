@@ -17,6 +17,7 @@ struct PlannedTest {
   std::string a;
   std::string b;
   Tail tail{Tail::kTwoSided};
+  bool bayes_factor{false};  // it is given beside p
 };
 
 /// The experimenter's decisions before the data. Source: Morris 2006, §4.4, for the shipped study.
@@ -35,7 +36,13 @@ AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
 /// The same again.
 std::string text_of(const PlannedTest& test);
 
-/// The optional keys `planned` and `reference` of an [analysis] table. Names that are not of
+/// Asks for the Bayes factor of each test. Key `bayes_factors` of an [analysis] table.
+void ask_for_bayes_factors(AnalysisPlan& plan);
+inline constexpr const char* kBayesFactorsText =
+    "Whether planned tests have Bayes factors: of the effect against none, with a Cauchy prior of "
+    "scale 0.707 on its size, on one side for a directed test";
+
+/// The optional keys `planned`, `bayes_factors` and `reference` of an [analysis] table. Names that are not of
 /// `conditions` are noted as problems of the table.
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions);
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/statistics/tests/bayes_factor.h"
+
 namespace haptrial::analysis {
 namespace {
 
@@ -33,6 +35,20 @@ Defined<TTest> stratified(const Sides& sides, Tail tail) {
     }
   }
   return stratified_t_test(a, b, tail);
+}
+
+/// Of Student's test: the variances of both sides are taken to be alike.
+Defined<double> bayes_factor_of(const Sides& values, Tail tail) {
+  if (values.strata.size() > 1) {
+    return Undefined{"other groups lie across both sides"};
+  }
+  const auto n_a = static_cast<double>(values.a.size()), n_b = static_cast<double>(values.b.size());
+  const Defined<TTest> t = values.paired ? paired_t_test(values.a, values.b, tail)
+                                         : student_t_test(values.a, values.b, tail);
+  if (!t) {
+    return Undefined{t.because()};
+  }
+  return bayes_factor(t->t, t->df, values.paired ? n_a : n_a * n_b / (n_a + n_b), tail);
 }
 
 void resample(SideTest& test, const Sides& values, Resampling resampling) {
@@ -73,6 +89,9 @@ SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, c
   test.count_a = values.a.size();
   test.count_b = values.b.size();
   const Tail tail = test.sides.tail;
+  if (test.sides.bayes_factor) {
+    test.bayes_factor = bayes_factor_of(values, tail);
+  }
   if (values.strata.size() > 1 && !equally_large(values)) {
     const Undefined why{"groups of different size are weighed alike, which only the t-test does"};
     test.t = stratified(values, tail);

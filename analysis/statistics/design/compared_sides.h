@@ -27,6 +27,7 @@ struct SideTest {
   Defined<PermutationTest> permutation{Undefined{"nothing was resampled"}};
   Defined<double> permutation_holm{Undefined{"nothing was resampled"}};
   Defined<BootstrapInterval> bootstrap{Undefined{"nothing was resampled"}};  // of the difference
+  Defined<double> bayes_factor{Undefined{"it was not asked for"}};  // of an effect against none
 };
 
 /// "paired t" or "Welch's t".

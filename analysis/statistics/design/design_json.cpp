@@ -48,18 +48,22 @@ Json to_json(const EffectTest& e) {
 }
 
 Json to_json(const SideTest& t) {
-  return {{"test", text_of(t.sides)},
-          {"tail", t.sides.tail == Tail::kTwoSided ? "two" : "one"},
-          {"participants", {t.count_a, t.count_b}},
-          {"t_test", t.paired ? "paired" : "Welch"},
-          {"t", defined(t.t)},
-          {"p_holm", defined(t.holm)},
-          {t.paired ? "d_z" : "cohens_d", defined(t.size)},
-          {t.paired ? "wilcoxon_signed_rank" : "mann_whitney", defined(t.ranks)},
-          {"ranks_p_holm", defined(t.ranks_holm)},
-          {"permutation", defined(t.permutation)},
-          {"permutation_p_holm", defined(t.permutation_holm)},
-          {"bootstrap_of_difference_95", defined(t.bootstrap)}};
+  Json json{{"test", text_of(t.sides)},
+            {"tail", t.sides.tail == Tail::kTwoSided ? "two" : "one"},
+            {"participants", {t.count_a, t.count_b}},
+            {"t_test", t.paired ? "paired" : "Welch"},
+            {"t", defined(t.t)},
+            {"p_holm", defined(t.holm)},
+            {t.paired ? "d_z" : "cohens_d", defined(t.size)},
+            {t.paired ? "wilcoxon_signed_rank" : "mann_whitney", defined(t.ranks)},
+            {"ranks_p_holm", defined(t.ranks_holm)},
+            {"permutation", defined(t.permutation)},
+            {"permutation_p_holm", defined(t.permutation_holm)},
+            {"bootstrap_of_difference_95", defined(t.bootstrap)}};
+  if (t.sides.bayes_factor) {
+    json["bayes_factor"] = defined(t.bayes_factor);
+  }
+  return json;
 }
 
 Json to_json(const TestFamily& family) {

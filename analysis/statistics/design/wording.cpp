@@ -81,16 +81,30 @@ std::string effect_result(const EffectTest& effect) {
       effect.size ? fmt::format(", partial η² = {:#.2g}", effect.size->value) : "");
 }
 
+namespace {
+
+/// "8.37 for an effect", "3.2 against an effect" of 1 / 3.2.
+std::string bayes_result(const Defined<double>& factor) {
+  if (!factor) {
+    return not_defined(factor.because());
+  }
+  return *factor >= 1.0 ? number(*factor) + " for an effect"
+                        : number(1.0 / *factor) + " against an effect";
+}
+
+}  // namespace
+
 std::string side_result(const SideTest& test) {
   if (!test.t) {
     return not_defined(test.t.because());
   }
   return fmt::format(
       "difference {}, 95 % CI {} to {} (two-sided, not adjusted), {}({}) = {:.2f}, {} after Holm's "
-      "adjustment, {}",
+      "adjustment, {}{}",
       number(test.t->difference), number(test.t->low), number(test.t->high), name_of_test(test),
       degrees(test.t->df), test.t->t, p_result(test.holm),
-      test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed");
+      test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed",
+      test.sides.bayes_factor ? ", Bayes factor " + bayes_result(test.bayes_factor) : "");
 }
 
 std::string bootstrap_result(const SideTest& test) {
