@@ -216,8 +216,7 @@ void add_warnings(FunctionFit& result, const StatedFit& fit, const TrialsPlan& p
     warnings.emplace_back("the guess rate ended at its bound; it may be higher");
   }
   if (fit.open()) {
-    warnings.emplace_back(
-        "the answers do not tell how far the threshold lies beyond what was presented");
+    warnings.emplace_back("the answers leave a side of the threshold's interval open");
   }
 }
 
@@ -233,7 +232,7 @@ std::string untold_because(const FunctionFit& result, const StatedFit& fit,
                  "neg_ falls"
                : "the share of answers 1 rises with the level, and the function falls";
   }
-  return fit.open() ? "the threshold lies beyond what was presented"
+  return fit.open() ? "the threshold may lie beyond what was presented"
                     : "the answers do not tell threshold and width";
 }
 

@@ -29,7 +29,7 @@ struct FunctionReadings {
   Estimated lapse;
   Estimated guess;  // NaN: it is known
 
-  /// Whether the answers leave open how far the threshold lies beyond what was presented.
+  /// Whether the answers leave a side of the threshold's interval open.
   bool open() const { return std::isinf(x.low) || std::isinf(x.high); }
 };
 

@@ -139,10 +139,14 @@ void add_interval(TrackEstimate& track, const TrialsPlan& plan, const ProcedureO
     track.no_interval = "the track was at the end of its range";
     return;
   }
-  if (const auto found = simulated_interval(track, plan, procedure_of)) {
-    track.estimates.front().interval = {found->low, found->high};
-  } else {
+  const auto found = simulated_interval(track, plan, procedure_of);
+  const double estimate = track.estimates.front().value;
+  if (!found) {
     track.no_interval = found.because();
+  } else if (estimate < found->low || estimate > found->high) {
+    track.no_interval = "nearly all simulated tracks miss the level on the same side";
+  } else {
+    track.estimates.front().interval = {found->low, found->high};
   }
 }
 

@@ -21,8 +21,7 @@ void add_quantity(Document& document, const Quantity& q) {
   document.subheading(capitalized(q.title));
   if (!q.open.empty()) {
     document.paragraph(
-        fmt::format("Without {}: the answers do not tell how far the value lies "
-                    "beyond what was presented.",
+        fmt::format("Without {}: the answers leave a side of the value's interval open.",
                     fmt::join(q.open, ", ")));
   }
   add_design_tests(document, q.table, q.tests, q.unit);

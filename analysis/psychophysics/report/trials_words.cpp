@@ -33,8 +33,7 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
   }
   if (!q.open.empty()) {
     lines.push_back(fmt::format(
-        "{}: the answers of {} do not tell how far it lies beyond what was presented; they are in "
-        "no mean and no test",
+        "{}: the answers of {} leave a side of the interval open; they are in no mean and no test",
         capitalized(q.title), fmt::join(q.open, ", ")));
   }
 }

@@ -29,7 +29,7 @@ MeanInterval within_range(MeanInterval mean, ValueRange range) {
 namespace {
 
 Undefined left_out(const std::vector<std::string>& open, std::size_t others) {
-  return {fmt::format("{} of {} values lie beyond what was presented ({})", open.size(),
+  return {fmt::format("{} of {} values have an interval with an open side ({})", open.size(),
                       open.size() + others, fmt::join(open, ", "))};
 }
 

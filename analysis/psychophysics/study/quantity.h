@@ -14,7 +14,7 @@ struct QuantityValue {
   std::string participant;
   std::vector<std::string> levels;  // of TrialsPlan::by
   double value{0.0};                // finite
-  bool open{false};  // the answers do not tell how far it lies beyond what was presented
+  bool open{false};  // the answers leave a side of its interval open
 };
 
 /// A quantity over participants: means of the conditions, and tests between them. A participant is

@@ -268,7 +268,7 @@ HandleText check_every_value(TrialsDefinition& d) {
   std::vector<std::string> bodies;
   HandleReport handle(d);
   PictureReport picture(d);
-  LeadReport lead;
+  LeadReport lead(d);
   for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
     const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
     std::size_t combinations = 1;

@@ -8,44 +8,94 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/base/definition/table.h"
 #include "protocols/psychophysics/definition/presented.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
 
 namespace haptrial::protocols {
 namespace {
 
+/// A hand that rests wanders by less [m].
+constexpr double kWander = 0.002;
+
 bool has(std::uint64_t bits, std::size_t i) { return (bits >> i & 1U) != 0; }
+
+/// The field that leads a tool nearest to a region.
+struct Lead {
+  std::string field;
+  double away{INFINITY};  // of its end from the region; 0 or less: inside [m]
+};
+
+Lead nearest_lead(const Presented& presented, std::uint64_t fields, std::size_t region) {
+  const scene::PlacedShape shape(presented.regions[region].shape);
+  const std::uint64_t acting = fields & presented.felt[presented.region_devices[region]];
+  Lead lead;
+  for (std::size_t f = 0; f < presented.fields.size(); ++f) {
+    const auto end = has(acting, f) ? scene::traits_of(presented.fields[f]).leads_to : std::nullopt;
+    const double away = end ? shape.distance(*end).distance : INFINITY;
+    if (away < lead.away) {
+      lead = {presented.fields[f].name, away};
+    }
+  }
+  return lead;
+}
+
+/// Whether the middle, where hands begin, lies safely in a region.
+bool holds_the_middle(const scene::Region& region) {
+  return scene::PlacedShape(region.shape).distance(Eigen::Vector3d::Zero()).distance < -kWander;
+}
+
+std::string unled_words(const std::string& stage, const scene::Region& region) {
+  const Eigen::Vector3d centre = scene::ball_of(region.shape).centre;
+  return fmt::format(
+      "stage {} waits until the tool is inside regions.{}, about ({:.3g}, {:.3g}, {:.3g}) m, and "
+      "nothing leads it there; a person may go, a virtual participant does not",
+      stage, region.name, centre.x(), centre.y(), centre.z());
+}
 
 }  // namespace
 
+LeadReport::LeadReport(const TrialsDefinition& definition) {
+  Table root = definition.root();
+  Table observer = root.table("observer");
+  simulated_ = observer.has("actions");
+  if (!simulated_) {
+    return;
+  }
+  Table actions = observer.table("actions");
+  for (const std::string& stage : actions.keys()) {
+    const auto action = actions.table(stage).whole_text("do");
+    if (!action || (*action != "rest" && *action != "hold")) {
+      moving_.insert(stage);
+    }
+  }
+}
+
 void LeadReport::add(const Presented& presented) {
+  std::uint64_t before = 0;  // fields of the stages before
+  bool moved = false;        // the hand went somewhere by itself
   for (const NamedStage& named : presented.stages) {
     const Stage& stage = named.stage;
+    moved = moved || moving_.contains(named.name);
     for (std::size_t r = 0; r < presented.regions.size(); ++r) {
       if (!has(stage.until.inside, r) || stage.late == Consequence::kGoOn) {
         continue;
       }
       const scene::Region& region = presented.regions[r];
-      const scene::PlacedShape shape(region.shape);
-      const std::uint64_t acting = stage.fields & presented.felt[presented.region_devices[r]];
-      std::string leading;
-      double nearest = INFINITY;
-      for (std::size_t f = 0; f < presented.fields.size(); ++f) {
-        const auto end =
-            has(acting, f) ? scene::traits_of(presented.fields[f]).leads_to : std::nullopt;
-        if (end) {
-          const double away = shape.distance(*end).distance;
-          leading = away < nearest ? presented.fields[f].name : leading;
-          nearest = std::min(nearest, away);
-        }
-      }
-      if (std::isfinite(nearest) && nearest > 0.0) {
+      const Lead lead = nearest_lead(presented, stage.fields, r);
+      if (std::isfinite(lead.away) && lead.away > 0.0) {
         beside_.try_emplace(
             named.name,
             fmt::format("stage {} waits until the tool is inside regions.{}, and fields.{} leads "
                         "it to a place {:.3g} m beside it; a hand that is led never arrives",
-                        named.name, region.name, leading, nearest));
+                        named.name, region.name, lead.field, lead.away));
+      } else if (simulated_ && !moved &&
+                 nearest_lead(presented, stage.fields | before, r).away > 0.0 &&
+                 !holds_the_middle(region)) {
+        beside_.try_emplace(named.name, unled_words(named.name, region));
       }
     }
+    before |= stage.fields;
   }
 }
 

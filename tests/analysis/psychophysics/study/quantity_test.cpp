@@ -51,7 +51,7 @@ TEST(QuantityTest, AnOpenValueLeavesNoMean) {
   const Quantity thresholds = quantity("threshold", "threshold", "N/m", values, TrialsPlan{});
   ASSERT_EQ(thresholds.means.size(), 1u);
   ASSERT_FALSE(thresholds.means[0]);
-  EXPECT_EQ(thresholds.means[0].because(), "1 of 4 values lie beyond what was presented (C)");
+  EXPECT_EQ(thresholds.means[0].because(), "1 of 4 values have an interval with an open side (C)");
   EXPECT_EQ(thresholds.open, std::vector<std::string>{"C"});
 }
 

@@ -288,6 +288,29 @@ TEST(TrialMistakesTest, AHandThatIsLedBesideTheRegionGetsAWarning) {
                                  "m beside it; a hand that is led never arrives")));
 }
 
+/// A person may go to a region, a virtual participant that rests stays where hands begin.
+TEST(TrialMistakesTest, ARegionToWhichNothingLeadsGetsAWarning) {
+  const auto warnings_with = [](const std::string& centre, const std::string& observer) {
+    const std::string more =
+        "[regions.start]\ntype = \"sphere\"\ncentre = " + centre + "\nradius = 0.008\n" + observer;
+    TrialsDefinition d;
+    read_small(with(small_trials(kSmallStaircase, more), "until = { time = 0.2 }",
+                    "until = { inside = \"start\" }\n"
+                    "timeout = { after = 5.0, then = \"abort\" }"),
+               d);
+    return check_every_value(d).warnings;
+  };
+  const std::string resting = "[observer.actions]\npress = { do = \"rest\" }\n";
+  EXPECT_THAT(warnings_with("[0.0, 0.02, 0.0]", resting),
+              Contains(HasSubstr("stage press waits until the tool is inside regions.start, about "
+                                 "(0, 0.02, 0) m, and nothing leads it there")));
+  EXPECT_THAT(warnings_with("[0.0, 0.0, 0.0]", resting), IsEmpty());
+  EXPECT_THAT(warnings_with("[0.0, 0.02, 0.0]",
+                            "[observer.actions]\npress = { do = \"reach\", duration = 0.5 }\n"),
+              IsEmpty());
+  EXPECT_THAT(warnings_with("[0.0, 0.02, 0.0]", ""), IsEmpty()) << "only people take part";
+}
+
 TEST(TrialMistakesTest, ABlockThatCannotBeginIsNamed) {
   const std::string blocks =
       "[[blocks]]\nname = \"bare\"\n[[blocks]]\nname = \"main\"\ntouched = \"floor\"\n";
