@@ -2,10 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "analysis/document/palette.h"
 #include "experiments/preview/preview_pictures.h"
 #include "experiments/preview/stage_names.h"
 #include "experiments/preview/trials_parts.h"
@@ -18,19 +16,6 @@ using protocols::FeltStage;
 using protocols::PreviewedInterval;
 using protocols::PreviewedTrial;
 using protocols::TrialsDefinition;
-
-/// Looks of curves: along x, y, z; then those across.
-analysis::Look look_of(std::size_t at) {
-  namespace palette = analysis::palette;
-  static constexpr std::array kCurveLooks{
-      analysis::Look{palette::kBlue, palette::kSolid, 7, 3.0, 1.0},
-      analysis::Look{palette::kOrange, palette::kLong, 7, 2.6, 1.0},
-      analysis::Look{palette::kGreen, palette::kMixed, 7, 2.6, 1.0},
-      analysis::Look{palette::kBlack, palette::kShort, 7, 2.0, 1.0},
-      analysis::Look{palette::kPurple, palette::kLong, 7, 2.0, 1.0},
-      analysis::Look{palette::kGrey, palette::kSolid, 7, 2.0, 1.0}};
-  return kCurveLooks[at % kCurveLooks.size()];
-}
 
 struct Curves {
   std::vector<analysis::Series> series;
@@ -54,7 +39,7 @@ void add_components(const std::vector<double>& x, const std::vector<Eigen::Vecto
     }
     analysis::Series series{
         fmt::format("{}-force{}", kAxisNames[static_cast<std::size_t>(component)], where),
-        analysis::Mark::kLine, look_of(curves.series.size())};
+        analysis::Mark::kLine, curve_look(curves.series.size())};
     series.x = x;
     for (const Eigen::Vector3d& force : forces) {
       series.y.push_back(force[component]);

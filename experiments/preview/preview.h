@@ -15,8 +15,8 @@ struct PreviewRequest {
   bool virtual_trial{true};  // a virtual participant does the trial
 };
 
-/// The session that a preview looks at: the first of the first participant.
-protocols::SessionPlace previewed_session(std::uint64_t seed);
+/// The session that a preview looks at: the first of a participant. @param participant  from 0
+protocols::SessionPlace previewed_session(std::uint64_t seed, int participant = 0);
 
 // The parts of every experiment. Each adds a heading and what stands below it.
 

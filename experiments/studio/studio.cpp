@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "experiments/studio/commands.h"
 #include "experiments/studio/studio_page.h"
 #include "experiments/studio/study_folder.h"
+#include "experiments/studio/tried_trials.h"
 #include "experiments/studio/views_internal.h"
 
 namespace haptrial::experiments {
@@ -68,7 +71,8 @@ class Studio::Implementation {
   explicit Implementation(const StudioOptions& options)
       : folder_(options.folder),
         commands_(options.program, folder_.path()),
-        views_(folder_, commands_, options.libraries),
+        tried_(options.program, folder_.path()),
+        views_(folder_, commands_, tried_, options.libraries),
         server_(server_options(options), routes()) {}
   ~Implementation() { commands_.stop(); }
 
@@ -99,8 +103,8 @@ class Studio::Implementation {
 
   std::vector<WebRoute> routes() {
     std::vector<WebRoute> all = looks();
-    for (WebRoute& act : acts()) {
-      all.push_back(std::move(act));
+    for (auto more : {acts(), tries()}) {
+      std::ranges::move(more, std::back_inserter(all));
     }
     return all;
   }
@@ -170,8 +174,27 @@ class Studio::Implementation {
             })};
   }
 
+  /// A trial under the pointer of the page.
+  std::vector<WebRoute> tries() {
+    constexpr int kMost = 1'000'000;
+    return {post("/try",
+                 [this](const json& body) {
+                   return views_.try_trial(string_in(body, "file"), string_in(body, "text"),
+                                           number_in(body, "trial", 1, kMost));
+                 }),
+            post("/try_move",
+                 [this](const json& body) {
+                   return views_.try_move(number_in(body, "try", 1, kMost),
+                                          body.value("lines", json()));
+                 }),
+            post("/try_end", [this](const json& body) {
+              return views_.try_end(number_in(body, "try", 1, kMost));
+            })};
+  }
+
   StudyFolder folder_;
   Commands commands_;
+  TriedTrials tried_;
   StudioViews views_;
   GuardedServer server_;
 };

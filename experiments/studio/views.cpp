@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/utf8.h"
+#include "experiments/server/request_filter.h"
 #include "experiments/studio/views_internal.h"
 
 namespace haptrial::experiments {
@@ -116,14 +117,17 @@ json files_json(const std::vector<FolderFile>& files) {
   return all;
 }
 
+constexpr const char* kFramedPolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; "
+    "frame-ancestors 'self'";
+
 /// A report is data: it runs nothing, loads nothing, and only the studio may frame it.
 WebAnswer framed(const std::string& type, std::string text) {
   WebAnswer answer{200, type, std::move(text)};
-  answer.headers = {{"Content-Security-Policy",
-                     "sandbox allow-popups; default-src 'none'; style-src 'unsafe-inline'; "
-                     "img-src data:; font-src data:; frame-ancestors 'self'"},
-                    {"X-Frame-Options", "SAMEORIGIN"},
-                    {"Cross-Origin-Opener-Policy", "unsafe-none"}};
+  answer.headers = {
+      {"Content-Security-Policy", fmt::format("sandbox allow-popups; {}", kFramedPolicy)},
+      {"X-Frame-Options", "SAMEORIGIN"},
+      {"Cross-Origin-Opener-Policy", "unsafe-none"}};
   return answer;
 }
 
@@ -136,8 +140,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 }  // namespace
 
-StudioViews::StudioViews(const StudyFolder& folder, Commands& commands, fs::path libraries)
-    : folder_(folder), commands_(commands), libraries_(std::move(libraries)) {
+StudioViews::StudioViews(const StudyFolder& folder, Commands& commands, TriedTrials& tried,
+                         fs::path libraries)
+    : folder_(folder), commands_(commands), tried_(tried), libraries_(std::move(libraries)) {
   std::string name = (fs::temp_directory_path() / "haptrial-studio-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
     throw RunError(
@@ -303,7 +308,47 @@ WebAnswer StudioViews::preview_page(const std::string& number) const {
   if (!fs::is_regular_file(page.path())) {
     throw InputError("this preview was shown before; ask for a new one");
   }
-  return framed("text/html; charset=utf-8", file_text(page.path()));
+  const std::string nonce = make_token();
+  // The element's text cannot come from a definition, whose texts are escaped.
+  WebAnswer answer = framed("text/html; charset=utf-8",
+                            replaced(file_text(page.path()), "<script nonce=\"NONCE\">",
+                                     fmt::format("<script nonce=\"{}\">", nonce)));
+  answer.headers["Content-Security-Policy"] =
+      fmt::format("sandbox allow-scripts; script-src 'nonce-{}'; {}", nonce, kFramedPolicy);
+  return answer;
+}
+
+json StudioViews::try_trial(const std::string& file, const std::string& text, int trial) const {
+  const Draft draft(folder_.definition(file), folder_.path(), text);
+  const CommandWords words{"show", file, "--trial", std::to_string(trial), "--try"};
+  CommandWords asked = words;
+  asked[1] = draft.name();
+  const TriedTrials::Begun begun = tried_.begin(asked);
+  json out{{"command", shown_command(words)},
+           {"device", shown_command({"run", file, "--pilot", "--device", "mouse", "--window"})}};
+  if (begun.number > 0) {
+    out["try"] = begun.number;
+    out["head"] = json::parse(begun.first, nullptr, false);
+  } else {
+    out["failure"] = replaced(begun.first, draft.name(), file);
+  }
+  return out;
+}
+
+json StudioViews::try_move(int number, const json& lines) const {
+  std::vector<std::string> words;
+  for (const json& line : lines) {
+    if (!line.is_string()) {
+      throw InputError("the body's \"lines\" are not texts");
+    }
+    words.push_back(line.get<std::string>());
+  }
+  return {{"lines", tried_.answer(number, words)}};
+}
+
+json StudioViews::try_end(int number) const {
+  tried_.end(number);
+  return json::object();
 }
 
 json StudioViews::schema(const std::string& protocol) const {

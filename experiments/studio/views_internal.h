@@ -9,6 +9,7 @@
 #include "experiments/studio/remarks.h"
 #include "experiments/studio/session_files.h"
 #include "experiments/studio/study_folder.h"
+#include "experiments/studio/tried_trials.h"
 
 namespace haptrial::experiments {
 
@@ -16,8 +17,9 @@ namespace haptrial::experiments {
 /// its line as "command". Any thread. InputError for what is not allowed, RunError for what failed.
 class StudioViews {
  public:
-  /// @param folder, commands  outlive it
-  StudioViews(const StudyFolder& folder, Commands& commands, std::filesystem::path libraries);
+  /// @param folder, commands, tried  outlive it
+  StudioViews(const StudyFolder& folder, Commands& commands, TriedTrials& tried,
+              std::filesystem::path libraries);
   ~StudioViews();
   StudioViews(const StudioViews&) = delete;
   StudioViews& operator=(const StudioViews&) = delete;
@@ -37,6 +39,11 @@ class StudioViews {
                          bool virtual_trial) const;
   /// A preview that was made, once.
   WebAnswer preview_page(const std::string& number) const;
+  /// Begins to try a trial with a pointer. @param trial  as of preview()
+  nlohmann::json try_trial(const std::string& file, const std::string& text, int trial) const;
+  /// Answers to lines of a trial that is tried. @param number  of it
+  nlohmann::json try_move(int number, const nlohmann::json& lines) const;
+  nlohmann::json try_end(int number) const;
   nlohmann::json save(const std::string& file, const std::string& text,
                       const std::string& stamp) const;
   nlohmann::json schema(const std::string& protocol) const;
@@ -64,6 +71,7 @@ class StudioViews {
 
   const StudyFolder& folder_;
   Commands& commands_;
+  TriedTrials& tried_;
   std::filesystem::path libraries_;
   std::filesystem::path scratch_;  // for what commands write and nobody keeps
 };

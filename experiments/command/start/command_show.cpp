@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iostream>
 #include <string>
 
 #include "core/base/error.h"
@@ -9,6 +10,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/preview/preview.h"
+#include "experiments/preview/tried_trial.h"
 #include "experiments/studies/experiment.h"
 
 namespace haptrial::experiments {
@@ -21,6 +23,7 @@ struct ShowOptions {
   std::string seed{"1"};
   std::string language;
   bool no_virtual_trial{false};
+  bool tried{false};
 };
 
 std::filesystem::path preview_file(const ShowOptions& options) {
@@ -34,7 +37,25 @@ std::filesystem::path preview_file(const ShowOptions& options) {
   return page;
 }
 
+/// Answers the lines of a pointer that tries the trial.
+int try_trial(const ShowOptions& options) {
+  const PreviewRequest request{options.trial, checked_seed(options.seed), false};
+  const Experiment experiment = load_experiment(options.definition, options.language);
+  const auto trial = experiment.study->tried_trial(*experiment.definition, request);
+  if (!trial) {
+    throw InputError(fmt::format(
+        "trials of the protocol {} cannot be tried in a page; in a window: haptrial run {} --pilot "
+        "--device mouse --window",
+        experiment.definition->protocol, options.definition));
+  }
+  try_lines(*trial, std::cin, std::cout);
+  return 0;
+}
+
 int show(const ShowOptions& options) {
+  if (options.tried) {
+    return try_trial(options);
+  }
   const std::filesystem::path page = preview_file(options);
   const PreviewRequest request{options.trial, checked_seed(options.seed),
                                !options.no_virtual_trial};
@@ -62,6 +83,9 @@ void add_show(CLI::App& app, int& status) {
                   "Language of what participants read, such as de (default: the definition's)");
   sub->add_flag("--no-virtual-trial", o.no_virtual_trial,
                 "Leave out the trial of a virtual participant");
+  sub->add_flag("--try", o.tried,
+                "Write no page, but answer places of a pointer on standard input by the forces of "
+                "the trial, a line each (guide-studio.md)");
 }
 
 }  // namespace haptrial::experiments
