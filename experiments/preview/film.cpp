@@ -11,6 +11,7 @@
 #include "analysis/document/html.h"
 #include "analysis/document/palette.h"
 #include "experiments/preview/preview_pictures.h"
+#include "experiments/preview/preview_words.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -19,8 +20,8 @@ using Eigen::Vector3d;
 using nlohmann::json;
 namespace palette = analysis::palette;
 
-constexpr double kWide = 900.0, kSide = 430.0, kTop = 26.0;  // [px]
-constexpr const char* kFont = "font-family=\"Helvetica,Arial,sans-serif\"";
+constexpr double kFilmWide = 900.0, kFilmSide = 430.0, kFilmTop = 26.0;  // [px]
+constexpr const char* kFilmFont = "font-family=\"Helvetica,Arial,sans-serif\"";
 
 /// Looks of objects, one after the other.
 constexpr std::array<const char*, 4> kColours{palette::kBlue, palette::kGreen, palette::kPurple,
@@ -57,24 +58,24 @@ struct Panel {
 };
 
 std::array<Panel, 2> panels_of(const Extent& extent) {
-  const double scale = (kSide - 60.0) / extent.size();
+  const double scale = (kFilmSide - 60.0) / extent.size();
   const Vector3d middle = extent.middle();
   const auto panel = [&](const char* title, int up, double left, double sign) {
     return Panel{title,
                  0,
                  up,
-                 left + 0.5 * kSide - scale * middle.x(),
-                 kTop + 0.5 * kSide - sign * scale * middle[up],
+                 left + 0.5 * kFilmSide - scale * middle.x(),
+                 kFilmTop + 0.5 * kFilmSide - sign * scale * middle[up],
                  scale,
                  sign * scale};
   };
   return {panel("from the front (x, y)", 1, 0.0, -1.0),
-          panel("from above (x, z)", 2, kWide - kSide, 1.0)};
+          panel("from above (x, z)", 2, kFilmWide - kFilmSide, 1.0)};
 }
 
-std::string text_at(double x, double y, const std::string& more, const std::string& words) {
+std::string film_text(double x, double y, const std::string& more, const std::string& words) {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {} font-size=\"14\" fill=\"{}\" {}>{}</text>",
-                     x, y, kFont, palette::kBlack, more, analysis::escape_html(words));
+                     x, y, kFilmFont, palette::kBlack, more, analysis::escape_html(words));
 }
 
 std::string path_of(const SpaceObject& object, const Panel& panel) {
@@ -135,7 +136,7 @@ std::string text_of(const json& data) {
 
 /// Everything that the script needs, as JSON. Times [s], places [m], forces [N].
 std::string data_of(const VirtualTrial& trial, const std::array<Panel, 2>& panels, double pixels,
-                    std::size_t begin) {
+                    std::size_t begin, const std::string& language) {
   constexpr std::size_t kMostFrames = 2400;
   const std::size_t step = std::max<std::size_t>(1, trial.times.size() / kMostFrames);
   std::string numbers;
@@ -158,13 +159,15 @@ std::string data_of(const VirtualTrial& trial, const std::array<Panel, 2>& panel
                      {"across", panel.across},
                      {"up", panel.up}});
   }
-  const json rest{
-      {"stages", stages},
-      {"panels", views},
-      {"pixels", pixels},
-      {"begin", trial.times[begin]},
-      {"words",
-       {{"play", "Play"}, {"pause", "Pause"}, {"time", "Time in the trial"}, {"speed", "Speed"}}}};
+  const json rest{{"stages", stages},
+                  {"panels", views},
+                  {"pixels", pixels},
+                  {"begin", trial.times[begin]},
+                  {"words",
+                   {{"play", in_language("Play", language)},
+                    {"pause", in_language("Pause", language)},
+                    {"time", in_language("Time in the trial", language)},
+                    {"speed", in_language("Speed", language)}}}};
   return "{\"frames\":[" + numbers + "]," + text_of(rest).substr(1);
 }
 
@@ -172,19 +175,20 @@ std::string metadata(const char* name, const std::string& data) {
   return fmt::format("<metadata class=\"{}\">{}</metadata>", name, analysis::escape_html(data));
 }
 
-std::string opening(double height) {
+std::string film_opening(double height) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" "
       "height=\"{1:g}\"><rect width=\"{0:g}\" height=\"{1:g}\" fill=\"#ffffff\"/>",
-      kWide, height);
+      kFilmWide, height);
 }
 
 std::string panel_svg(const VirtualTrial& trial, const std::vector<SpaceObject>& objects,
                       const Panel& panel, double pixels, std::size_t sample) {
   const VirtualStage* stage = stage_at(trial, trial.times[sample]);
   const int interval = stage == nullptr ? 0 : stage->interval;
-  std::string svg = text_at(panel.across == 0 && panel.up == 1 ? 4.0 : kWide - kSide + 4.0, 16.0,
-                            "", panel.title);
+  std::string svg =
+      film_text(panel.across == 0 && panel.up == 1 ? 4.0 : kFilmWide - kFilmSide + 4.0, 16.0, "",
+                panel.title);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const bool there = objects[i].interval == 0 || objects[i].interval == interval;
     svg += fmt::format(
@@ -209,7 +213,8 @@ std::string panel_svg(const VirtualTrial& trial, const std::vector<SpaceObject>&
 
 }  // namespace
 
-std::string film_svg(const VirtualTrial& trial, const std::vector<SpaceObject>& objects) {
+std::string film_svg(const VirtualTrial& trial, const std::vector<SpaceObject>& objects,
+                     const std::string& language) {
   Extent extent;
   extent.take(objects);
   std::size_t strongest = 0;
@@ -220,19 +225,20 @@ std::string film_svg(const VirtualTrial& trial, const std::vector<SpaceObject>& 
   const std::array<Panel, 2> panels = panels_of(extent);
   const double most = trial.forces[strongest].norm();
   const double pixels = most > 0.0 ? kLongestArrow / most : 0.0;
-  std::string svg = opening(kTop + kSide + 34.0);
+  std::string svg = film_opening(kFilmTop + kFilmSide + 34.0);
   for (const Panel& panel : panels) {
     svg += panel_svg(trial, objects, panel, pixels, strongest);
   }
-  svg += text_at(4.0, kTop + kSide + 22.0, "class=\"film-said\"", sentence_at(trial, strongest));
-  return svg + metadata("film", data_of(trial, panels, pixels, strongest)) + "</svg>\n";
+  svg += film_text(4.0, kFilmTop + kFilmSide + 22.0, "class=\"film-said\"",
+                   sentence_at(trial, strongest));
+  return svg + metadata("film", data_of(trial, panels, pixels, strongest, language)) + "</svg>\n";
 }
 
 namespace {
 
 /// The view before anybody turns it [degree].
 constexpr double kAbout = 30.0, kOver = 25.0;
-constexpr double kHigh = 460.0;  // [px]
+constexpr double kTurnHigh = 460.0;  // [px]
 
 /// From W to the picture, about its middle, as page/turn.js does.
 Eigen::Vector2d turned(const Vector3d& p) {
@@ -245,31 +251,31 @@ std::string axes_svg() {
   std::string svg;
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector2d end = 38.0 * turned(Vector3d::Unit(axis));
-    const double x = 60.0 + end.x(), y = kHigh - 60.0 - end.y();
+    const double x = 60.0 + end.x(), y = kTurnHigh - 60.0 - end.y();
     svg += fmt::format("<path class=\"turn-axis\" d=\"M60 {:g}L{:.1f} {:.1f}\" stroke=\"{}\"/>",
-                       kHigh - 60.0, x, y, palette::kBlack);
-    svg += text_at(x + 4.0, y - 2.0, "class=\"turn-name\"",
-                   kAxisNames[static_cast<std::size_t>(axis)]);
+                       kTurnHigh - 60.0, x, y, palette::kBlack);
+    svg += film_text(x + 4.0, y - 2.0, "class=\"turn-name\"",
+                     kAxisNames[static_cast<std::size_t>(axis)]);
   }
   return svg;
 }
 
 }  // namespace
 
-std::string turned_svg(const std::vector<SpaceObject>& objects) {
+std::string turned_svg(const std::vector<SpaceObject>& objects, const std::string& language) {
   constexpr double kUnits = 1e4;  // of line_numbers() in a metre
   Extent extent;
   extent.take(objects);
   const Vector3d middle = extent.middle();
-  const double scale = (kHigh - 80.0) / (1.3 * extent.size());  // [px/m]
-  std::string svg = opening(kHigh) + axes_svg();
+  const double scale = (kTurnHigh - 80.0) / (1.3 * extent.size());  // [px/m]
+  std::string svg = film_opening(kTurnHigh) + axes_svg();
   json numbers = json::array();
   for (std::size_t i = 0; i < objects.size(); ++i) {
     std::string d;
     for (const auto& [from, to] : objects[i].lines) {
       const Eigen::Vector2d a = scale * turned(from - middle), b = scale * turned(to - middle);
-      d += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", 0.5 * kWide + a.x(), 0.5 * kHigh - a.y(),
-                       0.5 * kWide + b.x(), 0.5 * kHigh - b.y());
+      d += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", 0.5 * kFilmWide + a.x(),
+                       0.5 * kTurnHigh - a.y(), 0.5 * kFilmWide + b.x(), 0.5 * kTurnHigh - b.y());
     }
     const char* colour = kColours[i % kColours.size()];
     svg += fmt::format(
@@ -277,16 +283,18 @@ std::string turned_svg(const std::vector<SpaceObject>& objects) {
         d, colour);
     svg += fmt::format(
         "<text x=\"{:g}\" y=\"{:g}\" text-anchor=\"end\" {} font-size=\"14\" fill=\"{}\">{}</text>",
-        kWide - 6.0, 20.0 + 18.0 * static_cast<double>(i), kFont, colour,
+        kFilmWide - 6.0, 20.0 + 18.0 * static_cast<double>(i), kFilmFont, colour,
         analysis::escape_html(objects[i].name));
     numbers.push_back(line_numbers(objects[i].lines));
   }
-  const json data{{"objects", numbers},
-                  {"middle", {kUnits * middle.x(), kUnits * middle.y(), kUnits * middle.z()}},
-                  {"scale", scale / kUnits},
-                  {"about", kAbout},
-                  {"over", kOver},
-                  {"words", {{"about", "Turn"}, {"over", "Tilt"}}}};
+  const json data{
+      {"objects", numbers},
+      {"middle", {kUnits * middle.x(), kUnits * middle.y(), kUnits * middle.z()}},
+      {"scale", scale / kUnits},
+      {"about", kAbout},
+      {"over", kOver},
+      {"words",
+       {{"about", in_language("Turn", language)}, {"over", in_language("Tilt", language)}}}};
   return svg + metadata("turn", text_of(data)) + "</svg>\n";
 }
 

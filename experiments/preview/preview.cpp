@@ -115,7 +115,7 @@ void add_film(const VirtualTrial& trial, Preview& preview) {
   figure.alt = fmt::format(
       "The simulated hand and the force on it, from the front and from above, over {:.3g} s.",
       trial.times.back());
-  preview.add(std::move(figure), film_svg(trial, preview.objects));
+  preview.add(std::move(figure), film_svg(trial, preview.objects, preview.language));
 }
 
 void add_virtual_table(const VirtualTrial& trial, Preview& preview) {
@@ -191,6 +191,7 @@ void add_virtual_trial(const Experiment& experiment, const PreviewRequest& reque
 Preview preview_of(const Experiment& experiment, const PreviewRequest& request) {
   Preview preview;
   const protocols::Definition& definition = *experiment.definition;
+  preview.language = request.language;
   preview.document.title = "Preview of " + definition.name;
   preview.document.subtitle = fmt::format(
       "{}, trial {} of the first session of participant S01, seed {}. Nobody has run it: "

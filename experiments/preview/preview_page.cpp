@@ -5,6 +5,7 @@
 
 #include "analysis/document/figure_gnuplot.h"
 #include "experiments/preview/preview_script.h"
+#include "experiments/preview/preview_words.h"
 
 namespace haptrial::experiments {
 
@@ -14,7 +15,7 @@ void Preview::add(analysis::Figure figure, std::string svg) {
 }
 
 std::string Preview::html() const {
-  std::string page = analysis::to_html(document);
+  std::string page = with_headings_in(analysis::to_html(document), language);
   return page.insert(page.rfind("</body>"), preview_script());
 }
 

@@ -20,6 +20,7 @@ class Preview {
   Preview& operator=(const Preview&) = delete;
 
   analysis::Document document;
+  std::string language;              // of headings and controls, "de"; empty: English
   std::vector<SpaceObject> objects;  // of the trial, that its film shows
 
   /// Adds a figure that gnuplot is to draw, or one that is drawn already.

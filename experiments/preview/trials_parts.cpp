@@ -277,7 +277,7 @@ void add_objects(Preview& preview) {
   figure.title = "Objects and places of the trial";
   figure.caption = "As lines, meshes thinned. Turn them with the pointer or the sliders.";
   figure.alt = fmt::format("Lines of {}.", fmt::join(names, ", "));
-  preview.add(std::move(figure), turned_svg(preview.objects));
+  preview.add(std::move(figure), turned_svg(preview.objects, preview.language));
 }
 
 void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
@@ -290,7 +290,7 @@ void add_trials_parts(const protocols::StudiedDefinition& definition, const Prev
   add_seen(trial, protocols::seen_stages(definition, trial, kPictureWidth), preview);
   preview.objects = objects_of(trial);
   add_objects(preview);
-  add_felt(definition, trial, protocols::felt_stages(definition, trial), preview);
+  add_felt(definition, trial, protocols::felt_stages(definition, trial, request.look), preview);
   add_planned(definition, protocols::planned_trials(definition, request.seed, kMostParticipants),
               preview);
 }

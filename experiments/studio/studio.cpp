@@ -11,9 +11,9 @@
 #include "core/base/error.h"
 #include "experiments/server/server.h"
 #include "experiments/studio/commands.h"
+#include "experiments/studio/line_commands.h"
 #include "experiments/studio/studio_page.h"
 #include "experiments/studio/study_folder.h"
-#include "experiments/studio/tried_trials.h"
 #include "experiments/studio/views_internal.h"
 
 namespace haptrial::experiments {
@@ -72,7 +72,8 @@ class Studio::Implementation {
       : folder_(options.folder),
         commands_(options.program, folder_.path()),
         tried_(options.program, folder_.path()),
-        views_(folder_, commands_, tried_, options.libraries),
+        page_maker_(options.program, folder_.path()),
+        views_(folder_, commands_, tried_, page_maker_, options.libraries),
         server_(server_options(options), routes()) {}
   ~Implementation() { commands_.stop(); }
 
@@ -148,7 +149,8 @@ class Studio::Implementation {
                    constexpr int kMostTrials = 1'000'000;
                    return views_.preview(string_in(body, "file"), string_in(body, "text"),
                                          number_in(body, "trial", 1, kMostTrials),
-                                         body.value("virtual", json()) == true);
+                                         body.value("virtual", json()) == true,
+                                         body.value("language", json()) == "de" ? "de" : "en");
                  }),
             post("/save",
                  [this](const json& body) {
@@ -194,7 +196,7 @@ class Studio::Implementation {
 
   StudyFolder folder_;
   Commands commands_;
-  TriedTrials tried_;
+  LineCommands tried_, page_maker_;
   StudioViews views_;
   GuardedServer server_;
 };

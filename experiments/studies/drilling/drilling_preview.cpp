@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/render/gl/image.h"
+#include "experiments/preview/certified_part.h"
 #include "experiments/preview/fixed_plan.h"
 #include "experiments/preview/preview_pictures.h"
 #include "protocols/bone_drilling/bone_trials.h"
@@ -122,6 +123,11 @@ void add_drilling_preview(const BoneDefinition& d, const PreviewRequest& request
     add_burr_figure(burrs, d.drilling.force_limit, preview);
     add_burr_table(burrs, preview);
   }
+  std::vector<DeviceDemand> demands;
+  for (const BurrForce& burr : burrs) {
+    demands.push_back({"flat bone under " + burr.tool, burr.stiffness, 0.0});
+  }
+  add_certified(d, demands, preview);
   add_fixed_plan(
       d,
       [&](int participant) {

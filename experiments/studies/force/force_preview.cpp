@@ -7,6 +7,7 @@
 
 #include "core/render/flat/frames.h"
 #include "experiments/control/live_status.h"
+#include "experiments/preview/certified_part.h"
 #include "experiments/preview/fixed_plan.h"
 #include "experiments/preview/preview_pictures.h"
 #include "protocols/force_training/guided_passes.h"
@@ -201,6 +202,11 @@ void add_force_preview(const ForceDefinition& d, const PreviewRequest& request, 
   }
   add_aside(trial, preview);
   add_gains(d, preview);
+  const protocols::GuidanceParameters& g = d.guidance;
+  add_certified(d,
+                {{"spring to the path", g.trajectory.stiffness, g.trajectory.damping},
+                 {"spring to the plane", g.plane.stiffness, g.plane.damping}},
+                preview);
   add_fixed_plan(
       d,
       [&](int participant) {

@@ -17,7 +17,7 @@ function preview_part(file) {
   const renew = () => attempt(async () => {
     const number = ++asked;
     state.textContent = word("checking");
-    const made = await post("/preview", {file, text: drafts.get(file).editor.text(), trial: Number(trial.value), virtual: virtual.checked});
+    const made = await post("/preview", {file, text: drafts.get(file).editor.text(), trial: Number(trial.value), virtual: virtual.checked, language: kLanguage});
     if (number !== asked) return;
     state.textContent = made.failure ? word("mend_first") : "";
     failure.textContent = made.failure || "";

@@ -11,28 +11,26 @@
 
 namespace haptrial::experiments {
 
-/// Trials that a pointer of a page tries: each is a command of the program that answers lines by
-/// lines (`haptrial show --try`), as a child process. A new one ends the oldest if two run. All
-/// that still run are killed at the end. Any thread.
-class TriedTrials {
+/// Commands of the program that answer lines by lines (`haptrial show --try`, `--pages`), each as a
+/// child process. A new one ends the oldest if two run. All that still run are killed at the end.
+/// Any thread.
+class LineCommands {
  public:
-  static constexpr std::size_t kMostLines = 400;  // of a request
-
   /// @param program  the executable
-  TriedTrials(std::string program, std::filesystem::path folder);
-  ~TriedTrials();
-  TriedTrials(const TriedTrials&) = delete;
-  TriedTrials& operator=(const TriedTrials&) = delete;
+  LineCommands(std::string program, std::filesystem::path folder);
+  ~LineCommands();
+  LineCommands(const LineCommands&) = delete;
+  LineCommands& operator=(const LineCommands&) = delete;
 
   struct Begun {
     int number{0};      // 0: the command said no
     std::string first;  // line of the command; its sentences if it said no
   };
-  /// Waits for the first line. @throws RunError if it cannot be started or takes two minutes
+  /// Waits for the first line, which begins with '{'. @throws RunError if it cannot be started or
+  /// takes two minutes
   Begun begin(const CommandWords& words);
-  /// @param lines  without line ends @returns the answer to each
-  /// @throws InputError for a number of none that runs, or for too many or too long lines;
-  ///         RunError if it has ended
+  /// @param lines  without line ends  @returns the answer to each
+  /// @throws InputError for a number of none that runs; RunError if it has ended
   std::vector<std::string> answer(int number, const std::vector<std::string>& lines);
   /// Ends one; nothing, if it has ended.
   void end(int number);

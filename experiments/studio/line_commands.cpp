@@ -1,10 +1,9 @@
-#include "experiments/studio/tried_trials.h"
+#include "experiments/studio/line_commands.h"
 
 #include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -19,15 +18,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostRunning = 2;
-constexpr std::size_t kLongestLine = 200;           // of a page [bytes]
+constexpr std::size_t kMostTried = 2;
 constexpr std::size_t kMostUnread = 20'000'000;     // of the command [bytes]
 constexpr std::chrono::seconds kLongestStart(120);  // bodies are prepared
-constexpr std::chrono::seconds kLongestAnswer(5);
+constexpr std::chrono::seconds kLongestAnswer(120);
 
 }  // namespace
 
-class TriedTrials::Child {
+class LineCommands::Child {
  public:
   Child(const std::string& program, const CommandWords& words,
         const std::filesystem::path& folder) {
@@ -49,7 +47,7 @@ class TriedTrials::Child {
         return next;
       }
       if (Clock::now() > until || unread_.size() > kMostUnread) {
-        throw RunError("the command that tries the trial did not answer");
+        throw RunError("a command of the studio did not answer");
       }
       if (!read_more()) {
         return std::nullopt;
@@ -73,7 +71,7 @@ class TriedTrials::Child {
       answers.push_back(std::move(*next));
     }
     if (answers.size() < lines.size()) {
-      throw RunError("the command that tries the trial has ended; begin again");
+      throw RunError("a command of the studio has ended; begin again");
     }
     return answers;
   }
@@ -103,12 +101,12 @@ class TriedTrials::Child {
   std::string unread_;
 };
 
-TriedTrials::TriedTrials(std::string program, std::filesystem::path folder)
+LineCommands::LineCommands(std::string program, std::filesystem::path folder)
     : program_(std::move(program)), folder_(std::move(folder)) {}
 
-TriedTrials::~TriedTrials() = default;
+LineCommands::~LineCommands() = default;
 
-TriedTrials::Begun TriedTrials::begin(const CommandWords& words) {
+LineCommands::Begun LineCommands::begin(const CommandWords& words) {
   std::shared_ptr<Child> child;
   try {
     child = std::make_shared<Child>(program_, words, folder_);
@@ -120,7 +118,7 @@ TriedTrials::Begun TriedTrials::begin(const CommandWords& words) {
   for (auto line = child->line(kLongestStart); line; line = child->line(kLongestStart)) {
     if (line->starts_with('{')) {
       const std::lock_guard lock(mutex_);
-      while (children_.size() >= kMostRunning) {
+      while (children_.size() >= kMostTried) {
         children_.begin()->second->kill();
         children_.erase(children_.begin());
       }
@@ -132,17 +130,11 @@ TriedTrials::Begun TriedTrials::begin(const CommandWords& words) {
   return {0, said + child->rest()};
 }
 
-std::vector<std::string> TriedTrials::answer(int number, const std::vector<std::string>& lines) {
-  const auto wrong = [](const std::string& line) {
-    return line.size() > kLongestLine || line.find('\n') != line.npos;
-  };
-  if (lines.size() > kMostLines || std::ranges::any_of(lines, wrong)) {
-    throw InputError(fmt::format("allowed: {} lines of {} bytes", kMostLines, kLongestLine));
-  }
+std::vector<std::string> LineCommands::answer(int number, const std::vector<std::string>& lines) {
   return child(number)->answer(lines);
 }
 
-void TriedTrials::end(int number) {
+void LineCommands::end(int number) {
   const std::lock_guard lock(mutex_);
   if (const auto found = children_.find(number); found != children_.end()) {
     found->second->kill();
@@ -150,11 +142,11 @@ void TriedTrials::end(int number) {
   }
 }
 
-std::shared_ptr<TriedTrials::Child> TriedTrials::child(int number) const {
+std::shared_ptr<LineCommands::Child> LineCommands::child(int number) const {
   const std::lock_guard lock(mutex_);
   const auto found = children_.find(number);
   if (found == children_.end()) {
-    throw InputError("no trial with this number is tried; begin again");
+    throw InputError("no command with this number answers; begin again");
   }
   return found->second;
 }
