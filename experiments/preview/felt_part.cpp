@@ -2,10 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "analysis/document/palette.h"
+#include "experiments/preview/certified_part.h"
 #include "experiments/preview/preview_pictures.h"
 #include "experiments/preview/stage_names.h"
 #include "experiments/preview/trials_parts.h"
@@ -18,19 +17,6 @@ using protocols::FeltStage;
 using protocols::PreviewedInterval;
 using protocols::PreviewedTrial;
 using protocols::TrialsDefinition;
-
-/// Looks of curves: along x, y, z; then those across.
-analysis::Look look_of(std::size_t at) {
-  namespace palette = analysis::palette;
-  static constexpr std::array kCurveLooks{
-      analysis::Look{palette::kBlue, palette::kSolid, 7, 3.0, 1.0},
-      analysis::Look{palette::kOrange, palette::kLong, 7, 2.6, 1.0},
-      analysis::Look{palette::kGreen, palette::kMixed, 7, 2.6, 1.0},
-      analysis::Look{palette::kBlack, palette::kShort, 7, 2.0, 1.0},
-      analysis::Look{palette::kPurple, palette::kLong, 7, 2.0, 1.0},
-      analysis::Look{palette::kGrey, palette::kSolid, 7, 2.0, 1.0}};
-  return kCurveLooks[at % kCurveLooks.size()];
-}
 
 struct Curves {
   std::vector<analysis::Series> series;
@@ -54,7 +40,7 @@ void add_components(const std::vector<double>& x, const std::vector<Eigen::Vecto
     }
     analysis::Series series{
         fmt::format("{}-force{}", kAxisNames[static_cast<std::size_t>(component)], where),
-        analysis::Mark::kLine, look_of(curves.series.size())};
+        analysis::Mark::kLine, curve_look(curves.series.size())};
     series.x = x;
     for (const Eigen::Vector3d& force : forces) {
       series.y.push_back(force[component]);
@@ -113,8 +99,8 @@ void add_lines(const FeltStage& stage, const std::string& name, Preview& preview
     return;
   }
   preview.add(force_figure(
-      name + "-lines", "Force over place", "offset from the start [mm]", std::move(curves),
-      fmt::format("Along lines through the start {}, for a hand at rest, without fades; components "
+      name + "-lines", "Force over place", "offset along the line [mm]", std::move(curves),
+      fmt::format("Along lines through {}, for a hand at rest, without fades; components "
                   "below a twentieth of the largest are left out.",
                   place_words(stage.origin))));
 }
@@ -134,9 +120,10 @@ void add_plane(const FeltStage& stage, const std::string& name, Preview& preview
   figure.caption = fmt::format(
       "Arrows point along the force on a hand at rest; the darker, the stronger. Plane of {} and "
       "{} "
-      "through the start{}.",
+      "through {}{}.",
       kAxisNames[static_cast<std::size_t>(plane.across)],
-      kAxisNames[static_cast<std::size_t>(plane.up)], plane.up == 2 ? ", as seen from above" : "");
+      kAxisNames[static_cast<std::size_t>(plane.up)], place_words(stage.origin),
+      plane.up == 2 ? ", as seen from above" : "");
   figure.alt =
       fmt::format("{} arrows; the strongest force is {:.3g} N.", plane.places.size(), most);
   preview.add(std::move(figure), arrows_svg(plane));
@@ -211,11 +198,29 @@ void add_handle(const TrialsDefinition& d, const PreviewedTrial& trial, Preview&
   } else {
     preview.document.points(words.lines);
   }
-  if (d.certificate_file.empty()) {
-    preview.document.paragraph(
-        "The definition names no certificate of a device (device.certificate), so that the forces "
-        "are not compared with what a device can present.");
+}
+
+/// The fields of all stages, each with its largest numbers, and the stiffest sum of a stage.
+std::vector<DeviceDemand> demands_of(const std::vector<FeltStage>& stages) {
+  std::vector<DeviceDemand> demands;
+  DeviceDemand sum{"all fields of the stiffest stage", 0.0, 0.0};
+  for (const FeltStage& stage : stages) {
+    DeviceDemand here{sum.name, 0.0, 0.0};
+    for (const protocols::FieldNumbers& field : stage.fields) {
+      here.stiffness += field.stiffness;
+      here.damping += field.damping;
+      const DeviceDemand demand{field.name, field.stiffness, field.damping};
+      const auto known = std::ranges::find(demands, field.name, &DeviceDemand::name);
+      if (known == demands.end()) {
+        demands.push_back(demand);
+      } else if (demand.stiffness > known->stiffness) {
+        *known = demand;
+      }
+    }
+    sum = here.stiffness > sum.stiffness ? here : sum;
   }
+  demands.push_back(sum);
+  return demands;
 }
 
 }  // namespace
@@ -248,6 +253,7 @@ void add_felt(const TrialsDefinition& d, const PreviewedTrial& trial,
     preview.document.paragraph("No field acts in any stage of this trial.");
   }
   add_handle(d, trial, preview);
+  add_certified(d, demands_of(stages), preview);
 }
 
 }  // namespace haptrial::experiments

@@ -5,23 +5,20 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <utility>
 
 #include "analysis/document/palette.h"
+#include "experiments/preview/film.h"
 #include "experiments/preview/preview_pictures.h"
-#include "experiments/preview/trials_parts.h"
 #include "experiments/preview/virtual_trial.h"
 #include "experiments/study/study_run.h"
-#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::experiments {
 namespace {
 
 namespace palette = analysis::palette;
 
-/// Longer trials are not simulated for a page, nor are their plans made: those of drillings, whose
-/// bone takes seconds to be made [s]
+/// Longer trials are not simulated for a page: those of drillings [s]
 constexpr double kLongestTrial = 50.0;
 
 constexpr std::array<analysis::Look, 3> kLooks{{{palette::kBlue, palette::kSolid, 7, 2.5, 1.0},
@@ -107,12 +104,26 @@ void add_virtual_figures(const VirtualTrial& trial, Preview& preview) {
       figure_of(trial, "force", "Force of the device", "N", curves_of(trial, trial.forces, 1.0)));
 }
 
+/// The film of the trial.
+void add_film(const VirtualTrial& trial, Preview& preview) {
+  analysis::Figure figure;
+  figure.name = "film";
+  figure.title = "The trial as a film";
+  figure.caption =
+      "SIMULATED PARTICIPANT. Dot: hand. Arrow: force of the device. Grey: the hand's way. Lines: "
+      "objects, places, path. Before it is played, the strongest force.";
+  figure.alt = fmt::format(
+      "The simulated hand and the force on it, from the front and from above, over {:.3g} s.",
+      trial.times.back());
+  preview.add(std::move(figure), film_svg(trial, preview.objects, preview.language));
+}
+
 void add_virtual_table(const VirtualTrial& trial, Preview& preview) {
   std::vector<std::vector<std::string>> rows;
   for (const VirtualStage& stage : trial.stages) {
-    rows.push_back({fmt::format("{}: {}", stage.interval, stage.name),
-                    fmt::format("{:.3f}", stage.begin),
-                    fmt::format("{:.3f}", stage.end - stage.begin)});
+    rows.push_back(
+        {stage.interval > 0 ? fmt::format("{}: {}", stage.interval, stage.name) : stage.name,
+         fmt::format("{:.3f}", stage.begin), fmt::format("{:.3f}", stage.end - stage.begin)});
   }
   if (!rows.empty()) {
     preview.document.table({"interval: stage", "begins [s]", "lasts [s]"}, rows,
@@ -120,8 +131,9 @@ void add_virtual_table(const VirtualTrial& trial, Preview& preview) {
   }
 }
 
-/// The first session of a participant. @param participant  from 0
-protocols::SessionPlace session_of(int participant, std::uint64_t seed) {
+}  // namespace
+
+protocols::SessionPlace previewed_session(std::uint64_t seed, int participant) {
   protocols::SessionPlace place;
   place.subject = participant_name(participant);
   place.participant = participant;
@@ -129,64 +141,6 @@ protocols::SessionPlace session_of(int participant, std::uint64_t seed) {
   give_seeds(place);
   return place;
 }
-
-/// Trials by condition over the participants of a study whose order of trials is known from the
-/// beginning.
-void add_fixed_plan(const Experiment& experiment, std::uint64_t seed, Preview& preview) {
-  struct Count {
-    int fewest{0}, most{0}, all{0}, participants{0};
-  };
-  constexpr int kMostParticipants = 200;
-  const protocols::Definition& d = *experiment.definition;
-  const int participants = std::min(d.design.participants, kMostParticipants);
-  std::map<std::string, Count> counts;
-  for (int participant = 0; participant < participants; ++participant) {
-    std::map<std::string, int> own;
-    const protocols::SessionPlace place = session_of(participant, seed);
-    const auto trials = experiment.study->protocol().trials(d, place);
-    for (auto trial = trials->next(nullptr); trial;) {
-      ++own[(trial->practice ? "practice: " : "") + trial->condition];
-      const protocols::Outcome done{*trial, protocols::TrialEnd::kCompleted, {}};
-      trial = trials->next(&done);
-    }
-    for (const auto& [condition, number] : own) {
-      Count& count = counts[condition];
-      count.fewest = count.participants == 0 ? number : std::min(count.fewest, number);
-      count.most = std::max(count.most, number);
-      count.all += number;
-      ++count.participants;
-    }
-  }
-  std::vector<std::vector<std::string>> rows;
-  for (const auto& [condition, count] : counts) {
-    rows.push_back({condition, fmt::format("{}", count.participants),
-                    count.fewest == count.most ? fmt::format("{}", count.most)
-                                               : fmt::format("{} to {}", count.fewest, count.most),
-                    fmt::format("{}", count.all)});
-  }
-  preview.document.heading("Trials of the study");
-  preview.document.paragraph(
-      "Counted in the first session of each participant, by the code that "
-      "plans sessions.");
-  preview.document.table({"condition", "participants", "trials of each", "trials in all"}, rows);
-}
-
-void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
-                      Preview& preview) {
-  constexpr int kPictureWidth = 640;      // [px]
-  constexpr int kMostParticipants = 200;  // that are counted
-  const protocols::PreviewedTrial trial =
-      protocols::previewed_trial(definition, previewed_session(request.seed), request.trial);
-  add_timeline(definition, trial, preview);
-  add_seen(trial, protocols::seen_stages(definition, trial, kPictureWidth), preview);
-  add_felt(definition, trial, protocols::felt_stages(definition, trial), preview);
-  add_planned(definition, protocols::planned_trials(definition, request.seed, kMostParticipants),
-              preview);
-}
-
-}  // namespace
-
-protocols::SessionPlace previewed_session(std::uint64_t seed) { return session_of(0, seed); }
 
 void add_checks(const Experiment& experiment, Preview& preview) {
   preview.document.heading("Checks");
@@ -229,6 +183,7 @@ void add_virtual_trial(const Experiment& experiment, const PreviewRequest& reque
     preview.document.paragraph(
         fmt::format("Simulated answers: {}.", fmt::join(trial.answers, "; ")));
   }
+  add_film(trial, preview);
   add_virtual_figures(trial, preview);
   add_virtual_table(trial, preview);
 }
@@ -236,6 +191,7 @@ void add_virtual_trial(const Experiment& experiment, const PreviewRequest& reque
 Preview preview_of(const Experiment& experiment, const PreviewRequest& request) {
   Preview preview;
   const protocols::Definition& definition = *experiment.definition;
+  preview.language = request.language;
   preview.document.title = "Preview of " + definition.name;
   preview.document.subtitle = fmt::format(
       "{}, trial {} of the first session of participant S01, seed {}. Nobody has run it: "
@@ -243,11 +199,7 @@ Preview preview_of(const Experiment& experiment, const PreviewRequest& request) 
       definition.file_name, request.trial, request.seed);
   preview.document.simulated = request.virtual_trial;
   add_checks(experiment, preview);
-  if (const auto* trials = dynamic_cast<const protocols::StudiedDefinition*>(&definition)) {
-    add_trials_parts(*trials, request, preview);
-  } else if (definition.longest(1) <= kLongestTrial) {
-    add_fixed_plan(experiment, request.seed, preview);
-  }
+  experiment.study->add_preview(definition, request, preview);
   if (request.virtual_trial) {
     add_virtual_trial(experiment, request, preview);
   }

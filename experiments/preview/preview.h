@@ -1,22 +1,26 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "experiments/preview/preview_page.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/interface/trials.h"
+#include "protocols/psychophysics/preview/felt_forces.h"
 
 namespace haptrial::experiments {
 
 /// Choice of what a preview shows.
 struct PreviewRequest {
-  int trial{1};              // of the first session, practice included, from 1
-  std::uint64_t seed{1};     // of the study
-  bool virtual_trial{true};  // a virtual participant does the trial
+  int trial{1};                // of the first session, practice included, from 1
+  std::uint64_t seed{1};       // of the study
+  bool virtual_trial{true};    // a virtual participant does the trial
+  std::string language{};      // of headings and controls, "de"; empty: English
+  protocols::FeltLook look{};  // where the forces of fields are drawn
 };
 
-/// The session that a preview looks at: the first of the first participant.
-protocols::SessionPlace previewed_session(std::uint64_t seed);
+/// The session that a preview looks at: the first of a participant. @param participant  from 0
+protocols::SessionPlace previewed_session(std::uint64_t seed, int participant = 0);
 
 // The parts of every experiment. Each adds a heading and what stands below it.
 

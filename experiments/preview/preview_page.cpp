@@ -4,12 +4,19 @@
 #include <vector>
 
 #include "analysis/document/figure_gnuplot.h"
+#include "experiments/preview/preview_script.h"
+#include "experiments/preview/preview_words.h"
 
 namespace haptrial::experiments {
 
 void Preview::add(analysis::Figure figure, std::string svg) {
   drawings_.push_back({std::move(figure), std::move(svg)});
   document.picture(drawings_.back());
+}
+
+std::string Preview::html() const {
+  std::string page = with_headings_in(analysis::to_html(document), language);
+  return page.insert(page.rfind("</body>"), preview_script());
 }
 
 void Preview::draw_figures() {

@@ -2,8 +2,10 @@
 
 #include <deque>
 #include <string>
+#include <vector>
 
 #include "analysis/document/document.h"
+#include "experiments/preview/space_objects.h"
 
 namespace haptrial::experiments {
 
@@ -18,12 +20,15 @@ class Preview {
   Preview& operator=(const Preview&) = delete;
 
   analysis::Document document;
+  std::string language;              // of headings and controls, "de"; empty: English
+  std::vector<SpaceObject> objects;  // of the trial, that its film shows
 
   /// Adds a figure that gnuplot is to draw, or one that is drawn already.
   void add(analysis::Figure figure, std::string svg = "");
   /// Draws all figures that are not drawn yet. @throws RunError without gnuplot
   void draw_figures();
-  std::string html() const { return analysis::to_html(document); }
+  /// The page with its scripts, which play and turn what pictures show.
+  std::string html() const;
 
  private:
   std::deque<analysis::Drawing> drawings_;

@@ -1,6 +1,7 @@
 #include "experiments/preview/preview_pictures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +10,7 @@
 #include "analysis/document/base64.h"
 #include "analysis/document/html.h"
 #include "analysis/document/palette.h"
+#include "core/base/counted.h"
 #include "protocols/psychophysics/preview/felt_forces.h"
 
 namespace haptrial::experiments {
@@ -164,6 +166,38 @@ std::vector<std::string> lines_of_words(const std::string& words, std::size_t le
 }
 
 }  // namespace
+
+analysis::Look curve_look(std::size_t at) {
+  namespace palette = analysis::palette;
+  static constexpr std::array kCurveLooks{
+      analysis::Look{palette::kBlue, palette::kSolid, 7, 3.0, 1.0},
+      analysis::Look{palette::kOrange, palette::kLong, 7, 2.6, 1.0},
+      analysis::Look{palette::kGreen, palette::kMixed, 7, 2.6, 1.0},
+      analysis::Look{palette::kBlack, palette::kShort, 7, 2.0, 1.0},
+      analysis::Look{palette::kPurple, palette::kLong, 7, 2.0, 1.0},
+      analysis::Look{palette::kGrey, palette::kSolid, 7, 2.0, 1.0}};
+  return kCurveLooks[at % kCurveLooks.size()];
+}
+
+analysis::Figure timeline_figure(std::size_t bars) {
+  analysis::Figure figure;
+  figure.name = "timeline";
+  figure.title = "Stages of the trial";
+  figure.caption =
+      "Solid: time that passes in any case. Dashed: until something happens, drawn as 1 s.";
+  figure.alt = fmt::format("{} one after the other; the table below has them.",
+                           counted(bars, "stage or question", "stages and questions"));
+  return figure;
+}
+
+analysis::Figure gallery_figure(const std::vector<std::string>& words, const std::string& caption) {
+  analysis::Figure figure;
+  figure.name = "seen";
+  figure.title = "Pictures of the stages and questions";
+  figure.caption = caption;
+  figure.alt = fmt::format("{}.", fmt::join(words, "; "));
+  return figure;
+}
 
 std::string timeline_svg(const std::vector<TimelineBar>& bars) {
   Rows rows;

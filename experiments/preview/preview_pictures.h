@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/document/figure.h"
+
 namespace haptrial::protocols {
 struct ForcePlane;
 }
@@ -11,6 +13,9 @@ struct ForcePlane;
 namespace haptrial::experiments {
 
 inline constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
+
+/// Look of the curves of a figure, one after the other: they differ in colour and dash.
+analysis::Look curve_look(std::size_t at);
 
 /// A row of a timeline.
 struct TimelineBar {
@@ -37,5 +42,10 @@ std::string gallery_svg(const std::vector<GalleryPicture>& pictures);
 /// Arrows of the same length along the force, darker where it is stronger, as SVG with a scale. A
 /// plane with z has it pointing down, as seen from above.
 std::string arrows_svg(const protocols::ForcePlane& plane);
+
+/// The figure of a timeline, with its caption.
+analysis::Figure timeline_figure(std::size_t bars);
+/// The figure of a gallery, with its caption. @param words  about each picture
+analysis::Figure gallery_figure(const std::vector<std::string>& words, const std::string& caption);
 
 }  // namespace haptrial::experiments

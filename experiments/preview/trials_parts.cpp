@@ -9,6 +9,7 @@
 #include "core/base/counted.h"
 #include "core/questions/question_kind.h"
 #include "core/render/gl/image.h"
+#include "experiments/preview/film.h"
 #include "experiments/preview/preview_pictures.h"
 #include "experiments/preview/stage_names.h"
 
@@ -193,14 +194,7 @@ void add_timeline(const TrialsDefinition& d, const PreviewedTrial& trial, Previe
   preview.document.heading("One trial, stage by stage");
   preview.document.paragraph(sentence_about(trial));
   const std::vector<TimelineBar> bars = bars_of(trial);
-  analysis::Figure figure;
-  figure.name = "timeline";
-  figure.title = "Stages of the trial";
-  figure.caption =
-      "Solid: time that passes in any case. Dashed: until something happens, drawn as 1 s.";
-  figure.alt = fmt::format("{} one after the other; the table below has them.",
-                           counted(bars.size(), "stage or question", "stages and questions"));
-  preview.add(std::move(figure), timeline_svg(bars));
+  preview.add(timeline_figure(bars.size()), timeline_svg(bars));
   add_stage_table(trial, preview);
   add_questions(trial, preview);
   add_values(trial, preview);
@@ -220,14 +214,10 @@ void add_seen(const PreviewedTrial& trial, const std::vector<protocols::SeenStag
         {render::png_bytes(each.picture), each.picture.width, each.picture.height, where});
     words.push_back(where + ": " + content_of(trial, each));
   }
-  analysis::Figure figure;
-  figure.name = "seen";
-  figure.title = "Pictures of the stages and questions";
-  figure.caption =
-      "By the drawing of sessions; the hand is where the trial starts. Stages that look the same "
-      "share a picture.";
-  figure.alt = fmt::format("{}.", fmt::join(words, "; "));
-  preview.add(std::move(figure), gallery_svg(pictures));
+  preview.add(gallery_figure(words,
+                             "By the drawing of sessions; the hand is where the trial starts. "
+                             "Stages that look the same share a picture."),
+              gallery_svg(pictures));
 }
 
 void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& planned,
@@ -271,6 +261,38 @@ void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& plan
   add_orders("order of blocks", planned.block_orders, "sessions", "Orders of blocks", preview);
   add_orders("order of intervals", planned.interval_orders, "trials", "Orders of intervals",
              preview);
+}
+
+void add_objects(Preview& preview) {
+  if (preview.objects.empty()) {
+    return;
+  }
+  std::vector<std::string> names;
+  for (const SpaceObject& object : preview.objects) {
+    names.push_back(object.name);
+  }
+  preview.document.heading("Objects and places");
+  analysis::Figure figure;
+  figure.name = "objects";
+  figure.title = "Objects and places of the trial";
+  figure.caption = "As lines, meshes thinned. Turn them with the pointer or the sliders.";
+  figure.alt = fmt::format("Lines of {}.", fmt::join(names, ", "));
+  preview.add(std::move(figure), turned_svg(preview.objects, preview.language));
+}
+
+void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
+                      Preview& preview) {
+  constexpr int kPictureWidth = 640;      // [px]
+  constexpr int kMostParticipants = 200;  // that are counted
+  const PreviewedTrial trial =
+      protocols::previewed_trial(definition, previewed_session(request.seed), request.trial);
+  add_timeline(definition, trial, preview);
+  add_seen(trial, protocols::seen_stages(definition, trial, kPictureWidth), preview);
+  preview.objects = objects_of(trial);
+  add_objects(preview);
+  add_felt(definition, trial, protocols::felt_stages(definition, trial, request.look), preview);
+  add_planned(definition, protocols::planned_trials(definition, request.seed, kMostParticipants),
+              preview);
 }
 
 }  // namespace haptrial::experiments

@@ -2,11 +2,12 @@
 
 #include <vector>
 
-#include "experiments/preview/preview_page.h"
+#include "experiments/preview/preview.h"
 #include "protocols/psychophysics/preview/felt_forces.h"
 #include "protocols/psychophysics/preview/planned_trials.h"
 #include "protocols/psychophysics/preview/previewed_trial.h"
 #include "protocols/psychophysics/preview/seen_stages.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::experiments {
 
@@ -22,5 +23,11 @@ void add_felt(const protocols::TrialsDefinition& definition, const protocols::Pr
               const std::vector<protocols::FeltStage>& stages, Preview& preview);
 void add_planned(const protocols::TrialsDefinition& definition,
                  const protocols::PlannedTrials& planned, Preview& preview);
+
+/// The objects as a view to turn; nothing if the trial has none.
+void add_objects(Preview& preview);
+/// All of them.
+void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
+                      Preview& preview);
 
 }  // namespace haptrial::experiments

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/realtime/servo_loop.h"
 #include "core/record/rows/trial_rows.h"
+#include "experiments/control/live_status.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/session_task.h"
@@ -63,6 +64,7 @@ class OneTrial {
     trials_->begin_attempt(trial, true);
     shown_.completed = true;
     for (const record::Phase& phase : trials_->phases()) {
+      phase_ = phase;
       run(trials_->make_pass(trial, phase), longest);
       trials_->empty_logs(file_);
       trials_->close_pass(file_, 0);
@@ -132,9 +134,22 @@ class OneTrial {
         shown_.positions.push_back(sample.position);
         shown_.velocities.push_back(sample.velocity);
         shown_.forces.push_back(sample.force);
+        note_stage(sample);
       }
     });
     others_.flush([](std::span<const record::DeviceRow>) {});
+  }
+
+  /// Keeps the stages of samples, for a protocol that records no others.
+  void note_stage(const record::Sample& sample) {
+    if (sample.stage == record::Stage::kIdle) {
+      return;
+    }
+    const std::string name = fmt::format("{}: {}", record::name_of(phase_), name_of(sample.stage));
+    if (sampled_.empty() || sampled_.back().name != name) {
+      sampled_.push_back({name, 0, time_of(sample.sequence), 0.0});
+    }
+    sampled_.back().end = time_of(sample.sequence + 1);
   }
 
   double time_of(std::uint64_t sequence) const {
@@ -145,6 +160,9 @@ class OneTrial {
     for (const record::StageRow& row : file_.stages) {
       shown_.stages.push_back(
           {row.stage, row.interval, time_of(row.first_sample), time_of(row.last_sample + 1)});
+    }
+    if (shown_.stages.empty()) {
+      shown_.stages = std::move(sampled_);
     }
   }
 
@@ -168,7 +186,9 @@ class OneTrial {
   SessionTask task_;
   StagesInMemory file_;
   VirtualTrial shown_;
-  std::uint64_t begin_{0};  // sequence number of the first sample
+  record::Phase phase_;                // that runs
+  std::vector<VirtualStage> sampled_;  // stages of the samples
+  std::uint64_t begin_{0};             // sequence number of the first sample
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ struct VirtualTrial {
   std::vector<Eigen::Vector3d> positions;   // (times) of the first device's tip, in W [m]
   std::vector<Eigen::Vector3d> velocities;  // likewise [m/s]
   std::vector<Eigen::Vector3d> forces;      // that the device gives, in W [N]
-  std::vector<VirtualStage> stages;         // none: the protocol records none
+  std::vector<VirtualStage> stages;         // those of /samples, if the protocol records none
   std::vector<std::string> answers;         // "stiffer: first", in their order
   bool completed{false};
   std::string why;  // it was not completed; empty: it was

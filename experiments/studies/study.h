@@ -15,6 +15,10 @@
 
 namespace haptrial::experiments {
 
+class Preview;
+struct PreviewRequest;
+class TriedTrial;
+
 /// Request for the analysis of a folder of sessions of one study.
 struct AnalysisRequest {
   std::filesystem::path folder;  // of the sessions
@@ -62,6 +66,20 @@ class Study {
     static_cast<void>(folder);
     static_cast<void>(file);
     return {};
+  }
+  /// Adds the protocol's own parts of the page that shows an experiment before anybody runs it:
+  /// what is seen and felt, how long stages last, how trials are distributed (experiments/preview).
+  /// @throws InputError for a trial beyond the session
+  virtual void add_preview(const protocols::Definition& definition, const PreviewRequest& request,
+                           Preview& preview) const = 0;
+  /// A trial that a pointer can try before anybody runs it (experiments/preview/tried_trial.h);
+  /// null if the protocol's trials cannot be tried so. @param definition  outlives what comes back
+  /// @throws InputError for a trial beyond the session
+  virtual std::shared_ptr<TriedTrial> tried_trial(const protocols::Definition& definition,
+                                                  const PreviewRequest& request) const {
+    static_cast<void>(definition);
+    static_cast<void>(request);
+    return nullptr;
   }
   /// Computes, and writes report, tables and figures. @returns lines for the terminal
   virtual std::vector<std::string> analyze(const AnalysisRequest& request) const = 0;

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/base/error.h"
 #include "experiments/server/server.h"
 #include "experiments/studio/commands.h"
+#include "experiments/studio/line_commands.h"
 #include "experiments/studio/studio_page.h"
 #include "experiments/studio/study_folder.h"
 #include "experiments/studio/views_internal.h"
@@ -68,7 +71,9 @@ class Studio::Implementation {
   explicit Implementation(const StudioOptions& options)
       : folder_(options.folder),
         commands_(options.program, folder_.path()),
-        views_(folder_, commands_, options.libraries),
+        tried_(options.program, folder_.path()),
+        page_maker_(options.program, folder_.path()),
+        views_(folder_, commands_, tried_, page_maker_, options.libraries),
         server_(server_options(options), routes()) {}
   ~Implementation() { commands_.stop(); }
 
@@ -99,8 +104,8 @@ class Studio::Implementation {
 
   std::vector<WebRoute> routes() {
     std::vector<WebRoute> all = looks();
-    for (WebRoute& act : acts()) {
-      all.push_back(std::move(act));
+    for (auto more : {acts(), tries()}) {
+      std::ranges::move(more, std::back_inserter(all));
     }
     return all;
   }
@@ -144,7 +149,8 @@ class Studio::Implementation {
                    constexpr int kMostTrials = 1'000'000;
                    return views_.preview(string_in(body, "file"), string_in(body, "text"),
                                          number_in(body, "trial", 1, kMostTrials),
-                                         body.value("virtual", json()) == true);
+                                         body.value("virtual", json()) == true,
+                                         body.value("language", json()) == "de" ? "de" : "en");
                  }),
             post("/save",
                  [this](const json& body) {
@@ -170,8 +176,27 @@ class Studio::Implementation {
             })};
   }
 
+  /// A trial under the pointer of the page.
+  std::vector<WebRoute> tries() {
+    constexpr int kMost = 1'000'000;
+    return {post("/try",
+                 [this](const json& body) {
+                   return views_.try_trial(string_in(body, "file"), string_in(body, "text"),
+                                           number_in(body, "trial", 1, kMost));
+                 }),
+            post("/try_move",
+                 [this](const json& body) {
+                   return views_.try_move(number_in(body, "try", 1, kMost),
+                                          body.value("lines", json()));
+                 }),
+            post("/try_end", [this](const json& body) {
+              return views_.try_end(number_in(body, "try", 1, kMost));
+            })};
+  }
+
   StudyFolder folder_;
   Commands commands_;
+  LineCommands tried_, page_maker_;
   StudioViews views_;
   GuardedServer server_;
 };

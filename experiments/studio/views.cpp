@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/utf8.h"
+#include "experiments/studio/view_parts_internal.h"
 #include "experiments/studio/views_internal.h"
 
 namespace haptrial::experiments {
@@ -20,53 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::uintmax_t kMostDefinition = 2'000'000;  // [bytes]
 constexpr std::uintmax_t kMostFile = 100'000'000;
-
-/// A file that is removed at the end.
-class ShortLivedFile {
- public:
-  explicit ShortLivedFile(fs::path file) : file_(std::move(file)) {}
-  ~ShortLivedFile() {
-    std::error_code ignored;
-    fs::remove(file_, ignored);
-  }
-  ShortLivedFile(const ShortLivedFile&) = delete;
-  ShortLivedFile& operator=(const ShortLivedFile&) = delete;
-  const fs::path& path() const { return file_; }
-
- private:
-  fs::path file_;
-};
-
-/// A number that no other request has.
-int next_number() {
-  static std::atomic<int> number{0};
-  return ++number;
-}
-
-/// A definition as it is being written. It lies beside the saved one, since it may name files that
-/// do.
-class Draft {
- public:
-  /// @param folder  of the studio, in which commands run
-  Draft(const fs::path& definition, const fs::path& folder, const std::string& text)
-      : file_(definition.parent_path() / fmt::format(".{}.draft-{}-{}.toml",
-                                                     definition.stem().string(), ::getpid(),
-                                                     next_number())),
-        name_(file_.path().lexically_relative(folder).string()) {
-    if (text.size() > kMostDefinition) {
-      throw InputError(
-          fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
-    }
-    write_text(file_.path(), text);
-  }
-  const std::string& name() const { return name_; }
-
- private:
-  ShortLivedFile file_;
-  std::string name_;
-};
 
 /// A word that a command cannot take for an option or a path.
 void check_word(const char* what, const std::string& word) {
@@ -75,13 +30,6 @@ void check_word(const char* what, const std::string& word) {
     throw InputError(fmt::format(
         "{} is not a plain word; allowed: up to 100 letters A to Z, digits, '_' and '-'", what));
   }
-}
-
-int number_of(const std::string& text) {
-  if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != text.npos) {
-    throw InputError("a number of the address is not a whole number from 0 to 999999999");
-  }
-  return std::stoi(text);
 }
 
 /// Rows of three columns that two or more spaces part, as lists of commands have them.
@@ -116,28 +64,15 @@ json files_json(const std::vector<FolderFile>& files) {
   return all;
 }
 
-/// A report is data: it runs nothing, loads nothing, and only the studio may frame it.
-WebAnswer framed(const std::string& type, std::string text) {
-  WebAnswer answer{200, type, std::move(text)};
-  answer.headers = {{"Content-Security-Policy",
-                     "sandbox allow-popups; default-src 'none'; style-src 'unsafe-inline'; "
-                     "img-src data:; font-src data:; frame-ancestors 'self'"},
-                    {"X-Frame-Options", "SAMEORIGIN"},
-                    {"Cross-Origin-Opener-Policy", "unsafe-none"}};
-  return answer;
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
-}
-
 }  // namespace
 
-StudioViews::StudioViews(const StudyFolder& folder, Commands& commands, fs::path libraries)
-    : folder_(folder), commands_(commands), libraries_(std::move(libraries)) {
+StudioViews::StudioViews(const StudyFolder& folder, Commands& commands, LineCommands& tried,
+                         LineCommands& page_maker, fs::path libraries)
+    : folder_(folder),
+      commands_(commands),
+      tried_(tried),
+      page_maker_(page_maker),
+      libraries_(std::move(libraries)) {
   std::string name = (fs::temp_directory_path() / "haptrial-studio-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
     throw RunError(
@@ -271,39 +206,6 @@ json StudioViews::save(const std::string& file, const std::string& text,
         fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
   }
   return {{"stamp", folder_.save(file, text, stamp)}};
-}
-
-json StudioViews::preview(const std::string& file, const std::string& text, int trial,
-                          bool virtual_trial) const {
-  const Draft draft(folder_.definition(file), folder_.path(), text);
-  const int number = next_number();
-  CommandWords words{"show", file, "--trial", std::to_string(trial)};
-  if (!virtual_trial) {
-    words.emplace_back("--no-virtual-trial");
-  }
-  CommandWords asked = words;
-  asked[1] = draft.name();
-  asked.insert(asked.end(), {"--out", preview_file(number).string()});
-  const CommandResult result = commands_.run(asked);
-  json out{{"command", shown_command(words)}};
-  if (result.status == 0) {
-    out["page"] = number;
-  } else {
-    out["failure"] = replaced(result.output, draft.name(), file);
-  }
-  return out;
-}
-
-fs::path StudioViews::preview_file(int number) const {
-  return scratch_ / fmt::format("preview-{}.html", number);
-}
-
-WebAnswer StudioViews::preview_page(const std::string& number) const {
-  const ShortLivedFile page(preview_file(number_of(number)));
-  if (!fs::is_regular_file(page.path())) {
-    throw InputError("this preview was shown before; ask for a new one");
-  }
-  return framed("text/html; charset=utf-8", file_text(page.path()));
 }
 
 json StudioViews::schema(const std::string& protocol) const {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "experiments/server/server.h"
 #include "experiments/studio/commands.h"
+#include "experiments/studio/line_commands.h"
 #include "experiments/studio/remarks.h"
 #include "experiments/studio/session_files.h"
 #include "experiments/studio/study_folder.h"
@@ -16,8 +18,9 @@ namespace haptrial::experiments {
 /// its line as "command". Any thread. InputError for what is not allowed, RunError for what failed.
 class StudioViews {
  public:
-  /// @param folder, commands  outlive it
-  StudioViews(const StudyFolder& folder, Commands& commands, std::filesystem::path libraries);
+  /// @param folder, commands, tried, page_maker  outlive it
+  StudioViews(const StudyFolder& folder, Commands& commands, LineCommands& tried,
+              LineCommands& page_maker, std::filesystem::path libraries);
   ~StudioViews();
   StudioViews(const StudioViews&) = delete;
   StudioViews& operator=(const StudioViews&) = delete;
@@ -33,10 +36,16 @@ class StudioViews {
   nlohmann::json text(const std::string& file) const;
   nlohmann::json validate(const std::string& file, const std::string& text) const;
   /// @param trial  from 1, of the first session  @param virtual_trial  with a virtual participant's
+  /// @param language  of headings, "de" or "en"
   nlohmann::json preview(const std::string& file, const std::string& text, int trial,
-                         bool virtual_trial) const;
+                         bool virtual_trial, const std::string& language) const;
   /// A preview that was made, once.
   WebAnswer preview_page(const std::string& number) const;
+  /// Begins to try a trial with a pointer. @param trial  as of preview()
+  nlohmann::json try_trial(const std::string& file, const std::string& text, int trial) const;
+  /// Answers to lines of a trial that is tried. @param number  of it
+  nlohmann::json try_move(int number, const nlohmann::json& lines) const;
+  nlohmann::json try_end(int number) const;
   nlohmann::json save(const std::string& file, const std::string& text,
                       const std::string& stamp) const;
   nlohmann::json schema(const std::string& protocol) const;
@@ -58,12 +67,17 @@ class StudioViews {
   /// Nothing, if the folder is not there or lies elsewhere.
   SessionFolder held_in(const std::string& name) const;
   std::filesystem::path preview_file(int number) const;
+  std::string page_answer_to(const std::string& asked) const;
   CommandResult run_good(const CommandWords& words) const;
   void add_roster(const std::string& file, nlohmann::json& out) const;
   void add_last_event(const std::string& folder, nlohmann::json& out) const;
 
   const StudyFolder& folder_;
   Commands& commands_;
+  LineCommands& tried_;
+  LineCommands& page_maker_;
+  mutable std::mutex pages_mutex_;
+  mutable int pages_{0};  // number of the command that makes pages; 0: none runs
   std::filesystem::path libraries_;
   std::filesystem::path scratch_;  // for what commands write and nobody keeps
 };

@@ -26,19 +26,6 @@
 namespace haptrial::protocols {
 namespace {
 
-/// People practise; whoever is virtual has nothing to learn from it.
-std::vector<PlannedTrial> plan_of(const BoneDefinition& d, const SessionPlace& place) {
-  std::vector<PlannedTrial> plan;
-  if (d.practice > 0.0 && place.real) {
-    plan.push_back({0, 0, 1, "practice", derived_seed(place.session_seed, "practice"), true});
-  }
-  for (int trial = 1; trial <= d.design.trials; ++trial) {
-    const std::uint64_t seed = derived_seed(place.session_seed, fmt::format("procedure {}", trial));
-    plan.push_back({trial, trial, 1, d.condition(trial, place.participant), seed, false});
-  }
-  return plan;
-}
-
 // Shares of the time until the first picture, when the simulator is there and when the surface is
 // begun.
 constexpr double kUntilDepths = 0.2;
@@ -55,8 +42,20 @@ std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
 
 }  // namespace
 
+std::vector<PlannedTrial> procedures_of(const BoneDefinition& d, const SessionPlace& place) {
+  std::vector<PlannedTrial> plan;
+  if (d.practice > 0.0 && place.real) {
+    plan.push_back({0, 0, 1, "practice", derived_seed(place.session_seed, "practice"), true});
+  }
+  for (int trial = 1; trial <= d.design.trials; ++trial) {
+    const std::uint64_t seed = derived_seed(place.session_seed, fmt::format("procedure {}", trial));
+    plan.push_back({trial, trial, 1, d.condition(trial, place.participant), seed, false});
+  }
+  return plan;
+}
+
 BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& place)
-    : d_(definition), place_(place), plan_(plan_of(definition, place)) {
+    : d_(definition), place_(place), plan_(procedures_of(definition, place)) {
   if (d_.bones.empty()) {
     throw InputError(fmt::format("{}: has no bones to drill", d_.file_name));
   }

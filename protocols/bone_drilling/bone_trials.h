@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
@@ -17,6 +18,11 @@
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {
+
+/// The procedures of a session. People practise before the first; whoever is virtual has nothing to
+/// learn from it.
+std::vector<PlannedTrial> procedures_of(const BoneDefinition& definition,
+                                        const SessionPlace& place);
 
 /// One procedure on a bone (Morris 2006, §3). Where it is broken off, the next attempt goes on with
 /// the bone as it is, unless it is to be done anew.

@@ -9,6 +9,7 @@
 #include "core/psychometric/procedure/staircase.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/response.h"
+#include "experiments/preview/preview_page.h"
 #include "presser.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/row_figures.h"
@@ -227,6 +228,11 @@ class SpringsStudy final : public experiments::Study {
       const std::string value = std::to_string(std::lround(row.difference)) + " N/m";
       return std::vector<record::LiveState::Figure>{{"Difference", value}};
     });
+  }
+  void add_preview(const Definition&, const experiments::PreviewRequest&,
+                   experiments::Preview& preview) const override {
+    preview.document.heading("What is felt");
+    preview.document.paragraph("Two springs, one after the other, of which one is stiffer.");
   }
   std::vector<std::string> analyze(const experiments::AnalysisRequest& request) const override {
     std::vector<std::string> lines;

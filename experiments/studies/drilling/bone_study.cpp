@@ -8,6 +8,7 @@
 #include "core/base/exception_words.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/drilling_preview.h"
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/live_drilling.h"
 #include "experiments/studies/drilling/trainee_pages.h"
@@ -99,6 +100,11 @@ class BoneStudy final : public Study {
                                          const fs::path& file) const override {
     return page_after_session(dynamic_cast<const protocols::BoneDefinition&>(definition), folder,
                               file);
+  }
+  void add_preview(const protocols::Definition& definition, const PreviewRequest& request,
+                   Preview& preview) const override {
+    add_drilling_preview(dynamic_cast<const protocols::BoneDefinition&>(definition), request,
+                         preview);
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
     return analyze_drillings(request);

@@ -13,6 +13,7 @@
 #include "analysis/force_training/study/study_summary.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "experiments/studies/force/force_preview.h"
 #include "experiments/studies/force/force_study_simulation.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
@@ -73,6 +74,11 @@ class ForceStudy final : public Study {
   }
   std::optional<CurveAnalysis> curves(const record::SessionInfo& session) const override {
     return parse_curve_analysis(session.definition, session.definition_name);
+  }
+  void add_preview(const protocols::Definition& definition, const PreviewRequest& request,
+                   Preview& preview) const override {
+    add_force_preview(dynamic_cast<const protocols::ForceDefinition&>(definition), request,
+                      preview);
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
     const analysis::StudyResult study = analyzed(request);

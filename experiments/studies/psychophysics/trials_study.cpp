@@ -19,6 +19,8 @@
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "experiments/preview/trials_parts.h"
+#include "experiments/preview/tried_trial.h"
 #include "experiments/studies/psychophysics/reach_routes.h"
 #include "experiments/studies/psychophysics/trials_analysis.h"
 #include "experiments/studies/psychophysics/trials_study_simulation.h"
@@ -145,6 +147,15 @@ class TrialsStudy final : public Study {
   const protocols::Protocol& protocol() const override { return protocols::trials_protocol(); }
   void read_analysis(Table& root, bool) const override { read_trials_analysis(root); }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override;
+  void add_preview(const protocols::Definition& definition, const PreviewRequest& request,
+                   Preview& preview) const override {
+    add_trials_parts(dynamic_cast<const protocols::StudiedDefinition&>(definition), request,
+                     preview);
+  }
+  std::shared_ptr<TriedTrial> tried_trial(const protocols::Definition& definition,
+                                          const PreviewRequest& request) const override {
+    return tried_scenes(dynamic_cast<const protocols::StudiedDefinition&>(definition), request);
+  }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override;
   std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
                                                     const std::string& asked_in,

@@ -8,13 +8,16 @@ function preview_part(file) {
   const state = make("span", {id: "preview_state", role: "status"});
   const failure = printed("", "preview_failure");
   const line = make("div", {});
-  const frame = make("iframe", {id: "preview", title: word("preview_of", {file}), sandbox: ""});
+  const frame = make("iframe", {id: "preview", title: word("preview_of", {file}), sandbox: "allow-scripts"});
   failure.hidden = frame.hidden = true;
-  let asked = 0;
+  let asked = 0, scrolled = 0;  // how far the preview is scrolled; it says so itself
+  window.addEventListener("message", (event) => {
+    if (event.source === frame.contentWindow && Number.isInteger(event.data.preview_scroll)) scrolled = event.data.preview_scroll;
+  });
   const renew = () => attempt(async () => {
     const number = ++asked;
     state.textContent = word("checking");
-    const made = await post("/preview", {file, text: drafts.get(file).editor.text(), trial: Number(trial.value), virtual: virtual.checked});
+    const made = await post("/preview", {file, text: drafts.get(file).editor.text(), trial: Number(trial.value), virtual: virtual.checked, language: kLanguage});
     if (number !== asked) return;
     state.textContent = made.failure ? word("mend_first") : "";
     failure.textContent = made.failure || "";
@@ -22,11 +25,11 @@ function preview_part(file) {
     line.replaceChildren(command_line(made.command));
     if (made.page) {
       frame.hidden = false;
-      frame.src = address("/preview_page", {page: made.page});
+      frame.src = address("/preview_page", {page: made.page}) + "#y=" + scrolled;
     }
   });
   const element = make("div", {}, make("div", {class: "row"}, make("label", {for: "preview_trial"}, word("trial")), trial,
-    virtual, make("label", {for: "preview_virtual"}, word("with_virtual")), state), failure, line, frame);
+    virtual, make("label", {for: "preview_virtual"}, word("with_virtual")), state), failure, line, try_part(file, trial), frame);
   return {element, renew};
 }
 

@@ -33,6 +33,9 @@ const kWords = {
     gone: "The studio does not answer. Is it still running in its terminal?",
     mend_first: "Mend the mistakes first.", preview: "Preview", preview_of: "Preview of {file}", trial: "Trial",
     with_virtual: "with a virtual participant's trial",
+    try_title: "Try it with the pointer", try_it: "Try this trial", try_stage: "Stage", with_device: "With the connected device in its place, or the mouse in a window:",
+    try_said: "Force {force} N (x {x}, y {y}, z {z})",
+    try_help: "Move the pointer in a picture, or use the arrow keys and Page Up and Page Down. A dot is the hand, a line the force on it. Forces come from the program's own loop with the device mouse.",
   },
   de: {
     skip: "Zum Inhalt", views: "Ansichten", home: "Studien", definition: "Definition",
@@ -66,6 +69,9 @@ const kWords = {
     gone: "Das Studio antwortet nicht. Läuft es noch in seinem Terminal?",
     mend_first: "Beheben Sie zuerst die Fehler.", preview: "Vorschau", preview_of: "Vorschau von {file}", trial: "Durchgang",
     with_virtual: "mit dem Durchgang einer virtuellen Versuchsperson",
+    try_title: "Mit dem Zeiger ausprobieren", try_it: "Diesen Durchgang ausprobieren", try_stage: "Abschnitt", with_device: "Mit dem angeschlossenen Gerät oder mit der Maus in einem Fenster:",
+    try_said: "Kraft {force} N (x {x}, y {y}, z {z})",
+    try_help: "Bewegen Sie den Zeiger in einem Bild, oder nehmen Sie die Pfeiltasten und Bild auf, Bild ab. Der Punkt ist die Hand, der Strich die Kraft auf sie. Die Kräfte kommen aus der Schleife des Programms mit dem Gerät mouse.",
   },
 };
 const kLanguage = navigator.language.startsWith("de") ? "de" : "en";

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <mutex>
 #include <utility>
 
 #include "core/base/error.h"
@@ -172,24 +174,47 @@ void check_together(Table& root, const BoneDefinition& d) {
   }
 }
 
-bone::BoneModel load_source(const std::string& source, const BoneDefinition& d,
-                            const fs::path& folder) {
+/// A procedural bone; one of the last few if it is the same, as a definition is read many times.
+template <class Options>
+std::shared_ptr<const bone::BoneModel> procedural(
+    bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d) {
+  struct Kept {
+    std::uint64_t seed{0};
+    double spacing{0.0};
+    std::shared_ptr<const bone::BoneModel> model;
+  };
+  constexpr std::size_t kKept = 2;
+  static std::mutex mutex;
+  static std::array<Kept, kKept> kept;
+  static std::size_t next = 0;
+  Options options;
+  options.seed = d.bone_seed;
+  options.spacing = d.spacing.value_or(options.spacing);
+  const std::scoped_lock lock(mutex);
+  for (const Kept& each : kept) {
+    if (each.model && each.seed == options.seed && each.spacing == options.spacing) {
+      return each.model;
+    }
+  }
+  Kept& fresh = kept[std::exchange(next, (next + 1) % kKept)];
+  fresh = {options.seed, options.spacing,
+           std::make_shared<const bone::BoneModel>(make(options, {}))};
+  return fresh.model;
+}
+
+std::shared_ptr<const bone::BoneModel> load_source(const std::string& source,
+                                                   const BoneDefinition& d,
+                                                   const fs::path& folder) {
   if (source == "procedural temporal") {
-    bone::TemporalBoneOptions options;
-    options.seed = d.bone_seed;
-    options.spacing = d.spacing.value_or(options.spacing);
-    return bone::make_temporal_bone(options);
+    return procedural<bone::TemporalBoneOptions>(bone::make_temporal_bone, d);
   }
   if (source == "procedural mandible") {
-    bone::MandibleOptions options;
-    options.seed = d.bone_seed;
-    options.spacing = d.spacing.value_or(options.spacing);
-    return bone::make_mandible(options);
+    return procedural<bone::MandibleOptions>(bone::make_mandible, d);
   }
   bone::LoadOptions options;
   options.spacing = d.spacing;
   const fs::path file = fs::path(source).is_absolute() ? fs::path(source) : folder / source;
-  return bone::load_bone(file, options);
+  return std::make_shared<const bone::BoneModel>(bone::load_bone(file, options));
 }
 
 /// Start of a hand that only sees: in the middle of the first picture, in front of all bone.
@@ -302,9 +327,9 @@ void BoneDefinition::load_bones(const fs::path& folder) {
     hint::load_limits(*hints, folder);
   }
   for (const std::string& source : sources) {
-    bone::BoneModel loaded = load_source(source, *this, folder);
-    bones.push_back(std::make_shared<const bone::BoneModel>(mirror ? bone::mirrored(loaded)
-                                                                   : std::move(loaded)));
+    const auto loaded = load_source(source, *this, folder);
+    bones.push_back(mirror ? std::make_shared<const bone::BoneModel>(bone::mirrored(*loaded))
+                           : loaded);
     try {
       check_placement(placement, *bones.back(), simulator.camera.start,
                       cavity ? &*cavity : nullptr);

@@ -213,10 +213,15 @@ void add_row(FeltStage& stage, double up, const std::vector<double>& across) {
   plane.forces.insert(plane.forces.end(), forces.begin(), forces.end());
 }
 
-void draw_plane(FeltStage& stage, const std::array<Part, 3>& parts, bool from_above) {
+void draw_plane(FeltStage& stage, const std::array<Part, 3>& parts, bool from_above,
+                const FeltLook& look) {
   constexpr std::size_t kArrows = 15;  // in each direction
   ForcePlane& plane = stage.plane;
   choose_plane(stage, from_above, plane);
+  if (look.plane) {
+    plane.across = look.plane->front();
+    plane.up = look.plane->back();
+  }
   plane.columns = kArrows;
   const Part& across = parts[static_cast<std::size_t>(plane.across)];
   const Part& up = parts[static_cast<std::size_t>(plane.up)];
@@ -309,7 +314,8 @@ bool FeltStage::resists_motion() const {
                              [](const auto& curve) { return largest(curve.forces) > kFelt; });
 }
 
-std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTrial& trial) {
+std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTrial& trial,
+                                   const FeltLook& look) {
   constexpr double kFast = 0.5;  // [m/s]
   std::vector<FeltStage> stages;
   const std::vector<DeviceArm> arms = d.arms();
@@ -328,7 +334,7 @@ std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTri
         if (felt.felt.mask == 0 || arms[device].part != device::Part::kTip) {
           continue;
         }
-        felt.origin = device == 0 ? shown.start : d.hands[device].start;
+        felt.origin = look.through.value_or(device == 0 ? shown.start : d.hands[device].start);
         const std::array<Part, 3> parts = draw_lines(felt, arms[device].limits.workspace_radius);
         felt.touched = place_that_touches(felt);
         draw_speeds(felt, std::min(kFast, arms[device].limits.max_speed));
@@ -339,7 +345,7 @@ std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTri
           same->where.push_back(felt.where.front());
           continue;
         }
-        draw_plane(felt, parts, d.view.from_above);
+        draw_plane(felt, parts, d.view.from_above, look);
         felt.fields = numbers_of(d, felt.felt);
         stages.push_back(std::move(felt));
       }

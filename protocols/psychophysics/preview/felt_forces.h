@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -79,7 +80,7 @@ struct FeltStage {
   std::size_t device{0};
   FeltFields felt;
   std::vector<FieldNumbers> fields;
-  Eigen::Vector3d origin{Eigen::Vector3d::Zero()};  // of lines and plane: the start, in W [m]
+  Eigen::Vector3d origin{Eigen::Vector3d::Zero()};  // of lines and plane, in W [m]
   std::array<ForceLine, 3> lines;
   ForcePlane plane;
   Eigen::Vector3d touched{Eigen::Vector3d::Zero()};   // place of `course`, in W [m]
@@ -91,9 +92,16 @@ struct FeltStage {
   bool resists_motion() const;  // some force changes with the velocity
 };
 
+/// Where the forces of stages are looked at.
+struct FeltLook {
+  std::optional<Eigen::Vector3d> through{};   // of lines and plane; none: the start, in W [m]
+  std::optional<std::array<int, 2>> plane{};  // axes across and up; none: where most changes
+};
+
 /// The feeling of the stages of a trial, on each device that is a tip; stages without a field are
 /// left out. Bodies that give way are prepared, which may take long.
 /// @throws InputError as prepare_bodies()
-std::vector<FeltStage> felt_stages(const TrialsDefinition& definition, const PreviewedTrial& trial);
+std::vector<FeltStage> felt_stages(const TrialsDefinition& definition, const PreviewedTrial& trial,
+                                   const FeltLook& look = {});
 
 }  // namespace haptrial::protocols

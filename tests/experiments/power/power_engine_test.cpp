@@ -83,6 +83,7 @@ class NormalStudySimulation final : public StudySimulation {
 class NormalStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::trials_protocol(); }
+  void add_preview(const protocols::Definition&, const PreviewRequest&, Preview&) const override {}
   std::vector<std::string> analyze(const AnalysisRequest&) const override { return {}; }
   std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
                                                     const std::string&,

@@ -248,7 +248,11 @@ TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   const std::string page = std::to_string(made["page"].get<int>());
   const std::string shown = exchange(reading("/preview_page", "page=" + page));
   EXPECT_THAT(shown, HasSubstr("seen_before_"));
-  EXPECT_THAT(shown, HasSubstr("Content-Security-Policy: sandbox"));
+  EXPECT_THAT(shown,
+              HasSubstr("Content-Security-Policy: sandbox allow-scripts; script-src 'nonce-"));
+  EXPECT_THAT(shown, Not(HasSubstr("allow-same-origin"))) << "the page reaches nothing";
+  EXPECT_THAT(shown, HasSubstr("default-src 'none'"));
+  EXPECT_THAT(shown, Not(HasSubstr("nonce=\"NONCE\"")));
   expect_refused(reading("/preview_page", "page=" + page), 400, "was shown before");
   expect_refused(reading("/preview_page", "page=../../x"), 400, "is not a whole number");
 
@@ -260,6 +264,41 @@ TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   for (const auto& entry : fs::directory_iterator(folder_.path())) {
     EXPECT_EQ(entry.path().filename(), "mine.toml") << "nothing is left beside it";
   }
+}
+
+TEST_F(StudioTest, OneCommandMakesAllPreviews) {
+  json asked{{"file", "mine.toml"}, {"text", text()}, {"trial", 1}, {"virtual", true}};
+  EXPECT_EQ(post("/preview", asked)["page"], 1);
+  asked["text"] = "# nothing\n";
+  EXPECT_THAT(post("/preview", asked)["failure"].get<std::string>(),
+              HasSubstr("haptrial: mine.toml: the definition is empty"));
+  asked["text"] = text();
+  EXPECT_TRUE(post("/preview", asked).contains("page")) << "a mistake ends nothing";
+}
+
+TEST_F(StudioTest, ATrialIsTriedByLines) {
+  const json asked{{"file", "mine.toml"}, {"text", text()}, {"trial", 1}};
+  const json begun = post("/try", asked);
+  EXPECT_EQ(begun["command"], "haptrial show mine.toml --trial 1 --try");
+  EXPECT_EQ(begun["device"], "haptrial run mine.toml --pilot --device mouse --window");
+  const int number = begun["try"];
+  EXPECT_GT(begun["head"]["stages"].size(), 1u);
+  const json moved =
+      post("/try_move", {{"try", number}, {"lines", {"stage 2", "to 0.1 0 0 0", "to 0.2 0 0 0"}}});
+  ASSERT_EQ(moved["lines"].size(), 3u);
+  EXPECT_EQ(moved["lines"][0], "stage 2");
+  EXPECT_THAT(moved["lines"][2].get<std::string>(), testing::StartsWith("0.2 "));
+  expect_refused(posting("/try_move", {{"try", number}, {"lines", {"a\nb"}}}), 400, "lines");
+  expect_refused(posting("/try_move", {{"try", 99}, {"lines", {"to 1 0 0 0"}}}), 400,
+                 "no command with this number answers");
+  post("/try_end", {{"try", number}});
+  expect_refused(posting("/try_move", {{"try", number}, {"lines", {"to 1 0 0 0"}}}), 400,
+                 "no command with this number answers");
+  json wrong = asked;
+  wrong["trial"] = 100'000;
+  const json refused = post("/try", wrong);
+  EXPECT_FALSE(refused.contains("try"));
+  EXPECT_THAT(refused["failure"].get<std::string>(), HasSubstr("--trial is 100000"));
 }
 
 TEST_F(StudioTest, ADefinitionOfAMegabyteIsCheckedAndSaved) {

@@ -205,6 +205,23 @@ TEST(PreviewTest, AWallPushesByItsLaw) {
   }
 }
 
+TEST(PreviewTest, LinesAndPlaneGoWhereTheyAreAskedFor) {
+  const auto definition = load_shipped("stiffness_discrimination");
+  const StudiedDefinition& d = studied(*definition);
+  const PreviewedTrial trial = previewed_trial(d, first_session(), 1);
+  const Vector3d through(0.01, -0.005, 0.0);
+  const std::vector<FeltStage> stages = felt_stages(d, trial, {through, std::array<int, 2>{1, 2}});
+  ASSERT_FALSE(stages.empty());
+  for (const FeltStage& stage : stages) {
+    EXPECT_EQ(through, stage.origin);
+    EXPECT_EQ(1, stage.plane.across);
+    EXPECT_EQ(2, stage.plane.up);
+    for (const Vector3d& place : stage.plane.places) {
+      ASSERT_EQ(through.x(), place.x());
+    }
+  }
+}
+
 TEST(PreviewTest, ACurlFieldPushesAcrossTheVelocity) {
   const auto definition = load_shipped("curl_field");
   const StudiedDefinition& d = studied(*definition);
@@ -297,7 +314,8 @@ TEST(PreviewTest, AStageSaysHowItEnds) {
   EXPECT_EQ("when the hand is inside start for 0.3 s", stages[0].ends);
   EXPECT_EQ("after 5 s the trial is aborted", stages[0].late);
   EXPECT_EQ("after 2.5 s", stages[1].ends);
-  EXPECT_EQ("depth of floor at least 0.003 m, else the interval begins again", stages[1].requirement);
+  EXPECT_EQ("depth of floor at least 0.003 m, else the interval begins again",
+            stages[1].requirement);
   EXPECT_THAT(stages[0].fields, ElementsAre("guide"));
 }
 

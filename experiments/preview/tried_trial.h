@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/point_state.h"
+#include "experiments/preview/preview.h"
+#include "experiments/preview/space_objects.h"
+#include "protocols/psychophysics/studied_definition.h"
+
+namespace haptrial::experiments {
+
+/// A trial that a pointer tries before anybody runs it: the pointer stands for the hand, as in a
+/// session with the device "mouse". Time is simulated and goes on with each tick.
+class TriedTrial {
+ public:
+  struct Moment {
+    PointState hand;                                 // in W [m], [m/s]
+    Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the hand, in W [N]
+  };
+  virtual ~TriedTrial() = default;
+
+  virtual double rate() const = 0;                      // of the servo loop [Hz]
+  virtual Eigen::Vector3d start() const = 0;            // of the hand, in W [m]
+  virtual double reach() const = 0;                     // from the origin of W [m]
+  virtual std::vector<std::string> stages() const = 0;  // their names
+  virtual std::vector<SpaceObject> objects() const = 0;
+
+  /// Begins a stage. @param stage  from 0, of stages()
+  virtual void choose(std::size_t stage) = 0;
+  /// One tick of the servo loop. @param pointer  in W [m]
+  virtual Moment tick(const Eigen::Vector3d& pointer) = 0;
+};
+
+/// The stages of a trial that a definition states whole, by the mouse device and the scenes of
+/// sessions. @param definition  outlives it  @throws InputError for a trial beyond the session
+std::shared_ptr<TriedTrial> tried_scenes(const protocols::StudiedDefinition& definition,
+                                         const PreviewRequest& request);
+
+/// Tries a trial by lines until the input ends. The first line of the output is a JSON object with
+/// rate, start, reach, stages and objects. Then each line of the input is answered by one:
+///
+///     stage N      begins the stage N, from 1            -> "stage N"
+///     to T X Y Z   the pointer is at X Y Z [m] until T [s] -> "T X Y Z FX FY FZ", hand and force
+///
+/// The loop ticks at its own rate up to T; T that lies 0.5 s or more ahead counts as 0.5 s ahead.
+/// A line that is none of these is answered by "? " and a sentence.
+void try_lines(TriedTrial& trial, std::istream& in, std::ostream& out);
+
+}  // namespace haptrial::experiments

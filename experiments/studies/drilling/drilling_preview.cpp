@@ -1,0 +1,139 @@
+#include "experiments/studies/drilling/drilling_preview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/render/gl/image.h"
+#include "experiments/preview/certified_part.h"
+#include "experiments/preview/fixed_plan.h"
+#include "experiments/preview/preview_pictures.h"
+#include "protocols/bone_drilling/bone_trials.h"
+#include "protocols/bone_drilling/burr_forces.h"
+#include "protocols/bone_drilling/display/placement_picture.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using protocols::BoneDefinition;
+using protocols::BurrForce;
+
+/// The procedure that is shown. @throws InputError for a number beyond the session
+protocols::PlannedTrial procedure_of(const BoneDefinition& d, const PreviewRequest& request) {
+  const auto plan = protocols::procedures_of(d, previewed_session(request.seed));
+  const auto most = static_cast<int>(plan.size());
+  if (request.trial < 1 || request.trial > most) {
+    throw InputError(
+        fmt::format("--trial is {}; allowed: 1 to {}, the procedures of a session of {}",
+                    request.trial, most, d.file_name));
+  }
+  return plan[static_cast<std::size_t>(request.trial - 1)];
+}
+
+void add_timeline(const BoneDefinition& d, const protocols::PlannedTrial& trial, Preview& preview) {
+  const double limit = d.drilling.time_limit;
+  preview.document.heading("One trial, stage by stage");
+  preview.document.paragraph(fmt::format(
+      "Procedure {} of {}{}. It has one stage, no questions, and the sound of the drill is {}; "
+      "practice of people before the first procedure takes {:g} s.",
+      trial.trial, d.design.trials, trial.condition.empty() ? "" : ", condition " + trial.condition,
+      d.sound_card ? "played" : "not played", d.practice));
+  const std::vector<TimelineBar> bars{
+      {"drilling", fmt::format("until the participant is done, at most {:g} s", limit), 0.0, true}};
+  preview.add(timeline_figure(bars.size()), timeline_svg(bars));
+  preview.document.table(
+      {"stage", "lasts [s]", "ends"},
+      {{"drilling", fmt::format("at most {:g}", limit),
+        "when the participant says so (function finish), or when the time is over"}});
+}
+
+void add_seen(const BoneDefinition& d, std::size_t bone, Preview& preview) {
+  constexpr int kWide = 900;  // [px]
+  const render::Image drawn = protocols::placement_picture(d, bone);
+  const render::Image image = render::coarser(drawn, (drawn.width + kWide - 1) / kWide);
+  const std::string words = fmt::format("the first picture, bone {} of {}: {}", bone + 1,
+                                        d.bones.size(), d.bones[bone]->name);
+  preview.document.heading("What the participant sees");
+  preview.add(gallery_figure({words},
+                             "By the drawing of sessions. Names, the structures that show "
+                             "through, axes and scale are not there in a session."),
+              gallery_svg({{render::png_bytes(image), image.width, image.height, words}}));
+}
+
+void add_burr_figure(const std::vector<BurrForce>& burrs, double limit, Preview& preview) {
+  analysis::Figure figure;
+  figure.name = "burr-force";
+  figure.title = "Force of the burr over depth";
+  figure.x_label = "depth of the burr's lowest point [mm]";
+  figure.y_label = "force on the hand [N]";
+  figure.height = 0.45;
+  figure.caption = fmt::format(
+      "Of flat bone on an upright burr that does not turn, by the simulator of sessions. The "
+      "device "
+      "is asked for at most {:g} N.",
+      limit);
+  std::string alt;
+  for (const BurrForce& burr : burrs) {
+    analysis::Series series{burr.tool, analysis::Mark::kLine, curve_look(figure.series.size())};
+    for (std::size_t i = 0; i < burr.depths.size(); ++i) {
+      series.x.push_back(1e3 * burr.depths[i]);
+      series.y.push_back(burr.forces[i].norm());
+    }
+    alt += fmt::format("{}{}: {:.3g} N at {:.3g} mm", alt.empty() ? "" : "; ", burr.tool,
+                       series.y.back(), series.x.back());
+    figure.series.push_back(std::move(series));
+  }
+  figure.alt = alt + ".";
+  preview.add(std::move(figure));
+}
+
+void add_burr_table(const std::vector<BurrForce>& burrs, Preview& preview) {
+  std::vector<std::vector<std::string>> rows;
+  for (const BurrForce& burr : burrs) {
+    const bone::BurrParameters& shape = burr.burr.burr;
+    const bone::FeelParameters& feel = burr.burr.feel;
+    rows.push_back(
+        {burr.tool, fmt::format("{:g}", 1e3 * shape.diameter),
+         fmt::format("{:.3g}", 1e-9 * feel.first_gain),
+         fmt::format("{:.3g}", 1e-9 * feel.second_gain),
+         fmt::format("{:.3g}", 1e9 * feel.threshold), fmt::format("{:g}", feel.force_limit),
+         fmt::format("{:.2f}", 1e-3 * burr.stiffness), fmt::format("{:g}", shape.removal_rate),
+         fmt::format("{:.3g}", shape.tangential_gain)});
+  }
+  preview.document.table({"burr", "diameter [mm]", "first gain [N/mm³]", "second gain [N/mm³]",
+                          "gain changes at [mm³]", "limit [N]", "stiffness of flat bone [N/mm]",
+                          "removal rate [1/(N·s)]", "tangential gain [N/m⁴]"},
+                         rows);
+}
+
+}  // namespace
+
+void add_drilling_preview(const BoneDefinition& d, const PreviewRequest& request,
+                          Preview& preview) {
+  const protocols::PlannedTrial trial = procedure_of(d, request);
+  add_timeline(d, trial, preview);
+  add_seen(d, static_cast<std::size_t>(trial.trial - 1) % d.bones.size(), preview);
+  preview.document.heading("What is felt");
+  const std::vector<BurrForce> burrs = protocols::burr_forces(d);
+  if (burrs.empty()) {
+    preview.document.paragraph("No tool is a burr.");
+  } else {
+    add_burr_figure(burrs, d.drilling.force_limit, preview);
+    add_burr_table(burrs, preview);
+  }
+  std::vector<DeviceDemand> demands;
+  for (const BurrForce& burr : burrs) {
+    demands.push_back({"flat bone under " + burr.tool, burr.stiffness, 0.0});
+  }
+  add_certified(d, demands, preview);
+  add_fixed_plan(
+      d,
+      [&](int participant) {
+        return protocols::procedures_of(d, previewed_session(request.seed, participant));
+      },
+      preview);
+}
+
+}  // namespace haptrial::experiments

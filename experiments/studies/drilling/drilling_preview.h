@@ -1,0 +1,13 @@
+#pragma once
+
+#include "experiments/preview/preview.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
+namespace haptrial::experiments {
+
+/// The parts of a drilling on the page that shows an experiment before anybody runs it.
+/// @throws InputError for a trial beyond the session; RunError where a picture cannot be made
+void add_drilling_preview(const protocols::BoneDefinition& definition,
+                          const PreviewRequest& request, Preview& preview);
+
+}  // namespace haptrial::experiments
