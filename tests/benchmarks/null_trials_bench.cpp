@@ -1,7 +1,7 @@
 // How often each test of a report on trials is below 0.05 when conditions do not differ and nobody
 // drifts or repeats answers: studies of 12 people at the level of answers. Prints the table of
 // docs/algorithms/trials-analysis.md.
-//   bench_null_trials [STUDIES] [SEED] [THREADS] [PERMUTATIONS] [TASK 0 to 7; all if left out]
+//   bench_null_trials [STUDIES] [SEED] [THREADS] [PERMUTATIONS] [TASK 0 to 8; all if left out]
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -41,8 +41,11 @@ int main(int argc, char** argv) {
   const int only = argc > 5 ? std::atoi(argv[5]) : -1;
   for (const SimulatedTask task :
        {SimulatedTask::kStaircase, SimulatedTask::kConstant, SimulatedTask::kComparison,
-        SimulatedTask::kDetection, SimulatedTask::kMagnitude, SimulatedTask::kIdentification}) {
-    const int number = task == SimulatedTask::kIdentification ? 7 : static_cast<int>(task);
+        SimulatedTask::kDetection, SimulatedTask::kMagnitude, SimulatedTask::kIdentification,
+        SimulatedTask::kTimes}) {
+    const int number = task == SimulatedTask::kIdentification ? 7
+                       : task == SimulatedTask::kTimes        ? 8
+                                                              : static_cast<int>(task);
     if (only >= 0 && only != number) {
       continue;
     }

@@ -24,6 +24,7 @@ const std::vector<std::pair<std::string, AnalysisKind>>& kinds() {
       {"identification", AnalysisKind::kIdentification},
       {"magnitude", AnalysisKind::kMagnitude},
       {"adjustment", AnalysisKind::kAdjustment},
+      {"times", AnalysisKind::kTimes},
       {"reaching", AnalysisKind::kReaching},
       {"pursuit", AnalysisKind::kPursuit},
       {"none", AnalysisKind::kNone}};
@@ -62,6 +63,21 @@ void check_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan
   }
   if (plan.choices.empty()) {
     table.reject("kind", "\"identification\"", "another kind where the response has no choices");
+  }
+}
+
+/// Lines go over a level that is stated and varies within conditions.
+void check_times(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
+  const std::vector<std::string>& stages = defaults.reaching.stages;
+  if (!plan.stage.empty() && !has_name(stages, plan.stage)) {
+    table.reject("stage", fmt::format("\"{}\"", plan.stage),
+                 fmt::format("a stage: {}", fmt::join(stages, ", ")));
+  }
+  if (plan.level_assumed || !table.has("level")) {
+    plan.level.clear();
+  } else if (has_name(plan.by, plan.level)) {
+    table.reject("level", fmt::format("\"{}\", which `by` names, too", plan.level),
+                 "a variable that varies within each condition");
   }
 }
 
@@ -291,6 +307,7 @@ bool reaches(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kReachi
 bool answers(const TrialsPlan& plan) {
   return !reaches(plan) && plan.kind != AnalysisKind::kPursuit;
 }
+bool is_timed(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kTimes; }
 bool identifies(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kIdentification; }
 bool may_rate(const TrialsPlan& plan) {
   return plan.kind == AnalysisKind::kDetection || identifies(plan);
@@ -326,6 +343,14 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
         if (identifies(plan)) {
           check_stimulus(table, defaults, plan);
         }
+      })
+      .text("stage", &P::stage, "Stage whose duration is the time")
+      .otherwise("times are reaction times of the answers")
+      .only_if(is_timed)
+      .check([&](Table& table, P& plan) {
+        if (is_timed(plan)) {
+          check_times(table, defaults, plan);
+        }
       });
 }
 
@@ -342,6 +367,9 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
           plan.pursuit = read_pursuit_plan(table, defaults.pursuit);
         }
         plan.by = usual_by(plan.kind, defaults);
+        if (is_timed(plan) && table.has("level")) {
+          plan.by.clear();  // factors may make the level, or vary for other reasons
+        }
       })
       .custom("by",
               "Factors whose levels are told apart: each combination has a function, d' or "
@@ -350,7 +378,7 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
                 plan.by = table.texts(key);
                 check_by(table, defaults, plan);
               })
-      .otherwise("all factors; of detection, identification and reaching none")
+      .otherwise("all factors; of detection, identification, reaching and times over a level none")
       .custom(
           "tests",
           "Tests that were planned before the data: \"a < b\", \"a > b\" or \"a != b\" of levels "

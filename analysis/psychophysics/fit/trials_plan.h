@@ -27,6 +27,7 @@ enum class AnalysisKind {
   kIdentification,  // one of several: confusions, share of right answers, d' of m alternatives
   kMagnitude,       // numbers in proportion to what was felt: exponents
   kAdjustment,      // levels that participants set: means
+  kTimes,           // how soon answers or movements come, and how many are right
   kReaching,        // movements, which have an analysis of their own
   kPursuit,         // how the hand follows a target that moves
 };
@@ -75,7 +76,8 @@ struct TrialsPlan {
   std::string rating;           // question with a number: how sure; empty: none
   std::string stimulus;         // factor that says what was presented, of an identification
   std::vector<std::string> choices;  // of the question, likewise
-  bool functions{false};             // whether functions are fitted
+  std::string stage;      // whose duration is the time, of times; empty: the answer's reaction time
+  bool functions{false};  // whether functions are fitted
   std::string function_name{"norm"};
   psychometric::PsychometricParameters function{.guess = 0.5};
   bool guess_free{false};

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "analysis/psychophysics/report/report_surfaces.h"
+#include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/psychophysics/report/trials_words.h"
@@ -20,20 +21,6 @@ constexpr std::size_t kMostPictures = 4;
 
 std::string with_unit(const char* name, const std::string& unit) {
   return unit.empty() ? name : fmt::format("{} ({})", name, unit);
-}
-
-void add_means(Document& document, const TrialsResult& result) {
-  Rows rows;
-  for (const Quantity& q : result.quantities) {
-    for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
-      rows.push_back({q.title, result.plan.by.empty() ? "all" : q.table.names[cell],
-                      std::to_string(q.table.participants(cell)),
-                      mean_word(result, q, cell) + unit_word(result, q)});
-    }
-  }
-  if (!rows.empty()) {
-    document.table({"quantity", "condition", "participants", "mean over participants"}, rows);
-  }
 }
 
 /// Says whose answers scatter, which of the rows to report, and what a deviance cannot show.
@@ -209,6 +196,20 @@ void add_settings(Document& document, const TrialsResult& result,
 
 }  // namespace
 
+void add_means(Document& document, const TrialsResult& result) {
+  Rows rows;
+  for (const Quantity& q : result.quantities) {
+    for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
+      rows.push_back({q.title, result.plan.by.empty() ? "all" : q.table.names[cell],
+                      std::to_string(q.table.participants(cell)),
+                      mean_word(result, q, cell) + unit_word(result, q)});
+    }
+  }
+  if (!rows.empty()) {
+    document.table({"quantity", "condition", "participants", "mean over participants"}, rows);
+  }
+}
+
 void add_results(Document& document, const TrialsResult& result,
                  const std::vector<Drawing>& drawings) {
   if (result.plan.kind == AnalysisKind::kDetection) {
@@ -232,6 +233,12 @@ void add_results(Document& document, const TrialsResult& result,
   }
   if (result.plan.kind == AnalysisKind::kAdjustment) {
     add_settings(document, result, drawings);
+  }
+  if (result.plan.kind == AnalysisKind::kTimes) {
+    add_section(document, result, "Times and wrong answers");
+    add_means(document, result);
+    add_pictures(document, drawings, "by-condition-", kMostPictures);
+    add_table(document, time_findings(result), true);
   }
   if (result.reaching) {
     add_reaching(document, result, drawings);

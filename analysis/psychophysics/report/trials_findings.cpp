@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/result_json_internal.h"
 #include "analysis/statistics/design/wording.h"
@@ -466,8 +467,8 @@ std::string estimates_csv(const TrialsResult& result) {
       tables.push_back(cue_findings(result, level));
     }
   }
-  for (const auto table :
-       {track_findings, detection_findings, identification_findings, exponent_findings}) {
+  for (const auto table : {track_findings, detection_findings, identification_findings,
+                           exponent_findings, time_findings}) {
     tables.push_back(table(result));
   }
   return findings_csv(tables, labels);

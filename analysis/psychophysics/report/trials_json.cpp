@@ -6,6 +6,7 @@
 
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/psychophysics/report/report_surfaces.h"
+#include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/statistics/design/result_json_internal.h"
 
@@ -167,6 +168,9 @@ class ResultsJson {
       add_table(identification_findings(result_));
     }
     add_table(law_findings(result_));
+    if (plan.kind == AnalysisKind::kTimes) {
+      add_table(time_findings(result_));
+    }
     add_rest();
     pieces_.end();
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_figures.h"
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_words.h"
@@ -133,6 +134,9 @@ void add_methods(Document& document, const TrialsResult& result) {
         "which the target moves most; a participant's trials under a condition are averaged as "
         "complex numbers.",
         plan.pursuit.settle));
+  }
+  if (plan.kind == AnalysisKind::kTimes) {
+    add_time_methods(document, plan);
   }
   if (plan.kind == AnalysisKind::kReaching) {
     add_reaching_methods(document, plan.reaching);

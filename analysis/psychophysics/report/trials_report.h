@@ -10,6 +10,9 @@ namespace haptrial::analysis::trials {
 /// The whole report. @param drawings  outlive the document
 Document trials_report(const TrialsResult& result, const std::vector<Drawing>& drawings);
 
+/// Adds a table of the means over participants of every quantity and condition.
+void add_means(Document& document, const TrialsResult& result);
+
 /// Parts of it, in their order.
 void add_apparatus(Document& document, const TrialsResult& result);
 void add_results(Document& document, const TrialsResult& result,

@@ -25,11 +25,12 @@ bool on_axis(const Quantity& q) { return q.name == "threshold"; }
 
 void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std::string>& lines) {
   for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
-    lines.push_back(fmt::format("{}{}: {}{} ({})", capitalized(q.title),
-                                result.plan.by.empty() ? std::string() : ", " + q.table.names[cell],
-                                mean_word(result, q, cell),
-                                q.open.empty() ? unit_word(result, q) : std::string(),
-                                counted(q.table.participants(cell), "participant")));
+    lines.push_back(
+        fmt::format("{}{}: {}{} ({})", capitalized(q.title),
+                    result.plan.by.empty() ? std::string() : ", " + q.table.names[cell],
+                    mean_word(result, q, cell),
+                    q.means[cell] || q.open.empty() ? unit_word(result, q) : std::string(),
+                    counted(q.table.participants(cell), "participant")));
   }
   if (!q.open.empty()) {
     lines.push_back(fmt::format(

@@ -16,6 +16,7 @@
 #include "analysis/psychophysics/study/magnitudes.h"
 #include "analysis/psychophysics/study/population.h"
 #include "analysis/psychophysics/study/quantity.h"
+#include "analysis/psychophysics/study/timed.h"
 
 namespace haptrial::analysis::trials {
 
@@ -50,6 +51,7 @@ struct TrialsResult {
   std::vector<DetectedCondition> detected;
   std::vector<IdentifiedCondition> identified;
   std::vector<MagnitudeCondition> magnitudes;
+  std::vector<TimedCondition> timed;
   std::vector<Quantity> quantities;  // what is compared over participants
   std::optional<CueStudy> cues;      // if the plan asks for them
   std::optional<ReachingResult> reaching;

@@ -101,6 +101,26 @@ void mark_adaptive(TrialsResult& result) {
   }
 }
 
+/// Half of the way from a quarter to three quarters of the answers 1, as a share of the width.
+double limen_of_width(psychometric::PsychometricParameters p) {
+  p.axis = {};
+  p.threshold = 0.0;
+  p.width = 1.0;
+  p.falling = false;
+  const psychometric::PsychometricFunction function(p);
+  return 0.5 * (function.level_for_share(0.75) - function.level_for_share(0.25));
+}
+
+void add_difference_limens(TrialsResult& result) {
+  const TrialsPlan& plan = result.plan;
+  const double share = limen_of_width(plan.function);
+  const auto limen = [share](const FunctionReadings& r) { return share * r.width.value; };
+  result.quantities.push_back(quantity("difference_limen", "just noticeable difference",
+                                       plan.function.axis.unit, values_of(result.fits, limen), plan,
+                                       ValueRange::kPositive));
+  result.quantities.back().compared = false;  // it says again what the width says
+}
+
 void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int threads) {
   const TrialsPlan& plan = result.plan;
   result.series = series_of(result.data, plan);
@@ -121,6 +141,9 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
       "log_width", "logarithm of the width", "",
       values_of(result.fits, [](const FunctionReadings& r) { return std::log(r.width.value); }),
       plan));
+  if (!(plan.function.guess > 0.0) && plan.function.axis.scale == psychometric::Scale::kLinear) {
+    add_difference_limens(result);
+  }
   if (plan.reference) {
     result.quantities.push_back(
         quantity("weber_fraction", "Weber fraction", "",
@@ -203,6 +226,51 @@ void add_magnitudes(TrialsResult& result) {
     }
   }
   result.quantities.push_back(quantity("exponent", "exponent", "", exponents, result.plan));
+}
+
+/// One value of each participant and condition that has one.
+template <class Value>
+std::vector<QuantityValue> timed_values(const std::vector<TimedCondition>& timed, Value&& value) {
+  std::vector<QuantityValue> values;
+  for (const TimedCondition& one : timed) {
+    values.push_back({one.participant, one.levels, value(one)});
+  }
+  return values;
+}
+
+void add_lines(TrialsResult& result, const std::string& what) {
+  const TrialsPlan& plan = result.plan;
+  const auto coefficient = [&](std::size_t which) {
+    return timed_values(result.timed, [which](const TimedCondition& one) {
+      return one.line ? one.line->coefficients[which].estimate : kNotKnown;
+    });
+  };
+  result.quantities.push_back(quantity("slope",
+                                       fmt::format("slope of the {} over {}", what, plan.level),
+                                       "s", coefficient(1), plan));
+  result.quantities.push_back(quantity("intercept", fmt::format("{} at {} = 0", what, plan.level),
+                                       "s", coefficient(0), plan));
+}
+
+void add_times(TrialsResult& result) {
+  const TrialsPlan& plan = result.plan;
+  result.timed = timed(result.data, plan);
+  const std::string what =
+      plan.stage.empty() ? "reaction time" : fmt::format("duration of {}", plan.stage);
+  result.quantities.push_back(quantity(
+      plan.stage.empty() ? "reaction_time" : "duration", "mean " + what, "s",
+      timed_values(result.timed,
+                   [](const TimedCondition& one) { return one.mean ? *one.mean : kNotKnown; }),
+      plan, ValueRange::kPositive));
+  if (!plan.level.empty()) {
+    add_lines(result, what);
+  }
+  if (std::ranges::any_of(result.timed, &TimedCondition::judged)) {
+    result.quantities.push_back(quantity(
+        "share_wrong", "share of wrong answers", "",
+        timed_values(result.timed, [](const TimedCondition& one) { return one.share_wrong(); }),
+        plan, ValueRange::kShare));
+  }
 }
 
 /// A participant's setting under a condition: the mean of their tracks' own estimates.
@@ -290,6 +358,9 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
   }
   if (plan.kind == AnalysisKind::kAdjustment) {
     add_settings(result);
+  }
+  if (plan.kind == AnalysisKind::kTimes) {
+    add_times(result);
   }
   return result;
 }

@@ -68,6 +68,8 @@ std::vector<std::unique_ptr<psychometric::Procedure>> procedures_of(const Simula
                 : study.task == SimulatedTask::kDetection ? std::vector<double>{0.0, 1.0}
                 : study.task == SimulatedTask::kIdentification
                     ? std::vector<double>{0.0, 1.0, 2.0, 3.0}  // of kShapes
+                : study.task == SimulatedTask::kTimes
+                    ? std::vector<double>{1.0, 2.0, 3.0, 4.0}
                     : std::vector<double>{305.0, 312.0, 320.0, 335.0, 360.0, 420.0};
   list.repetitions = std::max(1, study.trials / static_cast<int>(list.levels.size()));
   if (study.task == SimulatedTask::kMagnitude) {
@@ -147,6 +149,13 @@ class SimulatedSession {
       }
       case SimulatedTask::kIdentification:
         return identify(static_cast<std::size_t>(level), time, trial);
+      case SimulatedTask::kTimes: {
+        const bool right = random_.uniform() > 0.08;
+        const bool left = random_.uniform() < 0.5;
+        trial.answers = {{"where", left ? 1.0 : 2.0, left ? "left" : "right", right ? 1 : 0,
+                          0.05 * level + 0.4 * std::exp(person_ + 0.2 * random_.normal())}};
+        return right ? 1.0 : 0.0;
+      }
       case SimulatedTask::kMagnitude:
         break;
     }
@@ -311,6 +320,7 @@ TrialsPlan plan_of(const SimulatedTrials& study) {
   plan.kind = study.task == SimulatedTask::kDetection        ? AnalysisKind::kDetection
               : study.task == SimulatedTask::kMagnitude      ? AnalysisKind::kMagnitude
               : study.task == SimulatedTask::kIdentification ? AnalysisKind::kIdentification
+              : study.task == SimulatedTask::kTimes          ? AnalysisKind::kTimes
                                                              : AnalysisKind::kPsychometric;
   if (study.conditions > 1) {
     plan.by = {"light"};
@@ -328,6 +338,7 @@ TrialsPlan plan_of(const SimulatedTrials& study) {
   const bool rated =
       study.task == SimulatedTask::kDetection || study.task == SimulatedTask::kIdentification;
   plan.rating = rated ? "sure" : "";
+  plan.level = study.task == SimulatedTask::kTimes ? "level" : "";
   plan.resamples = 0;
   plan.permutations = 0;
   plan.bayesian = false;

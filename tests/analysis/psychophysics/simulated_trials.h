@@ -15,6 +15,7 @@ enum class SimulatedTask {
   kDetection,   // yes or no with a rating from 1 to 3, half of the trials with signal
   kMagnitude,   // numbers for five levels
   kIdentification,  // which of four shapes it is, with a rating from 1 to 3
+  kTimes,           // left or right, in a time that grows by 50 ms with each of four levels
 };
 
 /// A study at the level of answers, without a servo loop. Two conditions, "off" and "on" of the

@@ -19,6 +19,8 @@ const char* name_of(SimulatedTask task) {
       return "yes or no with ratings";
     case SimulatedTask::kIdentification:
       return "which of four, with ratings";
+    case SimulatedTask::kTimes:
+      return "speeded choices";
     case SimulatedTask::kMagnitude:
       break;
   }
@@ -33,6 +35,7 @@ NullLevels one_study(SimulatedTask task, std::uint64_t seed, std::size_t number,
   study.task = task;
   study.trials = task == SimulatedTask::kMagnitude        ? 25
                  : task == SimulatedTask::kIdentification ? 48
+                 : task == SimulatedTask::kTimes          ? 40
                                                           : 120;
   if (task == SimulatedTask::kComparison) {
     study.spread = 0.6;

@@ -36,8 +36,8 @@ TEST(NullTrialsTest, ASearchThatMustDampAnewEnds) {
 INSTANTIATE_TEST_SUITE_P(Tasks, NullTrials,
                          testing::Values(SimulatedTask::kStaircase, SimulatedTask::kConstant,
                                          SimulatedTask::kComparison, SimulatedTask::kDetection,
-                                         SimulatedTask::kMagnitude,
-                                         SimulatedTask::kIdentification));
+                                         SimulatedTask::kMagnitude, SimulatedTask::kIdentification,
+                                         SimulatedTask::kTimes));
 
 }  // namespace
 }  // namespace haptrial::test
