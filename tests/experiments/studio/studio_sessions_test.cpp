@@ -72,8 +72,11 @@ TEST_F(StudioSessionsTest, TheChecklistIsThatOfStart) {
   EXPECT_EQ(found["participant"], "P01");
   EXPECT_TRUE(found["ready"]);
   EXPECT_EQ(found["checks"][0]["what"], "participant");
-  const json refused = post("/checklist", choice({{"session", 7}}));
-  EXPECT_THAT(refused["failure"].get<std::string>(), HasSubstr("--session"));
+  const json broken = post("/checklist", choice({{"session", 7}}));
+  EXPECT_FALSE(broken["ready"]);
+  EXPECT_THAT(broken["checks"][0]["found"].get<std::string>(), HasSubstr("--session is 7"));
+  const json refused = post("/checklist", choice({{"devices", {"mouse"}}}));
+  EXPECT_THAT(refused["failure"].get<std::string>(), HasSubstr("add --window"));
   EXPECT_FALSE(fs::exists(folder_ / "out/mine/P01.h5.partial")) << "a checklist records nothing";
 }
 
