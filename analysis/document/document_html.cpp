@@ -73,7 +73,7 @@ std::string to_html(const Document& document) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}{}</title>\n<style>{}</style>\n</head>\n<body>\n<h1>{}</h1>\n"
+      "<title>{}{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n<h1>{}</h1>\n"
       "<p class=\"lead\">{}</p>\n",
       document.simulated ? "SIMULATED: " : "", escape_html(document.title), kReportStyle,
       escape_html(document.title), escape_html(document.subtitle));
@@ -82,7 +82,7 @@ std::string to_html(const Document& document) {
   for (const Document::Block& block : document.blocks) {
     html += std::visit(writer, block);
   }
-  return html + "</body>\n</html>\n";
+  return html + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace haptrial::analysis

@@ -148,9 +148,13 @@ ChildProcess::~ChildProcess() {
   wait();
 }
 
-void ChildProcess::kill() noexcept {
+void ChildProcess::kill() noexcept { signal(SIGKILL); }
+
+void ChildProcess::ask_to_end() noexcept { signal(SIGTERM); }
+
+void ChildProcess::signal(int number) noexcept {
   if (process_ > 0) {
-    ::kill(leads_group_ ? -process_ : process_, SIGKILL);
+    ::kill(leads_group_ ? -process_ : process_, number);
   }
 }
 

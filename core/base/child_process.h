@@ -55,10 +55,13 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   void kill() noexcept;
+  /// Asks the program, with its process group, to end (SIGTERM). Nothing after wait().
+  void ask_to_end() noexcept;
   /// Waits for the end. @returns the exit status; -1 after a crash or a kill. Again the same.
   int wait() noexcept;
 
  private:
+  void signal(int number) noexcept;
   pid_t process_{-1};
   bool leads_group_{false};
   int status_{-1};

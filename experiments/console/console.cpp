@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -47,6 +48,21 @@ ServerOptions server_options(const ConsoleOptions& options) {
   return server;
 }
 
+ServerOptions watch_options(const ConsoleOptions& options) {
+  ServerOptions server = server_options(options);
+  server.address = options.watch_address;
+  server.port = 0;
+  server.allow_remote = true;
+  return server;
+}
+
+/// The console's page, which then shows nothing that can be pressed.
+std::string watching_page() {
+  std::string page(console_page_template());
+  constexpr std::string_view kStart = "<html lang=\"en\">";
+  return page.replace(page.find(kStart), kStart.size(), "<html lang=\"en\" data-watch>");
+}
+
 /// Answers a request whose body asks for something.
 WebRoute post(const std::string& path, std::function<void(const std::string&)> act) {
   return {path, Kind::kPost, [act = std::move(act)](const WebRequest& request) {
@@ -86,17 +102,33 @@ void add_routes_of(const std::shared_ptr<protocols::AuxiliaryPage>& side,
 class Console::Implementation {
  public:
   Implementation(SessionControl& control, const ConsoleOptions& options)
-      : control_(control), server_(server_options(options), routes(options.sides)) {}
+      : control_(control), server_(server_options(options), routes(options.sides)) {
+    if (!options.watch_address.empty()) {
+      watch_.emplace(watch_options(options), watch_routes());
+    }
+  }
 
   const GuardedServer& server() const { return server_; }
+  const std::optional<GuardedServer>& watch() const { return watch_; }
 
  private:
+  WebRoute events() {
+    return {"/events", Kind::kRead, {}, [this] { return [this] { return status(); }; }};
+  }
+  WebRoute picture() {
+    return {"/picture", Kind::kRead,
+            [this](const WebRequest&) { return picture_answer(control_); }};
+  }
+  std::vector<WebRoute> watch_routes() {
+    const auto html = [page = watching_page()]() -> std::string_view { return page; };
+    return {page("/", html), events(), picture()};
+  }
   std::vector<WebRoute> routes(const protocols::AuxiliaryPages& sides) {
     check_names(sides);
     std::vector<WebRoute> all{
         page("/", [] { return console_page_template(); }),
-        {"/events", Kind::kRead, {}, [this] { return [this] { return status(); }; }},
-        {"/picture", Kind::kRead, [this](const WebRequest&) { return picture_answer(control_); }},
+        events(),
+        picture(),
         {"/mirror", Kind::kRead, [this](const WebRequest&) { return mirror_answer(control_); }},
         post("/ask", [this](const std::string& body) { control_.ask(parse_request(body)); }),
         post("/note", [this](const std::string& body) { keep_note(body); }),
@@ -118,6 +150,7 @@ class Console::Implementation {
 
   SessionControl& control_;
   GuardedServer server_;
+  std::optional<GuardedServer> watch_;
 };
 
 Console::Console(SessionControl& control, ConsoleOptions options)
@@ -128,6 +161,10 @@ Console::~Console() = default;
 std::string Console::url() const { return implementation_->server().url(); }
 std::string Console::side_url(std::string_view name) const {
   return implementation_->server().url(fmt::format("/{}", name));
+}
+std::string Console::watch_url() const {
+  const auto& watch = implementation_->watch();
+  return watch ? watch->url() : "";
 }
 int Console::port() const { return implementation_->server().port(); }
 const std::string& Console::token() const { return implementation_->server().token(); }

@@ -22,6 +22,8 @@ struct ConsoleOptions {
   int event_streams{4};  // pages at a time, >= 1
   int waiting{32};       // connections that may wait for a worker
   protocols::AuxiliaryPages sides{};  // pages beside the console's
+  std::string watch_address{};        // of a copy of the page that only looks; may be reached from
+                                      // other machines. Empty: there is none
   /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
   std::function<void(const std::string&)> on_refusal;
 };
@@ -42,6 +44,11 @@ struct ConsoleOptions {
 ///     GET /NAME?token=T         the page
 ///     GET /NAME/events?token=T  server-sent events, as the page has them
 ///     POST /NAME/ask            what the page takes, with the header
+///
+/// The copy for those who only look is a server of its own with a token of its own, which has no
+/// address that takes anything:
+///
+///     GET /?token=W, /events?token=W, /picture?token=W
 class Console {
  public:
   /// Serves when it returns. @param control  outlives the console.
@@ -57,6 +64,8 @@ class Console {
   std::string url() const;
   /// Address of a page beside it; likewise. @param name  of the page
   std::string side_url(std::string_view name) const;
+  /// Address of the copy that only looks, with its token; empty if there is none.
+  std::string watch_url() const;
   int port() const;
   const std::string& token() const;
 

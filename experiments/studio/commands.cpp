@@ -18,6 +18,7 @@ constexpr std::size_t kMostOutput = 4'000'000;  // of a command [bytes]; the res
 constexpr std::chrono::minutes kLongest(2);     // of run()
 constexpr int kMostRunning = 4;                 // jobs at a time
 constexpr std::size_t kMostJobs = 500;          // in one run of the studio
+constexpr std::chrono::seconds kToEnd(15);      // for a session that is asked to end
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
@@ -38,11 +39,13 @@ std::string quoted(const std::string& word) {
 }
 
 /// Runs a program until it ends or `go_on` says no; then it is killed with its group.
+/// @param patience  with a program that was asked to end; 0: it is killed without being asked
 /// @returns its exit status, -1 after a kill
 int run_program(const std::string& program, const CommandWords& words,
                 const std::filesystem::path& folder,
                 const std::function<bool(std::string_view)>& take,
-                const std::function<bool()>& go_on) {
+                const std::function<bool()>& go_on,
+                Clock::duration patience = Clock::duration::zero()) {
   Pipe pipe;
   Program started{.words = {program}, .folder = folder, .output = pipe.to.get()};
   started.words.insert(started.words.end(), words.begin(), words.end());
@@ -54,7 +57,14 @@ int run_program(const std::string& program, const CommandWords& words,
     return !stopped;
   });
   if (stopped) {
-    child.kill();
+    const auto last = Clock::now() + patience;
+    if (patience > Clock::duration::zero()) {
+      child.ask_to_end();
+      read_pieces(pipe.from.get(), take, [&] { return Clock::now() < last; });
+    }
+    if (Clock::now() >= last) {
+      child.kill();
+    }
   }
   return child.wait();
 }
@@ -123,13 +133,7 @@ CommandResult Commands::run(const CommandWords& words) const {
 
 int Commands::start(const CommandWords& words, JobState about) {
   const std::lock_guard lock(mutex_);
-  if (running() >= kMostRunning) {
-    throw RunError(
-        fmt::format("{} jobs are running already; wait for one, or cancel it", kMostRunning));
-  }
-  if (jobs_.size() >= kMostJobs) {
-    throw RunError(fmt::format("{} jobs were started; start the studio anew", kMostJobs));
-  }
+  check_room_for(about.kind);
   auto job = std::make_unique<Job>();
   job->state = std::move(about);
   job->state.number = static_cast<int>(jobs_.size()) + 1;
@@ -148,8 +152,9 @@ void Commands::work(Job& job, const CommandWords& words) {
   int status = -1;
   std::string failure;
   try {
-    status =
-        run_program(program_, words, folder_, take, [&] { return !stopped_ && !job.cancelled; });
+    status = run_program(
+        program_, words, folder_, take, [&] { return !stopped_ && !job.cancelled; },
+        job.state.kind == JobState::Kind::kSession ? kToEnd : Clock::duration::zero());
   } catch (const std::exception& error) {
     failure = sentence_of(error) + "\n";
   }
@@ -157,14 +162,27 @@ void Commands::work(Job& job, const CommandWords& words) {
   job.output += failure;
   job.state.status = status;
   job.state.seconds = seconds_between(job.start, Clock::now());
-  job.state.state = job.cancelled && status == -1 ? JobState::State::kCancelled
-                    : status == 0                 ? JobState::State::kDone
-                                                  : JobState::State::kFailed;
+  job.state.state = job.cancelled && status != 0 ? JobState::State::kCancelled
+                    : status == 0                ? JobState::State::kDone
+                                                 : JobState::State::kFailed;
 }
 
-int Commands::running() const {
-  return static_cast<int>(std::ranges::count_if(
-      jobs_, [](const auto& job) { return job->state.state == JobState::State::kRunning; }));
+void Commands::check_room_for(JobState::Kind kind) const {
+  int running = 0;
+  for (const auto& job : jobs_) {
+    const bool runs = job->state.state == JobState::State::kRunning;
+    running += runs ? 1 : 0;
+    if (runs && kind == JobState::Kind::kSession && job->state.kind == kind) {
+      throw RunError("a session is running already; end it before another begins");
+    }
+  }
+  if (running >= kMostRunning) {
+    throw RunError(
+        fmt::format("{} jobs are running already; wait for one, or cancel it", kMostRunning));
+  }
+  if (jobs_.size() >= kMostJobs) {
+    throw RunError(fmt::format("{} jobs were started; start the studio anew", kMostJobs));
+  }
 }
 
 std::vector<JobState> Commands::jobs() const {

@@ -28,6 +28,9 @@ struct CommandResult {
 /// A command that goes on while pages come and go.
 struct JobState {
   enum class State { kRunning, kDone, kFailed, kCancelled };
+  enum class Kind { kWork, kSession };
+  Kind kind{Kind::kWork};  // a session is asked to end before it is killed, so that it closes its
+                           // file and takes the force away; one runs at a time
   int number{0};
   std::string command;  // as shown
   std::string study;    // the definition's name
@@ -42,7 +45,7 @@ struct JobState {
 const char* name_of(JobState::State state) noexcept;
 
 /// Runs this program's own commands as child processes in one folder, never by a shell. All that
-/// still runs is killed at the end, with its process group. Any thread.
+/// still runs is ended at the end, with its process group. Any thread.
 class Commands {
  public:
   /// @param program  the executable
@@ -58,19 +61,19 @@ class Commands {
   void stop() noexcept { stopped_ = true; }
 
   /// Starts a command that takes longer. @param about  study, folder and sessions
-  /// @returns its number  @throws RunError if as many run as may.
+  /// @returns its number  @throws RunError if as many run as may, or another session runs.
   int start(const CommandWords& words, JobState about);
   std::vector<JobState> jobs() const;
   /// The last 200 kB of what a job printed. @throws InputError for a number that no job has.
   std::string output(int number) const;
-  /// Kills a job with its group; nothing, if it has ended. @throws InputError as above
+  /// Ends a job with its group; nothing, if it has ended. @throws InputError as above
   void cancel(int number);
 
  private:
   struct Job;
   void work(Job& job, const CommandWords& words);
   Job& job(int number) const;
-  int running() const;
+  void check_room_for(JobState::Kind kind) const;
 
   std::string program_;
   std::filesystem::path folder_;

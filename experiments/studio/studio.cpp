@@ -12,6 +12,7 @@
 #include "experiments/server/server.h"
 #include "experiments/studio/commands.h"
 #include "experiments/studio/line_commands.h"
+#include "experiments/studio/session_views.h"
 #include "experiments/studio/studio_page.h"
 #include "experiments/studio/study_folder.h"
 #include "experiments/studio/views_internal.h"
@@ -64,6 +65,35 @@ int number_in(const json& body, const char* key, int low, int high) {
   return static_cast<int>(number);
 }
 
+/// A text that may be missing.
+std::string text_in(const json& body, const char* key) {
+  return body.contains(key) ? string_in(body, key) : "";
+}
+
+SessionChoice choice_in(const json& body) {
+  constexpr int kMostSessions = 1000;
+  constexpr std::size_t kMostDevices = 4;
+  SessionChoice choice;
+  choice.file = string_in(body, "file");
+  choice.subject = text_in(body, "subject");
+  choice.session = body.contains("session") ? number_in(body, "session", 0, kMostSessions) : 0;
+  const json devices = body.value("devices", json::array());
+  for (const json& device : devices) {
+    if (!device.is_string() || choice.devices.size() == kMostDevices) {
+      throw InputError(fmt::format("the body's \"devices\" are not up to {} names", kMostDevices));
+    }
+    choice.devices.push_back(device.get<std::string>());
+  }
+  choice.language = text_in(body, "language");
+  choice.handedness = text_in(body, "handedness");
+  choice.consent = text_in(body, "consent");
+  choice.watch = text_in(body, "watch");
+  choice.window = body.value("window", json()) == true;
+  choice.resume = body.value("resume", json()) == true;
+  choice.pilot = body.value("pilot", json()) == true;
+  return choice;
+}
+
 }  // namespace
 
 class Studio::Implementation {
@@ -74,6 +104,7 @@ class Studio::Implementation {
         tried_(options.program, folder_.path()),
         page_maker_(options.program, folder_.path()),
         views_(folder_, commands_, tried_, page_maker_, options.libraries),
+        sessions_(folder_, commands_),
         server_(server_options(options), routes()) {}
   ~Implementation() { commands_.stop(); }
 
@@ -86,6 +117,7 @@ class Studio::Implementation {
     server.port = options.port;
     server.request_time = options.request_time;
     server.own_workers = kRequests;
+    server.waiting = 256;  // a hundred pages that are opened at once are all answered
     server.max_body = kMaxBody;
     server.on_refusal = options.on_refusal;
     return server;
@@ -104,7 +136,7 @@ class Studio::Implementation {
 
   std::vector<WebRoute> routes() {
     std::vector<WebRoute> all = looks();
-    for (auto more : {acts(), tries()}) {
+    for (auto more : {acts(), tries(), session_routes()}) {
       std::ranges::move(more, std::back_inserter(all));
     }
     return all;
@@ -194,10 +226,29 @@ class Studio::Implementation {
             })};
   }
 
+  std::vector<WebRoute> session_routes() {
+    constexpr int kMostSeconds = 600;
+    return {get("/session", [this](const WebRequest&) { return sessions_.session(); }),
+            get("/devices", [this](const WebRequest&) { return sessions_.devices(); }),
+            post("/checklist", [this](const json& b) { return sessions_.checklist(choice_in(b)); }),
+            post("/begin", [this](const json& b) { return sessions_.begin(choice_in(b)); }),
+            post("/card", [this](const json& b) { return sessions_.card(choice_in(b)); }),
+            post("/device_test",
+                 [this](const json& b) {
+                   return sessions_.test_device(string_in(b, "device"),
+                                                number_in(b, "seconds", 1, kMostSeconds));
+                 }),
+            post("/hand_over", [this](const json& b) {
+              return sessions_.hand_over(string_in(b, "file"), string_in(b, "folder"),
+                                         string_in(b, "format"));
+            })};
+  }
+
   StudyFolder folder_;
   Commands commands_;
   LineCommands tried_, page_maker_;
   StudioViews views_;
+  SessionViews sessions_;
   GuardedServer server_;
 };
 

@@ -118,14 +118,23 @@ std::string StudyFolder::sessions_of(const std::string& definition) {
 }
 
 std::vector<std::string> StudyFolder::session_folders(const std::string& definition) const {
+  return folders_like(definition, "(-rehearsal)?(-[0-9]+)?");
+}
+
+std::vector<std::string> StudyFolder::export_folders(const std::string& definition) const {
+  return folders_like(definition, "(-rehearsal)?(-[0-9]+)?-(csv|bids)-[0-9]+");
+}
+
+std::vector<std::string> StudyFolder::folders_like(const std::string& definition,
+                                                   const char* pattern) const {
   std::vector<std::string> names;
-  static const std::regex kMore("(-rehearsal)?(-[0-9]+)?");
+  const std::regex more(pattern);
   const std::string stem = stem_of(definition);
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(root_ / "out", error)) {
     const std::string name = entry.path().filename().string();
     std::error_code ignored;
-    if (name.starts_with(stem) && std::regex_match(name.substr(stem.size()), kMore) &&
+    if (name.starts_with(stem) && std::regex_match(name.substr(stem.size()), more) &&
         entry.is_directory(ignored) && holds("out/" + name)) {
       names.push_back("out/" + name);
     }

@@ -38,6 +38,9 @@ class StudyFolder {
   /// Names of the folders of a definition's sessions and rehearsals, in order: out/STEM,
   /// out/STEM-rehearsal-001 and the like.
   std::vector<std::string> session_folders(const std::string& definition) const;
+  /// Names of the folders that such folders were exported to, in order: out/STEM-csv-001,
+  /// out/STEM-rehearsal-001-bids-001 and the like.
+  std::vector<std::string> export_folders(const std::string& definition) const;
   /// Where sessions with people go: "out/STEM"; need not be there.
   static std::string sessions_of(const std::string& definition);
   /// The first name of a rehearsal's folder that is free: "out/STEM-rehearsal-001".
@@ -51,6 +54,9 @@ class StudyFolder {
                    const std::string& stamp) const;
 
  private:
+  /// Names of folders in out/ that begin with the definition's stem and go on as the pattern says.
+  std::vector<std::string> folders_like(const std::string& definition, const char* pattern) const;
+
   std::filesystem::path root_;  // without symbolic links
 };
 

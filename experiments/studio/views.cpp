@@ -139,6 +139,7 @@ void StudioViews::add_roster(const std::string& file, json& out) const {
   out["roster"] = {{"command", shown_command(words)},
                    {"groups", roster["groups"]},
                    {"next", roster["next"]},
+                   {"participants", roster["participants"]},
                    {"remarks", roster["remarks"]}};
 }
 
@@ -245,6 +246,7 @@ json StudioViews::jobs() const {
     all.push_back({{"job", job.number},
                    {"command", job.command},
                    {"study", job.study},
+                   {"live", job.kind == JobState::Kind::kSession},
                    {"folder", job.folder},
                    {"sessions", job.sessions},
                    {"written", written},
@@ -272,7 +274,12 @@ json StudioViews::sessions(const std::string& file) const {
                        {"report", held.report},
                        {"report_is_old", held.report_is_old}});
   }
-  return {{"folders", folders}, {"own", StudyFolder::sessions_of(file)}};
+  json exports = json::array();
+  for (const std::string& name : folder_.export_folders(file)) {
+    exports.push_back(
+        {{"folder", name}, {"files", files_json(list_sessions(folder_.inside(name)).results)}});
+  }
+  return {{"folders", folders}, {"exports", exports}, {"own", StudyFolder::sessions_of(file)}};
 }
 
 json StudioViews::info(const std::string& file) const {

@@ -52,6 +52,9 @@ class Driver:
             raise
         self.base += "/session/" + answer["sessionId"]
 
+    def open(self, url):
+        self.call("POST", "/url", {"url": url})
+
     def call(self, method, path, body=None):
         data = None if method != "POST" else json.dumps(body or {}).encode()
         request = urllib.request.Request(self.base + path, data, method=method,
@@ -144,6 +147,21 @@ def wait(what, condition):
         if time.monotonic() - told > 60:
             told = time.monotonic()
             print("still waiting for " + what, file=sys.stderr, flush=True)
+
+
+def look_at(url, folder, look, flags=()):
+    """Calls look(page) with a page that shows the address; no page complains of anything and none
+    scrolls sideways."""
+    page = Driver(folder, flags)
+    try:
+        page.open(url)
+        look(page)
+        wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")
+        assert not wide, "the page scrolls sideways"
+        complaints = page.complaints()
+        assert not complaints, complaints
+    finally:
+        page.close()
 
 
 def ask(page, *buttons):

@@ -9,7 +9,7 @@ is lost. Leaves pictures in FOLDER. Exit status 0: all was as it should be.
 import pathlib
 import sys
 
-from browser import Driver, wait
+from browser import look_at, wait
 
 
 def rows(page):
@@ -19,8 +19,7 @@ def rows(page):
         " [...q.children].map((part) => part.textContent).filter((part) => part).join(' '))])")
 
 
-def look(page, url, folder):
-    page.call("POST", "/url", {"url": url})
+def look(page, folder):
     wait("four channels", lambda: len(rows(page)) == 4)
     force, eeg, texts, grip = rows(page)
     assert force[:2] == ["force", ""], force
@@ -32,19 +31,7 @@ def look(page, url, folder):
     assert grip == ["grip", "bad", ["\u26a0\ufe0e lost"]], grip
     page.picture(folder / "channels.png", height=1000)
     page.picture(folder / "channels-narrow.png", 620, 1400)
-    wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")
-    assert not wide, "the narrow page scrolls sideways"
-    complaints = page.complaints()
-    assert not complaints, complaints
 
 
-def main():
-    url, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    page = Driver(folder)
-    try:
-        look(page, url, folder)
-    finally:
-        page.close()
-
-
-main()
+url, to = sys.argv[1], pathlib.Path(sys.argv[2])
+look_at(url, to, lambda page: look(page, to))

@@ -9,7 +9,7 @@ it should be.
 import pathlib
 import sys
 
-from browser import Driver, state, wait
+from browser import look_at, state, wait
 
 EXPECTED = {
     "figures_title": "Procedure 2",
@@ -27,8 +27,7 @@ ROWS = [
 ]
 
 
-def look(page, url, folder):
-    page.call("POST", "/url", {"url": url})
+def look(page, folder):
     state(page, "Instructions")
     assert page.hidden("figures"), "no panel where nothing is drilled"
     assert not page.hidden("target_row"), "a force to follow"
@@ -53,19 +52,7 @@ def look(page, url, folder):
     assert rows == ROWS, rows
     page.picture(folder / "console-drilling.png", height=1060)
     page.picture(folder / "console-drilling-narrow.png", 620, 1500)
-    wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")
-    assert not wide, "the narrow page scrolls sideways"
-    complaints = page.complaints()
-    assert not complaints, complaints
 
 
-def main():
-    url, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    page = Driver(folder)
-    try:
-        look(page, url, folder)
-    finally:
-        page.close()
-
-
-main()
+url, to = sys.argv[1], pathlib.Path(sys.argv[2])
+look_at(url, to, lambda page: look(page, to))

@@ -1,4 +1,5 @@
-"""A study from the gallery to its report on the studio's page, in headless Chromium.
+"""A study from the gallery to its report on the studio's page, in headless Chromium, with a session
+of a participant, who sits at the mouse while this prints "sits down" and until it prints "gets up".
 
     studio_browser.py URL PLAIN_URL FOLDER
 
@@ -9,14 +10,10 @@ should be.
 import pathlib
 import sys
 
-from browser import Driver, wait
+from browser import Driver, ask, state, wait
 
 KEYS = {"Backspace": "\ue003", "Tab": "\ue004", "Enter": "\ue007"}
 CONTROL = "\ue009"
-
-
-def open_page(page, url):
-    page.call("POST", "/url", {"url": url})
 
 
 def press(page, *keys):
@@ -40,7 +37,7 @@ def words(page, selector):
 
 def home(page, url):
     """The studies of the folder, one of them with a script for a name; nothing of it runs."""
-    open_page(page, url)
+    page.open(url)
     wait("the states", lambda: page.run(
         "const rows = [...document.querySelectorAll('tbody')][0];"
         "return rows ? rows.innerText.split('ready').length - 1 : 0") == 1)
@@ -105,6 +102,9 @@ def complete(page):
 def mend_and_save(page):
     to_participants(page)
     press(page, "Backspace", "4")
+    page.run("const editor = document.querySelector('.CodeMirror').CodeMirror, text = editor.getValue();"
+             "const at = text.indexOf('repetitions = 10') + 'repetitions = '.length;"
+             "editor.replaceRange('2', editor.posFromIndex(at), editor.posFromIndex(at + 2)); editor.focus()")
     wait("no mistake", lambda: page.text("count") == "No mistakes")
     assert not there(page, ".at-line")
     press_with_control(page, "s")
@@ -205,8 +205,139 @@ def sessions(page):
     wait("what a session holds", lambda: "subject     S01 (simulated)" in words(page, "main"))
 
 
+def prepare_session(page, folder):
+    """The checklist and the emergency card."""
+    page.click("to_sessions")
+    wait("the devices", lambda: there(page, "#device option[value=mouse]"))
+    page.run("const device = document.getElementById('device'); device.value = 'mouse';"
+             "device.dispatchEvent(new Event('change'))")
+    page.click("checklist")
+    wait("the checklist", lambda: words(page, "#ready") == "The session can begin.")
+    assert "P01, into out/pulls/P01.h5" in words(page, "#checks"), words(page, "#checks")
+    page.run("document.getElementById('next_title').scrollIntoView()")
+    page.picture(folder / "studio-checklist.png")
+    page.click("card")
+    wait("the card", lambda: "pulls-card-001.html" in words(page, "#open_card"))
+
+
+def begin_session(page):
+    """@returns the window of the studio, with the console in front"""
+    page.click("begin")
+    wait("the console", lambda: page.run(
+        "const link = document.getElementById('open_console'); return link && link.href.startsWith('http')"))
+    studio = page.call("GET", "/window")
+    before = page.call("GET", "/window/handles")
+    page.click("open_console")
+    wait("its tab", lambda: len(page.call("GET", "/window/handles")) == len(before) + 1)
+    new = next(each for each in page.call("GET", "/window/handles") if each not in before)
+    page.call("POST", "/window", {"handle": new})
+    state(page, "Instructions")
+    assert page.text("subject").startswith("P01"), page.text("subject")
+    return studio
+
+
+def back_to(page, studio):
+    page.call("DELETE", "/window")  # the console's tab
+    page.call("POST", "/window", {"handle": studio})
+
+
+def live_session(page, folder):
+    """A session that is ended in the middle, and resumed to its end."""
+    studio = begin_session(page)
+    page.type("note", "began late")
+    page.click("keep")
+    ask(page, "start")
+    wait("a trial", lambda: page.text("state") == "Running")
+    console = page.call("GET", "/window")
+    page.call("POST", "/window", {"handle": studio})
+    page.run("document.getElementById('live_title').scrollIntoView()")
+    page.picture(folder / "studio-session.png")
+    page.click("end_session")
+    page.click("really_end")
+    wait("the end", lambda: "it can be resumed" in words(page, "#live_state"))
+    page.call("POST", "/window", {"handle": console})
+    back_to(page, studio)
+    wait("what can be resumed", lambda: words(page, "#begin") == "Resume the session")
+    studio = begin_session(page)
+    print("sits down", flush=True)
+    ask(page, "start")
+    wait("the end of the session", lambda: page.text("state") in ("Ended", "Thanks"))
+    page.picture(folder / "console-of-studio.png")
+    if page.text("state") == "Thanks":
+        ask(page, "start")
+    back_to(page, studio)
+    wait("the session's end", lambda: "done" in words(page, "#live_state"))
+    print("gets up", flush=True)
+    wait("the next participant", lambda: "P02" in words(page, "#who"))
+    wait("the participants", lambda: "P01" in words(page, "[aria-labelledby=persons_title]"))
+
+
+def results(page, folder):
+    """The report of the session, its quality, and tables for other programs."""
+    page.click("to_results")
+    wait("the quality", lambda: "intact: every tick is recorded" in words(page, "main"))
+    wait("the trials", lambda: "8 of 8 done" in words(page, "main"))
+    page.run("document.querySelector('[aria-label=\"Sessions of out/pulls\"] .analyze').click()")
+    wait("the analysis", lambda: page.run(
+        "return [...document.querySelectorAll('[id^=job_][id$=_state]')].map((e) => e.innerText).join()")
+        in ("done,done,done",))
+    page.click("to_results")
+    wait("the report", lambda: there(page, "iframe#report"))
+    wait("the report of people", lambda: "out/pulls/report.html" in page.run(
+        "return decodeURIComponent(document.getElementById('report').src)"))
+    wait("the quality", lambda: "intact" in words(page, "[aria-labelledby=quality_title]"))
+    page.run("document.querySelector('[aria-label=\"Sessions of out/pulls\"] details').open = true")
+    assert page.run("return [...document.querySelectorAll('a[download]')].some((a) => a.download === 'report.html')")
+    page.picture(folder / "studio-results.png", height=1100)
+    page.run("document.querySelector('[aria-label=\"Sessions of out/pulls\"] a[download=\"report.html\"]').click()")
+
+
+def by_keyboard_alone(page, url):
+    """From home to a rehearsal: Tab, Enter and typing."""
+    page.open(url)
+    wait("the gallery", lambda: there(page, "#begin_first_experiment"))
+
+    def tab_to(name):
+        for _ in range(300):
+            if page.run("return document.activeElement.id") == name:
+                return
+            press(page, "Tab")
+        raise AssertionError(f"Tab does not lead to {name}")
+
+    tab_to("begin_wall_detection")
+    press(page, "Enter")
+    wait("the dialog", lambda: there(page, "#new_name"))
+    tab_to("new_name")
+    press(page, *"walls", "Enter")
+    wait("the text", lambda: page.run("return location.hash") == "#definition/walls.toml")
+    wait("the check", lambda: words(page, "#count").startswith("No mistakes"))
+    tab_to("to_rehearse")
+    press(page, "Enter")
+    wait("the form", lambda: there(page, "#rehearse"))
+    tab_to("subjects")
+    press(page, "Enter")
+    wait("a job", lambda: "walls.toml" in words(page, "#jobs"))
+    tab_to("to_sessions")
+    press(page, "Enter")
+    wait("the devices", lambda: there(page, "#device option[value=mouse]"))
+    tab_to("checklist")
+    press(page, "Enter")
+    wait("the checklist", lambda: there(page, "#ready"))
+
+
+def hostile_files(page, url):
+    """What a folder from elsewhere may hold: nothing of it runs."""
+    for view in ("definition/evil.toml", "sessions/evil.toml", "results/evil.toml"):
+        page.open(url + "#" + view)
+        page.call("POST", "/refresh")
+        wait(view, lambda: "evil" in words(page, "main"))
+    wait("the report's frame", lambda: there(page, "iframe#report"))
+    wait("the session's name", lambda: "onerror=hit" in words(page, "main"))
+    assert page.run("return window.hit === undefined && document.images.length === 0")
+
+
 def without_code_mirror(page, url):
-    open_page(page, url + "#definition/pulls.toml")
+    page.open(url + "#definition/pulls.toml")
     wait("the plain text", lambda: page.run(
         "const text = document.querySelector('textarea'); return text ? text.value : ''") != "")
     assert "libjs-codemirror" in page.text("plain_editor")
@@ -228,8 +359,14 @@ def main():
         preview(page, folder)
         rehearse(page, folder)
         sessions(page)
-        bad = page.complaints()
+        prepare_session(page, folder)
+        live_session(page, folder)
+        results(page, folder)
+        bad = [each for each in page.complaints() if "/events" not in each]  # of a console that ended
         assert not bad, bad
+        by_keyboard_alone(page, url)
+        hostile_files(page, url)
+        page.complaints()  # the policy says what it kept from running
         without_code_mirror(page, plain)
     finally:
         page.close()

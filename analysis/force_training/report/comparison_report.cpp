@@ -171,7 +171,7 @@ std::string html_of(const StudyComparison& comparison, const std::string& svg,
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{}Two studies compared</title>\n<style>{}</style>\n</head>\n<body>\n"
+      "<title>{}Two studies compared</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n"
       "<h1>Two studies compared</h1>\n",
       simulated(comparison) ? "SIMULATED: " : "", kReportStyle);
   for (const std::string& alarm : comparison_alarms(comparison)) {
@@ -194,7 +194,7 @@ std::string html_of(const StudyComparison& comparison, const std::string& svg,
   if (!comparison.paired.empty()) {
     html += within_table(comparison);
   }
-  return html + between_table(comparison) + "</body>\n</html>\n";
+  return html + between_table(comparison) + "</main>\n</body>\n</html>\n";
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include <array>
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 
 #include "core/base/file_text.h"
 #include "core/record/hdf5/file_lock.h"
@@ -49,7 +51,14 @@ Id open_to_go_on(const std::filesystem::path& path) {
   check(H5Pset(access.get(), "skip_eof_check", &yes), "end of file");
   // Ordered from the first write on: a kill in between leaves the file as readable as it was.
   const unsigned flags = H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE;
-  Id file = take(H5Fopen(path.c_str(), flags, access.get()), "cannot open for writing");
+  Id file(H5Fopen(path.c_str(), flags, access.get()));
+  if (!file) {
+    const std::string why = reason();
+    if (why == std::generic_category().message(EAGAIN)) {
+      throw InUseError(why);
+    }
+    throw Error("cannot open for writing: " + why);
+  }
   check(H5Fincrement_filesize(file.get(), 0), "end of file");
   return file;
 }

@@ -12,13 +12,19 @@
 /// The part of HDF5 that session files need. Inside core/record only; hdf5.h stays in the source.
 namespace haptrial::record::h5 {
 
+/// Another program holds HDF5's lock on a file, as one that reads it without SWMR does.
+class InUseError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Creates a file, readable by HDF5 1.10 and later.
 /// @param over  the file may exist, and loses what it holds
 Id create_file(const std::filesystem::path& path, bool over = false);
 /// Opens a file for reading; also one whose writer was killed or still writes.
 Id open_file(const std::filesystem::path& path);
 /// Opens a file to go on writing, as after start_swmr(); also one whose writer was killed, which
-/// must be certain: nothing here keeps two writers apart.
+/// must be certain: nothing here keeps two writers apart. @throws InUseError
 Id open_to_go_on(const std::filesystem::path& path);
 /// From here on HDF5 orders its writes so that the file is readable at every instant (single
 /// writer, multiple readers). No object or attribute may be created after it.

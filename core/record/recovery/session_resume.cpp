@@ -121,6 +121,10 @@ SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found,
     auto impl = std::make_unique<Impl>(final_path, found.info, std::move(lock), own);
     impl->take_up(found);
     return SessionWriter(std::move(impl));
+  } catch (const h5::InUseError&) {
+    throw InputError(partial.string() +
+                     ": another program has the file open, such as a viewer or a script that "
+                     "reads it; close the file there, then resume again");
   } catch (const h5::Error& error) {
     refuse(partial, std::string("cannot be written (") + error.what() + ")");
   }

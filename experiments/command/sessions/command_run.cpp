@@ -89,12 +89,16 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
     console_options.address = options.address.value_or(console_options.address);
     console_options.port = checked_number("--port", options.port.value_or(0), 0, 65535);
     console_options.allow_remote = options.remote;
+    console_options.watch_address = options.watch;
     console_options.on_refusal = [&control](const std::string& sentence) {
       control.note("console: " + sentence);
     };
     console_options.sides = request.auxiliary_pages;
     console = std::make_unique<Console>(control, console_options);
     fmt::print("console: {}\n", console->url());
+    if (!options.watch.empty()) {
+      fmt::print("watch: {}\n", console->watch_url());
+    }
     for (const auto& side : request.auxiliary_pages) {
       fmt::print("{}: {}\n", side->title(), console->side_url(side->name()));
     }
@@ -330,6 +334,11 @@ void declare_run_options(CLI::App& app, RunOptions& o) {
   sub->add_option("--address", o.address,
                   with_default("Address of the console; needs --remote", ConsoleOptions{}.address));
   sub->add_flag("--remote", o.remote, "Allow a console address that other machines can reach");
+  sub->add_option("--watch", o.watch,
+                  "Serve beside the console a copy of it that only looks, for a phone, at this "
+                  "address of a network interface: whoever has the printed address sees the "
+                  "participant's identifier, questions, answers and forces, sent unencrypted, and "
+                  "can change nothing");
   sub->add_flag("--lsl", o.stream,
                 "Stream to the Lab Streaming Layer; an error if its library is absent");
   sub->add_flag("--lsl-optional", o.stream_optional,

@@ -93,7 +93,7 @@ std::string options_of_session(const RunOptions& options) {
 
 void add_files(const RunOptions& options, const Definition& d, Document& page) {
   const std::string backup = backup_folder(options, d);
-  page.subheading("Files, and how to go on");
+  page.heading("Files, and how to go on");
   page.table(
       {"Session", "Where"},
       {{"Finished", (fs::absolute(session_folder(options)) / "ID.h5").lexically_normal().string()},
@@ -116,7 +116,7 @@ Document card_of(const RunOptions& options, const Experiment& experiment) {
     forces.push_back(fmt::format("{:g} N", greatest_force(device, d)));
   }
   page.alarm(fmt::format("Greatest force on the hand: {}.", fmt::join(forces, " and ")));
-  page.subheading("To stop the force at once");
+  page.heading("To stop the force at once");
   page.points(ways_to_stop(options, d));
   page.paragraph("Anybody may stop. The force stays zero until the experimenter clears the stop.");
   add_help(protocols::room_of(d.root()), page);

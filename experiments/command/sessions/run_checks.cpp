@@ -62,6 +62,7 @@ void check_console(const RunOptions& options) {
   need("--port", options.port.has_value());
   need("--address", options.address.has_value());
   need("--remote", options.remote);
+  need("--watch", !options.watch.empty());
 }
 
 void check_link(const RunOptions& options) {

@@ -35,6 +35,7 @@ struct RunOptions {
   std::optional<std::string> address;
   std::optional<int> port;
   bool remote{false};
+  std::string watch;  // address of a copy of the console that only looks
   bool window{false};
   bool stream{false};
   bool stream_optional{false};

@@ -10,9 +10,10 @@ async function show_home(main) {
     : table([word("study"), word("state"), word("participants"), word("next"), word("last"), word("report")], rows.map((each) => each.row))));
   const gallery = make("section", {"aria-labelledby": "gallery_title"}, make("h2", {id: "gallery_title"}, word("gallery")));
   const machine = make("section", {"aria-labelledby": "machine_title"}, make("h2", {id: "machine_title"}, word("machine")), make("p", {class: "soft"}, word("checking")));
-  main.append(gallery, machine);
+  const devices = make("section", {"aria-labelledby": "devices_title"}, make("h2", {id: "devices_title"}, word("devices")), make("p", {class: "soft"}, word("checking")));
+  main.append(gallery, devices, machine);
   attempt(() => fill_gallery(gallery));
-  fill_rows(rows).then(() => fill_machine(machine));
+  fill_rows(rows).then(() => fill_devices_section(devices)).then(() => fill_machine(machine));
 }
 
 function study_row(file) {
@@ -55,7 +56,7 @@ async function fill_gallery(gallery) {
   const examples = await get("/examples");
   gallery.append(make("ul", {class: "cards"}, ...examples.rows.map(([name, protocol, what]) => make("li", {},
     make("h3", {}, name), make("div", {class: "soft"}, protocol), make("p", {lang: "en"}, what),
-    make("button", {type: "button", id: "begin_" + name, "aria-label": word("begin_of", {name}), onclick: () => begin(name)}, word("begin"))))));
+    make("button", {type: "button", id: "begin_" + name, "aria-label": word("begin") + ": " + name, onclick: () => begin(name)}, word("begin"))))));
   gallery.append(command_line(examples.command));
 }
 
@@ -88,10 +89,9 @@ async function fill_machine(section, again = false) {
   machine_found = machine_found || get("/machine");
   try {
     const found = await machine_found;
-    const state = (name) => make("span", {class: name === "ready" ? "good" : name === "BROKEN" || name === "limited" ? "bad" : "soft"}, name);
     section.replaceChildren(make("h2", {id: "machine_title"}, word("machine")),
       make("p", {class: found.fit ? "good" : "bad", id: "verdict", lang: "en"}, found.verdict),
-      make("details", {}, make("summary", {}, word("found")), table([word("part"), word("state"), word("found")], found.rows.map(([what, how, words]) => row(what, state(how), make("td", {lang: "en"}, words))))),
+      make("details", {}, make("summary", {}, word("found")), state_table(found.rows)),
       command_line(found.command), make("button", {type: "button", onclick: () => fill_machine(section, true)}, word("check_again")));
   } catch (error) {
     section.append(make("p", {class: "bad"}, error.message));

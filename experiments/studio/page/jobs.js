@@ -24,7 +24,7 @@ async function show_rehearse(main, file) {
 /// Shows the jobs, again and again while one of them runs and the list is in the page.
 async function watch_jobs(list) {
   clearTimeout(list.timer);
-  const {jobs} = await get("/jobs");
+  const jobs = (await get("/jobs")).jobs.filter((job) => !job.live);
   if (!list.isConnected) return;
   list.firstElementChild && jobs.length > 0 || list.replaceChildren(jobs.length === 0 ? make("p", {class: "soft"}, word("no_jobs")) : "");
   for (const job of jobs) await show_job(list, job);

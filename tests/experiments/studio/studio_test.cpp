@@ -4,19 +4,17 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "experiments/studio/studio_page.h"
 #include "tests/experiments/command.h"
-#include "tests/experiments/console_client.h"
+#include "tests/experiments/studio/studio_fixture.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::studio_test {
@@ -26,86 +24,16 @@ namespace fs = std::filesystem;
 using experiments::Studio;
 using experiments::StudioOptions;
 using nlohmann::json;
-using test::RawClient;
+using test::body_of;
 using test::RawRequest;
 using test::status_of;
+using test::StudioTest;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
-
-std::string body_of(const std::string& answer) {
-  return answer.substr(answer.find("\r\n\r\n") + 4);
-}
-
-class StudioTest : public testing::Test {
- protected:
-  StudioTest() {
-    const test::CommandResult made =
-        test::run_command("cd '" + folder_.path().string() + "' && haptrial new mine.toml");
-    EXPECT_EQ(made.status, 0) << made.errors;
-    StudioOptions options;
-    options.folder = folder_.path();
-    options.program = HAPTRIAL_BINARY_DIR "/haptrial";
-    options.libraries = libraries_.path();
-    studio_ = std::make_unique<Studio>(options);
-  }
-
-  RawRequest reading(const std::string& path, const std::string& query = "") const {
-    RawRequest request;
-    request.method = "GET";
-    request.host = "127.0.0.1:" + std::to_string(studio_->port());
-    request.target = path + "?token=" + studio_->token() + (query.empty() ? "" : "&" + query);
-    request.body.clear();
-    return request;
-  }
-  RawRequest posting(const std::string& path, const json& body) const {
-    RawRequest request;
-    request.host = "127.0.0.1:" + std::to_string(studio_->port());
-    request.target = path;
-    request.token = studio_->token();
-    request.body = body.dump();
-    return request;
-  }
-  std::string exchange(const RawRequest& request) const {
-    RawClient client(studio_->port());
-    client.send(request.text());
-    return client.receive(RawClient::kForever);
-  }
-  json got(const RawRequest& request) const {
-    const std::string answer = exchange(request);
-    EXPECT_EQ(status_of(answer), 200) << request.target << "\n" << answer;
-    return json::parse(body_of(answer));
-  }
-  json get(const std::string& path, const std::string& query = "") const {
-    return got(reading(path, query));
-  }
-  json post(const std::string& path, const json& body) const { return got(posting(path, body)); }
-  void expect_refused(const RawRequest& request, int status, const std::string& sentence) const {
-    const std::uint64_t before = studio_->refused();
-    const std::string answer = exchange(request);
-    EXPECT_EQ(status_of(answer), status) << request.target << "\n" << answer;
-    EXPECT_THAT(body_of(answer), HasSubstr(sentence)) << request.target;
-    EXPECT_EQ(studio_->refused(), before + 1) << request.target;
-  }
-  /// Waits until a job has ended. @returns it
-  json ended(int number) const {
-    for (;;) {
-      const json job = get("/jobs")["jobs"].at(static_cast<std::size_t>(number) - 1);
-      if (job["state"] != "running") {
-        return job;
-      }
-      ::usleep(20'000);
-    }
-  }
-  std::string text() const { return file_text(folder_ / "mine.toml"); }
-
-  test::TemporaryFolder folder_;
-  test::TemporaryFolder libraries_;
-  std::unique_ptr<Studio> studio_;
-};
 
 TEST_F(StudioTest, AnotherSenderIsRefused) {
   RawRequest request = reading("/studies");

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -316,6 +319,38 @@ struct Damaged {
     EXPECT_EQ(again.rows, found.rows);
   }
 };
+
+/// HDF5's own lock, as a program that reads the file has it.
+class ReaderLock {
+ public:
+  explicit ReaderLock(const fs::path& file) : descriptor_(::open(file.c_str(), O_RDONLY)) {
+    EXPECT_EQ(::flock(descriptor_, LOCK_SH | LOCK_NB), 0);
+  }
+  ~ReaderLock() { ::close(descriptor_); }
+  ReaderLock(const ReaderLock&) = delete;
+  ReaderLock& operator=(const ReaderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+TEST(SessionResumeTest, SaysThatAnotherProgramHasTheFileOpen) {
+  const TemporaryFolder folder;
+  {
+    SessionWriter writer(folder / "first.h5", live_info());
+    writer.append(ticks(0, 3000));
+    writer.sync();
+    leave_as_killed(folder, "first.h5", "a.h5");
+  }
+  Resumed found;
+  {
+    const ReaderLock reader(folder / "a.h5.partial");
+    EXPECT_THAT(refusal([&] { SessionWriter::resume(folder / "a.h5", found); }),
+                HasSubstr("a.h5.partial: another program has the file open, such as a viewer or a "
+                          "script that reads it; close the file there, then resume again"));
+  }
+  EXPECT_NO_THROW(SessionWriter::resume(folder / "a.h5", found).discard());
+}
 
 TEST(SessionResumeTest, AFileWithoutItsHeaderIsRepairedWhole) {
   Damaged file;
