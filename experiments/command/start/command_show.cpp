@@ -83,7 +83,7 @@ int show(const ShowOptions& options) {
   }
   const std::filesystem::path page = preview_file(options);
   const PreviewRequest request{options.trial, checked_seed(options.seed), !options.no_virtual_trial,
-                               look_of(options)};
+                               options.headings, look_of(options)};
   const Experiment experiment = load_experiment(options.definition, options.language);
   write_whole(page, preview_of(experiment, request).html());
   fmt::print("preview: {}\n", page.string());
