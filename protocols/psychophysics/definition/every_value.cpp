@@ -204,7 +204,7 @@ bool needs_threshold(const TrialsDefinition& d, TrialValues values, const Track&
   std::erase_if(values.thresholds, [&](const auto& each) { return each.first == track.name; });
   HandleReport handle(d);
   PictureReport picture(d);
-  LeadReport lead;
+  LeadReport lead(d);
   try {
     present_once(d, values, false, handle, picture, lead);
   } catch (const InputError&) {
