@@ -19,7 +19,7 @@ double squares_about_mean(const std::vector<double>& values) {
   return sum;
 }
 
-Estimate mean_of(const std::vector<std::vector<double>>& sides) {
+Estimate mean_over(const std::vector<std::vector<double>>& sides) {
   double middle = 0.0, squares = 0.0, freedom = 0.0, inverse = 0.0;
   const auto n = static_cast<double>(sides.size());
   for (const std::vector<double>& side : sides) {
@@ -45,11 +45,11 @@ bool sides_count_alike(const std::vector<double>& below, const std::vector<doubl
 
 Estimate mean_of_sides(const std::vector<double>& below, const std::vector<double>& above) {
   if (sides_count_alike(below, above)) {
-    return mean_of({below, above});
+    return mean_over({below, above});
   }
   std::vector<double> all = below;
   all.insert(all.end(), above.begin(), above.end());
-  return mean_of({all});
+  return mean_over({all});
 }
 
 }  // namespace haptrial::psychometric
