@@ -257,7 +257,11 @@ def live_session(page, folder):
     wait("the end", lambda: "it can be resumed" in words(page, "#live_state"))
     page.call("POST", "/window", {"handle": console})
     back_to(page, studio)
-    wait("what can be resumed", lambda: words(page, "#begin") == "Resume the session")
+    wait("what can be resumed", lambda: "P01, session 1, to be resumed" in words(page, "#who"))
+    page.run("const who = document.getElementById('who');"
+             "who.value = [...who.options].find((each) => each.text.includes('to be resumed')).value;"
+             "who.dispatchEvent(new Event('change'))")
+    assert words(page, "#begin") == "Resume the session", words(page, "#begin")
     studio = begin_session(page)
     print("sits down", flush=True)
     ask(page, "start")

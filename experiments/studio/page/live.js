@@ -30,7 +30,7 @@ function session_form(file, nexts, renew) {
   const consent = make("input", {id: "consent", maxlength: "64", placeholder: "2026-11-28"});
   const language = make("input", {id: "language", maxlength: "20", placeholder: "de", value: kept_choice.language});
   const watch = make("input", {id: "watch", maxlength: "45", placeholder: "192.168.1.20", value: kept_choice.watch, "aria-describedby": "watch_help"});
-  const line = make("div", {}), checks = make("div", {id: "checks", "aria-live": "polite"}), begin = make("button", {class: "main", id: "begin"}, word("begin_session"));
+  const line = make("div", {}), checks = make("div", {id: "checks", "aria-live": "polite"}), begin = make("button", {class: "main", id: "begin", disabled: true}, word("begin_session"));
   const choice = () => {
     Object.assign(kept_choice, {device: device.value, second: second.value, window: shows.checked, watch: watch.value.trim(), language: language.value.trim()});
     const next = nexts[Number(who.value)];
@@ -51,7 +51,7 @@ function session_form(file, nexts, renew) {
   who.addEventListener("change", show_who);
   device.addEventListener("change", () => { if (device.value === "mouse" || device.value === "gamepad") shows.checked = true; });
   show_who();
-  attempt(() => fill_devices(device, second));
+  attempt(async () => { await fill_devices(device, second); begin.disabled = false; });
   return form;
 }
 
