@@ -14,7 +14,7 @@ struct QuantityValue {
   std::string participant;
   std::vector<std::string> levels;  // of TrialsPlan::by
   double value{0.0};                // finite
-  bool open{false};  // the answers leave a side of its interval open
+  bool open{false};                 // the answers leave a side of its interval open
 };
 
 /// A quantity over participants: means of the conditions, and tests between them. A participant is

@@ -49,8 +49,9 @@ TEST(TrialMistakesTest, AStartIsComparedWithARangeThatIsOne) {
 }
 
 TEST(TrialMistakesTest, OfAnUnknownProcedureNothingElseIsSaid) {
-  EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"", "kind = \"stairs\"")),
-              ElementsAre(HasSubstr("procedure.kind is 'stairs'; allowed: staircase, limits, pest")));
+  EXPECT_THAT(
+      problems_of_trials(with(kSmall, "kind = \"staircase\"", "kind = \"stairs\"")),
+      ElementsAre(HasSubstr("procedure.kind is 'stairs'; allowed: staircase, limits, pest")));
   EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"\n", "")),
               ElementsAre(HasSubstr("procedure.kind is missing")));
 }
@@ -372,9 +373,10 @@ TEST(TrialMistakesTest, ARightAnswerThatIsNoChoice) {
 TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
   std::string two = kSmallStaircase;
   two = with(two, "[procedure]", "[[procedures]]");
-  EXPECT_THAT(problems_of_trials(small_trials(two + two)),
-              Contains(HasSubstr("procedures set level twice in the block main, by track 1 and by track "
-                                 "2; name the procedures of each block")));
+  EXPECT_THAT(
+      problems_of_trials(small_trials(two + two)),
+      Contains(HasSubstr("procedures set level twice in the block main, by track 1 and by track "
+                         "2; name the procedures of each block")));
 }
 
 TEST(TrialMistakesTest, TracksOfSeveralProceduresMayEachNameTheirVariable) {
@@ -382,9 +384,10 @@ TEST(TrialMistakesTest, TracksOfSeveralProceduresMayEachNameTheirVariable) {
   tracks = with(tracks, "variable = \"level\"\n", "");
   const std::string named = "[[procedures.tracks]]\nvariable = \"level\"\n";
   EXPECT_THAT(problems_of_trials(small_trials(tracks + named)), IsEmpty());
-  EXPECT_THAT(problems_of_trials(small_trials(tracks + named + tracks + named)),
-              Contains(HasSubstr("procedures set level twice in the block main, by track 1 and by track "
-                                 "2; name the procedures of each block")));
+  EXPECT_THAT(
+      problems_of_trials(small_trials(tracks + named + tracks + named)),
+      Contains(HasSubstr("procedures set level twice in the block main, by track 1 and by track "
+                         "2; name the procedures of each block")));
 }
 
 TEST(TrialMistakesTest, TargetsThatGuessingReaches) {
