@@ -1,4 +1,4 @@
-#include "experiments/studio/session_views.h"
+#include "experiments/studio/session_views_internal.h"
 
 #include <fmt/format.h>
 
