@@ -47,6 +47,7 @@ std::string with_default(const std::string& help, double value);
 // start: before the first session
 void add_examples(CLI::App& app, int& status);
 void add_new(CLI::App& app, int& status);
+void add_set(CLI::App& app, int& status);
 void add_texts(CLI::App& app, int& status);
 void add_doctor(CLI::App& app, int& status);
 void add_keys(CLI::App& app, int& status);

@@ -3,109 +3,130 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <vector>
 
+#include "core/base/definition/text_places_internal.h"
 #include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
 
 namespace haptrial {
 namespace {
 
-std::vector<std::string> parts_of(std::string_view key) {
-  std::vector<std::string> parts(1);
-  for (const char c : key) {
-    if (c == '.') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
+/// The last byte of what a table states itself; behind its header, or at the start of the text.
+std::size_t end_of(std::string_view text, const toml::table& table, bool root) {
+  std::size_t end = root ? byte_of(text, {1, 1}) : byte_of(text, table.source().begin);
+  if (!root) {
+    end = table.is_inline() ? end + 1 : header_end(text, end);
   }
-  return parts;
+  for (const Statement& each : own_statements(text, table)) {
+    end = std::max(end, byte_of(text, each.value->source().end));
+  }
+  return end;
 }
 
-/// The byte of a place of the text; columns count characters.
-std::size_t byte_of(std::string_view text, const toml::source_position& place) {
-  std::size_t at = 0;
-  for (toml::source_index line = 1; line < place.line; ++line) {
-    at = std::min(text.size(), text.find('\n', at) + 1);
-  }
-  const auto continues = [&] { return (static_cast<unsigned char>(text[at]) & 0xc0U) == 0x80U; };
-  for (toml::source_index column = 1; column < place.column && at < text.size(); ++column) {
-    do {
-      ++at;
-    } while (at < text.size() && continues());
+/// The line of a header, or of the first of the comments that stand right above it.
+std::size_t begin_with_comments(std::string_view text, std::size_t header) {
+  const auto line_before = [&](std::size_t at) {
+    const std::size_t end = at < 2 ? std::string_view::npos : text.rfind('\n', at - 2);
+    return end == std::string_view::npos ? 0 : end + 1;
+  };
+  std::size_t at = header == 0 ? 0 : text.rfind('\n', header - 1) + 1;
+  while (at > 0 && text[line_before(at)] == '#') {
+    at = line_before(at);
   }
   return at;
 }
 
-/// A table of an array by its name or its number; null: there is none.
-const toml::table* entry_of(const toml::array& array, const std::string& part) {
-  for (const toml::node& each : array) {
-    const toml::table* table = each.as_table();
-    if (table != nullptr && (*table)["name"].value<std::string>() == part) {
-      return table;
-    }
+/// Adds a table with one key: above the table that implies it, else at the end of the text.
+std::string with_new_table(std::string text, const KeyPath& path, const std::string& value,
+                           bool implied) {
+  std::vector<std::string> names = header_names(path);
+  const std::string name = written_name(names.back());
+  names.pop_back();
+  const std::string line = line_ending(text);
+  const std::string table =
+      fmt::format("[{}]{}{} = {}{}", dotted_name(names), line, name, value, line);
+  if (implied) {
+    const std::size_t header = byte_of(text, path.steps.back().node->source().begin);
+    return text.insert(begin_with_comments(text, header), table + line);
   }
-  std::size_t number = 0;
-  const auto read = std::from_chars(part.data(), part.data() + part.size(), number);
-  const bool whole = read.ec == std::errc() && read.ptr == part.data() + part.size();
-  return whole && number >= 1 && number <= array.size() ? array[number - 1].as_table() : nullptr;
+  return text + (text.empty() || text.ends_with('\n') ? "" : line) + line + table;
 }
 
-std::string refusal(std::string_view file_name, const std::string& key, const std::string& part) {
-  return fmt::format("{}: there is no table {} for the key {}; give a key of the definition",
-                     file_name, part, key);
-}
-
-/// Offset at which a table's own keys begin: behind its header, or behind the brace of an inline
-/// one.
-std::size_t inside(std::string_view text, const toml::table& table) {
-  const std::size_t begin = byte_of(text, table.source().begin);
-  if (table.is_inline()) {
-    return begin + 1;
+std::string with_new_key(std::string text, const KeyPath& path, const std::string& value) {
+  const auto table_at = [&](std::size_t i) { return path.steps[i].node->as_table(); };
+  std::size_t owner = path.steps.size() - 1;
+  while (owner > 0 && (table_at(owner) == nullptr ||
+                       (!table_at(owner)->is_inline() && !has_header(text, *table_at(owner))))) {
+    --owner;
   }
-  const std::size_t end = text.find('\n', begin);
-  return end == std::string_view::npos ? text.size() : end + 1;
+  const bool deepest = owner + 1 == path.steps.size();
+  const bool implied = !deepest && is_implied(text, *table_at(path.steps.size() - 1));
+  const bool entry = std::any_of(path.steps.begin(), path.steps.end(),
+                                 [](const PathStep& step) { return step.node->is_array(); });
+  const toml::table& table = *table_at(owner);
+  if (implied || (deepest && path.missing.size() > 1 && !entry && !table.is_inline())) {
+    return with_new_table(std::move(text), path, value, implied);
+  }
+  std::vector<std::string> names = path.missing;
+  for (std::size_t i = path.steps.size() - 1; i > owner; --i) {
+    names.insert(names.begin(), path.steps[i].name);
+  }
+  const std::string statement = fmt::format("{} = {}", dotted_name(names), value);
+  std::size_t at = end_of(text, table, owner == 0);
+  if (owner > 0 && table.is_inline()) {
+    return text.insert(at, table.empty() ? fmt::format(" {} ", statement) : ", " + statement);
+  }
+  const std::string line = line_ending(text);
+  if (owner == 0 && table.empty()) {
+    return text.insert(at, statement + line);
+  }
+  const bool first = owner == 0 && own_statements(text, table).empty();
+  at = first ? at : next_line(text, at);
+  const bool open = !first && at == text.size() && !text.ends_with('\n');
+  return text.insert(at, (open ? line : "") + statement + line);
 }
 
-std::string with_new_key(std::string text, const toml::table& table, const std::string& name,
-                         const std::string& value) {
-  const std::size_t at = inside(text, table);
-  const char* end = !table.is_inline() ? "\n" : table.empty() ? " " : ",";
-  const std::string before = at > 0 && at == text.size() && text.back() != '\n' ? "\n" : "";
-  return text.insert(at, before + fmt::format(" {} = {}{}", name, value, end));
+/// A value of one line would otherwise be able to bring keys of its own.
+void refuse_other_than_value(std::string_view file_name, const GivenKey& given) {
+  const std::string line = "value = " + given.value;
+  const auto refuse = [&] {
+    throw InputError(fmt::format(
+        "{}: {} is given {}; allowed: one value as a definition writes it, such as 12, 0.05, true, "
+        "\"a text\" or [1, 2]",
+        file_name, given.key, given.value.empty() ? "nothing" : given.value));
+  };
+  toml::table table;
+  try {
+    table = parse_toml(line, file_name);
+  } catch (const InputError&) {
+    refuse();
+  }
+  if (table.size() != 1 || byte_of(line, table.begin()->second.source().end) != line.size()) {
+    refuse();
+  }
 }
 
 std::string with_value(std::string text, std::string_view file_name, const GivenKey& given) {
+  refuse_other_than_value(file_name, given);
   const toml::table root = parse_toml(text, file_name);
-  const std::vector<std::string> parts = parts_of(given.key);
-  const toml::table* table = &root;
-  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
-    const toml::node* node = table->get(parts[i]);
-    if (node == nullptr) {  // keys below a header that the text has only begun: a table at the end
-      const std::size_t cut = given.key.rfind('.');
-      return text +
-             fmt::format("\n[{}]\n{} = {}\n", given.key.substr(0, cut), parts.back(), given.value);
+  const KeyPath path = follow_path(root, file_name, given.key);
+  const toml::node& value = *path.steps.back().node;
+  if (!path.missing.empty()) {
+    if (!value.is_table()) {
+      throw InputError(fmt::format("{}: {} is no table; give a key of the definition", file_name,
+                                   path.steps.back().name));
     }
-    const toml::array* array = node->as_array();
-    table = array != nullptr ? entry_of(*array, parts[++i]) : node->as_table();
-    if (table == nullptr || i + 1 >= parts.size()) {
-      throw InputError(refusal(file_name, given.key, parts[std::min(i, parts.size() - 1)]));
-    }
+    return with_new_key(std::move(text), path, given.value);
   }
-  const toml::node* value = table->get(parts.back());
-  if (value == nullptr && table == &root) {
-    return fmt::format("{} = {}\n", parts.back(), given.value) + text;
-  }
-  if (value == nullptr) {
-    return with_new_key(std::move(text), *table, parts.back(), given.value);
-  }
-  if (value->is_array_of_tables() || (value->is_table() && !value->as_table()->is_inline())) {
+  const toml::array* array = value.as_array();
+  const bool entry = path.steps.back().key == nullptr;
+  if (entry || (array != nullptr && has_headers(*array)) ||
+      (value.is_table() && !value.as_table()->is_inline())) {
     throw InputError(fmt::format("{}: {} is a table; give a key of it", file_name, given.key));
   }
-  const std::size_t begin = byte_of(text, value->source().begin);
-  return text.replace(begin, byte_of(text, value->source().end) - begin, given.value);
+  const std::size_t begin = byte_of(text, value.source().begin);
+  return text.replace(begin, byte_of(text, value.source().end) - begin, given.value);
 }
 
 }  // namespace

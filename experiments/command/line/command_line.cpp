@@ -32,6 +32,7 @@ void accept_examples(CLI::App& app) {
 void declare_subcommands(CLI::App& app, int& status) {
   add_examples(app, status);
   add_new(app, status);
+  add_set(app, status);
   add_texts(app, status);
   add_doctor(app, status);
   add_studio(app, status);
