@@ -22,34 +22,6 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// @param apart  procedures are of different participants: else there is no interval and no p.
-std::string form_word(const Defined<IntraclassForm>& form, bool apart) {
-  if (!form) {
-    return undefined(form.because());
-  }
-  const std::string value = fmt::format("{:.2f}", form->value);
-  return apart ? fmt::format("{}, 95 % CI {:.2f} to {:.2f}, F({:.0f}, {:.0f}) = {}, {}", value,
-                             form->low, form->high, form->df_targets, form->df_error,
-                             number(form->f), p_value(form->p))
-               : value;
-}
-
-/// Every group once: a side that is one group is not listed again.
-std::vector<const GroupValues*> shown_groups(const Validity& v) {
-  const auto experts = v.plan.expert_groups.size();
-  std::vector<const GroupValues*> shown;
-  for (std::size_t g = 0; g < v.plan.groups.size(); ++g) {
-    shown.push_back(&v.rating_groups[g]);
-  }
-  if (experts > 1) {
-    shown.push_back(&*(v.rating_groups.end() - 2));
-  }
-  if (v.plan.groups.size() - experts > 1) {
-    shown.push_back(&v.rating_groups.back());
-  }
-  return shown;
-}
-
 class Report {
  public:
   Report(const ValidityResult& result, const std::vector<Drawing>& drawings)
@@ -107,6 +79,7 @@ class Report {
 
   void add_design();
   void add_ratings();
+  void add_agreement();
   void add_metrics();
   void add_forces();
   void add_regions();
@@ -127,16 +100,14 @@ void Report::add_design() {
   section("Participants");
   std::vector<Row> rows;
   for (const std::string& group : v_.plan.groups) {
-    std::vector<std::size_t> people;
+    std::set<std::size_t> people;
     std::size_t procedures = 0;
     for (std::size_t i = 0; i < result_.procedures.size(); ++i) {
       if (result_.procedures[i].group == group) {
         ++procedures;
-        people.push_back(v_.participant[i]);
+        people.insert(v_.participant[i]);
       }
     }
-    std::sort(people.begin(), people.end());
-    people.erase(std::unique(people.begin(), people.end()), people.end());
     const bool expert =
         std::count(v_.plan.expert_groups.begin(), v_.plan.expert_groups.end(), group) > 0;
     rows.push_back({group, expert ? "with experience" : "novices", std::to_string(people.size()),
@@ -175,6 +146,10 @@ void Report::add_ratings() {
                    {"mixed model with repeated procedures", mixed_word(c)},
                    {"Hedges' g of participants' means", effect(c.g)},
                    {"area under the ROC curve [95 % CI]", area_word(c.roc)}});
+  add_agreement();
+}
+
+void Report::add_agreement() {
   document_.subheading("Agreement between raters");
   if (!v_.agreement) {
     document_.paragraph(

@@ -47,6 +47,17 @@ std::string area_word(const Defined<Roc>& roc) {
                        : fmt::format("{:.2f}", roc->area);
 }
 
+std::string form_word(const Defined<IntraclassForm>& form, bool apart) {
+  if (!form) {
+    return undefined(form.because());
+  }
+  const std::string value = fmt::format("{:.2f}", form->value);
+  return apart ? fmt::format("{}, 95 % CI {:.2f} to {:.2f}, F({:.0f}, {:.0f}) = {}, {}", value,
+                             form->low, form->high, form->df_targets, form->df_error,
+                             number(form->f), p_value(form->p))
+               : value;
+}
+
 std::string welch_word(const Contrast& c) {
   return c.means ? difference_word(c.means->difference, c.means->low, c.means->high, c.means->df,
                                    c.means->t, c.means->p)
@@ -69,6 +80,21 @@ std::string error_word(const CrossValidated& fit) {
 
 std::string name_of(const MetricKind& kind) {
   return kind.unit == "1" ? kind.title : fmt::format("{} ({})", kind.title, kind.unit);
+}
+
+std::vector<const GroupValues*> shown_groups(const Validity& v) {
+  const auto experts = v.plan.expert_groups.size();
+  std::vector<const GroupValues*> shown;
+  for (std::size_t g = 0; g < v.plan.groups.size(); ++g) {
+    shown.push_back(&v.rating_groups[g]);
+  }
+  if (experts > 1) {
+    shown.push_back(&*(v.rating_groups.end() - 2));
+  }
+  if (v.plan.groups.size() - experts > 1) {
+    shown.push_back(&v.rating_groups.back());
+  }
+  return shown;
 }
 
 std::size_t contrasts_of(const Validity& v) {

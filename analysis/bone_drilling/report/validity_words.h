@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/bone_drilling/report/validity_findings.h"
 
@@ -20,6 +21,9 @@ std::string relation_word(const Validity& v, const MetricValidity& metric);
 std::string interval_word(const Defined<MeanInterval>& m);
 /// "0.88 [0.73, 1.00]" or "–".
 std::string area_word(const Defined<Roc>& roc);
+/// "0.81, 95 % CI 0.62 to 0.92, F(11, 22) = 13.6, p < 0.001".
+/// @param apart  procedures are of different participants: else there is no interval and no p.
+std::string form_word(const Defined<IntraclassForm>& form, bool apart);
 /// "difference 1.080, 95 % CI 0.5949 to 1.566, t(13.0) = 4.81, p < 0.001".
 std::string welch_word(const Contrast& c);
 std::string mixed_word(const Contrast& c);
@@ -28,6 +32,8 @@ std::string error_word(const CrossValidated& fit);
 /// "force near vital structures (N)".
 std::string name_of(const MetricKind& kind);
 
+/// Every group once: a side that is one group is not listed again.
+std::vector<const GroupValues*> shown_groups(const Validity& v);
 /// Among how many metrics Holm's method adjusts.
 std::size_t contrasts_of(const Validity& v);
 std::size_t relations_of(const Validity& v);
