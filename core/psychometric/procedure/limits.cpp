@@ -73,7 +73,7 @@ void Limits::report(double answer, const Level& applied) {
   before_ = x;
   const Axis& axis = parameters_.axis;
   const double step = parameters_.step;
-  const double following = axis.at(next_[0]) + (descends() ? -step : step);
+  const double following = x + (descends() ? -step : step);
   const bool beyond = following < axis.at(parameters_.low) - kRounding * step ||
                       following > axis.at(parameters_.high) + kRounding * step;
   if (beyond) {

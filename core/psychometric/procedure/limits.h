@@ -26,6 +26,7 @@ struct LimitsParameters {
 /// the middle between its last two levels on the axis. A series whose first answer is the last, or
 /// that reaches the other end without a change, has none.
 ///
+/// A series goes on from the level that was presented, so estimates follow from the outcomes alone.
 /// Estimate: the mean of the series' thresholds, or of the means of both directions if each has
 /// two or more, with its standard error by the scatter within directions. It is not the level with
 /// answers 1 in half of the trials: coarser steps and wider functions move series of either
@@ -56,10 +57,10 @@ class Limits final : public Procedure {
   std::uint64_t seed_;
   std::string name_;
   Level next_;
-  std::optional<double> before_;                    // last level of this series [axis]
-  std::vector<double> descending_, ascending_;      // thresholds [axis]
-  int done_{0};                                     // series
-  int without_{0};                                  // of them without a threshold
+  std::optional<double> before_;                // last level of this series [axis]
+  std::vector<double> descending_, ascending_;  // thresholds [axis]
+  int done_{0};                                 // series
+  int without_{0};                              // of them without a threshold
 };
 
 }  // namespace haptrial::psychometric

@@ -137,6 +137,22 @@ TEST(LimitsTest, TheEstimateHasTheMeanOfItsLawAndItsIntervalHoldsIt) {
   EXPECT_LE(held, 0.97 * kProcedures);
 }
 
+/// A report replays what was recorded, whatever seed drew where its series began.
+TEST(LimitsTest, EstimatesFollowFromTheOutcomesAlone) {
+  LimitsParameters p = ten_levels();
+  p.start_steps = 3;
+  Limits recorded(p, 5, "a"), replayed(p, 1, "another");
+  while (!recorded.finished()) {
+    const Level level = recorded.next();
+    const double answer = level[0] >= 4.6 ? 1.0 : 0.0;
+    recorded.report(answer, level);
+    replayed.report(answer, level);
+  }
+  ASSERT_TRUE(replayed.finished());
+  EXPECT_EQ(recorded.estimates().at(0).value, replayed.estimates().at(0).value);
+  EXPECT_TRUE(replayed.estimates().at(0).remark.empty());
+}
+
 TEST(LimitsTest, RefusesWhatCannotBegin) {
   LimitsParameters p = ten_levels();
   p.step = 11.0;
