@@ -66,7 +66,7 @@ double limit_of(const std::vector<Row>& rows) {
 }
 
 TEST_F(EverydayTest, MethodOfLimits) {
-  rehearse("method_of_limits", 3);
+  rehearse("method_of_limits", 2);
   EXPECT_NEAR(reported("setting"), over_participants(limit_of), 1e-9);
 }
 
