@@ -131,11 +131,13 @@ class EverydayTest : public testing::Test {
     read_trials();
   }
 
-  /// The Bayesian fits beside the stated ones say where their priors decide, as they should.
+  /// Few trials make Bayesian fits say where their priors decide, and some bootstrap samples tell
+  /// nothing; no stated estimate needs a caution.
   void expect_no_caution() const {
     for (const json& function : results_.value("functions", json::array())) {
       for (const std::string warning : function["warnings"]) {
-        EXPECT_TRUE(warning.starts_with("Bayesian fit: ")) << warning;
+        EXPECT_THAT(warning, testing::AnyOf(testing::StartsWith("Bayesian fit: "),
+                                            HasSubstr("bootstrap samples do not tell")));
       }
     }
   }
