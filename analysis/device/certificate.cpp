@@ -20,23 +20,33 @@ std::vector<Eigen::Vector3d> each_measurement(const PartRecord& part) {
   return each;
 }
 
+double square_along(const Eigen::Vector3d& v, const DrivenAxes& axes) {
+  double square = 0.0;
+  for (const int axis : axes) {
+    square += v[axis] * v[axis];
+  }
+  return square;
+}
+
 /// Standard deviation from differences of neighbours, so that a slow drift has no share in it.
-Interval white_noise(const std::vector<Eigen::Vector3d>& rows) {
+Interval white_noise(const std::vector<Eigen::Vector3d>& rows, const DrivenAxes& axes) {
   const auto n = static_cast<double>(rows.size());
+  const auto count = static_cast<double>(axes.size());
   double square = 0.0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    square += (rows[i] - rows[i - 1]).squaredNorm();
+    square += square_along(rows[i] - rows[i - 1], axes);
   }
-  const double deviation = std::sqrt(square / (6.0 * (n - 1.0)));
-  const double df = 3.0 * 2.0 * (n - 1.0) * (n - 1.0) / (3.0 * n - 4.0);
+  const double deviation = std::sqrt(square / (2.0 * count * (n - 1.0)));
+  const double df = count * 2.0 * (n - 1.0) * (n - 1.0) / (3.0 * n - 4.0);
   return interval_of(deviation, deviation / std::sqrt(2.0 * df), df);
 }
 
 /// Standard deviation about the mean of each of twenty pieces, with the interval that the pieces
 /// give: neighbours may be correlated.
-Interval piecewise_noise(const std::vector<Eigen::Vector3d>& rows) {
+Interval piecewise_noise(const std::vector<Eigen::Vector3d>& rows, const DrivenAxes& axes) {
   constexpr std::size_t kPieces = 20;
   const std::size_t length = rows.size() / kPieces;
+  const auto count = static_cast<double>(axes.size());
   std::vector<double> variances;
   double mean = 0.0;
   for (std::size_t piece = 0; piece < kPieces && length > 1; ++piece) {
@@ -46,9 +56,9 @@ Interval piecewise_noise(const std::vector<Eigen::Vector3d>& rows) {
     }
     double square = 0.0;
     for (std::size_t i = 0; i < length; ++i) {
-      square += (rows[piece * length + i] - sum).squaredNorm();
+      square += square_along(rows[piece * length + i] - sum, axes);
     }
-    variances.push_back(square / (3.0 * (static_cast<double>(length) - 1.0)));
+    variances.push_back(square / (count * (static_cast<double>(length) - 1.0)));
     mean += variances.back() / kPieces;
   }
   if (variances.empty()) {
@@ -109,10 +119,10 @@ CertificateResult identify_device(const CertificateRecord& record, const Excitat
   CertificateResult result;
   const PartRecord& rest = record.part(CertificatePart::kRest);
   if (const auto each = each_measurement(rest); each.size() > 2) {
-    result.rest.sensor = white_noise(each);
+    result.rest.sensor = white_noise(each, excitation.axes());
   }
-  result.rest.position = piecewise_noise(rest.position);
-  result.rest.velocity = piecewise_noise(rest.velocity);
+  result.rest.position = piecewise_noise(rest.position, excitation.axes());
+  result.rest.velocity = piecewise_noise(rest.velocity, excitation.axes());
   const PartRecord& moved = record.part(CertificatePart::kMove);
   result.rest.resolution = smallest_step(
       moved.position.empty() ? record.part(CertificatePart::kFree).position : moved.position);
@@ -125,10 +135,12 @@ CertificateResult identify_device(const CertificateRecord& record, const Excitat
   if (record.has_sensor(CertificatePart::kMove)) {
     result.motion = identify_motion(record, excitation);
   }
-  if (!record.part(CertificatePart::kFree).position.empty()) {
+  // The short ways of rotations and grips do not tell dead zone, friction and delay apart.
+  const bool is_tip = record.of == device::Part::kTip;
+  if (is_tip && !record.part(CertificatePart::kFree).position.empty()) {
     result.free = identify_free_motion(record, excitation, CertificatePart::kFree);
   }
-  if (record.mass > 0.0 && !record.part(CertificatePart::kLoaded).position.empty()) {
+  if (is_tip && record.mass > 0.0 && !record.part(CertificatePart::kLoaded).position.empty()) {
     result.loaded = identify_free_motion(record, excitation, CertificatePart::kLoaded);
   }
   result.wall = wall_bracket(record.walls);

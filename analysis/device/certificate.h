@@ -27,9 +27,9 @@ struct WallBracket {
 /// The figures of a certificate; a part is empty if its measurement is missing.
 struct CertificateResult {
   std::optional<StaticForce> statics;
-  std::vector<AxisResponse> response;  // x, y, z
-  std::vector<AxisMotion> motion;      // x, y, z
-  std::vector<FreeMotion> free;        // x, y, z
+  std::vector<AxisResponse> response;  // (driven axes)
+  std::vector<AxisMotion> motion;      // (driven axes)
+  std::vector<FreeMotion> free;        // (driven axes)
   std::vector<FreeMotion> loaded;      // likewise, with the known mass
   RestNoise rest;
   std::optional<WallBracket> wall;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/device/excitation.h"
+#include "core/device/device.h"
 
 namespace haptrial::analysis {
 
@@ -27,9 +28,13 @@ struct WallStep {
   bool passive;      // it neither swung on nor gave energy
 };
 
-/// The record of a certificate's measurement.
+/// The record of a certificate's measurement, of one part of the handle: places and forces of a
+/// rotation or a grip are those at the fingers (core/device/handle_part.h).
 struct CertificateRecord {
   std::string device;
+  device::Part of{device::Part::kTip};
+  double radius{1.0};        // of the fingers about the axis of a rotation [m]
+  DrivenAxes axes{0, 1, 2};  // those of the excitation
   bool simulated{false};
   double sensor_age{0.0};    // mean time from the measurement of a force to its tick [s]
   double stated_noise{0.0};  // of the sensor; 0: not stated [N]

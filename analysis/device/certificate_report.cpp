@@ -2,27 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "analysis/device/certificate_summary.h"
+#include "analysis/device/part_words.h"
 #include "analysis/document/document.h"
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/files/staging.h"
 #include "core/base/file_text.h"
+#include "core/device/handle_part.h"
 
 namespace haptrial::analysis {
 namespace {
 
 constexpr int kFormat = 1;
-constexpr const char* kAxes[] = {"x", "y", "z"};
+/// @param number  of the driven axis
+const char* axis_name(const CertificateRecord& record, std::size_t number) {
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  return record.of == device::Part::kGrip ? "opening" : kAxes[record.axes[number]];
+}
 
-Figure figure(const char* name, const char* title, const char* x, const char* y,
-              const CertificateRecord& record) {
+Figure figure(const char* name, const std::string& title, const std::string& x,
+              const std::string& y, const CertificateRecord& record) {
   Figure made;
-  made.name = name;
+  made.name = words_of(record.of).prefix + std::string(name);
   made.title = title;
   made.x_label = x;
   made.y_label = y;
@@ -31,9 +39,17 @@ Figure figure(const char* name, const char* title, const char* x, const char* y,
   return made;
 }
 
+std::vector<double> scaled(std::vector<double> values, double by) {
+  for (double& value : values) {
+    value *= by;
+  }
+  return values;
+}
+
 FindingList static_force(const CertificateRecord& record, const StaticForce& statics) {
   FindingList list{.name = "static_force", .heading = "Static force"};
-  FindingTable levels{"levels", "Error of the force at each level, over 26 directions"};
+  const std::size_t directed = 2 * statics.directions.size();
+  FindingTable levels{"levels", fmt::format("Error at each level, over {} directions", directed)};
   for (const LevelForce& level : statics.levels) {
     FindingRow row;
     row.push_back({.name = "level", .title = "Commanded", .value = level.level, .unit = "N"});
@@ -57,9 +73,13 @@ FindingList static_force(const CertificateRecord& record, const StaticForce& sta
     directions.rows.push_back(row);
   }
   list.tables = {levels, directions};
-  Figure drawn = figure("static_force", "Force given and force commanded", "Commanded [N]",
-                        "Measured along the command [N]", record);
-  const double most = statics.levels.empty() ? 1.0 : statics.levels.back().level;
+  const std::string unit = unit_of(record, "N");
+  const double worth = worth_of(record, "N");
+  const char* force = words_of(record.of).force;
+  Figure drawn = figure("static_force", fmt::format("{} given and commanded", force),
+                        fmt::format("Commanded [{}]", unit),
+                        fmt::format("Measured along the command [{}]", unit), record);
+  const double most = worth * (statics.levels.empty() ? 1.0 : statics.levels.back().level);
   drawn.series.push_back({.label = "as commanded",
                           .mark = Mark::kLine,
                           .look = {"#888888", "(8,5)"},
@@ -68,24 +88,25 @@ FindingList static_force(const CertificateRecord& record, const StaticForce& sta
   drawn.series.push_back({.label = "measured",
                           .mark = Mark::kPoints,
                           .look = {"#0060a0", "solid", 7, 1.0, 0.5},
-                          .x = statics.commanded,
-                          .y = statics.measured});
-  drawn.caption = "A point is a force that was held, in one of 26 directions.";
-  drawn.alt = "Measured against commanded force, beside the line on which both are equal.";
+                          .x = scaled(statics.commanded, worth),
+                          .y = scaled(statics.measured, worth)});
+  drawn.caption =
+      fmt::format("A point is a level that was held, in one of {} directions.", directed);
+  drawn.alt = "Measured against commanded levels, beside the line on which both are equal.";
   list.figures.push_back(drawn);
   return list;
 }
 
 FindingList frequency_response(const CertificateRecord& record,
                                const std::vector<AxisResponse>& axes) {
-  FindingList list{.name = "frequency_response", .heading = "Frequency response of force"};
+  FindingList list{.name = "frequency_response", .heading = "Frequency response"};
   const Look looks[] = {{"#0060a0", "solid", 7}, {"#c04000", "(8,5)", 5}, {"#208020", "(2,4)", 9}};
   Figure gain = figure("response_gain", "Gain over frequency", "Frequency [Hz]", "Gain", record);
   Figure phase =
       figure("response_phase", "Phase over frequency", "Frequency [Hz]", "Phase [degrees]", record);
   FindingTable table{"tones", "Gain and phase at each frequency"};
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    Series gains{.label = kAxes[a], .mark = Mark::kLinkedBars, .look = looks[a]};
+    Series gains{.label = axis_name(record, a), .mark = Mark::kLinkedBars, .look = looks[a]};
     Series phases = gains;
     for (const ToneResponse& tone : axes[a].tones) {
       const double degrees = 180.0 / std::numbers::pi;
@@ -98,7 +119,7 @@ FindingList frequency_response(const CertificateRecord& record,
         series->high.push_back(interval.high);
       }
       table.rows.push_back(
-          {{.name = "axis", .title = "Axis", .value = kAxes[a]},
+          {{.name = "axis", .title = "Axis", .value = axis_name(record, a)},
            {.name = "frequency", .title = "Frequency", .value = tone.frequency, .unit = "Hz"},
            finding("gain", "Gain", tone.gain, ""),
            finding("phase", "Phase", turned, "degrees")});
@@ -120,13 +141,28 @@ FindingList frequency_response(const CertificateRecord& record,
   return list;
 }
 
+Figure motion_figure(const CertificateRecord& record, const std::string& axis) {
+  const bool turns = record.of == device::Part::kRotation;
+  const PartWords& words = words_of(record.of);
+  const std::string along = record.of == device::Part::kGrip ? "" : fmt::format(" along {}", axis);
+  return figure(
+      fmt::format("motion_{}", axis).c_str(),
+      turns ? fmt::format("Torque about {} while the handle is turned", axis)
+            : fmt::format("{}{} while the handle is moved", words.force, along),
+      fmt::format("{} [{}]", words.place, turns ? "rad" : "mm"),
+      fmt::format("{} on the hand, inertia taken off [{}]", words.force, unit_of(record, "N")),
+      record);
+}
+
 FindingList motion(const CertificateRecord& record, const std::vector<AxisMotion>& axes) {
   FindingList list{.name = "motion", .heading = "Force against movement"};
+  const bool turns = record.of == device::Part::kRotation;
   FindingTable table{"axes", "Friction, inertia, offset and cogging along each axis"};
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const AxisMotion& axis = axes[a];
-    const std::string none = fmt::format("below {:.3f} N", axis.least_cogging);
-    table.rows.push_back({{.name = "axis", .title = "Axis", .value = kAxes[a]},
+    const std::string none = fmt::format(
+        "below {:.3g} {}", worth_of(record, "N") * axis.least_cogging, unit_of(record, "N"));
+    table.rows.push_back({{.name = "axis", .title = "Axis", .value = axis_name(record, a)},
                           finding("friction", "Friction", axis.friction, "N"),
                           finding("inertia", "Inertia", axis.inertia, "kg"),
                           finding("offset", "Offset", axis.offset, "N"),
@@ -134,13 +170,7 @@ FindingList motion(const CertificateRecord& record, const std::vector<AxisMotion
                                        : missing("cogging", "Cogging", "N", none),
                           axis.period ? finding("period", "Period", *axis.period, "m")
                                       : missing("period", "Period", "m", "there is no cogging")});
-    Figure drawn = figure(a == 0   ? "motion_x"
-                          : a == 1 ? "motion_y"
-                                   : "motion_z",
-                          a == 0   ? "Force along x while the handle is moved"
-                          : a == 1 ? "Force along y while the handle is moved"
-                                   : "Force along z while the handle is moved",
-                          "Position [mm]", "Force on the hand, inertia taken off [N]", record);
+    Figure drawn = motion_figure(record, axis_name(record, a));
     for (const bool forward : {true, false}) {
       Series series{.label = forward ? "forwards" : "backwards",
                     .mark = Mark::kLine,
@@ -148,8 +178,8 @@ FindingList motion(const CertificateRecord& record, const std::vector<AxisMotion
       const std::vector<double>& force = forward ? axis.forward : axis.backward;
       for (std::size_t i = 0; i < force.size(); ++i) {
         if (std::isfinite(force[i])) {
-          series.x.push_back(1e3 * axis.position[i]);
-          series.y.push_back(force[i]);
+          series.x.push_back((turns ? worth_of(record, "m") : 1e3) * axis.position[i]);
+          series.y.push_back(worth_of(record, "N") * force[i]);
         }
       }
       drawn.series.push_back(series);
@@ -162,14 +192,14 @@ FindingList motion(const CertificateRecord& record, const std::vector<AxisMotion
   return list;
 }
 
-FindingList free_motion(const CertificateResult& result) {
+FindingList free_motion(const CertificateRecord& record, const CertificateResult& result) {
   FindingList list{.name = "free_motion", .heading = "Motion of the free handle"};
   for (const bool loaded : {false, true}) {
     const auto& axes = loaded ? result.loaded : result.free;
     FindingTable table{loaded ? "loaded" : "free",
-                       loaded ? "With the known mass" : "Nothing on the handle"};
+                       loaded ? "With the known load" : "Nothing on the handle"};
     for (std::size_t a = 0; a < axes.size(); ++a) {
-      table.rows.push_back({{.name = "axis", .title = "Axis", .value = kAxes[a]},
+      table.rows.push_back({{.name = "axis", .title = "Axis", .value = axis_name(record, a)},
                             finding("mobility", "Gain / inertia", axes[a].mobility, "1/kg"),
                             finding("delay", "Delay", axes[a].delay, "s"),
                             finding("friction", "Friction [commanded]", axes[a].friction, "N"),
@@ -195,30 +225,32 @@ FindingList walls(const std::vector<WallStep>& steps) {
   return list;
 }
 
-Document page(const CertificateRecord& record, const std::vector<FindingList>& lists,
+Document page(const std::vector<PartCertificate>& parts, const std::vector<FindingList>& lists,
               const std::vector<Drawing>& drawings) {
+  const CertificateRecord& first = parts.front().record;
   Document document;
-  document.title = fmt::format("Certificate of {}", record.device);
-  document.simulated = record.simulated;
-  if (record.simulated) {
+  document.title = fmt::format("Certificate of {}", first.device);
+  document.simulated = first.simulated;
+  if (first.simulated) {
     document.alarm("The device is simulated: this is a rehearsal, and no certificate of hardware.");
   }
-  if (!record.plant.empty()) {
-    document.paragraph("Planted faults of the virtual device:");
-    document.points(record.plant);
+  for (const PartCertificate& part : parts) {
+    if (!part.record.plant.empty()) {
+      document.paragraph(fmt::format("Planted faults of the virtual device's {}:",
+                                     device::part_word(part.record.of)));
+      document.points(part.record.plant);
+    }
   }
   document.paragraph(
       "Intervals hold 95 %. Forces are those on the hand, in W (x to the right, y up, z towards "
-      "the "
-      "participant). What a force sensor alone can tell is not guessed without one.");
+      "the participant); torques are about these axes. What a sensor alone can tell is not "
+      "guessed without one.");
   add_findings(document, lists, drawings);
   return document;
 }
 
-}  // namespace
-
-std::vector<FindingList> certificate_findings(const CertificateRecord& record,
-                                              const CertificateResult& result) {
+std::vector<FindingList> part_findings(const CertificateRecord& record,
+                                       const CertificateResult& result) {
   std::vector<FindingList> lists{certificate_summary(record, result)};
   if (result.statics) {
     lists.push_back(static_force(record, *result.statics));
@@ -230,27 +262,64 @@ std::vector<FindingList> certificate_findings(const CertificateRecord& record,
     lists.push_back(motion(record, result.motion));
   }
   if (!result.free.empty()) {
-    lists.push_back(free_motion(result));
+    lists.push_back(free_motion(record, result));
   }
   if (!record.walls.empty()) {
     lists.push_back(walls(record.walls));
   }
+  const PartWords& words = words_of(record.of);
+  for (FindingList& list : lists) {
+    list.name = words.prefix + list.name;
+    if (record.of != device::Part::kTip && &list != &lists.front()) {
+      list.heading += fmt::format(", {}", device::part_word(record.of));
+    }
+  }
+  state_about_axis(record, lists);
   return lists;
 }
 
-std::string certificate_json(const CertificateRecord& record,
+FindingList without_motors(const PartCertificate& tip, device::Part part) {
+  const PartWords& words = words_of(part);
+  FindingList list{.name = words.prefix + std::string("summary"), .heading = words.heading};
+  list.findings.push_back(missing(
+      "gain", fmt::format("{} given and commanded", words.force), "",
+      tip.record.simulated ? "the definition has no such part of the virtual device" : words.none));
+  return list;
+}
+
+}  // namespace
+
+PartCertificate identify_part(CertificateRecord record, const Excitation& excitation) {
+  CertificateResult result = identify_device(record, excitation);
+  return {std::move(record), std::move(result)};
+}
+
+std::vector<FindingList> certificate_findings(const std::vector<PartCertificate>& parts) {
+  std::vector<FindingList> lists;
+  for (const device::Part of : {device::Part::kTip, device::Part::kRotation, device::Part::kGrip}) {
+    const auto part = std::ranges::find(parts, of, [](const auto& one) { return one.record.of; });
+    const std::vector<FindingList> own = part != parts.end()
+                                             ? part_findings(part->record, part->result)
+                                             : std::vector{without_motors(parts.front(), of)};
+    lists.insert(lists.end(), own.begin(), own.end());
+  }
+  return lists;
+}
+
+std::string certificate_json(const std::vector<PartCertificate>& parts,
                              const std::vector<FindingList>& findings) {
+  const CertificateRecord& first = parts.front().record;
   nlohmann::ordered_json root{{"certificate", kFormat},
-                              {"device", record.device},
-                              {"simulated", record.simulated},
-                              {"with_sensor", record.has_sensor(CertificatePart::kGrid)}};
+                              {"device", first.device},
+                              {"simulated", first.simulated},
+                              {"with_sensor", first.has_sensor(CertificatePart::kGrid)}};
   root.update(json_of(findings));
   return root.dump(1) + "\n";
 }
 
-void write_certificate(const CertificateRecord& record, const CertificateResult& result,
+void write_certificate(const std::vector<PartCertificate>& parts,
                        const std::filesystem::path& folder) {
-  const std::vector<FindingList> lists = certificate_findings(record, result);
+  const std::vector<FindingList> lists = certificate_findings(parts);
   const Staging staging(folder);
   std::vector<Figure> figures;
   for (const FindingList& list : lists) {
@@ -263,8 +332,8 @@ void write_certificate(const CertificateRecord& record, const CertificateResult&
       drawings.push_back({drawn, file_text(staging.path() / (drawn.name + ".svg"))});
     }
   }
-  staging.write("certificate.json", certificate_json(record, lists));
-  staging.write("certificate.html", to_html(page(record, lists, drawings)));
+  staging.write("certificate.json", certificate_json(parts, lists));
+  staging.write("certificate.html", to_html(page(parts, lists, drawings)));
   staging.publish();
 }
 

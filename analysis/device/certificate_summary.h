@@ -7,9 +7,10 @@
 
 namespace haptrial::analysis {
 
-Finding finding(const char* name, const char* title, const Interval& interval, const char* unit);
+Finding finding(const char* name, const std::string& title, const Interval& interval,
+                const char* unit);
 /// @param why  completes "not defined, because"
-Finding missing(const char* name, const char* title, const char* unit, std::string why);
+Finding missing(const char* name, const std::string& title, const char* unit, std::string why);
 
 /// The figures that definitions use, over all axes: what a certificate says in short.
 FindingList certificate_summary(const CertificateRecord& record, const CertificateResult& result);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace haptrial::analysis {
 namespace {
@@ -30,13 +31,19 @@ double smooth(double s) {
 
 }  // namespace
 
-Excitation::Excitation(double rate, double max_force)
-    : rate_(rate), max_force_(max_force), period_(std::lround(rate)) {
+Excitation::Excitation(double rate, double max_force, DrivenAxes axes, double reach)
+    : rate_(rate),
+      max_force_(max_force),
+      axes_(std::move(axes)),
+      reach_(reach),
+      period_(std::lround(rate)) {
+  const auto lacks = [this](int axis) { return std::ranges::find(axes_, axis) == axes_.end(); };
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
         const int first = x != 0 ? x : y != 0 ? y : z;
-        if (first > 0) {
+        const bool driven = (x == 0 || !lacks(0)) && (y == 0 || !lacks(1)) && (z == 0 || !lacks(2));
+        if (first > 0 && driven) {
           directions_.push_back(Eigen::Vector3d(x, y, z).normalized());
         }
       }
@@ -82,6 +89,13 @@ Excitation::Excitation(double rate, double max_force)
   }
 }
 
+Eigen::Vector3d Excitation::axis_at(long tick, long per_axis) const noexcept {
+  const long at = std::min(tick / per_axis, count_of_axes() - 1);
+  return Eigen::Vector3d::Unit(axes_[static_cast<std::size_t>(at)]);
+}
+
+double Excitation::free_force() const noexcept { return std::min(kFreeForce, 0.5 * max_force_); }
+
 long Excitation::scaled(long at_1_khz) const noexcept {
   return std::lround(1e-3 * rate_ * static_cast<double>(at_1_khz));
 }
@@ -93,12 +107,12 @@ long Excitation::ticks(CertificatePart part) const noexcept {
     case CertificatePart::kGrid:
       return static_cast<long>(holds_.size()) * scaled(kHold);
     case CertificatePart::kFrequency:
-      return 3 * (1 + kPeriods) * period_;
+      return count_of_axes() * (1 + kPeriods) * period_;
     case CertificatePart::kMove:
-      return 3 * std::lround((kSlow + kFast) * rate_);
+      return count_of_axes() * std::lround((kSlow + kFast) * rate_);
     case CertificatePart::kFree:
     case CertificatePart::kLoaded:
-      return 3 * std::lround(kFree * rate_);
+      return count_of_axes() * std::lround(kFree * rate_);
     case CertificatePart::kWall:
     case CertificatePart::kDone:
       break;
@@ -121,39 +135,35 @@ Eigen::Vector3d Excitation::command(CertificatePart part, long tick) const noexc
     return (from + (now.level - from) * way) * directions_[static_cast<std::size_t>(now.axis)];
   }
   if (part == CertificatePart::kFrequency) {
-    const long axis = tick / ((1 + kPeriods) * period_);
     const double wave = wave_[static_cast<std::size_t>(tick % period_)];
     const double since = static_cast<double>(tick % ((1 + kPeriods) * period_)) / rate_;
     return max_force_ * smooth(4.0 * since) * (kBias + kSwing * wave) *
-           Eigen::Vector3d::Unit(std::min(axis, 2L));
+           axis_at(tick, (1 + kPeriods) * period_);
   }
   if (part == CertificatePart::kFree || part == CertificatePart::kLoaded) {
-    const long axis = std::min(tick / axis_ticks(part), 2L);
-    const double t = static_cast<double>(tick - axis * axis_ticks(part)) / rate_;
+    const double t = static_cast<double>(tick % axis_ticks(part)) / rate_;
     const double rise = smooth(2.0 * t) * smooth(2.0 * (kFree - t));
     double sum = 0.0;
     for (std::size_t i = 0; i < std::size(kFreeTones); ++i) {
       sum += std::sin(2.0 * kPi * kFreeTones[i] * t + static_cast<double>(i * i));
     }
-    return std::min(kFreeForce, 0.5 * max_force_) * rise * sum / std::size(kFreeTones) *
-           Eigen::Vector3d::Unit(axis);
+    return free_force() * rise * sum / std::size(kFreeTones) * axis_at(tick, axis_ticks(part));
   }
   return Eigen::Vector3d::Zero();
 }
 
 Eigen::Vector3d Excitation::centring(CertificatePart part, long tick,
                                      const PointState& tool) const noexcept {
-  const long axis = std::min(tick / axis_ticks(part), 2L);
-  return (-kCentring * tool.position[axis] - kCalming * tool.velocity[axis]) *
-         Eigen::Vector3d::Unit(axis);
+  const Eigen::Vector3d axis = axis_at(tick, axis_ticks(part));
+  const double stiffness = std::max(kCentring, free_force() / reach_);
+  return (-stiffness * axis.dot(tool.position) - kCalming * axis.dot(tool.velocity)) * axis;
 }
 
 Eigen::Vector3d Excitation::position(CertificatePart part, long tick, double reach) const noexcept {
   if (part != CertificatePart::kMove) {
     return Eigen::Vector3d::Zero();
   }
-  const long axis = std::min(tick / axis_ticks(part), 2L);
-  const double t = static_cast<double>(tick - axis * axis_ticks(part)) / rate_;
+  const double t = static_cast<double>(tick % axis_ticks(part)) / rate_;
   double way = 0.0;
   if (t < kSlow) {
     const double rise = smooth(2.0 * t) * smooth(2.0 * (kSlow - t));
@@ -162,7 +172,7 @@ Eigen::Vector3d Excitation::position(CertificatePart part, long tick, double rea
     const double rise = smooth(2.0 * (t - kSlow)) * smooth(2.0 * (kSlow + kFast - t));
     way = 0.4 * rise * std::sin(2.0 * kPi * kFastFrequency * (t - kSlow));
   }
-  return reach * way * Eigen::Vector3d::Unit(axis);
+  return reach * way * axis_at(tick, axis_ticks(part));
 }
 
 }  // namespace haptrial::analysis

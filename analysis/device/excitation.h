@@ -20,6 +20,9 @@ enum class CertificatePart : std::uint8_t {
   kDone,
 };
 
+/// The axes of a part of a handle along which it gives forces, 0 to 2 for x to z.
+using DrivenAxes = std::vector<int>;
+
 /// A hold of the grid: a force, and the ticks over which its effect is averaged.
 struct GridHold {
   int axis;      // of directions()
@@ -28,17 +31,21 @@ struct GridHold {
 };
 
 /// Commands of a certificate's measurement, the same for whoever gives them and whoever evaluates
-/// them. Built before the loop; command() is for the servo thread.
+/// them. A rotation or a grip has its places and forces at the fingers, as a tip has
+/// (core/device/handle_part.h). Built before the loop; command() is for the servo thread.
 class Excitation {
  public:
   static constexpr long kHoldTicks = 70;  // of a hold's average, at 1 kHz
 
   /// @param rate       of the servo loop, 500 to 20000 [Hz]
   /// @param max_force  that is commanded > 0 [N]
-  Excitation(double rate, double max_force);
+  /// @param axes       that are driven, at least one
+  /// @param reach      of a free movement to either side, about > 0 [m]
+  Excitation(double rate, double max_force, DrivenAxes axes = {0, 1, 2}, double reach = 0.1);
 
   double rate() const noexcept { return rate_; }
   double max_force() const noexcept { return max_force_; }
+  const DrivenAxes& axes() const noexcept { return axes_; }
   long ticks(CertificatePart part) const noexcept;
   /// @param tick  from the beginning of the part.  @returns the force to command [N].
   Eigen::Vector3d command(CertificatePart part, long tick) const noexcept;
@@ -49,7 +56,7 @@ class Excitation {
   /// @param reach  to either side [m]
   Eigen::Vector3d position(CertificatePart part, long tick, double reach) const noexcept;
 
-  /// Thirteen unit vectors; with their opposites, 26 directions.
+  /// Unit vectors, thirteen with three axes; with their opposites, 26 directions.
   const std::vector<Eigen::Vector3d>& directions() const noexcept { return directions_; }
   const std::vector<GridHold>& holds() const noexcept { return holds_; }
   long hold_ticks() const noexcept { return scaled(kHoldTicks); }
@@ -58,13 +65,19 @@ class Excitation {
   static constexpr int kPeriods = 6;  // after one that lets transients die away
   long period_ticks() const noexcept { return period_; }
   /// Ticks of kMove, and of kFree, along one axis.
-  long axis_ticks(CertificatePart part) const noexcept { return ticks(part) / 3; }
+  long axis_ticks(CertificatePart part) const noexcept { return ticks(part) / count_of_axes(); }
 
  private:
   long scaled(long at_1_khz) const noexcept;
+  long count_of_axes() const noexcept { return static_cast<long>(axes_.size()); }
+  /// The axis that a part excites on a tick, as a unit vector, when each has so many ticks.
+  Eigen::Vector3d axis_at(long tick, long per_axis) const noexcept;
+  double free_force() const noexcept;
 
   double rate_;
   double max_force_;
+  DrivenAxes axes_;
+  double reach_;
   long period_;
   std::vector<Eigen::Vector3d> directions_;
   std::vector<double> grid_levels_;  // a level for each hold of an axis [N]

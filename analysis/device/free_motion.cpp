@@ -26,12 +26,14 @@ struct Signals {
   std::vector<double> acceleration;  // of each
 };
 
-Signals signals_of(const PartRecord& part, const Excitation& excitation, long axis,
+/// @param number  of the driven axis
+Signals signals_of(const PartRecord& part, const Excitation& excitation, long number,
                    CertificatePart which) {
+  const int axis = excitation.axes()[static_cast<std::size_t>(number)];
   const long half = std::max(3L, std::lround(kWindow * excitation.rate()));
   const Eigen::MatrixXd weights = derivative_weights(half, excitation.rate(), 5);
   const long per_axis = excitation.axis_ticks(which);
-  const auto begin = static_cast<std::size_t>(axis * per_axis);
+  const auto begin = static_cast<std::size_t>(number * per_axis);
   const std::size_t end =
       std::min(begin + static_cast<std::size_t>(per_axis), part.position.size());
   Signals s{excitation.rate(), {}, {}, smoothing_of(weights.col(1), excitation.rate()), {}, {}};
@@ -135,7 +137,7 @@ Interval spread(double value, double first, double second, double df) {
 std::vector<FreeMotion> identify_free_motion(const CertificateRecord& record,
                                              const Excitation& excitation, CertificatePart part) {
   std::vector<FreeMotion> axes;
-  for (long axis = 0; axis < 3; ++axis) {
+  for (long axis = 0; axis < static_cast<long>(excitation.axes().size()); ++axis) {
     const Signals signals = signals_of(record.part(part), excitation, axis, part);
     if (static_cast<long>(signals.windows.size()) < kLeastWindows) {
       return {};

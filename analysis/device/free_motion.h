@@ -21,7 +21,7 @@ struct FreeMotion {
   Interval offset;     // [commanded N]
 };
 
-/// Motion along x, y and z; empty if the handle did not move far enough.
+/// Motion along each driven axis; empty if the handle did not move far enough.
 /// @param part  kFree or kLoaded
 std::vector<FreeMotion> identify_free_motion(const CertificateRecord& record,
                                              const Excitation& excitation, CertificatePart part);

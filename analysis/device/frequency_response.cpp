@@ -35,9 +35,11 @@ Complex tone(const std::vector<Eigen::Vector3d>& signal, long begin, long period
   return sum;
 }
 
-MeanResponse mean_response(const PartRecord& part, const Excitation& excitation, long axis) {
+/// @param number  of the driven axis
+MeanResponse mean_response(const PartRecord& part, const Excitation& excitation, long number) {
+  const int axis = excitation.axes()[static_cast<std::size_t>(number)];
   const long period = excitation.period_ticks();
-  const long begin = axis * (1 + Excitation::kPeriods) * period + period;
+  const long begin = number * (1 + Excitation::kPeriods) * period + period;
   const double n = Excitation::kPeriods;
   MeanResponse found;
   for (const int frequency : excitation.frequencies()) {
@@ -154,8 +156,8 @@ void fit_response(const MeanResponse& response, double rate, double age, AxisRes
 
 std::vector<AxisResponse> identify_frequency_response(const CertificateRecord& record,
                                                       const Excitation& excitation) {
-  std::vector<AxisResponse> axes(3);
-  for (long a = 0; a < 3; ++a) {
+  std::vector<AxisResponse> axes(excitation.axes().size());
+  for (long a = 0; a < static_cast<long>(axes.size()); ++a) {
     AxisResponse& axis = axes[static_cast<std::size_t>(a)];
     const MeanResponse response =
         mean_response(record.part(CertificatePart::kFrequency), excitation, a);

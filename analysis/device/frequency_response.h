@@ -30,7 +30,7 @@ struct AxisResponse {
   std::optional<Interval> bandwidth;  // gain falls to 1/√2 of that at rest [Hz]
 };
 
-/// Response along x, y and z.
+/// Response along each driven axis.
 /// @param record  with a sensor in kFrequency
 std::vector<AxisResponse> identify_frequency_response(const CertificateRecord& record,
                                                       const Excitation& excitation);

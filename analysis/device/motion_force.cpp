@@ -29,15 +29,17 @@ struct Motion {
   std::vector<double> x, v, a, force;
 };
 
-Motion motion_of(const PartRecord& part, const Excitation& excitation, long axis, double age) {
+/// @param number  of the driven axis
+Motion motion_of(const PartRecord& part, const Excitation& excitation, long number, double age) {
+  const int axis = excitation.axes()[static_cast<std::size_t>(number)];
   const long half = std::lround(kDerivativeWindow * excitation.rate());
   const long lag = std::lround(age * excitation.rate());
   const long per_axis = excitation.axis_ticks(CertificatePart::kMove);
-  const long end = std::min((axis + 1) * per_axis, static_cast<long>(part.measured.size()));
+  const long end = std::min((number + 1) * per_axis, static_cast<long>(part.measured.size()));
   const MatrixXd weights = derivative_weights(half, excitation.rate(), kDegree);
   VectorXd window(2 * half + 1);
   Motion all;
-  for (long t = axis * per_axis + half; t + half + lag < end; ++t) {
+  for (long t = number * per_axis + half; t + half + lag < end; ++t) {
     for (long i = 0; i <= 2 * half; ++i) {
       window[i] = part.position[static_cast<std::size_t>(t - half + i)][axis];
     }
@@ -184,7 +186,7 @@ AxisMotion fit_moved_axis(const Motion& m) {
 std::vector<AxisMotion> identify_motion(const CertificateRecord& record,
                                         const Excitation& excitation) {
   std::vector<AxisMotion> axes;
-  for (long axis = 0; axis < 3; ++axis) {
+  for (long axis = 0; axis < static_cast<long>(excitation.axes().size()); ++axis) {
     const Motion motion =
         motion_of(record.part(CertificatePart::kMove), excitation, axis, record.sensor_age);
     if (static_cast<long>(motion.x.size()) < kLeastSamples) {

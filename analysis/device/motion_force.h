@@ -21,7 +21,7 @@ struct AxisMotion {
   std::vector<double> forward, backward;    // mean force there; NaN: none [N]
 };
 
-/// Motion along x, y and z; empty if the handle was not moved far enough.
+/// Motion along each driven axis; empty if the handle was not moved far enough.
 /// @param record  with a sensor in kMove
 std::vector<AxisMotion> identify_motion(const CertificateRecord& record,
                                         const Excitation& excitation);

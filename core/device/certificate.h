@@ -10,19 +10,26 @@ class Schema;
 
 namespace haptrial::device {
 
-/// Key figures of a device's certificate (haptrial device-test --certificate), as definitions, lab
-/// files and session files hold them. A figure that the certificate does not have is left out.
-struct Certificate {
-  std::string file;                                 // name of the certificate, without folders
-  std::string checksum;                             // FNV-1a of its bytes, 16 hexadecimal digits
-  std::string device;                               // name of the device
-  bool simulated{false};                            // the device was a virtual one
+/// What a certificate says of one part of a handle: of its tip or grip in N, of its rotation in
+/// N·m.
+struct CertifiedForce {
   std::optional<double> gain, gain_low, gain_high;  // force measured per force commanded, 95 %
-  std::optional<double> dead_zone;                  // a shorter command gives no force >= 0 [N]
-  std::optional<double> friction;                   // >= 0 [N]
-  std::optional<double> force_noise;                // root mean square of force ripple >= 0 [N]
+  std::optional<double> dead_zone;                  // a shorter command gives no force >= 0
+  std::optional<double> friction;                   // >= 0
+  std::optional<double> force_noise;                // root mean square of force ripple >= 0
   std::optional<double> delay;                      // from a command to its force >= 0 [s]
-  std::optional<double> stiffest_wall;              // that stays passive > 0 [N/m]
+  std::optional<double> stiffest_wall;              // that stays passive > 0 [N/m], [N·m/rad]
+};
+
+/// Key figures of a device's certificate (haptrial device-test --certificate), as definitions, lab
+/// files and session files hold them. A figure that the certificate does not have is left out. Its
+/// own figures are those of the tip.
+struct Certificate : CertifiedForce {
+  std::string file;       // name of the certificate, without folders
+  std::string checksum;   // FNV-1a of its bytes, 16 hexadecimal digits
+  std::string device;     // name of the device
+  bool simulated{false};  // the device was a virtual one
+  std::optional<CertifiedForce> rotation, grip;
 };
 
 /// The certificate that a definition's text states; nothing if it states none, or no longer reads.

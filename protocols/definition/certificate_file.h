@@ -11,7 +11,8 @@ namespace haptrial::protocols {
 /// @throws InputError if the file cannot be read or is no certificate
 device::Certificate read_certificate(const std::filesystem::path& file);
 
-/// The table [certificate] with these figures, as text of a definition that ends in a newline.
+/// The table [certificate] with these figures, and those of rotation and grip, as text of a
+/// definition that ends in a newline.
 std::string certificate_table(const device::Certificate& certificate);
 
 }  // namespace haptrial::protocols

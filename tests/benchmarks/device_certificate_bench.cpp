@@ -1,13 +1,15 @@
 // Certificates of a virtual arm with planted faults: how often their 95 % intervals hold the truth.
-// The table of docs/devices.md.
+// The tables of docs/devices.md.
 //
-//     bench_device_certificate [certificates] [first seed]
+//     bench_device_certificate [certificates] [first seed] [tip | rotation | grip]
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <string>
 
+#include "core/device/handle_part.h"
 #include "tests/analysis/device/device_coverage.h"
 
 int main(int argc, char** argv) {
@@ -17,9 +19,17 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "bench_device_certificate: at least 1 certificate\n");
     return 2;
   }
-  fmt::print("{} certificates, seeds {} to {}\n", seeds, first, first + seeds - 1);
+  const std::string word = argc > 3 ? argv[3] : "tip";
+  using haptrial::device::Part;
+  const Part of = word == "rotation" ? Part::kRotation : word == "grip" ? Part::kGrip : Part::kTip;
+  if (word != haptrial::device::part_word(of)) {
+    fmt::print(stderr, "bench_device_certificate: {} is no tip, rotation or grip\n", word);
+    return 2;
+  }
+  fmt::print("{} certificates of a {}, seeds {} to {}\n", seeds, word, first, first + seeds - 1);
   fmt::print("{:28} {:>9} {:>9}   share [%]\n", "figure", "held", "of");
-  for (const haptrial::test::CoverageCount& count : haptrial::test::count_coverage(first, seeds)) {
+  for (const haptrial::test::CoverageCount& count :
+       haptrial::test::count_coverage(haptrial::test::faulty_part(of), first, seeds)) {
     fmt::print("{:28} {:9} {:9}   {:.1f}\n", count.figure, count.held, count.of,
                100.0 * count.held / count.of);
   }

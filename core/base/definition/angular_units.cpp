@@ -13,15 +13,16 @@ struct Pair {
   int power;               // of the radius, from what is given to what is asked for
 };
 
-constexpr std::array<Pair, 9> kPairs{{{"m", "rad", 1},
-                                      {"m/s", "rad/s", 1},
-                                      {"1/m", "1/rad", -1},
-                                      {"N", "N·m", -1},
-                                      {"N/s", "N·m/s", -1},
-                                      {"N/m", "N·m/rad", -2},
-                                      {"N·s/m", "N·m·s/rad", -2},
-                                      {"kg", "kg·m²", -2},
-                                      {"m/N", "rad/(N·m)", 2}}};
+constexpr std::array<Pair, 10> kPairs{{{"m", "rad", 1},
+                                       {"m/s", "rad/s", 1},
+                                       {"1/m", "1/rad", -1},
+                                       {"N", "N·m", -1},
+                                       {"N/s", "N·m/s", -1},
+                                       {"N/m", "N·m/rad", -2},
+                                       {"N·s/m", "N·m·s/rad", -2},
+                                       {"kg", "kg·m²", -2},
+                                       {"1/kg", "1/(kg·m²)", 2},
+                                       {"m/N", "rad/(N·m)", 2}}};
 
 }  // namespace
 

@@ -22,10 +22,11 @@ constexpr double kStep = 1.3;        // from one wall to the next
 constexpr double kClose = 1.08;      // of active and passive, which ends the search
 constexpr double kStiffest = 20000;  // that is tried [N/m]
 
-device::EnvelopeLimits certificate_limits(const device::DeviceInfo& info,
+/// @param most  that the device gives there [N]
+device::EnvelopeLimits certificate_limits(const device::DeviceInfo& info, double most,
                                           const analysis::Excitation& excitation) {
   device::EnvelopeLimits limits;
-  limits.max_force = std::min(info.max_force, 1.25 * excitation.max_force());
+  limits.max_force = std::min(most, 1.25 * excitation.max_force());
   limits.max_force_rate = 2.0 * limits.max_force * excitation.rate();  // each tick is commanded
   limits.workspace_radius = 2.0 * info.workspace_radius;
   limits.max_speed = 2.0;
@@ -45,7 +46,8 @@ std::size_t index(CertificatePart part) { return static_cast<std::size_t>(part);
 }  // namespace
 
 Vector3d WallLadder::command(const PointState& tool) noexcept {
-  const double x = tool.position.x();
+  const Vector3d along = Vector3d::Unit(axis_);
+  const double x = tool.position[axis_];
   const auto ready = std::lround(kReady * rate_);
   const auto at_wall = std::lround(kAtWall * rate_);
   const long since = tick_++ - ready;
@@ -53,7 +55,7 @@ Vector3d WallLadder::command(const PointState& tool) noexcept {
     judge();
   }
   if (since < 0 || since >= at_wall) {
-    return {std::clamp(-80.0 * (x - kBack) - 4.0 * tool.velocity.x(), -2.0, 2.0), 0.0, 0.0};
+    return std::clamp(-80.0 * (x - kBack) - 4.0 * tool.velocity[axis_], -2.0, 2.0) * along;
   }
   if (lost_ || std::abs(x) > kFar) {
     lost_ = true;
@@ -63,7 +65,7 @@ Vector3d WallLadder::command(const PointState& tool) noexcept {
   const bool first = since == 0 || 3 * (since - 1) / at_wall != static_cast<long>(third);
   low_[third] = first ? x : std::min(low_[third], x);
   high_[third] = first ? x : std::max(high_[third], x);
-  return {std::min(stiffness_ * std::max(-x, 0.0), 4.0) - kPress, 0.0, 0.0};
+  return (std::min(stiffness_ * std::max(-x, 0.0), 4.0) - kPress) * along;
 }
 
 void WallLadder::judge() noexcept {
@@ -87,14 +89,21 @@ std::vector<analysis::WallStep> WallLadder::steps() const {
 
 CertificateTask::CertificateTask(device::Device& device, device::ForceSensor* sensor,
                                  const analysis::Excitation& excitation,
-                                 std::vector<CertificatePart> parts, Mount mount)
+                                 std::vector<CertificatePart> parts, Mount mount, device::Part of,
+                                 double radius)
     : device_(device),
+      of_(of),
+      radius_(radius),
       sensor_(sensor),
       excitation_(excitation),
-      envelope_(certificate_limits(device.info(), excitation)),
+      envelope_(certificate_limits(device.info(), device::most_force(of, device.info(), radius),
+                                   excitation)),
       parts_(std::move(parts)),
       mount_(std::move(mount)),
-      walls_(excitation.rate()) {
+      walls_(excitation.rate(), excitation.axes().front()) {
+  record_.of = of;
+  record_.radius = radius;
+  record_.axes = excitation.axes();
   record_.device = device.info().name;
   record_.simulated = device.info().simulated;
   for (const CertificatePart part : parts_) {
@@ -111,9 +120,29 @@ CertificateTask::CertificateTask(device::Device& device, device::ForceSensor* se
   shown_.store(parts_.empty() ? CertificatePart::kDone : parts_.front());
 }
 
+/// A rotation's or grip's place begins at 0, wherever it is.
+bool CertificateTask::read(device::DeviceReading& reading) noexcept {
+  if (!device_.read(reading)) {
+    return false;
+  }
+  reading.tool = device::part_state(of_, reading, radius_, place_);
+  place_ = reading.tool.position;
+  if (!origin_) {
+    origin_ = of_ == device::Part::kTip ? Vector3d(Vector3d::Zero()) : place_;
+  }
+  reading.tool.position -= *origin_;
+  return true;
+}
+
+bool CertificateTask::write(const Vector3d& force) noexcept {
+  device::Wrench wrench;
+  device::put_force(of_, force, radius_, wrench);
+  return device_.write(wrench);
+}
+
 bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
   device::DeviceReading reading;
-  const bool read_ok = device_.read(reading);
+  const bool read_ok = read(reading);
   device::MeasuredForce measured;  // at the same instant as the reading
   const bool has_force = sensor_ != nullptr && sensor_->read(measured);
   if (envelope_.check(read_ok, reading) != device::Fault::kNone) {
@@ -134,7 +163,7 @@ bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
   intent.push = wanted;
   intent.stimulus = wanted;
   const Vector3d given = envelope_.limit(wanted, tick.dt, intent);
-  if (!device_.write(given) && envelope_.fault() == device::Fault::kNone) {
+  if (!write(given) && envelope_.fault() == device::Fault::kNone) {
     envelope_.trip(device::Fault::kWriteFailed);
     trouble_ = device_.trouble();
   }
@@ -148,7 +177,7 @@ bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
   }
   const bool more = at_ < parts_.size() && envelope_.fault() == device::Fault::kNone;
   if (!more) {
-    device_.write(Vector3d::Zero());
+    write(Vector3d::Zero());
     stopped_.store(true, std::memory_order_release);
     shown_.store(CertificatePart::kDone, std::memory_order_release);
   }

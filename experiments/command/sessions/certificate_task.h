@@ -3,25 +3,28 @@
 #include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "analysis/device/certificate_record.h"
 #include "core/device/device.h"
 #include "core/device/envelope.h"
 #include "core/device/force_sensor.h"
+#include "core/device/handle_part.h"
 #include "core/realtime/servo_loop.h"
 
 namespace haptrial::experiments {
 
-/// Walls along x that grow stiffer until one swings on, then between the last two. The command
-/// itself presses the free handle against each, so that no hand damps it:
+/// Walls along one axis that grow stiffer until one swings on, then between the last two. The
+/// command itself presses the free handle against each, so that no hand damps it:
 ///
 ///     f = stiffness · max(-x, 0) - press        x along the axis
 class WallLadder {
  public:
   static constexpr std::size_t kMost = 40;  // walls
 
-  explicit WallLadder(double rate) noexcept : rate_(rate) {}
+  /// @param axis  0 to 2 for x to z
+  WallLadder(double rate, int axis) noexcept : rate_(rate), axis_(axis) {}
   /// @returns the command for the tick. Servo thread.
   Eigen::Vector3d command(const PointState& tool) noexcept;
   bool done() const noexcept { return done_; }
@@ -31,6 +34,7 @@ class WallLadder {
   void judge() noexcept;
 
   double rate_;
+  int axis_;
   std::array<analysis::WallStep, kMost> steps_{};
   std::size_t count_{0};
   double stiffness_{200.0};               // of the wall now [N/m]
@@ -51,9 +55,12 @@ class CertificateTask final : public realtime::ServoTask {
 
   /// @param device, sensor, excitation  outlive this; the sensor may be null
   /// @param parts  in their order; each waits for start() unless there is a mount
+  /// @param of      the part of the device's handle that is measured, from where it is at first
+  /// @param radius  of the fingers about the axis of a rotation [m]
   CertificateTask(device::Device& device, device::ForceSensor* sensor,
                   const analysis::Excitation& excitation,
-                  std::vector<analysis::CertificatePart> parts, Mount mount = {});
+                  std::vector<analysis::CertificatePart> parts, Mount mount = {},
+                  device::Part of = device::Part::kTip, double radius = 1.0);
 
   bool tick(const realtime::Tick& tick) noexcept override;
   void start() noexcept { start_.store(true, std::memory_order_release); }
@@ -68,6 +75,8 @@ class CertificateTask final : public realtime::ServoTask {
   analysis::CertificateRecord record() const;
 
  private:
+  bool read(device::DeviceReading& reading) noexcept;
+  bool write(const Eigen::Vector3d& force) noexcept;
   Eigen::Vector3d command(const device::DeviceReading& reading) noexcept;
   /// @param measured  null: the sensor gave nothing
   void keep(const device::DeviceReading& reading, const Eigen::Vector3d& command,
@@ -75,6 +84,10 @@ class CertificateTask final : public realtime::ServoTask {
   void end_part() noexcept;
 
   device::Device& device_;
+  device::Part of_;
+  double radius_;
+  std::optional<Eigen::Vector3d> origin_;           // of a rotation or grip [m]
+  Eigen::Vector3d place_{Eigen::Vector3d::Zero()};  // of it, a tick ago [m]
   device::ForceSensor* sensor_;
   const analysis::Excitation& excitation_;
   device::Envelope envelope_;

@@ -10,26 +10,57 @@
 
 #include "analysis/device/certificate_report.h"
 #include "core/base/error.h"
-#include "core/device/sensed_mount.h"
+#include "experiments/command/sessions/certificate_plan.h"
 #include "experiments/command/sessions/certificate_task.h"
+#include "experiments/command/sessions/certify_virtual.h"
 #include "experiments/command/sessions/sensor_channel.h"
 #include "experiments/control/interrupt.h"
 
 namespace haptrial::experiments {
 namespace {
 
-const char* certificate_prompt(analysis::CertificatePart part) {
+/// What a person does before a part of the measurement.
+struct Prompts {
+  const char *rest, *free, *loaded, *wall, *grid;
+};
+
+const Prompts& prompts_of(device::Part part) {
+  static const Prompts tip{
+      "keep the handle still: put it down, or clamp it",
+      "let the handle go, with free space around it: the device moves it",
+      "fix the known mass to the handle and let it go: the device moves it",
+      "take the mass off and let the handle go: the device presses it against walls",
+      "clamp the handle to the force sensor in the middle of the workspace",
+  };
+  static const Prompts rotation{
+      "rotation: hold the handle's tip and keep its rotation still, in the middle of its turns",
+      "",
+      "",
+      "rotation: let it turn freely: the device presses it against springs",
+      "rotation: clamp the handle to the torque sensor in the middle of its turns",
+  };
+  static const Prompts grip{
+      "grip: keep it still and half open",
+      "",
+      "",
+      "grip: let it go, half open: the device presses it against springs",
+      "grip: clamp it to the force sensor, half open",
+  };
+  return part == device::Part::kRotation ? rotation : part == device::Part::kGrip ? grip : tip;
+}
+
+const char* certificate_prompt(const Prompts& prompts, analysis::CertificatePart part) {
   switch (part) {
     case analysis::CertificatePart::kRest:
-      return "keep the handle still: put it down, or clamp it";
+      return prompts.rest;
     case analysis::CertificatePart::kFree:
-      return "let the handle go, with free space around it: the device moves it";
+      return prompts.free;
     case analysis::CertificatePart::kLoaded:
-      return "fix the known mass to the handle and let it go: the device moves it";
+      return prompts.loaded;
     case analysis::CertificatePart::kWall:
-      return "take the mass off and let the handle go: the device presses it against walls";
+      return prompts.wall;
     case analysis::CertificatePart::kGrid:
-      return "clamp the handle to the force sensor in the middle of the workspace";
+      return prompts.grid;
     case analysis::CertificatePart::kFrequency:
       return "leave the handle clamped";
     case analysis::CertificatePart::kMove:
@@ -40,7 +71,8 @@ const char* certificate_prompt(analysis::CertificatePart part) {
 }
 
 /// Runs the parts on a real clock; each begins ten seconds after the person was told.
-void run_certificate(CertificateTask& task, device::Device& device, realtime::ServoLoop& loop) {
+void run_certificate(CertificateTask& task, device::Device& device, realtime::ServoLoop& loop,
+                     const Prompts& prompts) {
   constexpr int kCountdown = 10;  // [s]
   TaskStop stop(task, device);
   const WatchedStop watched(stop);
@@ -54,7 +86,7 @@ void run_certificate(CertificateTask& task, device::Device& device, realtime::Se
     if (told != task.part()) {
       told = task.part();
       begin = std::chrono::steady_clock::now() + std::chrono::seconds(kCountdown);
-      fmt::print("-> {}; it begins in {} s\n", certificate_prompt(*told), kCountdown);
+      fmt::print("-> {}; it begins in {} s\n", certificate_prompt(prompts, *told), kCountdown);
       std::fflush(stdout);
     }
     if (std::chrono::steady_clock::now() >= begin) {
@@ -65,86 +97,51 @@ void run_certificate(CertificateTask& task, device::Device& device, realtime::Se
   servo.join();
 }
 
-/// The virtual device's faults, for the page of its certificate.
-std::vector<std::string> planted(const DeviceSetup& setup) {
-  const device::MotorFaults& f = setup.electronics.faults;
-  return {fmt::format("gain {}, dead zone {} N, gravity error {} N", f.gain, f.dead_zone,
-                      f.gravity_error),
-          fmt::format("cogging {} N every {} m", f.cogging, f.cogging_period),
-          f.resonance > 0.0
-              ? fmt::format("resonance {} Hz, damping {}", f.resonance, f.resonance_damping)
-              : "no resonance",
-          fmt::format("delay {} ms, friction {} N, inertia {} kg",
-                      1e3 * setup.electronics.force_delay / kDeviceTestRate,
-                      setup.hand.coulomb_friction, setup.hand.handle_mass)};
-}
+using analysis::CertificatePart;
 
-/// The certificate of the virtual device, whose handle a mount holds, moves and lets go.
-analysis::CertificateRecord virtual_record(const DeviceTestOptions& options,
-                                           const DeviceSetup& setup,
-                                           const analysis::Excitation& excitation,
-                                           std::vector<analysis::CertificatePart> parts) {
-  using analysis::CertificatePart;
-  device::SensedMount mount({.mass = setup.hand.handle_mass,
-                             .friction = setup.hand.coulomb_friction,
-                             .noise = setup.electronics.faults.sensor_noise,
-                             .added_mass = options.mass},
-                            1);
-  device::VirtualDevice device(setup.electronics, mount, kDeviceTestRate);
-  const double reach = 0.5 * setup.electronics.workspace_radius;
-  if (!options.without_sensor) {
-    parts.insert(parts.begin() + 1,
-                 {CertificatePart::kGrid, CertificatePart::kFrequency, CertificatePart::kMove});
-  }
-  CertificateTask task(device, options.without_sensor ? nullptr : &mount, excitation, parts,
-                       [&mount, &excitation, reach](CertificatePart part, long tick) {
-                         mount.carry(part == CertificatePart::kLoaded);
-                         if (part == CertificatePart::kFree || part == CertificatePart::kLoaded ||
-                             part == CertificatePart::kWall) {
-                           mount.release();
-                         } else {
-                           mount.hold(excitation.position(part, tick + 1, reach));
-                         }
-                       });
-  realtime::ServoLoop loop(realtime::ClockKind::kSimulated, kDeviceTestRate);
-  loop.run(task);
-  analysis::CertificateRecord record = task.record();
-  if (task.fault() != device::Fault::kNone) {
-    throw RunError(fmt::format("the certificate ended early: {}", device::describe(task.fault())));
-  }
-  record.plant = planted(setup);
-  return record;
-}
-
-/// The channel that the options name. @throws InputError if the definition has no such channel
-const channel::ChannelOptions& sensor_of(const DeviceTestOptions& options,
+/// The channel that an option names. @throws InputError if the definition has no such channel
+const channel::ChannelOptions& sensor_of(const char* option, const std::string& name,
+                                         const DeviceTestOptions& options,
                                          const DeviceSetup& setup) {
-  const auto found =
-      std::ranges::find(setup.channels, options.sensor, &channel::ChannelOptions::name);
+  const auto found = std::ranges::find(setup.channels, name, &channel::ChannelOptions::name);
   if (found == setup.channels.end()) {
     throw InputError(
         options.definition.empty()
-            ? fmt::format("--sensor {0} needs --definition FILE with a table [channels.{0}]",
-                          options.sensor)
-            : fmt::format("--sensor {0}: {1} has no [channels.{0}]", options.sensor,
-                          options.definition));
+            ? fmt::format("{0} {1} needs --definition FILE with a table [channels.{1}]", option,
+                          name)
+            : fmt::format("{0} {1}: {2} has no [channels.{1}]", option, name, options.definition));
   }
   return *found;
 }
 
+/// The channel that measures a part; null: none does.
+const channel::ChannelOptions* sensor_of(device::Part part, const DeviceTestOptions& options,
+                                         const DeviceSetup& setup) {
+  if (part == device::Part::kGrip) {
+    return options.grip_sensor.empty()
+               ? nullptr
+               : &sensor_of("--grip-sensor", options.grip_sensor, options, setup);
+  }
+  if (options.sensor.empty()) {
+    return nullptr;
+  }
+  const channel::ChannelOptions& found = sensor_of("--sensor", options.sensor, options, setup);
+  return part == device::Part::kTip || measures(found, part) ? &found : nullptr;
+}
+
 analysis::CertificateRecord real_record(const DeviceTestOptions& options, const DeviceSetup& setup,
                                         const analysis::Excitation& excitation,
-                                        std::vector<analysis::CertificatePart> parts) {
+                                        const protocols::DeviceArm& arm, device::Device& device) {
+  std::vector<CertificatePart> parts = parts_without_sensor(options, arm);
   std::optional<SensorChannel> sensor;
-  if (!options.sensor.empty()) {
-    sensor.emplace(sensor_of(options, setup), options.sensor_axes);
-    using analysis::CertificatePart;
+  if (const channel::ChannelOptions* own = sensor_of(arm.part, options, setup)) {
+    sensor.emplace(*own, options.sensor_axes, channel::Channel::Now{}, arm.part, arm.radius);
     parts.insert(parts.begin() + 1, {CertificatePart::kGrid, CertificatePart::kFrequency});
   }
-  const DeviceUnderTest bench = make_bench(options, setup);
-  CertificateTask task(*bench.device, sensor ? &*sensor : nullptr, excitation, std::move(parts));
+  CertificateTask task(device, sensor ? &*sensor : nullptr, excitation, std::move(parts), {},
+                       arm.part, arm.radius);
   realtime::ServoLoop loop(realtime::ClockKind::kReal, kDeviceTestRate);
-  run_certificate(task, *bench.device, loop);
+  run_certificate(task, device, loop, prompts_of(arm.part));
   if (interrupted()) {
     throw RunError("interrupted; no certificate was written");
   }
@@ -153,50 +150,102 @@ analysis::CertificateRecord real_record(const DeviceTestOptions& options, const 
                                device::describe(task.fault()), *task.trouble() != '\0' ? "; " : "",
                                task.trouble()));
   }
-  return task.record();
+  analysis::CertificateRecord record = task.record();
+  record.mass = load_of(options, arm);
+  return record;
 }
 
-/// Share of the device's force that a certificate commands.
-constexpr double kForceShare = 0.4;
+/// The parts for which the device has motors, with radius of the definition if it states one.
+std::vector<protocols::DeviceArm> driven_arms(const device::DeviceInfo& info,
+                                              const DeviceSetup& setup) {
+  constexpr double kFingers = 0.03;  // [m]
+  std::vector<protocols::DeviceArm> arms;
+  for (const device::Part part :
+       {device::Part::kTip, device::Part::kRotation, device::Part::kGrip}) {
+    protocols::DeviceArm arm;
+    arm.part = part;
+    arm.radius = part == device::Part::kRotation ? kFingers : 1.0;
+    const auto stated = std::ranges::find_if(
+        setup.arms, [&](const auto& one) { return one.part == part && one.of == 0; });
+    if (stated != setup.arms.end()) {
+      arm.radius = stated->radius;
+    }
+    const bool drives = device::part_axes(part, info).maxCoeff() > 0.0 &&
+                        device::most_force(part, info, arm.radius) > 0.0;
+    if (drives || part == device::Part::kTip) {
+      arms.push_back(arm);
+    }
+  }
+  return arms;
+}
 
-}  // namespace
+analysis::DrivenAxes axes_of(device::Part part, const device::DeviceInfo& info) {
+  const Eigen::Vector3d driven = device::part_axes(part, info);
+  analysis::DrivenAxes axes;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (driven[axis] > 0.0) {
+      axes.push_back(axis);
+    }
+  }
+  return axes;
+}
 
-int certify_device(const DeviceTestOptions& options, const DeviceSetup& setup) {
-  using analysis::CertificatePart;
-  constexpr double kMostMass = 5.0;
+std::vector<analysis::PartCertificate> real_certificates(const DeviceTestOptions& options,
+                                                         const DeviceSetup& setup) {
+  constexpr double kOwnForce = 3.0;  // of a device that another program added [N]
+  const device::VendorDevice* vendor = device::vendor_device(options.name);
+  const double most_at_tip = vendor != nullptr ? vendor->limits(setup.vendor).max_force : kOwnForce;
+  const DeviceUnderTest bench = make_bench(options, setup);
+  const device::DeviceInfo& info = bench.device->info();
+  std::vector<analysis::PartCertificate> all;
+  for (const protocols::DeviceArm& arm : driven_arms(info, setup)) {
+    const double most = arm.part == device::Part::kTip
+                            ? most_at_tip
+                            : device::most_force(arm.part, info, arm.radius);
+    const analysis::Excitation excitation =
+        excitation_of(arm, axes_of(arm.part, info), most, info.workspace_radius);
+    all.push_back(analysis::identify_part(
+        real_record(options, setup, excitation, arm, *bench.device), excitation));
+  }
+  return all;
+}
+
+void check_options(const DeviceTestOptions& options) {
+  constexpr double kMostMass = 5.0;  // [kg]
   if (!(options.mass >= 0.0 && options.mass <= kMostMass)) {
     throw InputError(
         fmt::format("--mass is {}; allowed: a number from 0 to {} [kg]", options.mass, kMostMass));
   }
-  if (!options.sensor.empty() && options.name == "virtual") {
-    throw InputError("the virtual device has a simulated force sensor; leave --sensor out");
+  if (options.name == "virtual" && !(options.sensor.empty() && options.grip_sensor.empty())) {
+    throw InputError(
+        "the virtual device has simulated sensors; leave --sensor and --grip-sensor out");
   }
   if (options.name == "mouse") {
     throw InputError("a mouse gives no force, so that it has no certificate");
   }
-  std::vector<CertificatePart> parts{CertificatePart::kRest, CertificatePart::kFree};
-  if (options.mass > 0.0) {
-    parts.push_back(CertificatePart::kLoaded);
+}
+
+}  // namespace
+
+int certify_device(const DeviceTestOptions& options, const DeviceSetup& setup) {
+  check_options(options);
+  if (options.name != "virtual") {  // before the device opens
+    sensor_of(device::Part::kTip, options, setup);
+    sensor_of(device::Part::kGrip, options, setup);
   }
-  parts.push_back(CertificatePart::kWall);
-  const bool is_virtual = options.name == "virtual";
-  constexpr double kOwnForce = 3.0;  // of a device that another program added [N]
-  const device::VendorDevice* vendor = device::vendor_device(options.name);
-  const double most = is_virtual          ? setup.electronics.max_force
-                      : vendor != nullptr ? vendor->limits(setup.vendor).max_force
-                                          : kOwnForce;
-  const analysis::Excitation excitation(kDeviceTestRate, kForceShare * most);
-  analysis::CertificateRecord record = is_virtual
-                                           ? virtual_record(options, setup, excitation, parts)
-                                           : real_record(options, setup, excitation, parts);
-  record.mass = options.mass;
-  const analysis::CertificateResult result = identify_device(record, excitation);
-  write_certificate(record, result, options.certificate);
-  for (const std::string& line :
-       analysis::lines_of(certificate_findings(record, result).front().findings)) {
-    fmt::print("{}\n", line);
+  const std::vector<analysis::PartCertificate> parts = options.name == "virtual"
+                                                           ? virtual_certificates(options, setup)
+                                                           : real_certificates(options, setup);
+  write_certificate(parts, options.certificate);
+  for (const analysis::FindingList& list : certificate_findings(parts)) {
+    if (list.name.ends_with("summary")) {
+      fmt::print("{}\n", list.heading);
+      for (const std::string& line : analysis::lines_of(list.findings)) {
+        fmt::print("  {}\n", line);
+      }
+    }
   }
-  fmt::print("{}{}\n", record.simulated ? "simulated; " : "",
+  fmt::print("{}{}\n", parts.front().record.simulated ? "simulated; " : "",
              (std::filesystem::path(options.certificate) / "certificate.html").string());
   return 0;
 }

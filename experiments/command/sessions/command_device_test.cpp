@@ -86,8 +86,11 @@ int device_test(const DeviceTestOptions& options) {
   if (!options.certificate.empty()) {
     return certify_device(options, setup);
   }
-  if (options.mass != 0.0 || options.without_sensor || !options.sensor.empty()) {
-    throw InputError("--mass, --sensor and --without-sensor belong to --certificate FOLDER");
+  if (options.mass != 0.0 || options.without_sensor || !options.sensor.empty() ||
+      !options.grip_sensor.empty()) {
+    throw InputError(
+        "--mass, --sensor, --grip-sensor and --without-sensor belong to "
+        "--certificate FOLDER");
   }
   DeviceUnderTest bench = make_bench(options, setup);
   const device::DeviceInfo& info = bench.device->info();
@@ -135,7 +138,9 @@ void add_device_test(CLI::App& app, int& status) {
                   "Known mass that you fix to the handle for a certificate [kg] (default: none)");
   sub->add_option("--sensor", o.sensor,
                   "Channel of the definition, a force sensor to which you clamp the handle for a "
-                  "certificate");
+                  "certificate; one that also measures torque is the rotation's sensor, too");
+  sub->add_option("--grip-sensor", o.grip_sensor,
+                  "Channel of the definition that measures the grip force as the quantity grip");
   sub->add_option(
       "--sensor-axes", o.sensor_axes,
       with_default("Axes of the world along which the sensor's x, y and z point", o.sensor_axes));

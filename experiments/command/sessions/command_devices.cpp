@@ -24,8 +24,9 @@ int devices() {
 }  // namespace
 
 void add_devices(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "devices", "List the devices and other instruments, and how to use them",
-                             "haptrial devices", {"", "devices.md"});
+  CLI::App* sub =
+      subcommand(app, "devices", "List the devices and other instruments, and how to use them",
+                 "haptrial devices", {"", "devices.md"});
   run_when_read(*sub, status, devices);
 }
 

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/base/definition/table.h"
+#include "core/base/error.h"
 #include "core/channel/channel_set.h"
 #include "core/record/hdf5/session_writer.h"
 #include "experiments/command/subcommand.h"

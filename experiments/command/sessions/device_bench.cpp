@@ -43,6 +43,7 @@ DeviceSetup setup_of(const DeviceTestOptions& options) {
     setup = {d.device, d.hand, d.mouse, d.vendor, d.envelope.holding_force, {}};
     setup.margins = d.margins();
     setup.channels = d.channels;
+    setup.arms = d.arms();
   } else {
     for (const Study* study : studies()) {
       const auto published = study->protocol().margins();

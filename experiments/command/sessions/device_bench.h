@@ -15,6 +15,7 @@
 #include "core/subject/hand_parameters.h"
 #include "experiments/command/sessions/device_check.h"
 #include "experiments/control/fatal_stop_handler.h"
+#include "protocols/definition/device_arm.h"
 
 namespace haptrial::experiments {
 
@@ -29,6 +30,7 @@ struct DeviceTestOptions {
   double mass{0.0};            // known, on the handle; 0: none [kg]
   bool without_sensor{false};  // of the virtual device
   std::string sensor;          // channel of the definition that measures the force; empty: none
+  std::string grip_sensor;     // likewise the grip force; empty: none
   std::string sensor_axes{"x,y,z"};  // along which its axes point
   std::string loopback;              // recording of a sound's onsets; empty: none
 };
@@ -52,6 +54,7 @@ struct DeviceSetup {
       device::EnvelopeLimits{}.holding_force};      // a device may have more friction [N]
   std::vector<std::string> margins;                 // of the definition, or the published ones
   std::vector<channel::ChannelOptions> channels{};  // of the definition
+  std::vector<protocols::DeviceArm> arms{};         // that the definition drives
 };
 
 /// Set-up of the definition that the options name, or that of the drivers.

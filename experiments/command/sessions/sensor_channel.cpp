@@ -14,16 +14,35 @@
 namespace haptrial::experiments {
 namespace {
 
-std::array<std::size_t, 3> places_of_force(const channel::ChannelOptions& options) {
-  constexpr std::array kForces{"fx", "fy", "fz"};
+/// Quantities of a sensor: three along or about its axes, or the only one three times.
+std::array<const char*, 3> quantities_of(device::Part part) {
+  switch (part) {
+    case device::Part::kRotation:
+      return {"tx", "ty", "tz"};
+    case device::Part::kGrip:
+      return {"grip", "grip", "grip"};
+    case device::Part::kTip:
+      break;
+  }
+  return {"fx", "fy", "fz"};
+}
+
+std::array<std::size_t, 3> places_of_force(const channel::ChannelOptions& options,
+                                           device::Part part) {
+  const std::array kForces = quantities_of(part);
+  const char* unit = device::units_of(part, 1.0).force;
   const auto& quantities = options.plan.quantities;
   std::array<std::size_t, 3> places{};
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto at = std::ranges::find(quantities, kForces[i], &channel::Quantity::name);
-    if (at == quantities.end() || at->unit != "N") {
+    if (at == quantities.end() || at->unit != unit) {
       throw InputError(fmt::format(
-          "channels.{}: a force sensor has the quantities fx, fy and fz in N; {} is not among them",
-          options.name, kForces[i]));
+          "channels.{}: a force sensor of a {} has the quantities {} in {}; {} is not among them",
+          options.name, device::part_word(part),
+          part == device::Part::kGrip
+              ? std::string(kForces[0])
+              : fmt::format("{}, {} and {}", kForces[0], kForces[1], kForces[2]),
+          unit, kForces[i]));
     }
     places[i] = static_cast<std::size_t>(at - quantities.begin());
   }
@@ -51,6 +70,13 @@ Eigen::Vector3d axis_of(std::string_view word) {
 
 }  // namespace
 
+bool measures(const channel::ChannelOptions& options, device::Part part) {
+  const auto& quantities = options.plan.quantities;
+  return std::ranges::all_of(quantities_of(part), [&](const char* name) {
+    return std::ranges::find(quantities, name, &channel::Quantity::name) != quantities.end();
+  });
+}
+
 Eigen::Matrix3d rotation_of_axes(const std::string& axes) {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Zero();
   std::istringstream words(axes);
@@ -72,10 +98,12 @@ Eigen::Matrix3d rotation_of_axes(const std::string& axes) {
 }
 
 SensorChannel::SensorChannel(const channel::ChannelOptions& options, const std::string& axes,
-                             channel::Channel::Now now)
+                             channel::Channel::Now now, device::Part of, double radius)
     : now_(now ? std::move(now) : machine_clock()),
       to_world_(rotation_of_axes(axes)),
-      force_(places_of_force(options)),
+      force_(places_of_force(options, of)),
+      is_grip_(of == device::Part::kGrip),
+      newton_(device::units_of(of, radius).newton),
       channel_(options, now_) {
   if (const std::string why = channel_.wait_until_open(); !why.empty()) {
     throw RunError(why);
@@ -90,7 +118,8 @@ bool SensorChannel::read(device::MeasuredForce& measured) noexcept {
   if (!state.live || !force.allFinite()) {
     return false;
   }
-  measured.force = to_world_ * force;
+  measured.force = is_grip_ ? Eigen::Vector3d(force.x(), 0.0, 0.0)
+                            : Eigen::Vector3d(to_world_ * force / newton_);
   measured.age = std::max(0.0, 1e-9 * static_cast<double>(now_() - state.time_ns));
   measured.time = 1e-9 * static_cast<double>(state.time_ns);
   measured.noise = 0.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,21 @@ struct TrialsDefinition;
 /// The stage whose fields add up to the greatest stiffness.
 struct StiffestStage {
   std::string name;       // empty: no stage has any
-  double stiffness{0.0};  // [N/m]
+  double stiffness{0.0};  // [N/m], of a rotation [N·m/rad]
 };
+
+/// What the fields of a definition do to one part of a handle.
+struct FeltPart {
+  bool felt{false};  // a field acts on it
+  StiffestStage stiffest;
+};
+using FeltParts = std::array<FeltPart, 3>;  // by device::Part
 
 /// Sentences on what a definition asks for and its device cannot present, as its certificate says:
 /// levels that dead zone or friction hides, steps smaller than the ripple of the force, walls that
-/// do not stay passive. None without a certificate.
+/// do not stay passive. Levels in N·m are a rotation's, those in N of the tip or the grip,
+/// whichever is felt. None without a certificate.
 std::vector<std::string> certificate_warnings(const TrialsDefinition& definition,
-                                              const StiffestStage& stiffest);
+                                              const FeltParts& parts);
 
 }  // namespace haptrial::protocols

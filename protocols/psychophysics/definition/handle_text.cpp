@@ -245,10 +245,18 @@ void HandleReport::keep(const Load& load) {
   }
 }
 
-void HandleReport::add(Load load) {
-  if (load.stiffness > stiffest_.stiffness && arms_[load.device].part == device::Part::kTip) {
-    stiffest_ = {load.stage, load.stiffness};
+void HandleReport::note_stiffest(const Load& load) {
+  const DeviceArm& arm = arms_[load.device];
+  const bool turns = arm.part == device::Part::kRotation;
+  const double stiffness = load.stiffness * (turns ? arm.radius * arm.radius : 1.0);
+  StiffestStage& most = felt_[static_cast<std::size_t>(arm.part)].stiffest;
+  if (stiffness > most.stiffness) {
+    most = {load.stage, stiffness};
   }
+}
+
+void HandleReport::add(Load load) {
+  note_stiffest(load);
   if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
     return;
   }
@@ -271,6 +279,8 @@ void HandleReport::add(Load load) {
 void HandleReport::add(const Presented& presented) {
   for (std::size_t stage = 0; stage < presented.stages.size(); ++stage) {
     for (std::size_t device = 0; device < arms_.size(); ++device) {
+      const bool felt = (presented.stages[stage].stage.fields & presented.felt[device]) != 0;
+      felt_[static_cast<std::size_t>(arms_[device].part)].felt |= felt;
       add(load_of(presented, stage, device));
     }
   }
@@ -317,7 +327,7 @@ HandleText HandleReport::words() const {
           where(load), load.lightest, d_.rate, d_.hand.hand_mass));
     }
   }
-  for (const std::string& warning : certificate_warnings(d_, stiffest_)) {
+  for (const std::string& warning : certificate_warnings(d_, felt_)) {
     words.warnings.push_back(warning);
   }
   return words;

@@ -50,6 +50,7 @@ class HandleReport {
   void reject_slow_swings(const Load& load, const control::HandleLoop& loop) const;
   void judge(Load& load) const;
   void keep(const Load& load);
+  void note_stiffest(const Load& load);
   std::string amount_of(const Load& load) const;
   std::string left_on_bare_handle(const Load& load) const;
 
@@ -59,7 +60,7 @@ class HandleReport {
   std::vector<Load> worst_;         // (stages that some hand does not carry)
   std::vector<std::string> begin_;  // what begins around the hand
   bool looked_{false};              // at what begins
-  StiffestStage stiffest_;
+  FeltParts felt_;
 };
 
 }  // namespace haptrial::protocols

@@ -7,6 +7,7 @@
 
 #include "core/base/definition/schema.h"
 #include "core/device/handle_part.h"
+#include "core/device/motor_faults.h"
 #include "core/scene/field.h"
 #include "protocols/interface/pass.h"
 
@@ -58,7 +59,9 @@ const Schema<TrialDevice>& part_schema() {
           .otherwise("from [envelope]")
           .number("max_jump", &D::max_jump, {0.0, 0.1, true}, "m",
                   "Largest change of the opening or angle between two ticks")
-          .otherwise("from [envelope]");
+          .otherwise("from [envelope]")
+          .table("faults", &D::faults, device::motor_faults_schema(),
+                 "Faults of the virtual device's motors there, in place of those of [device]");
   return schema;
 }
 
@@ -96,6 +99,10 @@ TrialDevice read_device(Table& table, const std::string& name,
     device.of = tip_of(table, "rotation_of", before);
     radius_schema().read(table, device);
     state_in_units_of(device, table);
+    if (table.has("faults")) {
+      Table faults = table.table("faults");
+      state_in_units_of(device, faults);
+    }
   } else if (table.has("grip_of")) {
     device.part = device::Part::kGrip;
     device.of = tip_of(table, "grip_of", before);
@@ -181,6 +188,7 @@ std::vector<DeviceArm> arms_of(const std::vector<TrialDevice>& devices,
     if (!each.is_tip()) {
       arm.radius = each.part == device::Part::kRotation ? each.radius : 1.0;
       arm.handle_mass = each.handle_mass;
+      arm.faults = each.faults;
       arm.limits.max_force = each.max_force.value_or(envelope.max_force);
       arm.limits.max_force_rate = each.max_force_rate.value_or(envelope.max_force_rate);
       arm.limits.workspace_radius = each.workspace_radius.value_or(envelope.workspace_radius);

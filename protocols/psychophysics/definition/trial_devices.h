@@ -37,6 +37,8 @@ struct TrialDevice {
   std::optional<double> workspace_radius{};  // [m]
   std::optional<double> max_speed{};         // [m/s]
   std::optional<double> max_jump{};          // [m]
+  // In place of those of [device], for a rotation or grip.
+  std::optional<device::MotorFaults> faults{};
 
   bool is_tip() const { return part == device::Part::kTip; }
 };

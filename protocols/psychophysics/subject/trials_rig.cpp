@@ -42,10 +42,12 @@ std::optional<device::FaultyMotors> motors_of(const Definition& d) {
   return perfect ? std::nullopt : std::optional(device::FaultyMotors(faults, 1.0 / d.rate));
 }
 
-/// The virtual device in the place of this one.
-device::VirtualDeviceParameters electronics_of(const Definition& d, const TrialDevice& tip) {
+/// The virtual device in the place of this part. @param tip  of its device
+device::VirtualDeviceParameters electronics_of(const Definition& d, const TrialDevice& tip,
+                                               const DeviceArm& part) {
   device::VirtualDeviceParameters electronics = d.device;
   electronics.force_delay = tip.force_delay.value_or(electronics.force_delay);
+  electronics.faults = part.faults.value_or(electronics.faults);
   return electronics;
 }
 
@@ -474,7 +476,7 @@ TrialsRig::TrialsRig(const Briefing& briefing, std::uint64_t person_seed,
     const bool named = !briefing.devices->empty();
     const TrialDevice held = named ? (*briefing.devices)[i] : TrialDevice{};
     arms_.push_back(std::make_unique<Arm>(
-        d, electronics_of(d, named ? (*briefing.devices)[held.of] : held), held, arms[i]));
+        d, electronics_of(d, named ? (*briefing.devices)[held.of] : held, arms[i]), held, arms[i]));
   }
   participant_ =
       std::make_unique<Participant>(briefing, arms_, left_.get(), person_seed, session_seed);

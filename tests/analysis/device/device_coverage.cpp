@@ -14,7 +14,6 @@ using analysis::Interval;
 using Complex = std::complex<double>;
 
 constexpr double kRate = 1000.0;  // [Hz]
-constexpr double kForce = 4.8;    // [N]
 constexpr double kPi = std::numbers::pi;
 
 class Counts {
@@ -40,8 +39,7 @@ class Counts {
 };
 
 /// Response of the planted motors by the two exponentials of the resonance, summed as a series.
-Complex planted_response(double frequency) {
-  const device::VirtualDeviceParameters p = faulty_electronics();
+Complex planted_response(const device::VirtualDeviceParameters& p, double frequency) {
   const double w = 2.0 * kPi * p.faults.resonance;
   const Complex root(-p.faults.resonance_damping * w,
                      w * std::sqrt(1.0 - std::pow(p.faults.resonance_damping, 2)));
@@ -55,8 +53,8 @@ Complex planted_response(double frequency) {
   return p.faults.gain * held * std::polar(1.0, -2.0 * kPi * frequency * p.force_delay / kRate);
 }
 
-void add_response(const std::vector<analysis::AxisResponse>& axes, Counts& counts) {
-  const device::VirtualDeviceParameters p = faulty_electronics();
+void add_response(const device::VirtualDeviceParameters& p,
+                  const std::vector<analysis::AxisResponse>& axes, Counts& counts) {
   const double z = p.faults.resonance_damping;
   const double c = 1.0 - 2.0 * z * z;
   for (const analysis::AxisResponse& axis : axes) {
@@ -69,7 +67,7 @@ void add_response(const std::vector<analysis::AxisResponse>& axes, Counts& count
     double phase = 0.0;
     Complex before = 1.0;
     for (const analysis::ToneResponse& tone : axis.tones) {
-      const Complex truth = planted_response(tone.frequency);
+      const Complex truth = planted_response(p, tone.frequency);
       phase += std::arg(truth / before);
       before = truth;
       counts.add("gain at a frequency", tone.gain, std::abs(truth));
@@ -103,17 +101,46 @@ device::SensedMountParameters faulty_mount() {
   return p;
 }
 
-std::vector<CoverageCount> count_coverage(int first, int count) {
+FaultyPart faulty_part(device::Part of) {
+  FaultyPart part{faulty_electronics(), faulty_mount(), 4.8, {0, 1, 2}, 0.04};
+  device::MotorFaults& faults = part.electronics.faults;
+  if (of == device::Part::kRotation) {
+    faults.gain = 0.92;
+    faults.dead_zone = 0.1;
+    faults.resonance = 70.0;
+    faults.cogging = 0.06;
+    faults.cogging_period = 0.004;
+    part.electronics.force_delay = 3;
+    part.mount.mass = 0.05;
+    part.mount.friction = 0.2;
+    part.reach = 0.02;
+  } else if (of == device::Part::kGrip) {
+    faults.gain = 0.8;
+    faults.resonance = 120.0;
+    faults.resonance_damping = 0.2;
+    faults.cogging_period = 0.0025;
+    part.electronics.force_delay = 2;
+    part.mount.mass = 0.08;
+    part.mount.friction = 0.25;
+    part.max_force = 3.2;
+    part.axes = {0};
+    part.reach = 0.008;
+  }
+  return part;
+}
+
+std::vector<CoverageCount> count_coverage(const FaultyPart& part, int first, int count) {
   using analysis::CertificatePart;
-  const analysis::Excitation excitation(kRate, kForce);
-  const device::VirtualDeviceParameters p = faulty_electronics();
-  const device::SensedMountParameters mount = faulty_mount();
+  const analysis::Excitation excitation(kRate, part.max_force, part.axes, part.reach);
+  const device::VirtualDeviceParameters& p = part.electronics;
+  const device::SensedMountParameters& mount = part.mount;
   Counts counts;
   for (int seed = first; seed < first + count; ++seed) {
     const auto record =
         simulated_certificate(p, mount, excitation, static_cast<std::uint64_t>(seed),
                               {CertificatePart::kRest, CertificatePart::kGrid,
-                               CertificatePart::kFrequency, CertificatePart::kMove});
+                               CertificatePart::kFrequency, CertificatePart::kMove},
+                              part.reach);
     const analysis::CertificateResult result = identify_device(record, excitation);
     counts.add("noise of the sensor", result.rest.sensor, mount.noise);
     counts.add("gain", result.statics->gain, p.faults.gain);
@@ -123,12 +150,13 @@ std::vector<CoverageCount> count_coverage(int first, int count) {
       counts.add("gain in a direction", direction.opposite_gain, p.faults.gain);
       counts.add("dead zone in a direction", direction.dead_zone, p.faults.dead_zone);
     }
-    add_response(result.response, counts);
+    add_response(p, result.response, counts);
     for (std::size_t axis = 0; axis < result.motion.size(); ++axis) {
       const analysis::AxisMotion& motion = result.motion[axis];
       counts.add("friction", motion.friction, mount.friction);
       counts.add("inertia", motion.inertia, mount.mass);
-      counts.add("gravity error", motion.offset, axis == 1 ? p.faults.gravity_error : 0.0);
+      counts.add("gravity error", motion.offset,
+                 part.axes[axis] == 1 ? p.faults.gravity_error : 0.0);
       counts.add("cogging", motion.cogging, p.faults.cogging);
       counts.add("period of the cogging", motion.period, p.faults.cogging_period);
     }

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/device/excitation.h"
+#include "core/device/device.h"
 #include "core/device/sensed_mount.h"
 #include "core/device/virtual_device.h"
 
@@ -20,8 +22,21 @@ struct CoverageCount {
 device::VirtualDeviceParameters faulty_electronics();
 device::SensedMountParameters faulty_mount();
 
-/// Certificates of that arm, and which of their 95 % intervals hold the truth.
+/// A part of a handle with planted faults, as it is at the fingers.
+struct FaultyPart {
+  device::VirtualDeviceParameters electronics;
+  device::SensedMountParameters mount;
+  double max_force;  // that is commanded [N]
+  analysis::DrivenAxes axes;
+  double reach;  // to either side [m]
+};
+
+/// That arm's tip; a rotation about three axes with fingers 0.02 m from them, gain 0.92, friction
+/// of 4 mN·m and 20 mg·m² = 0.05 kg at the fingers; a grip with gain 0.8 and friction 0.25 N.
+FaultyPart faulty_part(device::Part of);
+
+/// Certificates of such a part, and which of their 95 % intervals hold the truth.
 /// @param first, count  seeds
-std::vector<CoverageCount> count_coverage(int first, int count);
+std::vector<CoverageCount> count_coverage(const FaultyPart& part, int first, int count);
 
 }  // namespace haptrial::test

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "analysis/device/certificate.h"
+#include "analysis/device/certificate_report.h"
+#include "core/device/handle_part.h"
 #include "tests/analysis/device/simulated_certificate.h"
 
 namespace haptrial::test {
@@ -28,11 +32,14 @@ CertificateResult certificate_of(const device::VirtualDeviceParameters& electron
 
 TEST(CertificateTest, IntervalsHoldThePlantedFaultsAsOftenAsTheySay) {
   constexpr int kSeeds = 40;
-  for (const CoverageCount& count : count_coverage(1, kSeeds)) {
-    // Intervals of one certificate share their data, so that certificates count, not intervals.
-    const double share = static_cast<double>(count.held) / count.of;
-    EXPECT_GT(share, 0.95 - 4.0 * std::sqrt(0.95 * 0.05 / kSeeds))
-        << count.figure << ": " << count.held << " of " << count.of;
+  for (const device::Part of : {device::Part::kTip, device::Part::kRotation, device::Part::kGrip}) {
+    for (const CoverageCount& count : count_coverage(faulty_part(of), 1, kSeeds)) {
+      // Intervals of one certificate share their data, so that certificates count, not intervals.
+      const double share = static_cast<double>(count.held) / count.of;
+      EXPECT_GT(share, 0.95 - 4.0 * std::sqrt(0.95 * 0.05 / kSeeds))
+          << device::part_word(of) << ", " << count.figure << ": " << count.held << " of "
+          << count.of;
+    }
   }
 }
 
@@ -76,6 +83,57 @@ TEST(CertificateTest, MotionAloneTellsFrictionDeadZoneAndDelayInCommandedNewtons
     EXPECT_NEAR(axis.delay.value, 0.004, 1e-4);
   }
   EXPECT_NEAR(found.free[1].offset.value, electronics.faults.gravity_error / gain, 0.005);
+}
+
+/// Findings of a handle whose tip tells nothing.
+std::vector<analysis::FindingList> findings_of(const analysis::CertificateRecord& record,
+                                               const analysis::Excitation& excitation) {
+  std::vector<analysis::PartCertificate> parts(1);
+  parts.push_back(analysis::identify_part(record, excitation));
+  return analysis::certificate_findings(parts);
+}
+
+const analysis::Finding& figure_of(const std::vector<analysis::FindingList>& lists,
+                                   const std::string& list, const std::string& figure) {
+  const auto at = std::ranges::find(lists, list, &analysis::FindingList::name);
+  return *std::ranges::find(at->findings, figure, &analysis::Finding::name);
+}
+
+TEST(CertificateTest, ARotationIsStatedAboutItsAxes) {
+  constexpr double kRadius = 0.02;  // [m]
+  const FaultyPart faulty = faulty_part(device::Part::kRotation);
+  const analysis::Excitation excitation(kTicksPerSecond, faulty.max_force, {1}, faulty.reach);
+  analysis::CertificateRecord record = simulated_certificate(
+      faulty.electronics, faulty.mount, excitation, 1,
+      {CertificatePart::kRest, CertificatePart::kGrid, CertificatePart::kMove}, faulty.reach);
+  record.of = device::Part::kRotation;
+  record.radius = kRadius;
+  const auto lists = findings_of(record, excitation);
+  const auto& inertia = figure_of(lists, "rotation_summary", "inertia");
+  EXPECT_NEAR(inertia.value.as_number(), 0.05 * kRadius * kRadius, 2e-6);
+  EXPECT_EQ(inertia.unit, "kg·m²");
+  EXPECT_NEAR(figure_of(lists, "rotation_summary", "gain").value.as_number(), 0.92, 0.02);
+  const auto& friction = figure_of(lists, "rotation_summary", "friction");
+  EXPECT_NEAR(friction.value.as_number(), 0.2 * kRadius, 2e-4);
+  EXPECT_EQ(friction.unit, "N·m");
+  EXPECT_NEAR(figure_of(lists, "rotation_summary", "position_resolution").value.as_number(),
+              1e-5 / kRadius, 1e-9);
+}
+
+TEST(CertificateTest, WithoutASensorAGripSaysWhatItTakes) {
+  const FaultyPart faulty = faulty_part(device::Part::kGrip);
+  const analysis::Excitation excitation(kTicksPerSecond, faulty.max_force, {0}, faulty.reach);
+  analysis::CertificateRecord record = simulated_certificate(
+      faulty.electronics, faulty.mount, excitation, 1, {CertificatePart::kFree}, faulty.reach);
+  record.of = device::Part::kGrip;
+  const auto lists = findings_of(record, excitation);
+  for (const char* figure : {"gain", "friction", "delay", "inertia"}) {
+    EXPECT_NE(figure_of(lists, "grip_summary", figure).why_not.find("force sensor"),
+              std::string::npos)
+        << figure << ": motion over short ways does not tell it";
+  }
+  EXPECT_FALSE(figure_of(lists, "rotation_summary", "gain").why_not.empty())
+      << "a part without motors is not left out in silence";
 }
 
 TEST(CertificateTest, AKnownMassTellsGainAndInertia) {

@@ -7,12 +7,12 @@ using analysis::CertificatePart;
 analysis::CertificateRecord simulated_certificate(
     const device::VirtualDeviceParameters& electronics, const device::SensedMountParameters& mount,
     const analysis::Excitation& excitation, std::uint64_t seed,
-    const std::vector<CertificatePart>& parts) {
-  constexpr double kReach = 0.04;  // [m]
+    const std::vector<CertificatePart>& parts, double reach) {
   analysis::CertificateRecord record;
   record.device = "virtual";
   record.simulated = true;
   record.mass = mount.added_mass;
+  record.axes = excitation.axes();
   for (const CertificatePart which : parts) {
     device::SensedMountParameters own = mount;
     own.added_mass = which == CertificatePart::kLoaded ? mount.added_mass : 0.0;
@@ -38,7 +38,7 @@ analysis::CertificateRecord simulated_certificate(
         part.measured.push_back(measured.force);
       }
       if (!free) {
-        handle.hold(excitation.position(which, tick + 1, kReach));
+        handle.hold(excitation.position(which, tick + 1, reach));
       }
       device.write(command);
     }
