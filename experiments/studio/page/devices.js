@@ -9,7 +9,7 @@ const found_devices = (again = false) => {
 const state_mark = (name) => make("span", {class: name === "ready" ? "good" : ["broken", "limited", "missing"].includes(name.toLowerCase()) ? "bad" : "soft"}, name);
 /// Rows of what was looked at, its state, and what was found.
 const state_table = (rows, more = () => []) => table([word("part"), word("state"), word("found"), ...more().map((each) => each.name)],
-  rows.map((each) => row(each[0], make("td", {}, state_mark(each[1])), make("td", {lang: "en"}, each[2]), ...more(each).map((cell) => cell.cell))));
+  rows.map((each) => row(each[0], make("td", {class: "state"}, state_mark(each[1])), make("td", {lang: "en"}, each[2]), ...more(each).map((cell) => cell.cell))));
 
 async function fill_devices_section(section, again = false) {
   const found = await attempt(() => found_devices(again));
