@@ -41,7 +41,7 @@ void add_timeline(const BoneDefinition& d, const protocols::PlannedTrial& trial,
       trial.trial, d.design.trials, trial.condition.empty() ? "" : ", condition " + trial.condition,
       d.sound_card ? "played" : "not played", d.practice));
   const std::vector<TimelineBar> bars{
-      {"drilling", fmt::format("until the participant is done, at most {:g} s", limit), 0.0, true}};
+      {"drilling", fmt::format("at most {:g} s", limit), 0.0, true}};
   preview.add(timeline_figure(bars.size()), timeline_svg(bars));
   preview.document.table(
       {"stage", "lasts [s]", "ends"},
