@@ -63,7 +63,7 @@ TEST(SensorChannelTest, WhatIsNoForceSensorIsRefused) {
   options.plan.quantities[1].unit = "lbf";
   EXPECT_THAT(
       test::message_of([&] { SensorChannel(options, "x,y,z"); }),
-      HasSubstr("channels.force: a force sensor has the quantities fx, fy and fz in N; fy"));
+      HasSubstr("channels.force: a force sensor of a tip has the quantities fx, fy and fz in N; fy"));
 }
 
 TEST(SensorChannelTest, TheCommandSaysWhichChannelIsMissing) {
@@ -75,7 +75,7 @@ TEST(SensorChannelTest, TheCommandSaysWhichChannelIsMissing) {
   const auto of_virtual =
       test::run_command("haptrial device-test virtual --certificate nowhere --sensor force");
   EXPECT_EQ(of_virtual.status, 2);
-  EXPECT_THAT(of_virtual.errors, HasSubstr("has a simulated force sensor"));
+  EXPECT_THAT(of_virtual.errors, HasSubstr("the virtual device has simulated sensors"));
 }
 
 }  // namespace

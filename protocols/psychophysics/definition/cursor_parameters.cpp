@@ -39,6 +39,7 @@ const Schema<CursorParameters>& cursor_schema() {
       Schema<C>()
           .vector("about", &C::about, kPlace, "m",
                   "Place about which the cursor's way is scaled and turned")
+          .otherwise("0, 0, 0")
           .number("gain", &C::gain, {-10.0, 10.0}, "",
                   "Way of the cursor for each metre of the tool's, from the place it is about")
           .number("rotation", &C::rotation, kAngle, "rad",

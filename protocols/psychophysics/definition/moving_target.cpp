@@ -51,9 +51,12 @@ const Schema<MovingTarget>& moving_target_schema() {
   static const auto schema =
       Schema<T>()
           .vector("centre", &T::centre, kTargetPlace, "m", "Place about which the target moves")
+          .otherwise("0, 0, 0")
           .vector("velocity", &T::velocity, kTargetPlace, "m/s",
                   "Velocity of the target beside its swings")
+          .otherwise("0, 0, 0")
           .direction("direction", &T::direction, "Direction in which the target swings")
+          .otherwise("1, 0, 0")
           .custom("frequencies", "Frequencies of the sines whose sum is the target's swing",
                   [](Table& table, const std::string& key, T& target) {
                     target.frequencies = read_list(table, key, {0.001, 20.0}, "Hz");

@@ -67,7 +67,7 @@ class Participant {
   void answer() const {
     constexpr std::chrono::milliseconds kPause(300);
     for (int presses = 0; sits_; ++presses) {
-      display_.try_key("pulls", presses % 3 == 0 ? '2' : '1');
+      display_.try_key("haptrial", presses % 3 == 0 ? '2' : '1');
       std::this_thread::sleep_for(kPause);
     }
   }
