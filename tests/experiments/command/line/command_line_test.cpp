@@ -141,7 +141,7 @@ TEST(CommandLineTest, AMistypedWordNamesTheNearestOne) {
                  "-jobs is not an option of haptrial analyze; did you mean --jobs? ");
   expect_refused("haptrial anlayze x",
                  "'anlayze' is not a subcommand of haptrial; did you mean "
-                 "analyze? allowed: examples, new, texts, doctor, studio, dry-run, start, run, "
+                 "analyze? allowed: examples, new, set, texts, doctor, studio, dry-run, start, run, "
                  "secret, roster, "
                  "analyze, ");
   expect_refused("haptrial mesh voxelise a b",
