@@ -48,7 +48,7 @@ int set(const SetOptions& options) {
 
 void add_set(CLI::App& app, int& status) {
   CLI::App* sub =
-      subcommand(app, "set", "Change one key of a definition; all else of its text stays",
+      subcommand(app, "set", "Change one key of a definition; every other byte stays",
                  "haptrial set my_study.toml design.participants 24",
                  {"FILE", "guide-own-experiment.md#change-one-key"});
   auto& o = options_of<SetOptions>(*sub, status, set);
