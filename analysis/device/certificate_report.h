@@ -8,7 +8,7 @@
 
 namespace haptrial::analysis {
 
-/// What was measured of one part of a handle, and what it shows.
+/// The measurements of one part of a handle, and the figures that follow from them.
 struct PartCertificate {
   CertificateRecord record;
   CertificateResult result;

@@ -70,7 +70,7 @@ class Excitation {
  private:
   long scaled(long at_1_khz) const noexcept;
   long count_of_axes() const noexcept { return static_cast<long>(axes_.size()); }
-  /// The axis that a part excites on a tick, as a unit vector, when each has so many ticks.
+  /// The unit vector along which a part is excited on a tick. @param per_axis  ticks of each axis
   Eigen::Vector3d axis_at(long tick, long per_axis) const noexcept;
   double free_force() const noexcept;
 

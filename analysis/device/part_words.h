@@ -27,7 +27,7 @@ const PartWords& words_of(device::Part part);
 /// N·m, m into rad, kg into kg·m². Those of other parts stay as they are.
 void state_about_axis(const CertificateRecord& record, std::vector<FindingList>& lists);
 
-/// What 1 of a unit at the fingers is of the part's own; 1 unless the part is a rotation.
+/// The number of the part's own units in one unit at the fingers; 1 unless the part is a rotation.
 /// @param unit  of the fingers, such as "N/m"
 double worth_of(const CertificateRecord& record, const std::string& unit);
 /// That unit as the part has it: "N·m/rad".

@@ -10,8 +10,8 @@ class Schema;
 
 namespace haptrial::device {
 
-/// What a certificate says of one part of a handle: of its tip or grip in N, of its rotation in
-/// N·m.
+/// The figures of one part of a handle by a certificate: in N for tip and grip, in N·m for a
+/// rotation.
 struct CertifiedForce {
   std::optional<double> gain, gain_low, gain_high;  // force measured per force commanded, 95 %
   std::optional<double> dead_zone;                  // a shorter command gives no force >= 0

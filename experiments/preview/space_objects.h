@@ -22,7 +22,7 @@ struct SpaceObject {
 
 /// Outline of a shape: circles of a ball, edges of a box, a square of a half-space.
 std::vector<SpaceLine> lines_of(const scene::Shape& shape);
-/// Edges of a mesh, thinned to at most so many triangles.
+/// Edges of a mesh, which is thinned to `most_triangles` if it has more.
 std::vector<SpaceLine> lines_of(const geometry::Mesh& mesh, std::size_t most_triangles);
 /// Lines from each point to the next.
 std::vector<SpaceLine> lines_of(const std::vector<Eigen::Vector3d>& points);

@@ -48,7 +48,7 @@ std::shared_ptr<TriedTrial> tried_scenes(const protocols::StudiedDefinition& def
 ///     to T X Y Z   the pointer is at X Y Z [m] until T [s] -> "T X Y Z FX FY FZ", hand and force
 ///
 /// The loop ticks at its own rate up to T; T that lies 0.5 s or more ahead counts as 0.5 s ahead.
-/// A line that is none of these is answered by "? " and a sentence.
+/// Any other line is answered by "? " and a sentence that says what is allowed.
 void try_lines(TriedTrial& trial, std::istream& in, std::ostream& out);
 
 }  // namespace haptrial::experiments

@@ -70,7 +70,7 @@ inline int number_of(const std::string& text) {
   return std::stoi(text);
 }
 
-/// What any page within a frame may do.
+/// The content policy of every page within a frame.
 inline constexpr const char* kFramedPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; "
     "frame-ancestors 'self'";

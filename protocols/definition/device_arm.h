@@ -20,7 +20,8 @@ struct DeviceArm {
   std::size_t of{0};                    // number of the arm that is the tip of its device
   double radius{1.0};                   // of the fingers about the axis of a rotation [m]
   std::optional<double> handle_mass{};  // at the fingers, in place of that of [hand] [kg]
-  // Of a virtual device's motors there, in place of those of [device]; in N and m at the fingers.
+  // Faults of a virtual device's motors there, in N and m at the fingers; nothing: [device] has
+  // them.
   std::optional<device::MotorFaults> faults{};
 
   device::PartUnits units() const { return device::units_of(part, radius); }

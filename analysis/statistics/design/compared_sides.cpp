@@ -37,7 +37,7 @@ Defined<TTest> stratified(const Sides& sides, Tail tail) {
   return stratified_t_test(a, b, tail);
 }
 
-/// Of Student's test: the variances of both sides are taken to be alike.
+/// The factor of Student's test, which takes the variances of both sides to be alike.
 Defined<double> bayes_factor_of(const Sides& values, Tail tail) {
   if (values.strata.size() > 1) {
     return Undefined{"other groups lie across both sides"};

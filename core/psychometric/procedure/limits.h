@@ -17,7 +17,7 @@ struct LimitsParameters {
   double step{0.1};             // > 0, on the axis
   int series{8};                // >= 1, of both directions together
   bool descending_first{true};  // else the first series ascends; then they take turns
-  int start_steps{3};           // >= 0: a series begins up to so many steps within its end
+  int start_steps{3};           // >= 0: the most steps from its end at which a series begins
 };
 
 /// The method of limits (Fechner 1860): series that descend from the upper end of the range until

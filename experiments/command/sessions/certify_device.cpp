@@ -19,7 +19,7 @@
 namespace haptrial::experiments {
 namespace {
 
-/// What a person does before a part of the measurement.
+/// The sentences that ask a person to prepare a part of the measurement.
 struct Prompts {
   const char *rest, *free, *loaded, *wall, *grid;
 };

@@ -70,8 +70,8 @@ void add_burr_figure(const std::vector<BurrForce>& burrs, double limit, Preview&
   figure.y_label = "force on the hand [N]";
   figure.height = 0.45;
   figure.caption = fmt::format(
-      "Of flat bone on an upright burr that does not turn, by the simulator of sessions. The "
-      "device "
+      "The force of flat bone on an upright burr that does not turn, by the simulator of sessions. "
+      "The device "
       "is asked for at most {:g} N.",
       limit);
   std::string alt;

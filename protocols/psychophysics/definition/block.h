@@ -53,7 +53,7 @@ enum class TrialOrder : std::uint8_t {
   kRandom,    // each drawn anew, so that nothing tells which one comes
 };
 
-/// At most so many trials with the same level of a factor follow each other.
+/// The most trials with the same level of a factor that may follow each other.
 struct RunLimit {
   std::string factor;  // empty: with the same levels of all
   int most{1};

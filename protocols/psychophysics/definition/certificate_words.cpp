@@ -10,7 +10,7 @@ namespace {
 
 using device::Part;
 
-/// What a certificate says of one part, and words for it.
+/// The figures of one part by a certificate, and words for the part.
 struct CertifiedPart {
   Part part;
   const device::CertifiedForce& figures;

@@ -14,7 +14,7 @@ struct StiffestStage {
   double stiffness{0.0};  // [N/m], of a rotation [N·m/rad]
 };
 
-/// What the fields of a definition do to one part of a handle.
+/// The demands of a definition's fields on one part of a handle.
 struct FeltPart {
   bool felt{false};  // a field acts on it
   StiffestStage stiffest;

@@ -41,12 +41,19 @@ std::vector<const Track*> TrialsDefinition::tracks_in(const Block& block) const 
   return asked;
 }
 
+std::vector<const Factor*> TrialsDefinition::varied_by(const Track& track,
+                                                       const Block& block) const {
+  std::vector<const Factor*> by = varied_in(block);
+  std::erase_if(by, [&](const Factor* factor) {
+    return std::ranges::find(track.by, factor->name) == track.by.end();
+  });
+  return by;
+}
+
 int TrialsDefinition::combinations(const Track& track, const Block& block) const {
   std::size_t count = 1;
-  for (const Factor* factor : varied_in(block)) {
-    if (std::find(track.by.begin(), track.by.end(), factor->name) != track.by.end()) {
-      count *= factor->levels.size();
-    }
+  for (const Factor* factor : varied_by(track, block)) {
+    count *= factor->levels.size();
   }
   return static_cast<int>(count);
 }

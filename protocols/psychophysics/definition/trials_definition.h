@@ -91,6 +91,8 @@ struct TrialsDefinition : Definition {
   /// The tracks that choose its levels: those that it names, or else all, unless it gives one of
   /// their variables a value of its own.
   std::vector<const Track*> tracks_in(const Block& block) const;
+  /// The factors among them that a track goes by.
+  std::vector<const Factor*> varied_by(const Track& track, const Block& block) const;
   /// How many combinations of its factors a track has in a block.
   int combinations(const Track& track, const Block& block) const;
 };

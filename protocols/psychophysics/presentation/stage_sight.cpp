@@ -71,7 +71,7 @@ StageSight sight_of(const NamedStage& stage, const Presented& presented, const N
       const auto index = static_cast<std::size_t>(region - presented.regions.begin());
       sight.marks.back().device = static_cast<std::uint8_t>(presented.region_devices[index]);
     } else if (target != presented.targets.end()) {
-      sight.marks.push_back(mark_at(target->centre, target->radius));
+      sight.marks.push_back(mark_at(target->at(0.0), target->radius));
       sight.marks.back().target = static_cast<std::int8_t>(target - presented.targets.begin());
     } else if (look != presented.looks.end()) {
       sight.dots = {look->dots, seed, true};

@@ -43,7 +43,7 @@ std::string label_of(const std::vector<GivenValue>& values) {
   return label;
 }
 
-/// What a rule looks at: the level of one factor, or all of them.
+/// The level of one factor, or of all of them, by which a rule tells trials apart.
 std::string level_of(const std::vector<GivenValue>& values, const std::string& factor) {
   if (factor.empty()) {
     return label_of(values);
@@ -105,8 +105,8 @@ void TrialSequence::begin_block() {
   combinations_.clear();
   ++(block().practice ? practice_blocks_ : study_blocks_);
   if (const std::string missing = missing_threshold(); !missing.empty()) {
-    ended_early_.push_back(fmt::format(
-        "block {} was left out, since {} found no threshold", block().name, missing));
+    ended_early_.push_back(
+        fmt::format("block {} was left out, since {} found no threshold", block().name, missing));
     return;
   }
   const std::vector<const Track*> asked = d_.tracks_in(block());
@@ -116,13 +116,7 @@ void TrialSequence::begin_block() {
   }
   for (const Track* each : asked) {
     const Track& track = *each;
-    std::vector<const Factor*> by;
-    for (const Factor* factor : d_.varied_in(block())) {
-      if (std::find(track.by.begin(), track.by.end(), factor->name) != track.by.end()) {
-        by.push_back(factor);
-      }
-    }
-    for (const auto& combination : crossed(by)) {
+    for (const auto& combination : crossed(d_.varied_by(track, block()))) {
       const std::string label = label_of(combination);
       const std::string name = label.empty() ? track.name : track.name + ", " + label;
       const std::string stream = fmt::format("levels {} {}", at_, name);
@@ -131,13 +125,13 @@ void TrialSequence::begin_block() {
   }
 }
 
-/// What the tracks of the block found; a later block of the same track stands before.
+/// Keeps what the tracks of the block found; a later block of the same track stands before.
 void TrialSequence::end_block() {
   for (const RunningTrack& running : running_) {
     const auto estimates = running.procedure->estimates();
     if (running.track->finds_level && !estimates.empty()) {
-      found_.push_back({running.track->name, running.values,
-                        running.track->applied(estimates.front().value)});
+      found_.push_back(
+          {running.track->name, running.values, running.track->applied(estimates.front().value)});
     }
   }
 }
@@ -147,13 +141,7 @@ void TrialSequence::end_block() {
 std::string TrialSequence::missing_threshold() const {
   for (const std::string& name : block().needs) {
     const auto track = std::ranges::find(d_.tracks, name, &Track::name);
-    std::vector<const Factor*> by;
-    for (const Factor* factor : d_.varied_in(block())) {
-      if (std::ranges::find(track->by, factor->name) != track->by.end()) {
-        by.push_back(factor);
-      }
-    }
-    for (std::vector<GivenValue> values : crossed(by)) {
+    for (std::vector<GivenValue> values : crossed(d_.varied_by(*track, block()))) {
       const std::string label = label_of(values);
       values.insert(values.end(), block().values.begin(), block().values.end());
       TrialValues trial;
@@ -187,8 +175,8 @@ std::vector<int> TrialSequence::order_under_rules(
   std::vector<OrderRule> rules;
   for (const RunLimit& limit : d_.order.most_in_a_row) {
     std::vector<std::string> levels;
-    OrderRule rule{limit.factor.empty() ? "combination of factors" : limit.factor, {}, limit.most,
-                   -1, 0};
+    OrderRule rule{
+        limit.factor.empty() ? "combination of factors" : limit.factor, {}, limit.most, -1, 0};
     for (const int i : which) {
       const std::string level = level_of(combinations[static_cast<std::size_t>(i)], limit.factor);
       const auto known = std::ranges::find(levels, level);
@@ -352,9 +340,8 @@ bool TrialSequence::breaks_rule(const std::vector<GivenValue>& values) const {
     const auto most = static_cast<std::ptrdiff_t>(limit.most);
     const std::string level = level_of(values, limit.factor);
     return !level.empty() && std::ssize(combinations_) >= most &&
-           std::all_of(combinations_.end() - most, combinations_.end(), [&](const auto& each) {
-             return level_of(each, limit.factor) == level;
-           });
+           std::all_of(combinations_.end() - most, combinations_.end(),
+                       [&](const auto& each) { return level_of(each, limit.factor) == level; });
   });
 }
 

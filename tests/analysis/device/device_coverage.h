@@ -31,8 +31,9 @@ struct FaultyPart {
   double reach;  // to either side [m]
 };
 
-/// That arm's tip; a rotation about three axes with fingers 0.02 m from them, gain 0.92, friction
-/// of 4 mN·m and 20 mg·m² = 0.05 kg at the fingers; a grip with gain 0.8 and friction 0.25 N.
+/// The tip of that arm; a rotation about three axes, 0.02 m from the fingers, with the gain 0.92,
+/// friction of 4 mN·m and 20 mg·m², which is 0.05 kg at the fingers; or a grip with the gain 0.8
+/// and friction of 0.25 N.
 FaultyPart faulty_part(device::Part of);
 
 /// Certificates of such a part, and which of their 95 % intervals hold the truth.

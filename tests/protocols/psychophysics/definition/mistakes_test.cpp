@@ -370,6 +370,14 @@ TEST(TrialMistakesTest, ARightAnswerThatIsNoChoice) {
       Contains(HasSubstr("is 3 (\"3\"), which is no choice")));
 }
 
+TEST(TrialMistakesTest, AStepOfLimitsThatRoundingWouldHold) {
+  const std::string limits =
+      "[procedure]\nkind = \"limits\"\nvariable = \"level\"\nrange = [310.0, 600.0]\nstep = 10.0\n";
+  EXPECT_THAT(problems_of_trials(small_trials(limits + "resolution = 5.0\n")), IsEmpty());
+  EXPECT_THAT(problems_of_trials(small_trials(limits + "resolution = 25.0\n")),
+              Contains(HasSubstr("procedure.step is 10; allowed: at least `resolution`, 25")));
+}
+
 TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
   std::string two = kSmallStaircase;
   two = with(two, "[procedure]", "[[procedures]]");
