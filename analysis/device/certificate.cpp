@@ -135,12 +135,10 @@ CertificateResult identify_device(const CertificateRecord& record, const Excitat
   if (record.has_sensor(CertificatePart::kMove)) {
     result.motion = identify_motion(record, excitation);
   }
-  // The short ways of rotations and grips do not tell dead zone, friction and delay apart.
-  const bool is_tip = record.of == device::Part::kTip;
-  if (is_tip && !record.part(CertificatePart::kFree).position.empty()) {
+  if (!record.part(CertificatePart::kFree).position.empty()) {
     result.free = identify_free_motion(record, excitation, CertificatePart::kFree);
   }
-  if (is_tip && record.mass > 0.0 && !record.part(CertificatePart::kLoaded).position.empty()) {
+  if (record.mass > 0.0 && !record.part(CertificatePart::kLoaded).position.empty()) {
     result.loaded = identify_free_motion(record, excitation, CertificatePart::kLoaded);
   }
   result.wall = wall_bracket(record.walls);

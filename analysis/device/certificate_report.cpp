@@ -192,6 +192,13 @@ FindingList motion(const CertificateRecord& record, const std::vector<AxisMotion
   return list;
 }
 
+/// A figure that motion may not show.
+Finding shown(const char* name, const char* title, const std::optional<Interval>& found,
+              const char* unit) {
+  return found ? finding(name, title, *found, unit)
+               : missing(name, title, unit, "motion shows none clearly");
+}
+
 FindingList free_motion(const CertificateRecord& record, const CertificateResult& result) {
   FindingList list{.name = "free_motion", .heading = "Motion of the free handle"};
   for (const bool loaded : {false, true}) {
@@ -204,7 +211,10 @@ FindingList free_motion(const CertificateRecord& record, const CertificateResult
                             finding("delay", "Delay", axes[a].delay, "s"),
                             finding("friction", "Friction [commanded]", axes[a].friction, "N"),
                             finding("dead_zone", "Dead zone [commanded]", axes[a].dead_zone, "N"),
-                            finding("offset", "Offset [commanded]", axes[a].offset, "N")});
+                            finding("offset", "Offset [commanded]", axes[a].offset, "N"),
+                            shown("cogging", "Cogging [commanded]", axes[a].cogging, "N"),
+                            shown("resonance", "Resonance", axes[a].resonance, "Hz"),
+                            shown("damping", "Damping", axes[a].damping, "")});
     }
     if (!table.rows.empty()) {
       list.tables.push_back(table);

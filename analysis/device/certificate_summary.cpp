@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -44,7 +45,7 @@ template <class Axis, class Part>
 std::optional<Interval> mean_over(const std::vector<Axis>& axes, Part part) {
   std::vector<Interval> all;
   for (const Axis& axis : axes) {
-    const std::optional<Interval> one = part(axis);
+    const std::optional<Interval> one = std::invoke(part, axis);
     if (!one) {
       return std::nullopt;
     }
@@ -131,9 +132,20 @@ void add_motion(const CertificateRecord& record, const CertificateResult& result
   part(
       "cogging", "Cogging, amplitude", "N", [](const AxisMotion& a) { return a.cogging; },
       why_no_cogging);
-  part(
-      "cogging_period", "Cogging, way from one to the next", "m",
-      [](const AxisMotion& a) { return a.period; }, why_no_cogging);
+  const char* period = "Cogging, way from one to the next";
+  if (const auto free_cogging = mean_over(result.free, &FreeMotion::cogging); free_cogging) {
+    row.push_back(finding("cogging_commanded",
+                          title_of(words, "Cogging, amplitude, in {newtons} of the command"),
+                          *free_cogging, "N"));
+  }
+  if (const auto free_period = mean_over(result.free, &FreeMotion::period);
+      result.motion.empty() && free_period) {
+    row.push_back(finding("cogging_period", period, *free_period, "m"));
+  } else {
+    part(
+        "cogging_period", period, "m", [](const AxisMotion& a) { return a.period; },
+        why_no_cogging);
+  }
   part(
       "force_noise", title_of(words, "Ripple of the {force} over the way, root mean square"), "N",
       [](const AxisMotion& a) -> std::optional<Interval> {
@@ -155,36 +167,30 @@ void add_motion(const CertificateRecord& record, const CertificateResult& result
   add_offset(record, result, row);
 }
 
+/// Figures of the response to forces, from the free handle's motion if no sensor measured it.
 void add_response(const CertificateRecord& record, const CertificateResult& result,
                   FindingRow& row) {
   const PartWords& words = words_of(record.of);
-  const auto part = [&](const char* name, const std::string& title, const char* unit, auto of,
-                        const char* otherwise) {
-    const auto mean = mean_over(result.response, of);
-    row.push_back(mean ? finding(name, title, *mean, unit)
-                       : missing(name, title, unit,
-                                 result.response.empty() ? words.needs_sensor : otherwise));
+  const auto part = [&](const char* name, const std::string& title, const char* unit,
+                        auto of_response, auto of_motion, const char* otherwise) {
+    const bool measured = !result.response.empty();
+    const auto mean =
+        measured ? mean_over(result.response, of_response) : mean_over(result.free, of_motion);
+    const char* why = measured              ? otherwise
+                      : result.free.empty() ? words.needs_sensor
+                                            : "motion shows no resonance clearly";
+    row.push_back(mean ? finding(name, title, *mean, unit) : missing(name, title, unit, why));
   };
-  const auto free_delay =
-      mean_over(result.free, [](const FreeMotion& a) { return std::optional(a.delay); });
-  if (result.response.empty() && free_delay) {
-    row.push_back(
-        finding("delay", title_of(words, "Delay from a command to its {force}"), *free_delay, "s"));
-  } else {
-    part(
-        "delay", title_of(words, "Delay from a command to its {force}"), "s",
-        [](const AxisResponse& a) { return std::optional(a.delay); }, words.needs_sensor);
-  }
   part(
-      "bandwidth", title_of(words, "Bandwidth of {force} (-3 dB)"), "Hz",
-      [](const AxisResponse& a) { return a.bandwidth; },
-      "it lies above the highest frequency that was tried");
-  part(
-      "resonance", "Resonance", "Hz", [](const AxisResponse& a) { return a.resonance; },
-      "the response shows none");
-  part(
-      "damping", "Resonance, share of critical damping", "",
-      [](const AxisResponse& a) { return a.damping; }, "the response shows no resonance");
+      "delay", title_of(words, "Delay from a command to its {force}"), "s",
+      [](const AxisResponse& a) { return std::optional(a.delay); },
+      [](const FreeMotion& a) { return std::optional(a.delay); }, words.needs_sensor);
+  part("bandwidth", title_of(words, "Bandwidth of {force} (-3 dB)"), "Hz", &AxisResponse::bandwidth,
+       &FreeMotion::bandwidth, "it lies above the highest frequency that was tried");
+  part("resonance", "Resonance", "Hz", &AxisResponse::resonance, &FreeMotion::resonance,
+       "the response shows none");
+  part("damping", "Resonance, share of critical damping", "", &AxisResponse::damping,
+       &FreeMotion::damping, "the response shows no resonance");
 }
 
 void add_rest(const CertificateRecord& record, const CertificateResult& result, FindingRow& row) {

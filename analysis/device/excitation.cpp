@@ -13,15 +13,17 @@ constexpr long kHold = 150;   // ticks of a hold at 1 kHz: a third is the way to
 constexpr long kRamp = 50;    // [ticks at 1 kHz]
 constexpr long kSettle = 30;  // [ticks at 1 kHz]
 constexpr int kTones = 24;
-constexpr double kBias = 0.55, kSwing = 0.4;                     // of the greatest force
-constexpr double kSlow = 8.0, kFast = 3.0;                       // along each axis [s]
-constexpr double kSlowPeriod = 4.0;                              // [s]
-constexpr double kFastFrequency = 3.0;                           // [Hz]
-constexpr double kFree = 12.0;                                   // along each axis [s]
-constexpr double kFreeForce = 5.0;                               // [N]
-constexpr double kFreeTones[] = {0.7, 1.3, 2.3, 3.7, 5.3, 7.9};  // [Hz]
-constexpr double kCentring = 50.0;                               // [N/m]
-constexpr double kCalming = 2.0;                                 // [N·s/m]
+constexpr double kBias = 0.55, kSwing = 0.4;  // of the greatest force
+constexpr double kSlow = 8.0, kFast = 3.0;    // along each axis [s]
+constexpr double kSlowPeriod = 4.0;           // [s]
+constexpr double kFastFrequency = 3.0;        // [Hz]
+constexpr double kFree = 12.0;                // along each axis [s]
+constexpr double kFreeForce = 5.0;            // [N]
+// The slow ones show friction and dead zone, the fast ones delay and resonance.
+constexpr double kFreeTones[] = {0.7, 1.3, 2.3, 3.7, 5.3, 7.9, 13.0, 23.0, 41.0, 67.0};  // [Hz]
+constexpr double kFreeShare = 0.13;  // of the force, each; all together stay below it
+constexpr double kCentring = 50.0;   // [N/m]
+constexpr double kCalming = 2.0;     // [N·s/m]
 
 /// From 0 to 1 without a jump of velocity or acceleration.
 double smooth(double s) {
@@ -147,7 +149,7 @@ Eigen::Vector3d Excitation::command(CertificatePart part, long tick) const noexc
     for (std::size_t i = 0; i < std::size(kFreeTones); ++i) {
       sum += std::sin(2.0 * kPi * kFreeTones[i] * t + static_cast<double>(i * i));
     }
-    return free_force() * rise * sum / std::size(kFreeTones) * axis_at(tick, axis_ticks(part));
+    return free_force() * rise * kFreeShare * sum * axis_at(tick, axis_ticks(part));
   }
   return Eigen::Vector3d::Zero();
 }

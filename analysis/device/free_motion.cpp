@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "analysis/device/derivatives.h"
-#include "analysis/device/least_squares.h"
+#include "analysis/device/free_model.h"
+#include "analysis/device/frequency_response.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -15,20 +16,10 @@ constexpr double kWindow = 0.012;     // half of that of the derivatives [s]
 constexpr double kLeastSpeed = 0.01;  // at which the sign of a velocity is sure [m/s]
 constexpr long kEvery = 4;            // ticks from one window to the next
 constexpr long kLeastWindows = 200;
-constexpr double kMostDelay = 0.02;  // [s]
-
-/// Signals along one axis, and the windows in which the handle never stood still.
-struct Signals {
-  double rate;
-  std::vector<double> command, speed;
-  VectorXd smoothing;                // over second differences
-  std::vector<long> windows;         // their middles
-  std::vector<double> acceleration;  // of each
-};
 
 /// @param number  of the driven axis
-Signals signals_of(const PartRecord& part, const Excitation& excitation, long number,
-                   CertificatePart which) {
+FreeSignals signals_of(const PartRecord& part, const Excitation& excitation, long number,
+                       CertificatePart which) {
   const int axis = excitation.axes()[static_cast<std::size_t>(number)];
   const long half = std::max(3L, std::lround(kWindow * excitation.rate()));
   const Eigen::MatrixXd weights = derivative_weights(half, excitation.rate(), 5);
@@ -36,15 +27,18 @@ Signals signals_of(const PartRecord& part, const Excitation& excitation, long nu
   const auto begin = static_cast<std::size_t>(number * per_axis);
   const std::size_t end =
       std::min(begin + static_cast<std::size_t>(per_axis), part.position.size());
-  Signals s{excitation.rate(), {}, {}, smoothing_of(weights.col(1), excitation.rate()), {}, {}};
+  FreeSignals s{
+      excitation.rate(), {}, {}, {}, smoothing_of(weights.col(1), excitation.rate()), {}, {}};
   if (begin >= end) {
     return s;
   }
   const auto n = static_cast<long>(end - begin);
   VectorXd x(n);
   s.command.resize(static_cast<std::size_t>(n));
+  s.position.resize(static_cast<std::size_t>(n));
   for (long t = 0; t < n; ++t) {
     x[t] = part.position[begin + static_cast<std::size_t>(t)][axis];
+    s.position[static_cast<std::size_t>(t)] = x[t];
     s.command[static_cast<std::size_t>(t)] =
         part.command[begin + static_cast<std::size_t>(t)][axis];
   }
@@ -52,7 +46,7 @@ Signals signals_of(const PartRecord& part, const Excitation& excitation, long nu
   for (long t = half; t + half < n; ++t) {
     s.speed[static_cast<std::size_t>(t)] = weights.col(0).dot(x.segment(t - half, 2 * half + 1));
   }
-  const long first = 2 * half + std::lround(kMostDelay * excitation.rate()) + 2;
+  const long first = 2 * half + std::lround(FreeSignals::kMostDelay * excitation.rate()) + 2;
   for (long t = first; t + 2 * half < n; t += kEvery) {
     bool moves = true;
     for (long i = -half; i <= half; ++i) {
@@ -66,61 +60,35 @@ Signals signals_of(const PartRecord& part, const Excitation& excitation, long nu
   return s;
 }
 
-double behind_dead_zone(double command, double zone) {
-  const double size = std::abs(command);
-  return size > zone ? command - zone * std::copysign(1.0, command) : 0.0;
+Interval in_units(Interval i, double factor) {
+  return {factor * i.value, factor * i.low, factor * i.high, i.df};
 }
 
-/// Model of the acceleration without smoothing at each tick. A command is held for a tick, so that
-/// a second difference sees the mean of two.
-/// @param p  mobility, delay [ms], friction, dead zone, offset [commanded N]
-std::vector<double> modelled_acceleration(const Signals& s, const VectorXd& p) {
-  const auto n = static_cast<long>(s.command.size());
-  std::vector<double> zoned(s.command.size()), made(s.command.size());
-  for (std::size_t t = 0; t < zoned.size(); ++t) {
-    zoned[t] = behind_dead_zone(s.command[t], p[3]);
-  }
-  const double late = std::clamp(1e-3 * p[1], -0.002, kMostDelay) * s.rate + 0.5;
-  const double whole = std::floor(late);
-  const double part = late - whole;
-  for (long t = 0; t < n; ++t) {
-    const long at = t - static_cast<long>(whole);
-    const auto value = [&](long i) {
-      return zoned[static_cast<std::size_t>(std::clamp(i, 0L, n - 1))];
-    };
-    const double force = (1.0 - part) * value(at) + part * value(at - 1);
-    const double speed = s.speed[static_cast<std::size_t>(t)];
-    made[static_cast<std::size_t>(t)] = p[0] * (force - p[2] * std::copysign(1.0, speed) + p[4]);
-  }
-  return made;
-}
-
-FreeMotion fit_free_axis(const Signals& s) {
-  const auto n = static_cast<long>(s.windows.size());
-  const long reach = s.smoothing.size() / 2;
-  const auto residuals = [&](const VectorXd& p, VectorXd& r) {
-    const std::vector<double> made = modelled_acceleration(s, p);
-    for (long i = 0; i < n; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      double sum = 0.0;
-      for (long j = 0; j < s.smoothing.size(); ++j) {
-        sum += s.smoothing[j] * made[static_cast<std::size_t>(s.windows[k] + j - reach)];
-      }
-      r[i] = s.acceleration[k] - sum;
-    }
-  };
-  const VectorXd start = (VectorXd(5) << 3.0, 2.0, 0.1, 0.05, 0.0).finished();
-  const VectorXd scale = (VectorXd(5) << 1.0, 1.0, 0.1, 0.1, 0.1).finished();
-  const FittedParameters fit = fit_least_squares(start, scale, n, residuals, true);
-  FreeMotion found{fit.interval(0), fit.interval(1), fit.interval(2), fit.interval(3),
-                   fit.interval(4)};
-  for (double* part : {&found.delay.value, &found.delay.low, &found.delay.high}) {
-    *part *= 1e-3;
-  }
-  for (double* part : {&found.dead_zone.value, &found.dead_zone.low, &found.dead_zone.high}) {
+FreeMotion fit_free_axis(const FreeSignals& s) {
+  const FreeModel model = fit_free_model(s);
+  const FittedParameters& fit = model.fit;
+  FreeMotion axis;
+  axis.mobility = fit.interval(FreeModel::kMobility);
+  axis.delay = in_units(fit.interval(FreeModel::kDelay), 1e-3);
+  axis.friction = fit.interval(FreeModel::kFriction);
+  axis.dead_zone = fit.interval(FreeModel::kDeadZone);
+  axis.offset = fit.interval(FreeModel::kOffset);
+  for (double* part : {&axis.dead_zone.value, &axis.dead_zone.low, &axis.dead_zone.high}) {
     *part = std::max(*part, 0.0);
   }
-  return found;
+  const VectorXd scale = scale_of(s, model);
+  if (const int r = model.first_of_resonance(); model.resonance) {
+    axis.resonance = in_units(fit.interval(r), 100.0);
+    axis.damping = fit.interval(r + 1);
+    axis.bandwidth = fit.interval(
+        [r](const VectorXd& p) { return 100.0 * p[r] * bandwidth_per_resonance(p[r + 1]); }, scale);
+  }
+  if (const int c = model.first_of_cogging(); model.cogging) {
+    axis.cogging =
+        fit.interval([c](const VectorXd& p) { return std::hypot(p[c], p[c + 1]); }, scale);
+    axis.period = fit.interval([c](const VectorXd& p) { return 1.0 / p[c + 2]; }, scale);
+  }
+  return axis;
 }
 
 Interval inverse(const Interval& i) { return {1.0 / i.value, 1.0 / i.high, 1.0 / i.low, i.df}; }
@@ -138,7 +106,7 @@ std::vector<FreeMotion> identify_free_motion(const CertificateRecord& record,
                                              const Excitation& excitation, CertificatePart part) {
   std::vector<FreeMotion> axes;
   for (long axis = 0; axis < static_cast<long>(excitation.axes().size()); ++axis) {
-    const Signals signals = signals_of(record.part(part), excitation, axis, part);
+    const FreeSignals signals = signals_of(record.part(part), excitation, axis, part);
     if (static_cast<long>(signals.windows.size()) < kLeastWindows) {
       return {};
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "analysis/device/certificate_record.h"
@@ -9,16 +10,22 @@ namespace haptrial::analysis {
 
 /// Figures that motion alone tells of a handle that commanded forces move along one axis:
 ///
-///     a = mobility · (dead(f(t - delay)) - friction sgn v + offset)
+///     a = mobility · (R(dead(f))(t - delay) - friction sgn v + cogging cos(2 pi x / period -
+///     phase)
+///                     + offset)
 ///
-/// with dead() the command behind a dead zone. Forces are in commanded newtons: how many real ones
-/// these are takes a force sensor or a known mass.
+/// with dead() the command behind a dead zone and R() a resonance of second order. Forces are in
+/// commanded newtons: how many real ones these are takes a force sensor or a known mass.
 struct FreeMotion {
-  Interval mobility;   // gain / inertia [1/kg]
-  Interval delay;      // from a command to its force, with the lag of the transmission [s]
-  Interval friction;   // [commanded N]
-  Interval dead_zone;  // [commanded N]
-  Interval offset;     // [commanded N]
+  Interval mobility;                        // gain / inertia [1/kg]
+  Interval delay;                           // from a command to the beginning of its force [s]
+  Interval friction;                        // [commanded N]
+  Interval dead_zone;                       // [commanded N]
+  Interval offset;                          // [commanded N]
+  std::optional<Interval> resonance;        // natural frequency, if motion shows it clearly [Hz]
+  std::optional<Interval> damping;          // share of critical damping
+  std::optional<Interval> bandwidth;        // gain falls to 1/√2 of that at rest [Hz]
+  std::optional<Interval> cogging, period;  // if any was found [commanded N], [m]
 };
 
 /// Motion along each driven axis; empty if the handle did not move far enough.

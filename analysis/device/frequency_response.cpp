@@ -106,12 +106,6 @@ double first_delay(const MeanResponse& response, double rate) {
   return turned / (2.0 * kHalfTurn * weight) - 1.0 / rate;
 }
 
-/// Frequency at which the second order falls to 1/√2, over the resonance.
-double fall(double damping) {
-  const double c = 1.0 - 2.0 * damping * damping;
-  return std::sqrt(c + std::sqrt(c * c + 1.0));
-}
-
 void fit_response(const MeanResponse& response, double rate, double age, AxisResponse& axis) {
   const double delay = first_delay(response, rate);
   const double gain = std::abs(response.mean.front());
@@ -145,14 +139,20 @@ void fit_response(const MeanResponse& response, double rate, double age, AxisRes
   const VectorXd scale = (VectorXd(4) << 0.1, 1e-3, 0.1, 0.1).finished();
   axis.resonance = fit.interval([](const VectorXd& p) { return std::exp(p[2]); }, scale);
   axis.damping = fit.interval([](const VectorXd& p) { return std::exp(p[3]); }, scale);
-  const Interval bandwidth =
-      fit.interval([](const VectorXd& p) { return std::exp(p[2]) * fall(std::exp(p[3])); }, scale);
+  const Interval bandwidth = fit.interval(
+      [](const VectorXd& p) { return std::exp(p[2]) * bandwidth_per_resonance(std::exp(p[3])); },
+      scale);
   if (bandwidth.value <= response.frequency.back()) {
     axis.bandwidth = bandwidth;
   }
 }
 
 }  // namespace
+
+double bandwidth_per_resonance(double damping) {
+  const double c = 1.0 - 2.0 * damping * damping;
+  return std::sqrt(c + std::sqrt(c * c + 1.0));
+}
 
 std::vector<AxisResponse> identify_frequency_response(const CertificateRecord& record,
                                                       const Excitation& excitation) {

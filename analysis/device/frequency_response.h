@@ -30,6 +30,10 @@ struct AxisResponse {
   std::optional<Interval> bandwidth;  // gain falls to 1/√2 of that at rest [Hz]
 };
 
+/// Frequency at which a second order falls to 1/√2 of its gain at rest, over its natural one.
+/// @param damping  share of critical damping
+double bandwidth_per_resonance(double damping);
+
 /// Response along each driven axis.
 /// @param record  with a sensor in kFrequency
 std::vector<AxisResponse> identify_frequency_response(const CertificateRecord& record,

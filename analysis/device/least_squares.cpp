@@ -12,6 +12,7 @@ using Eigen::VectorXd;
 
 constexpr double kStep = 1e-4;  // of a derivative, in scales
 constexpr int kMostSteps = 60;
+constexpr double kLeastGain = 1e-9;  // of a step that is worth another, as a share of the sum
 
 MatrixXd slopes(const VectorXd& at, const VectorXd& scale, long count, const Residuals& residuals) {
   MatrixXd slope(count, at.size());
@@ -74,6 +75,7 @@ FittedParameters fit_least_squares(const VectorXd& start, const VectorXd& scale,
     const VectorXd gradient = slope.transpose() * r;
     bool moved = false;
     double change = 0.0;
+    const double before = r.squaredNorm();
     for (; damping < 1e12 && !moved; damping *= 10.0) {
       MatrixXd damped = normal;
       damped.diagonal() *= 1.0 + damping;
@@ -92,7 +94,7 @@ FittedParameters fit_least_squares(const VectorXd& start, const VectorXd& scale,
         damping = std::max(1e-9, 0.01 * damping);
       }
     }
-    if (!moved || change < 1e-9) {
+    if (!moved || change < 1e-9 || r.squaredNorm() > (1.0 - kLeastGain) * before) {
       break;
     }
   }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/device/cogging.h"
 #include "analysis/device/derivatives.h"
 #include "analysis/device/least_squares.h"
 
@@ -19,10 +20,8 @@ constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 // hand does at 5 Hz to a few parts in ten thousand.
 constexpr double kDerivativeWindow = 0.05;  // half of that of the derivatives [s]
 constexpr long kDegree = 7;
-constexpr double kSureSpeed = 0.01;     // at which the sign of a velocity is sure [m/s]
-constexpr double kBin = 1e-4;           // [m]
-constexpr double kLeastPeriod = 4e-4;   // of cogging [m]
-constexpr double kClearCogging = 30.0;  // F ratio above which cogging counts as found
+constexpr double kSureSpeed = 0.01;  // at which the sign of a velocity is sure [m/s]
+constexpr double kBin = 1e-4;        // [m]
 constexpr long kLeastSamples = 500;
 
 struct Motion {
@@ -88,52 +87,16 @@ FittedParameters fit_cogging(const Motion& m, const VectorXd& start, double span
       true);
 }
 
-struct Bins {
-  double first;
-  std::vector<double> sum, count;
-};
-
-Bins bins_of(const std::vector<double>& x, const VectorXd& value) {
-  const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  Bins bins{*low, {}, {}};
-  const auto count = static_cast<std::size_t>((*high - *low) / kBin) + 1;
-  bins.sum.resize(count);
-  bins.count.resize(count);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto at = static_cast<std::size_t>((x[i] - *low) / kBin);
-    bins.sum[at] += value[static_cast<long>(i)];
-    bins.count[at] += 1.0;
-  }
-  return bins;
-}
-
-/// The spatial frequency of the strongest sine in what the plain model leaves [1/m].
-VectorXd strongest_sine(const Motion& m, const FittedParameters& plain_fit, double span) {
-  VectorXd left(static_cast<long>(m.x.size()));
+/// Start of the fit with cogging: the plain one's parameters and the sine that it leaves.
+VectorXd with_sine(const Motion& m, const FittedParameters& plain_fit) {
+  std::vector<double> left(m.x.size());
   for (std::size_t i = 0; i < m.x.size(); ++i) {
-    left[static_cast<long>(i)] = m.force[i] - plain(m, i, plain_fit.value);
+    left[i] = m.force[i] - plain(m, i, plain_fit.value);
   }
-  const Bins bins = bins_of(m.x, left);
-  double best = 0.0;
-  VectorXd found = VectorXd::Zero(6);
-  found.head(3) = plain_fit.value;
-  for (double f = 1.5 / span; f < 1.0 / kLeastPeriod; f += 0.2 / span) {
-    double cosine = 0.0, sine = 0.0, count = 0.0;
-    for (std::size_t i = 0; i < bins.sum.size(); ++i) {
-      const double angle = kWholeTurn * f * (bins.first + (static_cast<double>(i) + 0.5) * kBin);
-      cosine += bins.sum[i] * std::cos(angle);
-      sine += bins.sum[i] * std::sin(angle);
-      count += bins.count[i];
-    }
-    const double power = cosine * cosine + sine * sine;
-    if (power > best) {
-      best = power;
-      found[3] = 2.0 * cosine / count;
-      found[4] = 2.0 * sine / count;
-      found[5] = f;
-    }
-  }
-  return found;
+  const SineOverWay sine = strongest_sine(m.x, left);
+  VectorXd start(6);
+  start << plain_fit.value, sine.cosine, sine.sine, sine.frequency;
+  return start;
 }
 
 void add_curves(const Motion& m, AxisMotion& axis) {
@@ -162,7 +125,7 @@ AxisMotion fit_moved_axis(const Motion& m) {
   const auto [low, high] = std::minmax_element(m.x.begin(), m.x.end());
   const double span = *high - *low;
   const FittedParameters without = fit_plain(m);
-  const FittedParameters with = fit_cogging(m, strongest_sine(m, without, span), span);
+  const FittedParameters with = fit_cogging(m, with_sine(m, without), span);
   const double variance = with.chi_squared / std::max(with.df, 1.0);
   const bool found = (without.chi_squared - with.chi_squared) / 2.0 > kClearCogging * variance;
   const FittedParameters& fit = found ? with : without;

@@ -20,6 +20,8 @@ struct LoopMargin {
 
 /// Heaviest hand that gains may need [kg]; gains that need a heavier one are refused.
 constexpr double kHeaviestHand = 2.0;
+/// Heaviest that gains on a rotation or a grip may need at the fingers, likewise [kg].
+constexpr double kHeaviestFingers = 0.25;
 
 /// @returns a delay as sentences name it: "a tick", "3 ticks"
 std::string ticks_in_words(int ticks);

@@ -1,7 +1,9 @@
 // Certificates of a virtual arm with planted faults: how often their 95 % intervals hold the truth.
 // The tables of docs/devices.md.
 //
-//     bench_device_certificate [certificates] [first seed] [tip | rotation | grip]
+//     bench_device_certificate [certificates] [first seed] [tip | rotation | grip] [free]
+//
+// free: from motion alone, without a sensor, with faults drawn at random.
 
 #include <fmt/format.h>
 
@@ -26,10 +28,13 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "bench_device_certificate: {} is no tip, rotation or grip\n", word);
     return 2;
   }
-  fmt::print("{} certificates of a {}, seeds {} to {}\n", seeds, word, first, first + seeds - 1);
+  const bool free = argc > 4 && std::string(argv[4]) == "free";
+  fmt::print("{} certificates of a {}{}, seeds {} to {}\n", seeds, word,
+             free ? " that is let go" : "", first, first + seeds - 1);
   fmt::print("{:28} {:>9} {:>9}   share [%]\n", "figure", "held", "of");
   for (const haptrial::test::CoverageCount& count :
-       haptrial::test::count_coverage(haptrial::test::faulty_part(of), first, seeds)) {
+       free ? haptrial::test::count_free_coverage(of, first, seeds)
+            : haptrial::test::count_coverage(haptrial::test::faulty_part(of), first, seeds)) {
     fmt::print("{:28} {:9} {:9}   {:.1f}\n", count.figure, count.held, count.of,
                100.0 * count.held / count.of);
   }

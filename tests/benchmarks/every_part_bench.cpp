@@ -58,13 +58,10 @@ control::HandleLoop loop_of(const Timing& timing, double bare) {
   return {bare, timing.rate, std::max(2, static_cast<int>(0.008 * timing.rate)), timing.late};
 }
 
-/// Whether `validate` refuses it: no hand carries it, or one swings with it as a tremor does.
+/// Whether `validate` refuses it: no fingers carry it.
 bool is_refused(const Field& field, const control::HandleLoop& loop) {
-  const control::PdGains gains{field.stiffness, field.damping};
-  const double lightest = control::lightest_calm_hand(gains, loop);
-  return lightest > control::kHeaviestHand ||
-         (lightest >= 0.6 &&
-          control::dominant_frequency(gains, loop, control::held_by_hand(0.98 * lightest)) <= 12.0);
+  return control::lightest_calm_hand({field.stiffness, field.damping}, loop) >
+         control::kHeaviestFingers;
 }
 
 Vector3d force_of(const Field& field, const device::DeviceReading& reading, int axis) {

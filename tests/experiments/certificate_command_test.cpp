@@ -98,6 +98,7 @@ TEST_F(CertificateCommandTest, WithoutASensorItSaysWhatItTakes) {
   EXPECT_THAT(found["gain"]["not_defined"].get<std::string>(), HasSubstr("known mass"));
   EXPECT_THAT(found["cogging"]["not_defined"].get<std::string>(), HasSubstr("force sensor"));
   EXPECT_NEAR(found["friction_commanded"]["estimate"].get<double>(), 0.1, 0.01);
+  EXPECT_THAT(found["bandwidth"]["not_defined"].get<std::string>(), HasSubstr("no resonance"));
 }
 
 TEST_F(CertificateCommandTest, OptionsThatDoNotFitAreRefused) {

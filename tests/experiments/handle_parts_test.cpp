@@ -238,12 +238,16 @@ TEST_F(HandlePartsTest, WhatIsWrongIsSaidInTheUnitsOfTheRotation) {
   EXPECT_THAT(said(study("type = \"constant\"\nforce = [0.0, 0.18, 0.0]\nlimit = 0.2\n", "knob")),
               HasSubstr("fields.felt asks for 0.18 N·m; allowed: at most 0.14 [N·m], "
                         "devices.knob.max_force"));
-  EXPECT_THAT(run(study("type = \"spring\"\nto = [0.0, 0.0, 0.0]\nstiffness = 2.0\n"
-                        "damping = 0.2\n",
-                        "knob"),
-                  "validate")
-                  .output,
-              HasSubstr("stage feel: its fields on knob add up to 2 N·m/rad and 0.2 N·m·s/rad"));
+  const auto spring = [&](const char* stiffness, const char* damping) {
+    return run(study(fmt::format("type = \"spring\"\nto = [0.0, 0.0, 0.0]\nstiffness = {}\n"
+                                 "damping = {}\n",
+                                 stiffness, damping),
+                     "knob"),
+               "validate");
+  };
+  EXPECT_THAT(spring("1.0", "0.01").output,
+              HasSubstr("stage feel: its fields on knob add up to 1 N·m/rad and 0.01 N·m·s/rad"));
+  EXPECT_THAT(spring("2.0", "0.2").errors, HasSubstr("no fingers of up to 0.25 kg carry that"));
 }
 
 TEST_F(HandlePartsTest, ObjectsMeetDevicesThemselves) {

@@ -1,5 +1,6 @@
 // A certificate through a force sensor's channel beside that of the built-in sensor: the same arm
-// with planted faults, measured by an instrument with a rate, a latency and noise of its own.
+// with planted faults, measured by an instrument with a rate, a latency and noise of its own; the
+// same for a rotation and a grip, which are arms at the fingers.
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,33 @@ using Eigen::Vector3d;
 constexpr double kTicksPerSecond = 1000.0;
 constexpr double kNoise = 0.02;      // of both sensors [N]
 constexpr double kLatency = 1.6e-3;  // of the instrument's samples [s]
+constexpr double kFingers = 0.03;    // of a rotation [m]
+
+/// What an instrument on a part measures: forces, all six axes, or the grip alone.
+std::vector<channel::Quantity> quantities_on(device::Part part) {
+  if (part == device::Part::kGrip) {
+    return {{"grip", "N"}};
+  }
+  std::vector<channel::Quantity> quantities{{"fx", "N"}, {"fy", "N"}, {"fz", "N"}};
+  if (part == device::Part::kRotation) {
+    for (const char* name : {"tx", "ty", "tz"}) {
+      quantities.push_back({name, "N·m"});
+    }
+  }
+  return quantities;
+}
+
+/// The force at the fingers in these quantities.
+std::vector<double> values_on(device::Part part, const Vector3d& force) {
+  if (part == device::Part::kGrip) {
+    return {force.x()};
+  }
+  if (part == device::Part::kRotation) {
+    const Vector3d torque = kFingers * force;
+    return {0.0, 0.0, 0.0, torque.x(), torque.y(), torque.z()};
+  }
+  return {force.x(), force.y(), force.z()};
+}
 
 /// Samples on their way to the channel that reads them.
 class Wire {
@@ -63,11 +91,12 @@ class Wire {
 
 class WireSource final : public channel::ChannelSource {
  public:
-  explicit WireSource(Wire& wire) : wire_(wire) {}
+  WireSource(Wire& wire, device::Part part) : wire_(wire), part_(part) {}
   void read(channel::ChannelInbox& into, std::chrono::milliseconds patience) override {
     for (const Wire::Sample& sample : wire_.take(patience)) {
       channel::Measured measured;
-      measured.values = {sample.force.data(), 3};
+      const std::vector<double> values = values_on(part_, sample.force);
+      measured.values = values;
       measured.time = channel::SampleTime{std::llround(1e9 * sample.time), 1e-6};
       into.take(measured);
     }
@@ -75,16 +104,18 @@ class WireSource final : public channel::ChannelSource {
 
  private:
   Wire& wire_;
+  device::Part part_;
 };
 
 /// The mount's force as an instrument measures it, of which the certificate knows the channel
 /// alone.
 class InstrumentOnMount final : public device::ForceSensor {
  public:
-  InstrumentOnMount(device::SensedMount& mount, double rate)
+  InstrumentOnMount(device::SensedMount& mount, double rate, device::Part part)
       : mount_(mount),
         period_(1.0 / rate),
-        sensor_(options(), "x,y,z", [this] { return now_.load(); }) {}
+        sensor_(
+            options(part), "x,y,z", [this] { return now_.load(); }, part, kFingers) {}
 
   bool read(device::MeasuredForce& measured) noexcept override {
     device::MeasuredForce clean;
@@ -100,12 +131,12 @@ class InstrumentOnMount final : public device::ForceSensor {
   }
 
  private:
-  channel::ChannelOptions options() {
+  channel::ChannelOptions options(device::Part part) {
     channel::ChannelOptions options;
     options.name = "force";
-    options.plan.quantities = {{"fx", "N"}, {"fy", "N"}, {"fz", "N"}};
+    options.plan.quantities = quantities_on(part);
     options.plan.patience = 1e9;
-    options.plan.open = [this] { return std::make_unique<WireSource>(wire_); };
+    options.plan.open = [this, part] { return std::make_unique<WireSource>(wire_, part); };
     return options;
   }
   double tick_time(long ticks_ago) const {
@@ -163,23 +194,25 @@ device::VirtualDeviceParameters faulty_arm() {
 }
 
 /// @param instrument_rate  of the channel's samples [Hz]; 0: the built-in sensor
-CertificateResult certificate_by(const std::vector<CertificatePart>& parts,
-                                 double instrument_rate) {
-  const analysis::Excitation excitation(kTicksPerSecond, 4.8);
+CertificateResult certificate_by(const std::vector<CertificatePart>& parts, double instrument_rate,
+                                 device::Part part = device::Part::kTip) {
+  const analysis::DrivenAxes axes =
+      part == device::Part::kGrip ? analysis::DrivenAxes{0} : analysis::DrivenAxes{0, 1, 2};
+  const analysis::Excitation excitation(kTicksPerSecond, 4.8, axes);
   const bool built_in = instrument_rate == 0.0;
   device::SensedMount mount({.noise = built_in ? kNoise : 0.0}, 7);
   device::VirtualDevice device(faulty_arm(), mount, kTicksPerSecond);
   std::unique_ptr<InstrumentOnMount> instrument;
   if (!built_in) {
-    instrument = std::make_unique<InstrumentOnMount>(mount, instrument_rate);
+    instrument = std::make_unique<InstrumentOnMount>(mount, instrument_rate, part);
     device::MeasuredForce first;
     while (!instrument->read(first)) {
     }
   }
   device::ForceSensor* sensor =
       built_in ? static_cast<device::ForceSensor*>(&mount) : instrument.get();
-  CertificateTask task(device, sensor, excitation, parts, [&](CertificatePart part, long tick) {
-    mount.hold(excitation.position(part, tick + 1, 0.04));
+  CertificateTask task(device, sensor, excitation, parts, [&](CertificatePart now, long tick) {
+    mount.hold(excitation.position(now, tick + 1, 0.04));
   });
   realtime::ServoLoop loop(realtime::ClockKind::kSimulated, kTicksPerSecond);
   loop.run(task);
@@ -194,11 +227,13 @@ void expect_equal(const Interval& one, const Interval& other, const std::string&
       << what << ": " << one.value << " and " << other.value;
 }
 
-TEST(SensorCertificateTest, AChannelsCertificateEqualsThatOfTheBuiltInSensor) {
+class EveryPartsSensorTest : public testing::TestWithParam<device::Part> {};
+
+TEST_P(EveryPartsSensorTest, AChannelsCertificateEqualsThatOfTheBuiltInSensor) {
   const std::vector<CertificatePart> parts{CertificatePart::kRest, CertificatePart::kGrid,
                                            CertificatePart::kFrequency};
-  const CertificateResult built_in = certificate_by(parts, 0.0);
-  const CertificateResult channel = certificate_by(parts, 7003.0);
+  const CertificateResult built_in = certificate_by(parts, 0.0, GetParam());
+  const CertificateResult channel = certificate_by(parts, 7003.0, GetParam());
   ASSERT_TRUE(built_in.statics && channel.statics);
   expect_equal(channel.statics->gain, built_in.statics->gain, "gain");
   expect_equal(channel.statics->dead_zone, built_in.statics->dead_zone, "dead zone");
@@ -207,7 +242,8 @@ TEST(SensorCertificateTest, AChannelsCertificateEqualsThatOfTheBuiltInSensor) {
     expect_equal(channel.statics->levels[i].error, built_in.statics->levels[i].error,
                  "error of the force at " + std::to_string(channel.statics->levels[i].level));
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
+  ASSERT_EQ(channel.response.size(), GetParam() == device::Part::kGrip ? 1u : 3u);
+  for (std::size_t axis = 0; axis < channel.response.size(); ++axis) {
     const analysis::AxisResponse& one = channel.response.at(axis);
     const analysis::AxisResponse& other = built_in.response.at(axis);
     expect_equal(one.gain, other.gain, "gain of the response");
@@ -219,6 +255,11 @@ TEST(SensorCertificateTest, AChannelsCertificateEqualsThatOfTheBuiltInSensor) {
   ASSERT_TRUE(channel.rest.sensor && built_in.rest.sensor);
   expect_equal(*channel.rest.sensor, *built_in.rest.sensor, "noise");
 }
+
+INSTANTIATE_TEST_SUITE_P(SensorCertificateTest, EveryPartsSensorTest,
+                         testing::Values(device::Part::kTip, device::Part::kRotation,
+                                         device::Part::kGrip),
+                         [](const auto& part) { return device::part_word(part.param); });
 
 TEST(SensorCertificateTest, TheNoiseOfASlowSensorIsThatOfItsMeasurements) {
   const CertificateResult found = certificate_by({CertificatePart::kRest}, 307.0);

@@ -40,10 +40,8 @@ double load_of(const DeviceTestOptions& options, const protocols::DeviceArm& arm
 
 std::vector<analysis::CertificatePart> parts_without_sensor(const DeviceTestOptions& options,
                                                             const protocols::DeviceArm& arm) {
-  std::vector<analysis::CertificatePart> parts{analysis::CertificatePart::kRest};
-  if (arm.part == device::Part::kTip) {
-    parts.push_back(analysis::CertificatePart::kFree);
-  }
+  std::vector<analysis::CertificatePart> parts{analysis::CertificatePart::kRest,
+                                               analysis::CertificatePart::kFree};
   if (load_of(options, arm) > 0.0) {
     parts.push_back(analysis::CertificatePart::kLoaded);
   }

@@ -34,14 +34,14 @@ const Prompts& prompts_of(device::Part part) {
   };
   static const Prompts rotation{
       "rotation: hold the handle's tip and keep its rotation still, in the middle of its turns",
-      "",
+      "rotation: let it turn freely: the device turns it",
       "",
       "rotation: let it turn freely: the device presses it against springs",
       "rotation: clamp the handle to the torque sensor in the middle of its turns",
   };
   static const Prompts grip{
       "grip: keep it still and half open",
-      "",
+      "grip: let it go, half open: the device moves it",
       "",
       "grip: let it go, half open: the device presses it against springs",
       "grip: clamp it to the force sensor, half open",

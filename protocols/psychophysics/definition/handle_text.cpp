@@ -193,11 +193,14 @@ void HandleReport::judge(Load& load) const {
                                                         loop.velocity_window, loop.force_delay});
   };
   load.lightest = control::lightest_calm_hand(gains, loop);
-  if (load.lightest > control::kHeaviestHand || !mass_carried_by(control::kHeaviestHand)) {
+  const bool by_fingers = arms_[load.device].part != device::Part::kTip;
+  const double heaviest = by_fingers ? control::kHeaviestFingers : control::kHeaviestHand;
+  if (load.lightest > heaviest || !mass_carried_by(heaviest)) {
     throw InputError(fmt::format(
-        "{}; no hand of up to {:g} kg carries that at {:g} Hz, with forces that come {} late; "
+        "{}; no {} of up to {:g} kg {} that at {:g} Hz, with forces that come {} late; "
         "allowed: less of it, or a faster loop",
-        where(load), control::kHeaviestHand, d_.rate, control::ticks_in_words(loop.force_delay)));
+        where(load), by_fingers ? "fingers" : "hand", heaviest, by_fingers ? "carry" : "carries",
+        d_.rate, control::ticks_in_words(loop.force_delay)));
   }
   reject_slow_swings(load, loop);
   constexpr double kStep = 0.01;  // [kg]

@@ -1,15 +1,19 @@
 #include "tests/analysis/device/device_coverage.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <complex>
 #include <numbers>
 
 #include "analysis/device/certificate.h"
+#include "core/base/random.h"
 #include "tests/analysis/device/simulated_certificate.h"
 
 namespace haptrial::test {
 namespace {
 
+using analysis::CertificatePart;
 using analysis::Interval;
 using Complex = std::complex<double>;
 
@@ -78,6 +82,47 @@ void add_response(const device::VirtualDeviceParameters& p,
   }
 }
 
+/// Faults of a part's own size, each of which may be absent but for gain, delay and friction.
+FaultyPart random_faults(device::Part of, std::uint64_t seed) {
+  RandomStream random(seed, "planted faults");
+  FaultyPart part = faulty_part(of);
+  device::MotorFaults& faults = part.electronics.faults;
+  const auto sometimes = [&random](double low, double high) {
+    return random.uniform() < 0.7 ? random.uniform(low, high) : 0.0;
+  };
+  faults.gain = random.uniform(0.7, 1.1);
+  faults.dead_zone = sometimes(0.02, 0.04 * part.max_force);
+  faults.resonance = sometimes(60.0, 130.0);
+  faults.resonance_damping = random.uniform(0.1, 0.3);
+  faults.cogging = sometimes(0.03, 0.02 * part.max_force);
+  faults.cogging_period = random.uniform(0.002, 0.004);
+  faults.gravity_error = sometimes(-0.1, 0.1);
+  part.electronics.force_delay = 1 + static_cast<int>(random.below(4));
+  part.mount.mass *= random.uniform(0.7, 1.5);
+  part.mount.friction = random.uniform(0.05, 0.07 * part.max_force);
+  return part;
+}
+
+/// An interval of a share to either side.
+std::optional<Interval> about(std::optional<Interval> found, double share) {
+  if (found) {
+    found->low = (1.0 - share) * found->value;
+    found->high = (1.0 + share) * found->value;
+  }
+  return found;
+}
+
+/// A fault that motion shows clearly; that none is shown where none is planted counts as well.
+void add_clear(const std::string& figure, const std::optional<Interval>& found, double planted,
+               double truth, Counts& counts) {
+  if (planted == 0.0) {
+    counts.add(fmt::format("no {}", figure.substr(0, figure.find(" within"))),
+               Interval{0.0, found ? 1.0 : 0.0, 1.0}, 0.0);
+  } else if (found) {
+    counts.add(figure, found, truth);
+  }
+}
+
 }  // namespace
 
 device::VirtualDeviceParameters faulty_electronics() {
@@ -130,7 +175,6 @@ FaultyPart faulty_part(device::Part of) {
 }
 
 std::vector<CoverageCount> count_coverage(const FaultyPart& part, int first, int count) {
-  using analysis::CertificatePart;
   const analysis::Excitation excitation(kRate, part.max_force, part.axes, part.reach);
   const device::VirtualDeviceParameters& p = part.electronics;
   const device::SensedMountParameters& mount = part.mount;
@@ -159,6 +203,37 @@ std::vector<CoverageCount> count_coverage(const FaultyPart& part, int first, int
                  part.axes[axis] == 1 ? p.faults.gravity_error : 0.0);
       counts.add("cogging", motion.cogging, p.faults.cogging);
       counts.add("period of the cogging", motion.period, p.faults.cogging_period);
+    }
+  }
+  return counts.counts();
+}
+
+std::vector<CoverageCount> count_free_coverage(device::Part of, int first, int count) {
+  Counts counts;
+  for (int seed = first; seed < first + count; ++seed) {
+    const FaultyPart part = random_faults(of, static_cast<std::uint64_t>(seed));
+    const analysis::Excitation excitation(kRate, part.max_force, part.axes,
+                                          of == device::Part::kTip ? 0.1 : part.reach);
+    const device::MotorFaults& faults = part.electronics.faults;
+    const analysis::CertificateResult result = identify_device(
+        simulated_certificate(part.electronics, part.mount, excitation,
+                              static_cast<std::uint64_t>(seed), {CertificatePart::kFree}),
+        excitation);
+    for (std::size_t axis = 0; axis < result.free.size(); ++axis) {
+      const analysis::FreeMotion& found = result.free[axis];
+      counts.add("gain / inertia", found.mobility, faults.gain / part.mount.mass);
+      counts.add("delay", found.delay, part.electronics.force_delay / kRate);
+      counts.add("friction", found.friction, part.mount.friction / faults.gain);
+      counts.add("dead zone", found.dead_zone, faults.dead_zone);
+      counts.add("offset", found.offset,
+                 part.axes[axis] == 1 ? faults.gravity_error / faults.gain : 0.0);
+      add_clear("resonance", found.resonance, faults.resonance, faults.resonance, counts);
+      add_clear("damping", found.damping, faults.resonance, faults.resonance_damping, counts);
+      // The virtual device gives each tick the cogging of the tick's end, which no interval knows.
+      add_clear("cogging within 4 %", about(found.cogging, 0.04), faults.cogging,
+                faults.cogging / faults.gain, counts);
+      add_clear("period within 0.5 %", about(found.period, 0.005), faults.cogging,
+                faults.cogging_period, counts);
     }
   }
   return counts.counts();

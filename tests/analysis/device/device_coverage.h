@@ -40,4 +40,8 @@ FaultyPart faulty_part(device::Part of);
 /// @param first, count  seeds
 std::vector<CoverageCount> count_coverage(const FaultyPart& part, int first, int count);
 
+/// Certificates from motion alone, without a sensor, of parts whose faults are drawn at random:
+/// motion has no noise but the encoders', so that equal faults would give equal figures.
+std::vector<CoverageCount> count_free_coverage(device::Part of, int first, int count);
+
 }  // namespace haptrial::test

@@ -43,6 +43,18 @@ TEST(CertificateTest, IntervalsHoldThePlantedFaultsAsOftenAsTheySay) {
   }
 }
 
+TEST(CertificateTest, MotionAloneHoldsFaultsDrawnAtRandomAsOftenAsItSays) {
+  constexpr int kSeeds = 5;
+  for (const device::Part of : {device::Part::kTip, device::Part::kRotation, device::Part::kGrip}) {
+    for (const CoverageCount& count : count_free_coverage(of, 1, kSeeds)) {
+      const double share = static_cast<double>(count.held) / count.of;
+      EXPECT_GT(share, 0.95 - 4.0 * std::sqrt(0.95 * 0.05 / kSeeds))
+          << device::part_word(of) << ", " << count.figure << ": " << count.held << " of "
+          << count.of;
+    }
+  }
+}
+
 TEST(CertificateTest, APerfectDeviceHasNoFaults) {
   device::SensedMountParameters mount;
   mount.friction = 0.0;
@@ -127,11 +139,21 @@ TEST(CertificateTest, WithoutASensorAGripSaysWhatItTakes) {
       faulty.electronics, faulty.mount, excitation, 1, {CertificatePart::kFree}, faulty.reach);
   record.of = device::Part::kGrip;
   const auto lists = findings_of(record, excitation);
-  for (const char* figure : {"gain", "friction", "delay", "inertia"}) {
+  for (const char* figure : {"gain", "friction", "inertia"}) {
     EXPECT_NE(figure_of(lists, "grip_summary", figure).why_not.find("force sensor"),
               std::string::npos)
-        << figure << ": motion over short ways does not tell it";
+        << figure;
   }
+  const double gain = faulty.electronics.faults.gain;
+  const auto estimate = [&](const char* figure) {
+    return figure_of(lists, "grip_summary", figure).value.as_number();
+  };
+  EXPECT_NEAR(estimate("delay"), 0.002, 2e-4);
+  EXPECT_NEAR(estimate("dead_zone"), 0.15, 0.01);
+  EXPECT_NEAR(estimate("friction_commanded"), 0.25 / gain, 0.01);
+  EXPECT_NEAR(estimate("cogging_commanded"), 0.08 / gain, 0.005);
+  EXPECT_NEAR(estimate("cogging_period"), 0.0025, 2e-5);
+  EXPECT_NEAR(estimate("resonance"), 120.0, 5.0);
   EXPECT_FALSE(figure_of(lists, "rotation_summary", "gain").why_not.empty())
       << "a part without motors is not left out in silence";
 }
