@@ -263,6 +263,20 @@ TEST_F(EverydayTest, ForceMatching) {
     EXPECT_THAT(trials, testing::SizeIs(4));
     EXPECT_THAT(trials, Each(testing::Pair(testing::_, 10)));
   }
+  // The virtual hand presses with 1.3 N, whatever was felt.
+  for (const json& quantity : results_.at("quantities")) {
+    for (const json& condition : quantity.at("conditions")) {
+      const double target = std::stod(condition.at("condition").get<std::string>());
+      const std::string name = quantity.at("name");
+      const double expected = name == "produced"         ? 1.3
+                              : name == "constant_error" ? 1.3 - target
+                              : name == "absolute_error" ? std::abs(1.3 - target)
+                                                         : 0.03;
+      EXPECT_NEAR(condition.at("mean").at("mean").get<double>(), expected, 0.04)
+          << name << " of " << target;
+    }
+  }
+  EXPECT_EQ(results_.at("quantities").size(), 4u);
 }
 
 /// No definition of the folder is without a test.

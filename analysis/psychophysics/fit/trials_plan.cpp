@@ -27,6 +27,7 @@ const std::vector<std::pair<std::string, AnalysisKind>>& kinds() {
       {"times", AnalysisKind::kTimes},
       {"reaching", AnalysisKind::kReaching},
       {"pursuit", AnalysisKind::kPursuit},
+      {"produced", AnalysisKind::kProduced},
       {"none", AnalysisKind::kNone}};
   return all;
 }
@@ -305,7 +306,8 @@ Schema<TrialsPlan> make_function_schema(const PlanDefaults& defaults) {
 
 bool reaches(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kReaching; }
 bool answers(const TrialsPlan& plan) {
-  return !reaches(plan) && plan.kind != AnalysisKind::kPursuit;
+  return !reaches(plan) && plan.kind != AnalysisKind::kPursuit &&
+         plan.kind != AnalysisKind::kProduced;
 }
 bool is_timed(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kTimes; }
 bool identifies(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kIdentification; }
@@ -366,6 +368,9 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
         if (plan.kind == AnalysisKind::kPursuit) {
           plan.pursuit = read_pursuit_plan(table, defaults.pursuit);
         }
+        if (plan.kind == AnalysisKind::kProduced) {
+          plan.produced = read_produced_plan(table, defaults.produced);
+        }
         plan.by = usual_by(plan.kind, defaults);
         if (is_timed(plan) && table.has("level")) {
           plan.by.clear();  // factors may make the level, or vary for other reasons
@@ -385,13 +390,7 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
           "of the factors in `by`",
           [&](Table& table, const std::string&, P& plan) { read_tests(table, defaults, plan); })
       .otherwise("none")
-      .custom("bayes_factors", kBayesFactorsText,
-              [](Table& table, const std::string& key, P& plan) {
-                if (table.boolean(key)) {
-                  ask_for_bayes_factors(plan.plan);
-                }
-              })
-      .otherwise("false");
+      .keys_of(&P::plan, tests_beside_schema());
   add_answers(schema, defaults);
   schema.check([&](Table& table, P& plan) {
     plan.functions = plan.kind == AnalysisKind::kPsychometric ||

@@ -9,6 +9,7 @@
 #include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/likelihood_fit.h"
 #include "analysis/psychophysics/fit/cue_plan.h"
+#include "analysis/psychophysics/fit/produced_plan.h"
 #include "analysis/psychophysics/fit/pursuit_plan.h"
 #include "analysis/psychophysics/fit/reaching_plan.h"
 #include "analysis/statistics/design/analysis_plan.h"
@@ -30,6 +31,7 @@ enum class AnalysisKind {
   kTimes,           // how soon answers or movements come, and how many are right
   kReaching,        // movements, which have an analysis of their own
   kPursuit,         // how the hand follows a target that moves
+  kProduced,        // forces and movements that a stage's hand produces
 };
 
 /// Levels by the name of their factor, as tables show them.
@@ -53,6 +55,7 @@ struct PlanDefaults {
   std::optional<double> guess;              // 1 / choices where an answer is right; else free
   ReachingNames reaching;                   // that the analysis of movements may name
   PursuitNames pursuit;                     // that the analysis of pursuits may name
+  ProducedNames produced;                   // that the analysis of what is produced may name
   CueNames cues;                            // that the comparison of cues may name
   StatedLevels levels;  // of names of `by`, where the definition states all of them
 };
@@ -95,6 +98,7 @@ struct TrialsPlan {
   std::optional<CuePlan> cues;  // two cues whose combination is compared with the best
   ReachingPlan reaching;        // where `kind` is kReaching
   PursuitPlan pursuit;          // where `kind` is kPursuit
+  ProducedPlan produced;        // where `kind` is kProduced
 
   bool uses_level() const {
     return functions || kind == AnalysisKind::kMagnitude || kind == AnalysisKind::kAdjustment ||

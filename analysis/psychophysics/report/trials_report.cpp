@@ -14,6 +14,26 @@
 namespace haptrial::analysis::trials {
 namespace {
 
+void add_produced_methods(Document& document, const ProducedPlan& plan) {
+  document.paragraph(fmt::format(
+      "What a trial produced is the {} of {} in {} of the stage {}{}; trials without that stage "
+      "have none, and a participant's trials under a condition are averaged.{}",
+      words_of(plan),
+      plan.device_name.empty() ? std::string("the first device")
+                               : fmt::format("the device {}", plan.device_name),
+      plan.last > 0.0 ? fmt::format("the last {:g} s", plan.last) : std::string("all ticks"),
+      plan.stage,
+      plan.quantity == ProducedQuantity::kForce
+          ? "; it is the force commanded to the device, which the hand presses against"
+          : "",
+      plan.target.empty()
+          ? std::string()
+          : fmt::format(" The constant error is the mean of what was produced less {}, the "
+                        "absolute error that of its size, the variable error its standard "
+                        "deviation over trials.",
+                        plan.target)));
+}
+
 using Rows = std::vector<std::vector<std::string>>;
 
 void add_design(Document& document, const TrialsResult& result) {
@@ -134,6 +154,9 @@ void add_methods(Document& document, const TrialsResult& result) {
         "which the target moves most; a participant's trials under a condition are averaged as "
         "complex numbers.",
         plan.pursuit.settle));
+  }
+  if (plan.kind == AnalysisKind::kProduced) {
+    add_produced_methods(document, plan.produced);
   }
   if (plan.kind == AnalysisKind::kTimes) {
     add_time_methods(document, plan);

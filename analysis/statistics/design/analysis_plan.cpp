@@ -73,11 +73,29 @@ std::string problem_with(const std::vector<PlannedTest>& tests) {
   return repeated_test(tests);
 }
 
+const Schema<TestsBeside>& beside_keys() {
+  using B = TestsBeside;
+  static const auto schema =
+      Schema<B>()
+          .flag("bayes_factors", &B::bayes_factors,
+                "Whether planned tests have Bayes factors: of the effect against none, with a "
+                "Cauchy prior of scale 0.707 on its size, on one side for a directed test")
+          .number("equivalence", &B::equivalence, {0.0, 1e9}, "",
+                  "Largest difference that counts as none, in the unit of the tested values: "
+                  "planned tests also say whether the difference lies within it, by two one-sided "
+                  "tests; 0: they do not")
+          .number("trimmed", &B::trimmed, {0.0, 0.4}, "1",
+                  "Share of the participants at each end whom a robust test beside each planned "
+                  "one leaves out (Yuen's test of trimmed means), such as 0.2; 0: there is none");
+  return schema;
+}
+
 }  // namespace
 
 AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
                                  const std::string& reference, std::string_view where) {
-  AnalysisPlan plan{{}, reference};
+  AnalysisPlan plan;
+  plan.reference = reference;
   for (const std::string& text : tests) {
     const auto test = parsed(text);
     if (!test) {
@@ -97,10 +115,9 @@ std::string text_of(const PlannedTest& test) {
   return fmt::format("{}{}{}", test.a, sign->first, test.b);
 }
 
-void ask_for_bayes_factors(AnalysisPlan& plan) {
-  for (PlannedTest& test : plan.tests) {
-    test.bayes_factor = true;
-  }
+const Schema<AnalysisPlan>& tests_beside_schema() {
+  static const auto schema = Schema<AnalysisPlan>().keys_of(&AnalysisPlan::beside, beside_keys());
+  return schema;
 }
 
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {
@@ -132,19 +149,13 @@ AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>&
                 }
               })
       .otherwise("none")
-      .custom("bayes_factors", kBayesFactorsText,
-              [](Table& table, const std::string& key, P& plan) {
-                if (table.boolean(key)) {
-                  ask_for_bayes_factors(plan);
-                }
-              })
-      .otherwise("false")
       .custom("reference", "Condition with which the others are compared",
               [&](Table& table, const std::string& key, P& plan) {
                 plan.reference = table.text(key);
                 check(table, key, plan.reference);
               })
       .otherwise("the first")
+      .keys_of(&P::beside, beside_keys())
       .read(analysis);
 }
 

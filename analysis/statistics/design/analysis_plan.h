@@ -8,7 +8,9 @@
 
 namespace haptrial {
 class Table;
-}
+template <class T>
+class Schema;
+}  // namespace haptrial
 
 namespace haptrial::analysis {
 
@@ -17,13 +19,20 @@ struct PlannedTest {
   std::string a;
   std::string b;
   Tail tail{Tail::kTwoSided};
-  bool bayes_factor{false};  // it is given beside p
+};
+
+/// Tests that stand beside the t-test of each planned one.
+struct TestsBeside {
+  bool bayes_factors{false};
+  double equivalence{0.0};  // largest difference that counts as none, in the values' unit; 0: none
+  double trimmed{0.0};      // share of each tail that Yuen's test leaves out; 0: it is not made
 };
 
 /// The experimenter's decisions before the data. Source: Morris 2006, §4.4, for the shipped study.
 struct AnalysisPlan {
   std::vector<PlannedTest> tests;
   std::string reference;  // the condition that the others are compared with; empty: the first
+  TestsBeside beside{};
 };
 
 /// A plan in words. Each test is as "visual < haptic"; a side is a condition, or in a study of
@@ -36,14 +45,11 @@ AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
 /// The same again.
 std::string text_of(const PlannedTest& test);
 
-/// Asks for the Bayes factor of each test. Key `bayes_factors` of an [analysis] table.
-void ask_for_bayes_factors(AnalysisPlan& plan);
-inline constexpr const char* kBayesFactorsText =
-    "Whether planned tests have Bayes factors: of the effect against none, with a Cauchy prior of "
-    "scale 0.707 on its size, on one side for a directed test";
+/// The keys of an [analysis] table that ask for tests beside the planned ones.
+const Schema<AnalysisPlan>& tests_beside_schema();
 
-/// The optional keys `planned`, `bayes_factors` and `reference` of an [analysis] table. Names that are not of
-/// `conditions` are noted as problems of the table.
+/// The optional keys `planned` and `reference` of an [analysis] table, and those of
+/// tests_beside_schema(). Names that are not of `conditions` are noted as problems of the table.
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions);
 
 }  // namespace haptrial::analysis

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/statistics/tests/bayes_factor.h"
+#include "analysis/statistics/tests/trimmed_tests.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -51,6 +52,22 @@ Defined<double> bayes_factor_of(const Sides& values, Tail tail) {
   return bayes_factor(t->t, t->df, values.paired ? n_a : n_a * n_b / (n_a + n_b), tail);
 }
 
+Defined<TTest> trimmed_test_of(const Sides& values, double share, Tail tail) {
+  if (values.strata.size() > 1) {
+    return Undefined{"other groups lie across both sides"};
+  }
+  return values.paired ? paired_yuen_test(values.a, values.b, share, tail)
+                       : yuen_test(values.a, values.b, share, tail);
+}
+
+void add_equivalence(SideTest& test) {
+  if (test.beside.equivalence > 0.0) {
+    test.equivalence =
+        test.t ? Defined<EquivalenceTest>(equivalence_test(*test.t, test.beside.equivalence))
+               : Undefined{test.t.because()};
+  }
+}
+
 void resample(SideTest& test, const Sides& values, Resampling resampling) {
   const Tail tail = test.sides.tail;
   resampling.stream = "permutation of " + text_of(test.sides);
@@ -81,7 +98,7 @@ void resample(SideTest& test, const Sides& values, Resampling resampling) {
 std::string name_of_test(const SideTest& test) { return test.paired ? "paired t" : "Welch's t"; }
 
 SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
-                  const Resampling& resampling) {
+                  const Resampling& resampling, const TestsBeside& beside) {
   const Sides values = values_of(table, a, b);
   SideTest test;
   test.sides = std::move(sides);
@@ -89,12 +106,17 @@ SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, c
   test.count_a = values.a.size();
   test.count_b = values.b.size();
   const Tail tail = test.sides.tail;
-  if (test.sides.bayes_factor) {
+  test.beside = beside;
+  if (beside.bayes_factors) {
     test.bayes_factor = bayes_factor_of(values, tail);
+  }
+  if (beside.trimmed > 0.0) {
+    test.trimmed = trimmed_test_of(values, beside.trimmed, tail);
   }
   if (values.strata.size() > 1 && !equally_large(values)) {
     const Undefined why{"groups of different size are weighed alike, which only the t-test does"};
     test.t = stratified(values, tail);
+    add_equivalence(test);
     test.size = why;
     test.ranks = why;
     test.permutation = why;
@@ -113,6 +135,7 @@ SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, c
   if (values.strata.size() > 1) {
     test.t = stratified(values, tail);
   }
+  add_equivalence(test);
   if (resampling.count > 0) {
     resample(test, values, resampling);
   }

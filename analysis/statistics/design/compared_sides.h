@@ -12,6 +12,8 @@
 
 namespace haptrial::analysis {
 
+inline constexpr const char* kNotAskedFor = "it was not asked for";
+
 /// Two sides of a design compared: participants' means, paired where the same participants have
 /// both, and Welch's test where they are different people.
 struct SideTest {
@@ -27,7 +29,12 @@ struct SideTest {
   Defined<PermutationTest> permutation{Undefined{"nothing was resampled"}};
   Defined<double> permutation_holm{Undefined{"nothing was resampled"}};
   Defined<BootstrapInterval> bootstrap{Undefined{"nothing was resampled"}};  // of the difference
-  Defined<double> bayes_factor{Undefined{"it was not asked for"}};  // of an effect against none
+  TestsBeside beside;                                     // which of these were asked for
+  Defined<double> bayes_factor{Undefined{kNotAskedFor}};  // of an effect against none
+  Defined<EquivalenceTest> equivalence{Undefined{kNotAskedFor}};
+  Defined<double> equivalence_holm{Undefined{kNotAskedFor}};
+  Defined<TTest> trimmed{Undefined{kNotAskedFor}};  // Yuen's
+  Defined<double> trimmed_holm{Undefined{kNotAskedFor}};
 };
 
 /// "paired t" or "Welch's t".
@@ -36,7 +43,7 @@ std::string name_of_test(const SideTest& test);
 /// The test of two sides, each with cells.
 /// @param resampling  of the permutation test and the bootstrap interval; none with a count of 0.
 SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
-                  const Resampling& resampling);
+                  const Resampling& resampling, const TestsBeside& beside = {});
 
 /// A test that is not defined. @param missing  the side without trials.
 SideTest without_trials(const PlannedTest& sides, const std::string& missing);

@@ -30,6 +30,10 @@ Json to_json(const BootstrapInterval& i) {
   return {{"estimate", i.estimate}, {"low", i.low}, {"high", i.high}, {"resamples", i.resamples}};
 }
 
+Json to_json(const EquivalenceTest& e) {
+  return {{"bound", e.bound}, {"p", e.p}, {"low_90", e.low}, {"high_90", e.high}};
+}
+
 Json to_json(const EffectTest& e);
 
 template <class T>
@@ -60,8 +64,16 @@ Json to_json(const SideTest& t) {
             {"permutation", defined(t.permutation)},
             {"permutation_p_holm", defined(t.permutation_holm)},
             {"bootstrap_of_difference_95", defined(t.bootstrap)}};
-  if (t.sides.bayes_factor) {
+  if (t.beside.bayes_factors) {
     json["bayes_factor"] = defined(t.bayes_factor);
+  }
+  if (t.beside.equivalence > 0.0) {
+    json["equivalence"] = defined(t.equivalence);
+    json["equivalence_p_holm"] = defined(t.equivalence_holm);
+  }
+  if (t.beside.trimmed > 0.0) {
+    json["yuen"] = defined(t.trimmed);
+    json["yuen_p_holm"] = defined(t.trimmed_holm);
   }
   return json;
 }

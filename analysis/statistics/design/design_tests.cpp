@@ -30,6 +30,8 @@ void adjust(TestFamily& family) {
   adjust(family.tests, &SideTest::t, &SideTest::holm);
   adjust(family.tests, &SideTest::ranks, &SideTest::ranks_holm);
   adjust(family.tests, &SideTest::permutation, &SideTest::permutation_holm);
+  adjust(family.tests, &SideTest::equivalence, &SideTest::equivalence_holm);
+  adjust(family.tests, &SideTest::trimmed, &SideTest::trimmed_holm);
 }
 
 TestFamily planned_tests(const DesignTable& table, const AnalysisPlan& plan,
@@ -41,7 +43,7 @@ TestFamily planned_tests(const DesignTable& table, const AnalysisPlan& plan,
     if (a.empty() || b.empty()) {
       family.tests.push_back(without_trials(test, a.empty() ? test.a : test.b));
     } else {
-      family.tests.push_back(compared(table, test, a, b, resampling));
+      family.tests.push_back(compared(table, test, a, b, resampling, plan.beside));
     }
   }
   adjust(family);
@@ -129,6 +131,8 @@ std::vector<NamedTest> named_tests(const TestFamily& family, const std::string& 
     note(name_of_test(test), test.t, test.holm);
     note("ranks", test.ranks, test.ranks_holm);
     note("permutation", test.permutation, test.permutation_holm);
+    note("equivalence", test.equivalence, test.equivalence_holm);
+    note("trimmed means", test.trimmed, test.trimmed_holm);
   }
   return named;
 }

@@ -92,6 +92,41 @@ std::string bayes_result(const Defined<double>& factor) {
                         : number(1.0 / *factor) + " against an effect";
 }
 
+std::string equivalence_result(const SideTest& test) {
+  if (!test.equivalence) {
+    return not_defined(test.equivalence.because());
+  }
+  return fmt::format("{} after Holm's adjustment, 90 % CI {} to {}",
+                     p_result(test.equivalence_holm), number(test.equivalence->low),
+                     number(test.equivalence->high));
+}
+
+std::string trimmed_result(const SideTest& test) {
+  if (!test.trimmed) {
+    return not_defined(test.trimmed.because());
+  }
+  const TTest& t = *test.trimmed;
+  return fmt::format("difference {}, Yuen's t({}) = {:.2f}, {} after Holm's adjustment",
+                     number(t.difference), degrees(t.df), t.t, p_result(test.trimmed_holm));
+}
+
+/// What was asked for beside the test itself.
+std::string tests_beside(const SideTest& test) {
+  std::string text;
+  if (test.beside.bayes_factors) {
+    text += ", Bayes factor " + bayes_result(test.bayes_factor);
+  }
+  if (test.beside.equivalence > 0.0) {
+    text += fmt::format("; a difference of less than {}: {}", number(test.beside.equivalence),
+                        equivalence_result(test));
+  }
+  if (test.beside.trimmed > 0.0) {
+    text += fmt::format("; means trimmed by {:.3g} %: {}", 100.0 * test.beside.trimmed,
+                        trimmed_result(test));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string side_result(const SideTest& test) {
@@ -103,8 +138,7 @@ std::string side_result(const SideTest& test) {
       "adjustment, {}{}",
       number(test.t->difference), number(test.t->low), number(test.t->high), name_of_test(test),
       degrees(test.t->df), test.t->t, p_result(test.holm),
-      test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed",
-      test.sides.bayes_factor ? ", Bayes factor " + bayes_result(test.bayes_factor) : "");
+      test.sides.tail == Tail::kTwoSided ? "two-tailed" : "one-tailed", tests_beside(test));
 }
 
 std::string bootstrap_result(const SideTest& test) {

@@ -25,20 +25,6 @@ double p_of_t(double t, double df, Tail tail) {
   return std::min(1.0, 2.0 * t_upper_tail(std::abs(t), df));
 }
 
-Defined<TTest> from_error(double difference, double standard_error, double df, Tail tail,
-                          double level) {
-  const double t = difference / standard_error;
-  if (!std::isfinite(t) || !std::isfinite(difference) || !(df > 0.0)) {
-    return Undefined{kBeyondDouble};
-  }
-  const double half = t_quantile(0.5 + 0.5 * level, df) * standard_error;
-  TTest result{t, df, p_of_t(t, df, tail), difference};
-  result.low = difference - half;
-  result.high = difference + half;
-  result.error = standard_error;
-  return result;
-}
-
 struct TwoSamples {
   Moments a;
   Moments b;
@@ -58,6 +44,20 @@ Defined<TwoSamples> two_samples(std::span<const double> a, std::span<const doubl
 
 }  // namespace
 
+Defined<TTest> t_test_of(double difference, double standard_error, double df, Tail tail,
+                         double level) {
+  const double t = difference / standard_error;
+  if (!std::isfinite(t) || !std::isfinite(difference) || !(df > 0.0)) {
+    return Undefined{kBeyondDouble};
+  }
+  const double half = t_quantile(0.5 + 0.5 * level, df) * standard_error;
+  TTest result{t, df, p_of_t(t, df, tail), difference};
+  result.low = difference - half;
+  result.high = difference + half;
+  result.error = standard_error;
+  return result;
+}
+
 Defined<TTest> student_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
                               double level) {
   const auto samples = two_samples(a, b);
@@ -69,8 +69,8 @@ Defined<TTest> student_t_test(std::span<const double> a, std::span<const double>
   const auto nb = static_cast<double>(mb.count);
   const double df = na + nb - 2.0;  // > 0: single values do not vary
   const double pooled = (ma.squares + mb.squares) / df;
-  return from_error(mean_difference(ma, mb), std::sqrt(pooled * (1.0 / na + 1.0 / nb)), df, tail,
-                    level);
+  return t_test_of(mean_difference(ma, mb), std::sqrt(pooled * (1.0 / na + 1.0 / nb)), df, tail,
+                   level);
 }
 
 Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
@@ -88,7 +88,7 @@ Defined<TTest> welch_t_test(std::span<const double> a, std::span<const double> b
   const double va = ma.variance() / na;
   const double vb = mb.variance() / nb;
   const double df = (va + vb) * (va + vb) / (va * va / (na - 1.0) + vb * vb / (nb - 1.0));
-  return from_error(mean_difference(ma, mb), std::sqrt(va + vb), df, tail, level);
+  return t_test_of(mean_difference(ma, mb), std::sqrt(va + vb), df, tail, level);
 }
 
 Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> b, Tail tail,
@@ -114,7 +114,7 @@ Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> 
   if (m->squares <= n * unit * unit) {
     return Undefined{"the differences do not vary"};
   }
-  return from_error(m->mean(), std::sqrt(m->variance() / n), n - 1.0, tail, level);
+  return t_test_of(m->mean(), std::sqrt(m->variance() / n), n - 1.0, tail, level);
 }
 
 Defined<TTest> stratified_t_test(const std::vector<std::vector<double>>& a,
@@ -142,7 +142,14 @@ Defined<TTest> stratified_t_test(const std::vector<std::vector<double>>& a,
   if (variance == 0.0) {
     return Undefined{"the values do not vary within any group"};
   }
-  return from_error(difference, std::sqrt(variance), variance * variance / spread, tail, level);
+  return t_test_of(difference, std::sqrt(variance), variance * variance / spread, tail, level);
+}
+
+EquivalenceTest equivalence_test(const TTest& test, double bound) {
+  const double above = t_upper_tail((test.difference + bound) / test.error, test.df);
+  const double below = t_upper_tail((bound - test.difference) / test.error, test.df);
+  const double half = t_quantile(0.95, test.df) * test.error;
+  return {bound, std::max(above, below), test.difference - half, test.difference + half};
 }
 
 }  // namespace haptrial::analysis

@@ -24,6 +24,10 @@ struct TTest {
   double error{0.0};  // standard error of the difference
 };
 
+/// The test of a difference whose standard error and degrees of freedom are known.
+/// Undefined where t or the difference is not finite, or without degrees of freedom.
+Defined<TTest> t_test_of(double difference, double error, double df, Tail tail, double level);
+
 /// @param level  coverage of the interval of the difference, inside (0, 1); the same for each test.
 
 /// Student's test with pooled variance.
@@ -53,5 +57,15 @@ Defined<TTest> paired_t_test(std::span<const double> a, std::span<const double> 
 Defined<TTest> stratified_t_test(const std::vector<std::vector<double>>& a,
                                  const std::vector<std::vector<double>>& b, Tail tail,
                                  double level = 0.95);
+
+/// Two one-sided tests against a difference of -bound and of bound (Schuirmann 1987).
+struct EquivalenceTest {
+  double bound{0.0};
+  double p{1.0};               // that the difference lies outside of the bounds
+  double low{0.0}, high{0.0};  // 90 % interval of the difference; within the bounds if p < 0.05
+};
+
+/// @param test  of the same difference.  @param bound  > 0
+EquivalenceTest equivalence_test(const TTest& test, double bound);
 
 }  // namespace haptrial::analysis

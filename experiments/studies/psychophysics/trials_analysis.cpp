@@ -146,6 +146,17 @@ analysis::trials::PursuitNames pursuit_names(const protocols::TrialsDefinition& 
   return names;
 }
 
+/// @param factors  that vary
+analysis::trials::ProducedNames produced_names(const protocols::TrialsDefinition& d,
+                                               const std::vector<std::string>& factors) {
+  analysis::trials::ProducedNames names{d.stages, {}, factors};
+  std::ranges::transform(d.hands, std::back_inserter(names.devices), &protocols::TrialDevice::name);
+  for (const protocols::Track& track : d.tracks) {
+    names.variables.push_back(track.variable);
+  }
+  return names;
+}
+
 /// The variables of levels with one dimension, each with what its first procedure says.
 std::vector<analysis::trials::ProcedureLevels> levels_of_procedures(
     const protocols::TrialsDefinition& d) {
@@ -170,6 +181,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   add_names(d, defaults);
   defaults.reaching = reaching_names(d);
   defaults.pursuit = pursuit_names(d);
+  defaults.produced = produced_names(d, defaults.factors);
   defaults.cues = cue_names(d);
   defaults.levels = defaults.cues.levels;
   for (const auto& group : d.groups) {

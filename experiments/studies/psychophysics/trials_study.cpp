@@ -13,6 +13,7 @@
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/psychophysics/report/write_trials.h"
+#include "analysis/psychophysics/study/produced_quantities.h"
 #include "analysis/psychophysics/study/pursuit_quantities.h"
 #include "analysis/psychophysics/study/reach_quantities.h"
 #include "analysis/psychophysics/study/trials_study.h"
@@ -217,6 +218,10 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   if (plan.kind == trials::AnalysisKind::kPursuit) {
     result.quantities =
         trials::pursuit_quantities(result.data, request.files.files, plan, request.threads);
+  }
+  if (plan.kind == trials::AnalysisKind::kProduced) {
+    result.quantities =
+        trials::produced_quantities(result.data, request.files.files, plan, request.threads);
   }
   check_planned(result);
   result.page_scores = trials::page_scores(request.files.files, definition.pages, group_of);

@@ -127,7 +127,8 @@ class TrialsStudySimulation final : public StudySimulation {
     plan_.permutations =
         watched.find(", permutation") != std::string::npos ? plan_.permutations : 0;
     if (plan_.kind == trials::AnalysisKind::kReaching ||
-        plan_.kind == trials::AnalysisKind::kPursuit || plan_.cues) {
+        plan_.kind == trials::AnalysisKind::kPursuit ||
+        plan_.kind == trials::AnalysisKind::kProduced || plan_.cues) {
       throw InputError(fmt::format(
           "{}: power by simulation does not know analyses of movements or of two cues; watch a "
           "psychometric, detection, identification, magnitude or adjustment analysis",
