@@ -184,6 +184,16 @@ class Studio::Implementation {
                                          body.value("virtual", json()) == true,
                                          body.value("language", json()) == "de" ? "de" : "en");
                  }),
+            post("/keys",
+                 [this](const json& body) {
+                   return views_.keys(string_in(body, "file"), string_in(body, "text"));
+                 }),
+            post("/set",
+                 [this](const json& body) {
+                   return views_.set_key(string_in(body, "file"), string_in(body, "text"),
+                                         string_in(body, "key"), string_in(body, "edit"),
+                                         body.value("value", std::string()));
+                 }),
             post("/save",
                  [this](const json& body) {
                    return views_.save(string_in(body, "file"), string_in(body, "text"),

@@ -200,6 +200,43 @@ json StudioViews::validate(const std::string& file, const std::string& text) con
           {"output", output}};
 }
 
+json StudioViews::keys(const std::string& file, const std::string& text) const {
+  const Draft draft(folder_.definition(file), folder_.path(), text);
+  const CommandResult result = commands_.run({"set", draft.name(), "--list", "--json"});
+  if (result.status != 0) {
+    throw InputError(replaced(result.output, draft.name(), file));
+  }
+  return {{"command", shown_command({"set", file, "--list"})},
+          {"keys", json::parse(result.output, nullptr, false)}};
+}
+
+json StudioViews::set_key(const std::string& file, const std::string& text, const std::string& key,
+                          const std::string& edit, const std::string& value) const {
+  const Draft draft(folder_.definition(file), folder_.path(), text);
+  const bool sets = edit != "add" && edit != "remove";
+  CommandWords change = sets ? CommandWords{} : CommandWords{"--" + edit};
+  if (key.starts_with('-') || value.starts_with('-')) {
+    change.push_back("--");  // what follows is no option
+  }
+  change.push_back(key);
+  if (sets) {
+    change.push_back(value);
+  }
+  const auto line_for = [&change](const std::string& name, bool printed) {
+    CommandWords words{"set", name};
+    if (printed) {
+      words.insert(words.end(), {"--output", "-"});
+    }
+    words.insert(words.end(), change.begin(), change.end());
+    return words;
+  };
+  const CommandResult result = commands_.run(line_for(draft.name(), true));
+  if (result.status != 0) {
+    throw InputError(replaced(result.output, draft.name(), file));
+  }
+  return {{"command", shown_command(line_for(file, false))}, {"text", result.output}};
+}
+
 json StudioViews::save(const std::string& file, const std::string& text,
                        const std::string& stamp) const {
   if (text.size() > kMostDefinition) {

@@ -46,6 +46,11 @@ class StudioViews {
   /// Answers to lines of a trial that is tried. @param number  of it
   nlohmann::json try_move(int number, const nlohmann::json& lines) const;
   nlohmann::json try_end(int number) const;
+  /// The keys that a text states (`set --list`).
+  nlohmann::json keys(const std::string& file, const std::string& text) const;
+  /// The text after one edit (`set`). @param edit  "add", "remove", or else the key gets the value
+  nlohmann::json set_key(const std::string& file, const std::string& text, const std::string& key,
+                         const std::string& edit, const std::string& value) const;
   nlohmann::json save(const std::string& file, const std::string& text,
                       const std::string& stamp) const;
   nlohmann::json schema(const std::string& protocol) const;

@@ -8,6 +8,7 @@ should be.
 """
 
 import pathlib
+import re
 import sys
 
 from browser import Driver, ask, state, wait
@@ -119,6 +120,34 @@ def mend_and_save(page):
     assert not there(page, ".at-line")
     press_with_control(page, "s")
     wait("it is saved", lambda: page.text("saved") == "As saved on disk")
+
+
+def by_form(page, folder):
+    """An edit of the form is one edit of the text, which the text's undo takes back."""
+    text = "return document.querySelector('.CodeMirror').CodeMirror.getValue()"
+    before = page.run(text)
+    wait("the form", lambda: there(page, "[id='form_design.participants']"))
+    page.run("const group = document.getElementById('form_design.participants').closest('details');"
+             "group.open = true")
+    page.run("const field = document.getElementById('form_design.participants');"
+             "field.focus(); field.value = '0'; field.dispatchEvent(new Event('change'))")
+    wait("the text", lambda: "participants = 0" in page.run(text))
+    assert page.run(text) == re.sub(r"participants = \d+", "participants = 0", before)
+    wait("its mistake beside the field", lambda: "design.participants is 0" in words(page, "[id='form_design.participants_bad']"))
+    assert "haptrial set pulls.toml design.participants 0" in words(page, "aside"), words(page, "aside")
+    assert page.run("return document.activeElement.id") == "form_design.participants"
+    page.picture(folder / "studio-form.png")
+    page.click("undo")
+    wait("the undo", lambda: page.run(text) == before)
+    wait("no mistake by the form", lambda: page.text("count") == "No mistakes")
+    page.run("document.getElementById('add_design').closest('details').open = true;"
+             "const list = document.getElementById('add_design'); list.value = 'break_after';"
+             "list.closest('details').querySelector('button').click()")
+    wait("the key more", lambda: "break_after" in page.run(text))
+    wait("its field", lambda: there(page, "[id='form_design.break_after']"))
+    page.run("document.querySelector(\"[aria-label='Remove design.break_after']\").click()")
+    wait("the key is gone", lambda: page.run(text) == before)
+    wait("it is as saved, again", lambda: page.text("saved") == "As saved on disk")
 
 
 def heading_in_frame(page, frame):
@@ -341,6 +370,7 @@ def main():
         page.picture(folder / "studio-mistake.png")
         complete(page)
         mend_and_save(page)
+        by_form(page, folder)
         preview(page, folder)
         rehearse(page, folder)
         sessions(page)

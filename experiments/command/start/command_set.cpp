@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
 #include "core/base/definition/given_values.h"
 #include "core/base/definition/removed_keys.h"
+#include "core/base/definition/stated_keys.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/whole_file.h"
@@ -19,11 +21,32 @@ struct SetOptions {
   GivenKey given;
   bool remove{false};
   bool add{false};
+  bool list{false};
+  bool json{false};
   std::string output;
 };
 
+/// Every key that the definition states, a line each, or as JSON.
+void print_keys(const SetOptions& o, const std::string& text) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const StatedKey& each : stated_keys(text, o.file)) {
+    if (o.json) {
+      all.push_back(
+          {{"key", each.key}, {"value", each.value}, {"line", each.line}, {"table", each.table}});
+    } else if (!each.table) {
+      fmt::print("{}: {} = {}\n", each.line, each.key, each.value);
+    }
+  }
+  if (o.json) {
+    fmt::print("{}\n", all.dump());
+  }
+}
+
 /// The text after the one edit that the line asks for.
 std::string edited(const SetOptions& o, const std::string& text) {
+  if (o.given.key.empty()) {
+    throw InputError("give KEY and VALUE, or --list");
+  }
   if ((o.given.value.empty() ? 0 : 1) + (o.remove ? 1 : 0) + (o.add ? 1 : 0) != 1) {
     throw InputError(fmt::format("{}: give a value, --remove or --add", o.given.key));
   }
@@ -35,6 +58,10 @@ std::string edited(const SetOptions& o, const std::string& text) {
 }
 
 int set(const SetOptions& options) {
+  if (options.list) {
+    print_keys(options, file_text(options.file));
+    return 0;
+  }
   const std::string text = edited(options, file_text(options.file));
   if (options.output == "-") {
     fmt::print("{}", text);
@@ -47,20 +74,21 @@ int set(const SetOptions& options) {
 }  // namespace
 
 void add_set(CLI::App& app, int& status) {
-  CLI::App* sub =
-      subcommand(app, "set", "Change one key of a definition; every other byte stays",
-                 "haptrial set my_study.toml design.participants 24",
-                 {"FILE", "guide-own-experiment.md#change-one-key"});
+  CLI::App* sub = subcommand(app, "set", "Change one key of a definition; every other byte stays",
+                             "haptrial set my_study.toml design.participants 24",
+                             {"FILE", "guide-own-experiment.md#change-one-key"});
   auto& o = options_of<SetOptions>(*sub, status, set);
   sub->add_option("FILE", o.file, "The definition (.toml)")->required();
   sub->add_option("KEY", o.given.key,
                   "Path of the key, with the name or number (from 1) of an entry: "
-                  "blocks.hard.shift")
-      ->required();
+                  "blocks.hard.shift");
   sub->add_option("VALUE", o.given.value,
                   "As the definition writes it: 24, 0.05, true, '\"a text\"', '[1, 2]'");
   sub->add_flag("--remove", o.remove, "Remove the key, table or entry; comments stay");
   sub->add_flag("--add", o.add, "Add an empty entry to the array of tables KEY");
+  auto* list = sub->add_flag("--list", o.list, "Print every key that the definition states")
+                   ->excludes("KEY");
+  sub->add_flag("--json", o.json, "With --list: as JSON, with lines and tables")->needs(list);
   sub->add_option("--output", o.output, "Write another file; - prints the text (default: FILE)");
 }
 

@@ -13,7 +13,7 @@ async function show_definition(main, file) {
   const draft = drafts.get(file);
   const key = key_help(draft.editor);
   main.append(make("div", {class: "editor"}, make("section", {"aria-label": word("text_of", {file})}, draft.editor.element),
-    make("aside", {}, key, make("section", {"aria-label": word("mistakes", {n: ""})}, remarks, plan))));
+    make("aside", {}, key, make("section", {"aria-label": word("mistakes", {n: ""})}, remarks, plan), draft.form.element)));
   const preview = preview_part(file);
   const beside = make("details", {id: "preview_beside", ontoggle: () => beside.open && preview.renew()}, make("summary", {}, word("preview")), preview.element);
   main.append(make("section", {"aria-label": word("preview")}, beside));
@@ -31,6 +31,7 @@ async function show_definition(main, file) {
     count.textContent = (checked.valid ? word("valid") : word("mistakes", {n: mistakes})) + (warnings > 0 ? ", " + word("warnings", {n: warnings}) : "");
     count.className = checked.valid ? "good" : "bad";
     remarks.replaceChildren(...checked.remarks.map((remark) => remark_item(remark, draft.editor)));
+    draft.form.renew().then(() => draft.form.show(checked.remarks));
     if (beside.open && checked.valid) preview.renew();
     plan.replaceChildren(make("details", {open: checked.valid}, make("summary", {}, word("plan")), printed(checked.output)), command_line(checked.command));
   };
@@ -57,6 +58,8 @@ async function open_draft(file) {
     if (number === draft.checks) draft.show_remarks(checked);
   });
   draft.editor = await make_editor(draft.text, word("text_of", {file}), draft.save);
+  draft.form = make_form(file, draft);
+  draft.editor.on_cursor(() => draft.form.go_to(draft.editor.line()));
   draft.editor.on_change(() => {
     draft.show();
     clearTimeout(draft.pause);

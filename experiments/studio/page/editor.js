@@ -31,10 +31,19 @@ async function load_code_mirror() {
   }
 }
 
-/// @returns {element, text(), on_change(f), on_cursor(f), go_to(line), show(remarks), before(), refresh()}
+/// @returns {element, text(), replace(text), undo(), redo(), on_change(f), on_cursor(f), go_to(line), look_at(line), line(), show(remarks), before(), refresh()}
 async function make_editor(text, label, save) {
   code_mirror = code_mirror || load_code_mirror();
   return await code_mirror ? rich_editor(text, label, save) : plain_editor(text, label, save);
+}
+
+/// The span that two texts do not share, and what the second has there.
+function change_between(before, after) {
+  let from = 0, same = 0;
+  const most = Math.min(before.length, after.length);
+  while (from < most && before[from] === after[from]) ++from;
+  while (same < most - from && before[before.length - 1 - same] === after[after.length - 1 - same]) ++same;
+  return {from, to: before.length - same, text: after.slice(from, after.length - same)};
 }
 
 function plain_editor(text, label, save) {
@@ -46,6 +55,15 @@ function plain_editor(text, label, save) {
   return {
     element: make("div", {}, make("p", {class: "soft", id: "plain_editor"}, word("plain_editor")), field),
     text: () => field.value,
+    replace(text) {
+      const at = change_between(field.value, text);
+      field.setRangeText(at.text, at.from, at.to);
+      field.dispatchEvent(new Event("input"));
+    },
+    undo() { field.focus(); document.execCommand("undo"); },
+    redo() { field.focus(); document.execCommand("redo"); },
+    look_at() {},
+    line: () => field.value.slice(0, field.selectionStart).split("\n").length,
     on_change: (f) => field.addEventListener("input", f),
     on_cursor: (f) => { for (const kind of ["keyup", "click", "focus"]) field.addEventListener(kind, f); },
     before: () => field.value.slice(0, field.selectionStart).split("\n"),
@@ -71,7 +89,7 @@ function rich_editor(text, label, save) {
   editor.on("inputRead", (_, change) => {
     if (/^[\w.]$/.test(change.text[0]) && change.text.length === 1 && !editor.state.completionActive) complete(editor, true);
   });
-  let widgets = [], marked = [];
+  let widgets = [], marked = [], looked = [];
   const before = () => {
     const at = editor.getCursor();
     const lines = editor.getRange({line: 0, ch: 0}, at).split("\n");
@@ -81,6 +99,14 @@ function rich_editor(text, label, save) {
     element: holder,
     editor,
     text: () => editor.getValue(),
+    replace(text) {
+      const at = change_between(editor.getValue(), text);
+      editor.replaceRange(at.text, editor.posFromIndex(at.from), editor.posFromIndex(at.to));
+    },
+    undo: () => editor.undo(),
+    redo: () => editor.redo(),
+    look_at(line) { editor.scrollIntoView({line: line - 1, ch: 0}, 60); looked.forEach((each) => editor.removeLineClass(each, "background", "line-looked")); looked = [editor.addLineClass(line - 1, "background", "line-looked")]; },
+    line: () => editor.getCursor().line + 1,
     on_change: (f) => editor.on("change", f),
     on_cursor: (f) => editor.on("cursorActivity", f),
     before,

@@ -166,6 +166,42 @@ TEST_F(StudioTest, MistakesHaveTheirLines) {
   }
 }
 
+TEST_F(StudioTest, AnEditOfTheFormIsOneOfTheTextAlone) {
+  const std::string before = text();
+  const json stated = post("/keys", {{"file", "mine.toml"}, {"text", before}});
+  EXPECT_EQ(stated["command"], "haptrial set mine.toml --list");
+  const auto of = [&](const char* key) {
+    return *std::ranges::find_if(stated["keys"],
+                                 [&](const json& each) { return each["key"] == key; });
+  };
+  EXPECT_EQ(of("design.participants")["value"], "6");
+  EXPECT_EQ(of("design.participants")["line"], 7);
+  EXPECT_TRUE(of("design")["table"]);
+  const auto edit = [&](const char* key, const char* kind, const char* value) {
+    return post(
+        "/set",
+        {{"file", "mine.toml"}, {"text", before}, {"key", key}, {"edit", kind}, {"value", value}});
+  };
+  std::string wanted = before;
+  wanted.replace(wanted.find("participants = 6"), 16, "participants = -6");
+  const json changed = edit("design.participants", "value", "-6");
+  EXPECT_EQ(changed["text"], wanted) << "mistakes may be written; validate says them";
+  EXPECT_EQ(changed["command"], "haptrial set mine.toml -- design.participants -6");
+  EXPECT_EQ(edit("design.participants", "remove", "")["command"],
+            "haptrial set mine.toml --remove design.participants");
+  EXPECT_EQ(text(), before) << "nothing is saved";
+  EXPECT_THAT(edit("--output=x.toml", "value", "1")["text"], HasSubstr("['--output=x']"))
+      << "a key is never an option";
+  EXPECT_FALSE(fs::exists(folder_ / "x.toml"));
+  expect_refused(posting("/set", {{"file", "mine.toml"},
+                                  {"text", before},
+                                  {"key", "design.participants"},
+                                  {"edit", "value"},
+                                  {"value", "1\nx = 2"}}),
+                 400, "one value");
+  expect_refused(posting("/keys", {{"file", "mine.toml"}, {"text", "a = \n"}}), 400, "mine.toml");
+}
+
 TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   std::string other = text();
   const std::string name = "name = \"";
