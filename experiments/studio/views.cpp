@@ -56,6 +56,17 @@ json remarks_json(const std::vector<Remark>& remarks) {
   return all;
 }
 
+json lines_that_begin(const std::string& output, std::string_view with) {
+  json all = json::array();
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(with)) {
+      all.push_back(line);
+    }
+  }
+  return all;
+}
+
 json files_json(const std::vector<FolderFile>& files) {
   json all = json::array();
   for (const FolderFile& file : files) {
@@ -192,10 +203,20 @@ json StudioViews::text(const std::string& file) const {
 
 json StudioViews::validate(const std::string& file, const std::string& text) const {
   const Draft draft(folder_.definition(file), folder_.path(), text);
-  const CommandResult result = commands_.run({"validate", draft.name()});
+  const std::string sessions = StudyFolder::sessions_of(file);
+  const SessionFolder held = held_in(sessions);
+  const auto line_for = [&](const std::string& name) {
+    CommandWords words{"validate", name};
+    if (const FolderFile* newest = held.newest_session()) {
+      words.insert(words.end(), {"--since", sessions + "/" + newest->name});
+    }
+    return words;
+  };
+  const CommandResult result = commands_.run(line_for(draft.name()));
   const std::string output = replaced(result.output, draft.name(), file);
-  return {{"command", shown_command({"validate", file})},
+  return {{"command", shown_command(line_for(file))},
           {"valid", result.status == 0},
+          {"since", lines_that_begin(output, "since ")},
           {"remarks", remarks_json(read_remarks(output, file, result.status == 0))},
           {"output", output}};
 }

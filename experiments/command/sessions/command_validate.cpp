@@ -3,11 +3,15 @@
 #include <CLI/CLI.hpp>
 
 #include "core/base/error.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/screen/speech_library.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/studies/registry.h"
 #include "protocols/definition/languages.h"
 #include "protocols/definition/speech_options.h"
+#include "protocols/interface/protocol.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -31,9 +35,41 @@ void print_missing_speech(const protocols::Definition& definition) {
   }
 }
 
-int validate(const std::string& file) {
+struct ValidateOptions {
+  std::string definition;
+  std::string since;  // session file
+};
+
+/// What a session's definition had otherwise, a line for each key.
+void print_changes(const Experiment& experiment, const std::string& session) {
+  const record::SessionInfo info = record::SessionReader(session).info();
+  const protocols::Protocol& protocol = experiment.study->protocol();
+  if (&protocol_of(info) != &protocol) {
+    throw InputError(
+        fmt::format("{}: a session of another protocol than the definition's", session));
+  }
+  const DefinitionChanges changes =
+      protocols::study_changes(protocol, info, experiment.definition->text, info.device);
+  const auto print = [&session](const char* meaning, const std::vector<DefinitionChange>& of) {
+    for (const DefinitionChange& each : of) {
+      fmt::print("since {}, {}: {}\n", session, meaning, sentence_of({each}));
+    }
+  };
+  print("another study", changes.binding);
+  print("may change within a study", changes.free);
+  if (changes.binding.empty() && changes.free.empty()) {
+    fmt::print("since {}: {}\n", session,
+               changes.same_text ? "nothing has changed" : "only comments and layout have changed");
+  }
+}
+
+int validate(const ValidateOptions& options) {
+  const std::string& file = options.definition;
   const Experiment experiment = load_experiment(file);
   fmt::print("{}: valid\n", file);
+  if (!options.since.empty()) {
+    print_changes(experiment, options.since);
+  }
   if (const std::string& lab = experiment.definition->lab; !lab.empty()) {
     fmt::print("lab file: {}\n", lab);
   }
@@ -66,8 +102,11 @@ int validate(const std::string& file) {
 void add_validate(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(app, "validate", "Check a definition and show the study that it plans",
                              "haptrial validate first_experiment", {"", "guide-experimenter.md"});
-  auto& definition = options_of<std::string>(*sub, status, validate);
-  sub->add_option("DEFINITION", definition, "Experiment definition (.toml)")->required();
+  auto& o = options_of<ValidateOptions>(*sub, status, validate);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("--since", o.since,
+                  "Session file (.h5): name each key that has changed since, and whether it may "
+                  "within a study");
 }
 
 }  // namespace haptrial::experiments

@@ -88,7 +88,7 @@ void add_set(CLI::App& app, int& status) {
   sub->add_flag("--add", o.add, "Add an empty entry to the array of tables KEY");
   auto* list = sub->add_flag("--list", o.list, "Print every key that the definition states")
                    ->excludes("KEY");
-  sub->add_flag("--json", o.json, "With --list: as JSON, with lines and tables")->needs(list);
+  sub->add_flag("--json", o.json, "Print the list as JSON, with lines and tables")->needs(list);
   sub->add_option("--output", o.output, "Write another file; - prints the text (default: FILE)");
 }
 

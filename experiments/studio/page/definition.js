@@ -7,13 +7,14 @@ async function show_definition(main, file) {
   const saved = make("span", {id: "saved", role: "status"});
   const count = make("span", {id: "count", role: "status"});
   const remarks = make("ul", {class: "remarks-list", id: "remarks"});
-  const plan = make("div", {});
+  const plan = make("div", {}), since = make("ul", {class: "remarks-list", id: "since"});
+  const since_part = make("div", {hidden: true}, make("h2", {}, word("since_last")), since);
   main.append(make("h1", {}, file), make("div", {class: "row"}, save_button, saved, count));
   if (!drafts.has(file)) drafts.set(file, await open_draft(file));
   const draft = drafts.get(file);
   const key = key_help(draft.editor);
   main.append(make("div", {class: "editor"}, make("section", {"aria-label": word("text_of", {file})}, draft.editor.element),
-    make("aside", {}, key, make("section", {"aria-label": word("mistakes", {n: ""})}, remarks, plan), draft.form.element)));
+    make("aside", {}, key, make("section", {"aria-label": word("mistakes", {n: ""})}, remarks, since_part, plan), draft.form.element)));
   const preview = preview_part(file);
   const beside = make("details", {id: "preview_beside", ontoggle: () => beside.open && preview.renew()}, make("summary", {}, word("preview")), preview.element);
   main.append(make("section", {"aria-label": word("preview")}, beside));
@@ -33,6 +34,8 @@ async function show_definition(main, file) {
     remarks.replaceChildren(...checked.remarks.map((remark) => remark_item(remark, draft.editor)));
     draft.form.renew().then(() => draft.form.show(checked.remarks));
     if (beside.open && checked.valid) preview.renew();
+    since.replaceChildren(...checked.since.map((line) => make("li", {class: / another study: /.test(line) ? "warn" : "", lang: "en"}, line)));
+    since_part.hidden = checked.since.length === 0;
     plan.replaceChildren(make("details", {open: checked.valid}, make("summary", {}, word("plan")), printed(checked.output)), command_line(checked.command));
   };
   save_button.addEventListener("click", draft.save);

@@ -202,6 +202,28 @@ TEST_F(StudioTest, AnEditOfTheFormIsOneOfTheTextAlone) {
   expect_refused(posting("/keys", {{"file", "mine.toml"}, {"text", "a = \n"}}), 400, "mine.toml");
 }
 
+TEST_F(StudioTest, ChangesSinceTheNewestSessionAreNamed) {
+  EXPECT_THAT(post("/validate", {{"file", "mine.toml"}, {"text", text()}})["since"], IsEmpty());
+  ASSERT_EQ(test::run_command("cd '" + folder_.path().string() +
+                              "' && haptrial dry-run mine.toml --subjects 1 --out out/mine")
+                .status,
+            0);
+  const auto since = [&](const std::string& from, const std::string& to) {
+    std::string changed = text();
+    changed.replace(changed.find(from), from.size(), to);
+    return post("/validate", {{"file", "mine.toml"}, {"text", changed}});
+  };
+  const json same = since("# The", "# This");
+  EXPECT_EQ(same["command"], "haptrial validate mine.toml --since out/mine/S01.h5");
+  EXPECT_THAT(same["since"],
+              ElementsAre("since out/mine/S01.h5: only comments and layout have changed"));
+  EXPECT_THAT(since("participants = 6", "participants = 8")["since"],
+              ElementsAre("since out/mine/S01.h5, may change within a study: "
+                          "design.participants was 6, is 8"));
+  EXPECT_THAT(since("time = 1.0", "time = 2.0")["since"],
+              ElementsAre(HasSubstr(", another study: stages")));
+}
+
 TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   std::string other = text();
   const std::string name = "name = \"";
