@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptrial::experiments {
+
+/// What a study's folders hold of a participant who withdraws.
+struct Withdrawal {
+  std::vector<std::filesystem::path> sessions;  // session files, partial ones and copies, sorted
+  std::vector<std::filesystem::path> made;      // tables, reports, pictures made from sessions
+  std::vector<std::filesystem::path> others;    // other files that name the participant
+};
+
+/// Looks through folders with all that is below them. A session file is the participant's if it
+/// says so, and one that cannot be read if its name does. Whatever was made from the sessions of
+/// these folders counts, since its numbers are partly the participant's.
+/// @throws InputError for a folder that is not there, a participant without a file, or one whose
+/// session is being recorded
+Withdrawal find_withdrawal(const std::vector<std::filesystem::path>& folders,
+                           const std::string& subject);
+
+/// Deletes sessions and what was made from sessions, the participant's row of
+/// excluded/reasons.csv, and folders that become empty; adds a row to withdrawals.csv in the first
+/// folder, with the time, the user's login and how much was deleted, without the identifier.
+/// @param folders  as they were looked through
+/// @throws RunError for a file that cannot be deleted; those before it are gone then
+void withdraw(const Withdrawal& found, const std::vector<std::filesystem::path>& folders,
+              const std::string& subject);
+
+/// Whether a text has a word: its neighbours are neither letters, digits nor '_'.
+bool has_word(std::string_view text, std::string_view word);
+
+}  // namespace haptrial::experiments

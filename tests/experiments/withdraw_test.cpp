@@ -1,0 +1,109 @@
+// A participant who withdraws is gone from every byte below the study's folder.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/file_text.h"
+#include "experiments/study/withdrawal.h"
+#include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class WithdrawTest : public testing::Test {
+ protected:
+  WithdrawTest() {
+    run("new mine.toml && haptrial dry-run mine.toml --subjects 3 --out out/mine");
+    run("analyze out/mine && haptrial export out/mine --csv out/mine/tables");
+    fs::create_directories(folder_ / "backup/mine");
+    fs::copy(folder_ / "out/mine/S02.h5", folder_ / "backup/mine/S02.h5");
+    fs::copy(folder_ / "out/mine/S03.h5", folder_ / "backup/mine/S03.h5");
+  }
+  test::CommandResult run(const std::string& arguments) const {
+    return test::run_command("cd '" + folder_.path().string() + "' && haptrial " + arguments);
+  }
+  /// Files below a folder whose name or bytes have the text.
+  std::vector<std::string> files_with(const std::string& text) const {
+    std::vector<std::string> found;
+    for (const auto& each : fs::recursive_directory_iterator(folder_.path())) {
+      const std::string name = each.path().string();
+      if (each.is_regular_file() && (name.find(text) != std::string::npos ||
+                                     file_text(each.path()).find(text) != std::string::npos)) {
+        found.push_back(name);
+      }
+    }
+    return found;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(WithdrawTest, NoByteBelowTheFoldersNamesTheParticipant) {
+  ASSERT_GT(files_with("S02").size(), 5u);
+  const auto listed = run("withdraw out/mine S02 --also backup --dry-run");
+  EXPECT_EQ(listed.status, 0) << listed.errors;
+  EXPECT_THAT(
+      listed.output,
+      AllOf(HasSubstr("would delete out/mine/S02.h5"), HasSubstr("would delete backup/mine/S02.h5"),
+            HasSubstr("would delete out/mine/report.html"), Not(HasSubstr("S03.h5"))));
+  EXPECT_TRUE(fs::exists(folder_ / "out/mine/S02.h5"));
+  const auto asked = run("withdraw out/mine S02 < /dev/null");
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_THAT(asked.errors, HasSubstr("--yes"));
+  ASSERT_TRUE(fs::exists(folder_ / "out/mine/S02.h5"));
+
+  const auto done = run("withdraw out/mine S02 --also backup --yes");
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("deleted: 2 session files of S02, and "));
+  EXPECT_THAT(files_with("S02"), IsEmpty());
+  EXPECT_TRUE(fs::exists(folder_ / "out/mine/S03.h5"));
+  EXPECT_TRUE(fs::exists(folder_ / "backup/mine/S03.h5"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/mine/tables")) << "empty folders go, too";
+  EXPECT_THAT(file_text(folder_ / "out/mine/withdrawals.csv"),
+              HasSubstr("time,login,sessions,made_from_sessions\n2"));
+
+  EXPECT_EQ(run("analyze out/mine").status, 0);
+  EXPECT_THAT(files_with("S02"), IsEmpty());
+  const auto again = run("withdraw out/mine S02 --yes");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.errors, HasSubstr("S02 has no session file in out/mine"));
+}
+
+TEST_F(WithdrawTest, ExcludedFilesAndReasonsGoAndOthersStay) {
+  fs::create_directories(folder_ / "out/mine/excluded");
+  fs::rename(folder_ / "out/mine/S02.h5", folder_ / "out/mine/excluded/S02.h5");
+  write_text(folder_ / "out/mine/excluded/reasons.csv",
+             "participant,reason\nS02,left early\nS020,slept\n");
+  write_text(folder_ / "out/mine/S02-session-2.h5.partial", "torn");
+  write_text(folder_ / "out/mine/S020.h5.partial", "torn");
+  write_text(folder_ / "out/mine/remarks.txt", "S02 called on Monday\n");
+  const auto done = run("withdraw out/mine S02 --yes");
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("leaves, although it names the participant: "
+                                     "out/mine/remarks.txt"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/mine/S02-session-2.h5.partial"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/mine/S020.h5.partial"));
+  EXPECT_EQ(file_text(folder_ / "out/mine/excluded/reasons.csv"),
+            "participant,reason\nS020,slept\n");
+}
+
+TEST(HasWordTest, NeighboursDecide) {
+  EXPECT_TRUE(has_word("P03", "P03"));
+  EXPECT_TRUE(has_word("P03-session-2.h5", "P03"));
+  EXPECT_TRUE(has_word("P030, P03", "P03"));
+  EXPECT_FALSE(has_word("P030 XP03 P03_b", "P03"));
+  EXPECT_FALSE(has_word("", "P03"));
+}
+
+}  // namespace
+}  // namespace haptrial::experiments
