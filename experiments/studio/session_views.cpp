@@ -140,4 +140,22 @@ json SessionViews::hand_over(const std::string& file, const std::string& folder,
   return {{"command", shown_command(words)}, {"job", commands_.start(words, job_of(file, folder))}};
 }
 
+json SessionViews::withdraw(const std::string& file, const std::string& subject, bool sure) const {
+  folder_.definition(file);
+  if (subject.starts_with('-')) {
+    throw InputError("an identifier of a participant does not begin with -");
+  }
+  CommandWords words{"withdraw", StudyFolder::sessions_of(file), subject};
+  for (const std::string& folder : folder_.export_folders(file)) {
+    words.insert(words.end(), {"--also", folder});
+  }
+  const std::string asked = shown_command(words);
+  words.push_back(sure ? "--yes" : "--dry-run");
+  const CommandResult result = commands_.run(words);
+  if (result.status != 0) {
+    throw InputError(result.output);
+  }
+  return {{"command", asked}, {"output", result.output}};
+}
+
 }  // namespace haptrial::experiments

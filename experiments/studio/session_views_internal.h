@@ -37,6 +37,10 @@ class SessionViews {
   nlohmann::json hand_over(const std::string& file, const std::string& folder,
                            const std::string& format) const;
 
+  /// What a participant's withdrawal deletes from the sessions and exports of a study, or, once it
+  /// is sure, deletes it.
+  nlohmann::json withdraw(const std::string& file, const std::string& subject, bool sure) const;
+
  private:
   const StudyFolder& folder_;
   Commands& commands_;

@@ -248,6 +248,11 @@ class Studio::Implementation {
                    return sessions_.test_device(string_in(b, "device"),
                                                 number_in(b, "seconds", 1, kMostSeconds));
                  }),
+            post("/withdraw",
+                 [this](const json& b) {
+                   return sessions_.withdraw(string_in(b, "file"), string_in(b, "subject"),
+                                             b.value("sure", json()) == true);
+                 }),
             post("/hand_over", [this](const json& b) {
               return sessions_.hand_over(string_in(b, "file"), string_in(b, "folder"),
                                          string_in(b, "format"));

@@ -136,10 +136,30 @@ function end_session(job) {
 }
 
 /// What each participant has done so far, as the roster has it.
-function participant_table(study) {
+/// Lists what a withdrawal deletes; deletes it once the identifier was typed.
+async function ask_withdrawal(file, subject, renew) {
+  const found = await post("/withdraw", {file, subject, sure: false});
+  const typed = make("input", {id: "withdrawn", autocomplete: "off"});
+  const dialog = make("dialog", {"aria-labelledby": "withdraw_title"}, make("h2", {id: "withdraw_title"}, word("withdraw_of", {subject})),
+    make("p", {}, word("withdraw_help")), printed(found.output), command_line(found.command),
+    make("form", {method: "dialog"}, make("label", {}, word("type_to_delete", {subject}), typed),
+      make("div", {class: "row"}, make("button", {type: "button", class: "bad", id: "withdraw_now", onclick: () => attempt(async () => {
+        if (typed.value !== subject) return typed.focus();
+        const done = await post("/withdraw", {file, subject, sure: true});
+        dialog.close();
+        await renew();
+        say(done.output.trim().split("\n").pop());
+      })}, word("delete_files")), make("button", {type: "button", onclick: () => dialog.close()}, word("cancel")))));
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+function participant_table(study, file, renew) {
   const persons = study.roster && study.roster.participants || [];
   const marks = (person) => [person.pilot && word("pilot"), person.simulated && word("simulated"), person.excluded && word("excluded")].filter((each) => each).join(", ");
-  return persons.length === 0 ? make("p", {class: "soft"}, word("no_sessions")) : table([word("participant"), word("group_title"), word("sessions"), word("note")],
+  return persons.length === 0 ? make("p", {class: "soft"}, word("no_sessions")) : table([word("participant"), word("group_title"), word("sessions"), word("note"), word("withdraw")],
     persons.map((person) => row(person.subject, person.group || "\u2013", make("td", {}, ...person.sessions.map((each) => make("div", {class: each.state === "done" ? "good" : "bad"},
-      word("session_is", {n: each.session, state: word("roster_" + each.state), trials: each.trials})))), marks(person))));
+      word("session_is", {n: each.session, state: word("roster_" + each.state), trials: each.trials})))), marks(person),
+      make("button", {type: "button", class: "remove", "aria-label": word("withdraw_of", {subject: person.subject}), onclick: () => attempt(() => ask_withdrawal(file, person.subject, renew))}, word("withdraw")))));
 }

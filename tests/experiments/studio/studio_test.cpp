@@ -224,6 +224,26 @@ TEST_F(StudioTest, ChangesSinceTheNewestSessionAreNamed) {
               ElementsAre(HasSubstr(", another study: stages")));
 }
 
+TEST_F(StudioTest, AWithdrawalIsListedBeforeItIsDone) {
+  ASSERT_EQ(test::run_command("cd '" + folder_.path().string() +
+                              "' && haptrial dry-run mine.toml --subjects 2 --out out/mine")
+                .status,
+            0);
+  const json asking{{"file", "mine.toml"}, {"subject", "S01"}, {"sure", false}};
+  const json listed = post("/withdraw", asking);
+  EXPECT_EQ(listed["command"], "haptrial withdraw out/mine S01");
+  EXPECT_THAT(std::string(listed["output"]), HasSubstr("would delete out/mine/S01.h5"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/mine/S01.h5"));
+  json sure = asking;
+  sure["sure"] = true;
+  post("/withdraw", sure);
+  EXPECT_FALSE(fs::exists(folder_ / "out/mine/S01.h5"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/mine/S02.h5"));
+  expect_refused(posting("/withdraw", sure), 400, "S01 has no session file");
+  sure["subject"] = "--also";
+  expect_refused(posting("/withdraw", sure), 400, "does not begin with -");
+}
+
 TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   std::string other = text();
   const std::string name = "name = \"";
