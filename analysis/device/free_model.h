@@ -7,8 +7,8 @@
 
 namespace haptrial::analysis {
 
-/// What is known of a free handle's movement along one axis, and the times at which the model is
-/// compared with it.
+/// Signals of a free handle's movement along one axis, and the times at which the model is compared
+/// with them.
 struct FreeSignals {
   static constexpr double kMostDelay = 0.02;  // that a model may have [s]
 

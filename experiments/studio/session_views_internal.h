@@ -37,8 +37,8 @@ class SessionViews {
   nlohmann::json hand_over(const std::string& file, const std::string& folder,
                            const std::string& format) const;
 
-  /// What a participant's withdrawal deletes from the sessions and exports of a study, or, once it
-  /// is sure, deletes it.
+  /// Lists the files that a participant's withdrawal deletes from the sessions and exports of a
+  /// study. @param sure  deletes them
   nlohmann::json withdraw(const std::string& file, const std::string& subject, bool sure) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace haptrial::experiments {
 
-/// What a study's folders hold of a participant who withdraws.
+/// The files in a study's folders that concern a participant who withdraws.
 struct Withdrawal {
   std::vector<std::filesystem::path> sessions;  // session files, partial ones and copies, sorted
   std::vector<std::filesystem::path> made;      // tables, reports, pictures made from sessions

@@ -37,7 +37,7 @@ constexpr double kNoise = 0.02;      // of both sensors [N]
 constexpr double kLatency = 1.6e-3;  // of the instrument's samples [s]
 constexpr double kFingers = 0.03;    // of a rotation [m]
 
-/// What an instrument on a part measures: forces, all six axes, or the grip alone.
+/// The quantities of an instrument on a part: forces, all six axes, or the grip alone.
 std::vector<channel::Quantity> quantities_on(device::Part part) {
   if (part == device::Part::kGrip) {
     return {{"grip", "N"}};

@@ -18,6 +18,12 @@ const GivenAnswer* answer_to(const StudyTrial& trial, const std::string& questio
   return at == trial.answers.end() ? nullptr : &*at;
 }
 
+const StageTime* last_stage(const StudyTrial& trial, const std::string& stage) {
+  const auto at = std::find_if(trial.stages.rbegin(), trial.stages.rend(),
+                               [&](const StageTime& each) { return each.stage == stage; });
+  return at == trial.stages.rend() ? nullptr : &*at;
+}
+
 const GivenVariable* variable_of(const StudyTrial& trial, const std::string& name, int interval) {
   const auto at = std::find_if(
       trial.variables.begin(), trial.variables.end(),

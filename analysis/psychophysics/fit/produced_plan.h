@@ -10,7 +10,7 @@ class Table;
 
 namespace haptrial::analysis::trials {
 
-/// What a hand produces in a stage.
+/// A quantity that a hand produces in a stage.
 enum class ProducedQuantity {
   kForce,  // size of the force on the device: what the hand presses against
   kX,      // place along an axis

@@ -17,13 +17,6 @@ constexpr double kLead = 0.2;         // of the recording before the go signal [
 constexpr double kErrorAfter = 0.15;  // after onset [s]
 constexpr double kNoPush = 1e-6;      // share of the field below which it pushes to no side
 
-/// The last pass of the stage: an interval that was repeated has others before it.
-const StageTime* stage_of(const StudyTrial& trial, const std::string& stage) {
-  const auto at = std::find_if(trial.stages.rbegin(), trial.stages.rend(),
-                               [&](const StageTime& each) { return each.stage == stage; });
-  return at == trial.stages.rend() ? nullptr : &*at;
-}
-
 /// The samples of a reach, with those just before it.
 struct ReachSamples {
   std::vector<double> time;  // from the go signal [s]
@@ -89,7 +82,7 @@ void measure_session(const std::filesystem::path& file, const TrialsData& data,
   const record::SessionReader reader(file);
   for (StudyReach* reach : reaches) {
     const StudyTrial& trial = data.trials[reach->trial];
-    if (const StageTime* time = stage_of(trial, stage)) {
+    if (const StageTime* time = last_stage(trial, stage)) {
       reach->arrived = time->reached;
       measure(samples_of(reader, trial, *time), reader.info().rate, *reach);
     }

@@ -42,9 +42,8 @@ std::string AnsweredSeries::condition() const { return fmt::format("{}", fmt::jo
 
 bool sets_other_level(const StudyTrial& trial, const TrialsPlan& plan) {
   return plan.level_is_set && !trial.levels.empty() &&
-         std::ranges::none_of(trial.levels, [&](const GivenLevel& level) {
-           return level.variable == plan.level;
-         });
+         std::ranges::none_of(
+             trial.levels, [&](const GivenLevel& level) { return level.variable == plan.level; });
 }
 
 double level_of(const StudyTrial& trial, const TrialsPlan& plan) {

@@ -42,7 +42,7 @@ double path_of(std::span<const ProducedTick> ticks) {
   return way;
 }
 
-/// What one session's trials produced.
+/// Reads what the trials of one session produced.
 class SessionProducts {
  public:
   SessionProducts(const std::filesystem::path& file, const ProducedPlan& plan)
@@ -55,10 +55,8 @@ class SessionProducts {
   }
 
   std::optional<double> of(const StudyTrial& trial) const {
-    const auto stage =
-        std::find_if(trial.stages.rbegin(), trial.stages.rend(),
-                     [&](const StageTime& each) { return each.stage == plan_.stage; });
-    if (stage == trial.stages.rend() || stage->ticks == 0) {
+    const StageTime* stage = last_stage(trial, plan_.stage);
+    if (stage == nullptr || stage->ticks == 0) {
       return std::nullopt;
     }
     const std::uint64_t end = trial.first_sample + stage->first + stage->ticks;
@@ -92,7 +90,7 @@ class SessionProducts {
   std::vector<record::DeviceRow> rows_;  // of the device, if it is not the first
 };
 
-/// What the trials of a participant under a condition produced.
+/// Values of the trials of a participant under a condition.
 struct Products {
   std::vector<double> values, errors;
 };

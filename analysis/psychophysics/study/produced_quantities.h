@@ -19,7 +19,7 @@ struct ProducedTick {
 /// The number of a stage's ticks. @param ticks  at least one
 double produced_value(std::span<const ProducedTick> ticks, const ProducedPlan& plan);
 
-/// What was produced, and with ProducedPlan::target its constant, absolute and variable error,
+/// The produced quantity, and with ProducedPlan::target its constant, absolute and variable error,
 /// tested between the conditions of TrialsPlan::by. A value is a participant's under a condition:
 /// the mean over trials; the variable error is the standard deviation of the errors of at least two
 /// trials.

@@ -58,10 +58,8 @@ class SessionPursuits {
       : reader_(file), plan_(plan), targets_(reader_.rows<record::TargetRow>()) {}
 
   std::optional<PursuitResponse> of(const StudyTrial& trial) const {
-    const auto stage =
-        std::find_if(trial.stages.rbegin(), trial.stages.rend(),
-                     [&](const StageTime& each) { return each.stage == plan_.stage; });
-    if (stage == trial.stages.rend()) {
+    const StageTime* stage = last_stage(trial, plan_.stage);
+    if (stage == nullptr) {
       return std::nullopt;
     }
     const double rate = reader_.info().rate;

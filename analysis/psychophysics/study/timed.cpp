@@ -16,13 +16,8 @@ namespace {
 
 /// Duration of a stage in the last interval that has it [s]; NaN: its end was not reached.
 double duration_of(const StudyTrial& trial, const std::string& stage, double rate) {
-  double duration = kNotKnown;
-  for (const StageTime& each : trial.stages) {
-    if (each.stage == stage) {
-      duration = each.reached ? static_cast<double>(each.ticks) / rate : kNotKnown;
-    }
-  }
-  return duration;
+  const StageTime* last = last_stage(trial, stage);
+  return last != nullptr && last->reached ? static_cast<double>(last->ticks) / rate : kNotKnown;
 }
 
 double time_of(const TrialsData& data, const StudyTrial& trial, const GivenAnswer* answer,

@@ -110,7 +110,7 @@ std::string trimmed_result(const SideTest& test) {
                      number(t.difference), degrees(t.df), t.t, p_result(test.trimmed_holm));
 }
 
-/// What was asked for beside the test itself.
+/// The tests that were asked for beside the t-test.
 std::string tests_beside(const SideTest& test) {
   std::string text;
   if (test.beside.bayes_factors) {

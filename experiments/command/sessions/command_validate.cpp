@@ -40,7 +40,7 @@ struct ValidateOptions {
   std::string since;  // session file
 };
 
-/// What a session's definition had otherwise, a line for each key.
+/// Prints the keys in which a session's definition differs, a line each.
 void print_changes(const Experiment& experiment, const std::string& session) {
   const record::SessionInfo info = record::SessionReader(session).info();
   const protocols::Protocol& protocol = experiment.study->protocol();
