@@ -365,13 +365,14 @@ TEST_F(StudioTest, KeysAndTheMachineAreThoseOfTheCommands) {
 }
 
 TEST_F(StudioTest, ARehearsalAndItsReport) {
-  const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 2}});
+  const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 2}, {"setup", 15}});
   EXPECT_EQ(started["command"],
-            "haptrial dry-run mine.toml --subjects 2 --out out/mine-rehearsal-001");
+            "haptrial dry-run mine.toml --subjects 2 --out out/mine-rehearsal-001 --setup 15");
   const json done = ended(started["job"]);
   EXPECT_EQ(done["state"], "done");
   EXPECT_EQ(done["written"], 2);
-  EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("2 sessions, "));
+  EXPECT_THAT(std::string(get("/job", "job=1")["output"]),
+              AllOf(HasSubstr("2 sessions, "), HasSubstr("in the lab with 15 minutes between")));
   json folder = get("/sessions", "file=mine.toml")["folders"][0];
   EXPECT_EQ(folder["folder"], "out/mine-rehearsal-001");
   EXPECT_TRUE(folder["rehearsal"]);
