@@ -275,6 +275,7 @@ def begin_session(page):
     wait("its tab", lambda: len(page.call("GET", "/window/handles")) == len(before) + 1)
     new = next(each for each in page.call("GET", "/window/handles") if each not in before)
     page.call("POST", "/window", {"handle": new})
+    wait("its page", lambda: there(page, "#state"))
     state(page, "Instructions")
     assert page.text("subject").startswith("P01"), page.text("subject")
     return studio

@@ -253,7 +253,8 @@ TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   EXPECT_EQ(made["command"], "haptrial show mine.toml --trial 2 --no-virtual-trial");
   const std::string page = std::to_string(made["page"].get<int>());
   const std::string shown = exchange(reading("/preview_page", "page=" + page));
-  EXPECT_THAT(shown, HasSubstr("seen_before_"));
+  EXPECT_THAT(shown, AllOf(HasSubstr("seen_before_"), HasSubstr("mine.toml, trial 2"),
+                           Not(HasSubstr("draft-"))));
   EXPECT_THAT(shown,
               HasSubstr("Content-Security-Policy: sandbox allow-scripts; script-src 'nonce-"));
   EXPECT_THAT(shown, Not(HasSubstr("allow-same-origin"))) << "the page reaches nothing";
