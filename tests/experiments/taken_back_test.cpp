@@ -17,6 +17,7 @@
 #include "core/record/rows/trial_rows.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait.h"
 
