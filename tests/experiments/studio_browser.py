@@ -180,6 +180,7 @@ def film(page):
         return float(in_frame(page, "preview", "return document.querySelector('.film-controls input').value"))
     def press_play():
         in_frame(page, "preview", "document.querySelector('.film-controls button').click()")
+    page.run("document.getElementById('preview').scrollIntoView()")  # out of sight nothing plays
     before, said = time(), in_frame(page, "preview", "return document.querySelector('.film-said').textContent")
     press_play()
     wait("it plays", lambda: time() != before)
@@ -198,6 +199,7 @@ def preview(page, folder):
     first = page.run("return document.getElementById('preview').src")
     page.picture(folder / "studio-preview.png")
     film(page)
+    page.run("document.getElementById('preview').scrollIntoView()")
     first = page.run("return document.getElementById('preview').src")
     at = in_frame(page, "preview", "scrollTo(0, 300); return scrollY")
     assert at == 300, at
