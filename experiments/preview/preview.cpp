@@ -18,9 +18,8 @@ namespace {
 
 namespace palette = analysis::palette;
 
-/// Longer trials are not simulated to their end for a page [s]
+/// Longer trials are not simulated for a page: those of drillings [s]
 constexpr double kLongestTrial = 50.0;
-constexpr double kBeginning = 20.0;  // of them, which is simulated [s]
 
 constexpr std::array<analysis::Look, 3> kLooks{{{palette::kBlue, palette::kSolid, 7, 2.5, 1.0},
                                                 {palette::kOrange, palette::kLong, 7, 2.5, 1.0},
@@ -160,19 +159,21 @@ void add_virtual_trial(const Experiment& experiment, const PreviewRequest& reque
                        Preview& preview) {
   const protocols::Definition& definition = *experiment.definition;
   preview.document.heading("The trial of a virtual participant");
-  const bool whole = definition.longest(1) <= kLongestTrial;
+  if (definition.longest(1) > kLongestTrial) {
+    preview.document.paragraph(
+        fmt::format("A trial takes up to {:.0f} s, which is too long to be simulated for a page; "
+                    "haptrial dry-run simulates the study.",
+                    definition.longest(1)));
+    return;
+  }
   const VirtualTrial trial =
       virtual_trial(experiment.study->protocol(), definition, previewed_session(request.seed),
-                    request.trial, whole ? kLongestTrial : kBeginning);
+                    request.trial, kLongestTrial);
   preview.document.paragraph(
       "SIMULATED: nobody did this trial. A virtual participant, as in a dry run with the same "
       "seed, "
       "holds a virtual device; earlier trials of the session are taken as done, without answers.");
-  if (!whole) {
-    preview.document.paragraph(
-        fmt::format("A trial takes up to {:.0f} s; this is its beginning, {:.0f} s at most.",
-                    definition.longest(1), kBeginning));
-  } else if (!trial.completed) {
+  if (!trial.completed) {
     preview.document.alarm("The simulated trial was not completed: " + trial.why);
   }
   if (trial.times.empty()) {

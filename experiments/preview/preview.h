@@ -26,7 +26,7 @@ protocols::SessionPlace previewed_session(std::uint64_t seed, int participant = 
 
 /// Description, warnings and texts that cannot be drawn: the lines of `haptrial validate`.
 void add_checks(const Experiment& experiment, Preview& preview);
-/// A trial of a virtual participant, or the beginning of one that is long.
+/// A trial of a virtual participant. An experiment whose trials are long gets a sentence instead.
 /// @throws InputError for a trial beyond the session
 void add_virtual_trial(const Experiment& experiment, const PreviewRequest& request,
                        Preview& preview);

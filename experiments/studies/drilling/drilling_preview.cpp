@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/bone/model/bone_volume.h"
-#include "core/bone/surface/surface_mesh.h"
 #include "core/render/gl/image.h"
 #include "experiments/preview/certified_part.h"
 #include "experiments/preview/fixed_plan.h"
@@ -64,18 +62,6 @@ void add_seen(const BoneDefinition& d, std::size_t bone, Preview& preview) {
               gallery_svg({{render::png_bytes(image), image.width, image.height, words}}));
 }
 
-/// The bone for the film of the trial.
-void add_bone_lines(const BoneDefinition& d, std::size_t bone, Preview& preview) {
-  constexpr std::size_t kTriangles = 900;
-  const bone::BoneModel& model = *d.bones[bone];
-  geometry::Mesh mesh = bone::surface_mesh(bone::BoneVolume(model));
-  const Eigen::Isometry3d pose = protocols::pose_of(d.placement, model.grid);
-  for (Eigen::Vector3d& vertex : mesh.vertices) {
-    vertex = pose * vertex;
-  }
-  preview.objects.push_back({model.name, 0, lines_of(mesh, kTriangles)});
-}
-
 void add_burr_figure(const std::vector<BurrForce>& burrs, double limit, Preview& preview) {
   analysis::Figure figure;
   figure.name = "burr-force";
@@ -128,11 +114,7 @@ void add_drilling_preview(const BoneDefinition& d, const PreviewRequest& request
                           Preview& preview) {
   const protocols::PlannedTrial trial = procedure_of(d, request);
   add_timeline(d, trial, preview);
-  const std::size_t bone = static_cast<std::size_t>(trial.trial - 1) % d.bones.size();
-  add_seen(d, bone, preview);
-  if (request.virtual_trial) {
-    add_bone_lines(d, bone, preview);
-  }
+  add_seen(d, static_cast<std::size_t>(trial.trial - 1) % d.bones.size(), preview);
   preview.document.heading("What is felt");
   const std::vector<BurrForce> burrs = protocols::burr_forces(d);
   if (burrs.empty()) {
