@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::pair<Request, const char*>, 11> kNames{{
+constexpr std::array<std::pair<Request, const char*>, 12> kNames{{
     {Request::kStart, "start"},
     {Request::kPause, "pause"},
     {Request::kRepeatTrial, "repeat"},
@@ -25,6 +25,7 @@ constexpr std::array<std::pair<Request, const char*>, 11> kNames{{
     {Request::kTakeLead, "take_lead"},
     {Request::kHandOver, "hand_over"},
     {Request::kBack, "back"},
+    {Request::kTakeBack, "take_back"},
 }};
 
 /// The one string that an object holds.
@@ -211,6 +212,7 @@ std::string status_json(const SessionStatus& s, std::uint64_t refused) {
       {"lateness_worst_us", s.lateness_worst_us},
       {"aborted_passes", s.aborted_passes},
       {"aborts", s.aborts},
+      {"can_take_back", s.can_take_back},
       {"elapsed", s.elapsed},
       {"left", s.left < 0.0 ? json(nullptr) : json(s.left)},
       {"refused", refused},

@@ -306,6 +306,11 @@ class Keyboard::Implementation {
       case 'r':
         ask(Request::kRepeatTrial, "repeat this trial\n");
         break;
+      case 'u':
+        if (control_.status().can_take_back) {
+          ask(Request::kTakeBack, "take back the last answer\n");
+        }
+        break;
       case 's':
         ask(Request::kSkipTrial, "skip this trial\n");
         break;
@@ -419,8 +424,9 @@ Keyboard::~Keyboard() = default;
 bool Keyboard::active() const { return implementation_->active(); }
 
 const char* Keyboard::help() {
-  return "space start/pause   p pause   r repeat this trial   s skip   n note   b bad trial   a "
-         "abort\n"
+  return "space start/pause   p pause   r repeat this trial   s skip   u take back the last "
+         "answer\n"
+         "n note   b bad trial   a abort\n"
          "Escape EMERGENCY STOP   c clear   Enter answer a page";
 }
 

@@ -31,6 +31,7 @@ enum class Request : std::uint8_t {
   kTakeLead,       // of both hands, where a partner's session is linked
   kHandOver,       // gives it back
   kBack,           // to the item of a page before the present one
+  kTakeBack,       // the last answer: its trial is presented again
 };
 
 /// The newest values of a channel, for the console.
@@ -80,6 +81,7 @@ struct SessionStatus {
   double lateness_99_us{0.0};
   double lateness_worst_us{0.0};
   int aborted_passes{0};
+  bool can_take_back{false};                    // the last answer
   std::vector<std::string> aborts;              // why, the last ones
   double elapsed{0.0};                          // of the session [s]
   double left{-1.0};                            // about, until its end; below 0: not known [s]

@@ -83,6 +83,12 @@ void SessionController::heed(Request request, RequestSource by) {
     case Request::kBack:
       requests_.back = true;
       break;
+    case Request::kTakeBack:
+      if (status_.can_take_back) {
+        requests_.take_back = by;
+        actions_.break_off();
+      }
+      break;
     case Request::kTakeLead:
     case Request::kHandOver:
       if (actions_.lead) {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,12 +18,13 @@ namespace haptrial::experiments {
 struct PendingRequests {
   bool start{false};  // go on before the time of a break has passed
   bool pause{false};
-  bool repeat{false};    // the present trial
-  bool skip{false};      // the present trial
-  bool abort{false};     // the session
-  bool for_good{false};  // with abort: nobody goes on with it
-  bool back{false};      // to the item of a page before the present one
-  bool stopped{false};   // by a fault or an emergency stop, until it is cleared
+  bool repeat{false};                        // the present trial
+  bool skip{false};                          // the present trial
+  bool abort{false};                         // the session
+  bool for_good{false};                      // with abort: nobody goes on with it
+  bool back{false};                          // to the item of a page before the present one
+  std::optional<RequestSource> take_back{};  // the last answer, and who asked
+  bool stopped{false};                       // by a fault or an emergency stop, until it is cleared
 };
 
 /// The session's side of its control: turns messages into requests and events, and shows how the

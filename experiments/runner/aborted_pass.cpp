@@ -9,6 +9,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   const std::string why = fault ? cause(result) : why_broken_off();
   const std::string trouble = result.trouble;
   const std::string all = trouble.empty() ? why : why + "; " + trouble;
+  const bool asked = asked_for();
   const bool overloaded = !p_.pacing.overload().empty();  // and no better the next time
   p_.record.event("aborted", fmt::format("trial {}: {}", p_.record.pass().trial, all));
   note_abort(all);
@@ -26,7 +27,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
     p_.pacing.end_early(all);
   } else {
     p_.pacing.recover();
-    pause_after_several(all);
+    pause_after_several(all, asked);
   }
 }
 
@@ -40,9 +41,9 @@ void AbortedPass::note_abort(const std::string& why) {
   }
 }
 
-void AbortedPass::pause_after_several(const std::string& why) {
+void AbortedPass::pause_after_several(const std::string& why, bool asked) {
   constexpr int kMost = 3;
-  if (asked_for()) {
+  if (asked) {
     return;
   }
   if (++in_row_ >= kMost && p_.real) {
@@ -56,7 +57,7 @@ void AbortedPass::pause_after_several(const std::string& why) {
 bool AbortedPass::asked_for() const {
   const PendingRequests& requests = p_.controller.requests();
   return requests.repeat || requests.skip || requests.abort || requests.pause ||
-         p_.trials.after_abort() != protocols::AfterAbort::kAsAsked;
+         requests.take_back || p_.trials.after_abort() != protocols::AfterAbort::kAsAsked;
 }
 
 bool AbortedPass::partner_stops() const {
@@ -77,6 +78,9 @@ std::string AbortedPass::why_broken_off() const {
   }
   if (requests.repeat) {
     return "to be repeated";
+  }
+  if (requests.take_back) {
+    return "an answer was taken back";
   }
   if (requests.skip) {
     return "skipped";

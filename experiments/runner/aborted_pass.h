@@ -33,7 +33,7 @@ class AbortedPass {
   void note_completed() { in_row_ = 0; }
 
  private:
-  void pause_after_several(const std::string& why);
+  void pause_after_several(const std::string& why, bool asked);
   bool asked_for() const;
   std::string cause(const protocols::PassResult& result) const;
   std::string why_broken_off() const;

@@ -21,8 +21,8 @@ bool was_skipped(const record::Resumed& before, const record::PassRow& pass) {
 
 std::optional<protocols::Outcome> outcome_of(const record::Resumed& before,
                                              const PlannedTrial& trial, const record::Phase& last) {
-  return protocols::recorded_outcome({before.passes, before.responses, before.skipped}, trial,
-                                     last);
+  return protocols::recorded_outcome(
+      {before.passes, before.responses, before.skipped, before.taken_back}, trial, last);
 }
 
 bool ended_with(const record::Resumed& before, const PlannedTrial& trial) {

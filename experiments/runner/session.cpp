@@ -16,6 +16,7 @@
 #include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/devices.h"
 #include "experiments/runner/earlier_run.h"
+#include "experiments/runner/last_answer.h"
 #include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/next_trial.h"
 #include "experiments/runner/participant_input.h"
@@ -78,6 +79,7 @@ class Session {
   void run_trials();
   void note_setting();
   bool has_break_after(const PlannedTrial& trial) const;
+  bool goes_back();
   Outcome present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
   bool run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt);
@@ -115,6 +117,7 @@ class Session {
   LoopPacing pacing_;
   SessionPages pages_;
   NextTrial next_;
+  LastAnswer last_answer_;
   SessionNotices notices_;
   AbortedPass aborted_;
 };
@@ -193,6 +196,7 @@ Session::Session(const SessionRequest& request)
                &input_.begin_pressed, live_.get(),
                [this] {
                  hear_inputs();
+                 last_answer_.see_to_request();
                  note_warnings();
                  controller_.status().partner = trials_->partner();
                  controller_.status().channels = channel_status();
@@ -204,6 +208,7 @@ Session::Session(const SessionRequest& request)
       pages_({request, record_, controller_, pacing_, input_.page_keys, screen_.get(),
               place_.session_seed}),
       next_({request, *trials_, record_, pages_}),
+      last_answer_({*trials_, record_, controller_}),
       notices_({request, loop_, record_, controller_, summary_}),
       aborted_({d_, *trials_, record_, controller_, pacing_, notices_, real_}) {
   SessionStatus& status = controller_.status();
@@ -383,6 +388,10 @@ void Session::run_trials() {
       practised = trial->practice;
     }
     const Outcome outcome = present(*trial);
+    if (goes_back()) {
+      trial = last_answer_.go_back();
+      continue;
+    }
     left_ = left_ || (outcome.end == TrialEnd::kAborted && controller_.requests().abort);
     const bool stopped = controller_.requests().abort;
     const bool rests = has_break_after(*trial) && !stopped;
@@ -392,13 +401,16 @@ void Session::run_trials() {
     }
     trial = next_.after(&outcome);
     const PlannedTrial& over = outcome.trial;
-    if ((!trial || trial->block != over.block) &&
-        !pages_.after_block(over.block, over.block_name)) {
-      left_ = true;
-      break;
+    if (!trial || trial->block != over.block) {
+      last_answer_.forget();
+      if (!pages_.after_block(over.block, over.block_name)) {
+        left_ = true;
+        break;
+      }
     }
     if (rests && trial) {
       pacing_.take_break();
+      trial = goes_back() ? last_answer_.go_back() : trial;
     }
   }
   left_ = left_ || next_.ended_at_page();
@@ -430,6 +442,11 @@ void Session::show_trial() {
   }
 }
 
+/// Whether an answer was taken back, and the session is to go on with its trial.
+bool Session::goes_back() {
+  return last_answer_.next() == LastAnswer::Next::kTrialBefore && !controller_.requests().abort;
+}
+
 /// One trial until it is done: again when the experimenter repeats it, or when
 /// it was aborted while an experimenter is there to see to the cause.
 Outcome Session::present(const PlannedTrial& trial) {
@@ -439,15 +456,22 @@ Outcome Session::present(const PlannedTrial& trial) {
   progress_.reset();
   PendingRequests& requests = controller_.requests();
   Outcome outcome{trial, TrialEnd::kAborted, {}};
-  for (int attempt = attempts_of(record_.earlier(), trial) + 1; !requests.abort; ++attempt) {
+  while (!requests.abort) {
+    const int attempt = last_answer_.begin_attempt(trial);
     const bool anew = std::exchange(requests.repeat, false);
     requests.skip = false;
     responses_.clear();
     trials_->begin_attempt(trial, anew);
     show_trial();
     record_.mark_trial("trial_begin", trial, attempt);
-    const bool done = run_trial(trial, attempt);
+    const bool presented = run_trial(trial, attempt);
     pacing_.pause_where_asked();
+    last_answer_.see_to_request();
+    if (presented && requests.repeat && last_answer_.next() == LastAnswer::Next::kAsPlanned) {
+      last_answer_.repeat();
+    }
+    requests.repeat = requests.repeat || last_answer_.next() == LastAnswer::Next::kSameTrial;
+    const bool done = presented && last_answer_.next() == LastAnswer::Next::kAsPlanned;
     const AfterAbort after = done ? AfterAbort::kAsAsked : trials_->after_abort();
     const bool skipped = (requests.skip || after == AfterAbort::kSkip) && !done;
     const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
@@ -458,11 +482,12 @@ Outcome Session::present(const PlannedTrial& trial) {
     if (skipped) {
       record_.skip(trial);
     }
-    const bool again = controller_.attended() || after == AfterAbort::kAgain;
+    const bool again = (controller_.attended() && !goes_back()) || after == AfterAbort::kAgain;
     if ((done && !requests.repeat) || requests.skip || skipped || !again) {
       break;
     }
   }
+  last_answer_.end_trial(outcome.end == TrialEnd::kCompleted);
   if (outcome.end == TrialEnd::kCompleted && !trial.practice) {
     note_time_left(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
   }
@@ -491,7 +516,8 @@ bool Session::run_trial(const PlannedTrial& trial, int attempt) {
     if (i > 0) {
       pacing_.pause_where_asked();
       const PendingRequests& requests = controller_.requests();
-      if (requests.repeat || requests.skip || requests.abort) {
+      if (requests.repeat || requests.skip || requests.abort ||
+          last_answer_.next() != LastAnswer::Next::kAsPlanned) {
         return false;
       }
     }
@@ -513,6 +539,7 @@ bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, in
   record_.markers().prepare(trials_->varied_cues());
   const std::int32_t number = record_.begin_pass(row, phase, attempt);
   servo_.task.start(pass, number);
+  last_answer_.add_pass(number);
   ++summary_.passes;
   pacing_.drive_until_idle();
   notices_.note_overruns(pacing_.watch());
@@ -540,6 +567,7 @@ void Session::keep_responses() {
   }
   input_.mistakes.close_pass(record_.pass(), answered);
   if (!rows.empty()) {
+    last_answer_.note_answer();
     responses_.insert(responses_.end(), rows.begin(), rows.end());
     record_.keep_responses(std::move(rows));
   }

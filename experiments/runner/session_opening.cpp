@@ -120,6 +120,7 @@ static record::TableList tables_of(const SessionRequest& request, const protocol
                                    const channel::ChannelSet& channels) {
   record::TableList tables = record::with_tables(trials.tables(), channels.tables());
   tables.push_back(&record::table_of<record::SkippedRow>());
+  tables.push_back(&record::table_of<record::TakenBackRow>());
   tables.push_back(&record::table_of<record::DampingRow>());
   if (!request.definition->pages.empty()) {
     tables.push_back(&record::table_of<record::AnswerRow>());

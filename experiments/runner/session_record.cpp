@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/record/read/definition_versions.h"
+#include "core/record/rows/taken_back_row.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/session_opening.h"
 
@@ -136,6 +137,16 @@ void SessionRecord::skip(const PlannedTrial& trial) {
   const record::SkippedRow row{now_ns(), trial.trial, trial.practice};
   put(record::Rows(std::span(&row, 1)));
   event("skipped", name_of(trial));
+  if (real_) {
+    writer_.flush();
+  }
+}
+
+void SessionRecord::take_back(std::int32_t trial, std::span<const std::int32_t> passes) {
+  for (const std::int32_t pass : passes) {
+    const record::TakenBackRow row{now_ns(), trial, pass};
+    put(record::Rows(std::span(&row, 1)));
+  }
   if (real_) {
     writer_.flush();
   }

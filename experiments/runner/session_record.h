@@ -58,6 +58,8 @@ class SessionRecord final : public protocols::SessionFile {
   void note_damping(double least, double seconds);
   /// The trial was skipped for good: it does not come again, not after a resume either.
   void skip(const protocols::PlannedTrial& trial);
+  /// The answers of these passes, rows of /trials, do not count.
+  void take_back(std::int32_t trial, std::span<const std::int32_t> passes);
   void keep_stimulus(std::int32_t block, std::span<const record::StimulusRow> rows) override;
   bool holds_stimulus(std::int32_t block) const override;
   const std::vector<record::PassRow>& earlier_passes() const override { return before_.passes; }

@@ -35,6 +35,8 @@ json StudioViews::preview(const std::string& file, const std::string& text, int 
   const json answer = json::parse(page_answer_to(asked.dump()), nullptr, false);
   json out{{"command", shown_command(words)}};
   if (answer.is_object() && answer.contains("page")) {
+    const fs::path page = preview_file(number);
+    write_text(page, replaced(file_text(page), draft.name(), file));
     out["page"] = number;
   } else {
     const std::string failure = answer.is_object() ? answer.value("failure", "") : "";

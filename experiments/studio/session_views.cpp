@@ -114,11 +114,27 @@ json SessionViews::devices() const {
   return {{"command", shown_command(words)}, {"rows", rows}};
 }
 
-json SessionViews::test_device(const std::string& device, int seconds) const {
+static void check_device(const std::string& device) {
   static const std::regex kDevice("[a-z][a-z0-9-]{0,63}");
   if (!std::regex_match(device, kDevice)) {
     throw InputError("the device is not the name of one; allowed: those that the page lists");
   }
+}
+
+json SessionViews::read_device(const std::string& device, int seconds) const {
+  check_device(device);
+  const CommandWords words{"device-test", device, "--read", "--seconds", std::to_string(seconds)};
+  return {{"command", shown_command(words)}, {"job", commands_.start(words, {})}};
+}
+
+json SessionViews::read_channels(const std::string& file, int seconds) const {
+  folder_.definition(file);
+  const CommandWords words{"record", file, "--seconds", std::to_string(seconds)};
+  return {{"command", shown_command(words)}, {"job", commands_.start(words, {})}};
+}
+
+json SessionViews::test_device(const std::string& device, int seconds) const {
+  check_device(device);
   const CommandWords words{"device-test", device, "--seconds", std::to_string(seconds)};
   return {{"command", shown_command(words)}, {"job", commands_.start(words, {})}};
 }

@@ -31,6 +31,9 @@ class SessionViews {
   nlohmann::json devices() const;
   /// Tests a device as a job. @param seconds  1 to 600
   nlohmann::json test_device(const std::string& device, int seconds) const;
+  /// Reads a device, or the channels of a definition, as a job. @param seconds  1 to 600
+  nlohmann::json read_device(const std::string& device, int seconds) const;
+  nlohmann::json read_channels(const std::string& file, int seconds) const;
 
   /// Writes a folder of sessions in another format as a job.
   /// @param format  "csv", "bids" or "pdf"

@@ -205,8 +205,12 @@ class Studio::Implementation {
                  }),
             post("/rehearse",
                  [this](const json& body) {
-                   return views_.rehearse(string_in(body, "file"),
-                                          number_in(body, "subjects", 1, kMostSubjects));
+                   constexpr int kMostMinutes = 600;
+                   return views_.rehearse(
+                       string_in(body, "file"), number_in(body, "subjects", 1, kMostSubjects),
+                       body.contains("setup")
+                           ? std::optional(number_in(body, "setup", 0, kMostMinutes))
+                           : std::nullopt);
                  }),
             post("/analyze",
                  [this](const json& body) {
@@ -252,6 +256,16 @@ class Studio::Implementation {
                  [this](const json& b) {
                    return sessions_.withdraw(string_in(b, "file"), string_in(b, "subject"),
                                              b.value("sure", json()) == true);
+                 }),
+            post("/read_device",
+                 [this](const json& b) {
+                   return sessions_.read_device(string_in(b, "device"),
+                                                number_in(b, "seconds", 1, kMostSeconds));
+                 }),
+            post("/read_channels",
+                 [this](const json& b) {
+                   return sessions_.read_channels(string_in(b, "file"),
+                                                  number_in(b, "seconds", 1, kMostSeconds));
                  }),
             post("/hand_over", [this](const json& b) {
               return sessions_.hand_over(string_in(b, "file"), string_in(b, "folder"),

@@ -45,6 +45,17 @@ json rows_of(const std::string& output) {
   return rows;
 }
 
+/// The rest of the first line that begins so; empty: there is none.
+std::string line_after(const std::string& output, const std::string& start) {
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(start)) {
+      return line.substr(start.size());
+    }
+  }
+  return "";
+}
+
 json remarks_json(const std::vector<Remark>& remarks) {
   json all = json::array();
   for (const Remark& remark : remarks) {
@@ -147,11 +158,10 @@ void StudioViews::add_roster(const std::string& file, json& out) const {
     out["roster"] = {{"command", shown_command(words)}, {"failure", result.output}};
     return;
   }
-  out["roster"] = {{"command", shown_command(words)},
-                   {"groups", roster["groups"]},
-                   {"next", roster["next"]},
-                   {"participants", roster["participants"]},
-                   {"remarks", roster["remarks"]}};
+  out["roster"] = {
+      {"command", shown_command(words)}, {"groups", roster["groups"]},
+      {"next", roster["next"]},          {"participants", roster["participants"]},
+      {"remarks", roster["remarks"]},    {"to_come", line_after(result.output, "to come: ")}};
 }
 
 /// The last abort, alarm or loss that the newest session tells of.
@@ -274,14 +284,17 @@ json StudioViews::schema(const std::string& protocol) const {
           {"schema", json::parse(run_good(words).output, nullptr, false)}};
 }
 
-json StudioViews::rehearse(const std::string& file, int subjects) const {
+json StudioViews::rehearse(const std::string& file, int subjects, std::optional<int> setup) const {
   folder_.definition(file);
   const std::string out = folder_.fresh_rehearsal(file);
   JobState about;
   about.study = file;
   about.folder = out;
   about.sessions = subjects;
-  const CommandWords words{"dry-run", file, "--subjects", std::to_string(subjects), "--out", out};
+  CommandWords words{"dry-run", file, "--subjects", std::to_string(subjects), "--out", out};
+  if (setup) {
+    words.insert(words.end(), {"--setup", std::to_string(*setup)});
+  }
   return {{"command", shown_command(words)}, {"job", commands_.start(words, about)}};
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "experiments/server/server.h"
@@ -56,7 +57,7 @@ class StudioViews {
   nlohmann::json schema(const std::string& protocol) const;
 
   // Rehearsal, sessions, results
-  nlohmann::json rehearse(const std::string& file, int subjects) const;
+  nlohmann::json rehearse(const std::string& file, int subjects, std::optional<int> setup) const;
   nlohmann::json analyze(const std::string& file, const std::string& folder) const;
   nlohmann::json jobs() const;
   nlohmann::json job(const std::string& number) const;

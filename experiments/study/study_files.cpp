@@ -124,9 +124,11 @@ void remark_on_marks(const std::vector<fs::path>& files, std::vector<std::string
                remarks);
 }
 
-/// Adds notes of the experimenters, and mistakes that participants reported.
+/// Adds notes of the experimenters, answers that they took back, and mistakes that participants
+/// reported.
 void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::string>& remarks) {
   std::vector<std::string> mistakes;
+  std::vector<std::string> taken_back;
   std::vector<std::string> notes;
   for (const fs::path& file : files) {
     const record::SessionReader reader(file);
@@ -134,6 +136,8 @@ void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::strin
       const std::string line = fmt::format("{}, {}", reader.info().subject, event.text);
       if (event.kind == "participant_error") {
         mistakes.push_back(line);
+      } else if (event.kind == "taken_back") {
+        taken_back.push_back(line);
       } else if (event.kind == "note" && !event.text.starts_with("console: ")) {
         notes.push_back(line);
       }
@@ -144,6 +148,11 @@ void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::strin
         fmt::format("Answered by mistake as participants said at once, and analysed all the same: "
                     "{}: {}.",
                     counted(mistakes.size(), "trial", "trials"), fmt::join(mistakes, "; ")));
+  }
+  if (!taken_back.empty()) {
+    remarks.push_back(fmt::format(
+        "Taken back by the experimenter, and presented again, which is what is analysed: {}: {}.",
+        counted(taken_back.size(), "trial", "trials"), fmt::join(taken_back, "; ")));
   }
   if (!notes.empty()) {
     remarks.push_back(fmt::format("Notes of the experimenter: {}.", fmt::join(notes, "; ")));

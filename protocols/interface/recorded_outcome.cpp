@@ -1,6 +1,7 @@
 #include "protocols/interface/recorded_outcome.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace haptrial::protocols {
 
@@ -18,8 +19,11 @@ std::optional<Outcome> recorded_outcome(const RecordedTrials& recorded, const Pl
   if (skipped) {
     found = {trial, TrialEnd::kSkipped, {}};
   }
-  for (const record::PassRow& pass : recorded.passes) {
-    if (!is_of(pass, trial) || (found && found->end != TrialEnd::kAborted)) {
+  for (std::size_t i = 0; i < recorded.passes.size(); ++i) {
+    const record::PassRow& pass = recorded.passes[i];
+    const bool taken_back = std::ranges::any_of(
+        recorded.taken_back, [i](const auto& row) { return std::cmp_equal(row.pass, i); });
+    if (taken_back || !is_of(pass, trial) || (found && found->end != TrialEnd::kAborted)) {
       continue;
     }
     const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;

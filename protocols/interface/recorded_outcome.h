@@ -5,6 +5,7 @@
 
 #include "core/record/rows/response.h"
 #include "core/record/rows/session_types.h"
+#include "core/record/rows/taken_back_row.h"
 #include "core/record/rows/trial_facts.h"
 #include "protocols/interface/trials.h"
 
@@ -15,6 +16,7 @@ struct RecordedTrials {
   std::span<const record::PassRow> passes;
   std::span<const record::ResponseRow> responses;
   std::span<const record::SkippedRow> skipped;
+  std::span<const record::TakenBackRow> taken_back;  // passes that are as if they had not been
 };
 
 /// Whether a pass is one of the trial.

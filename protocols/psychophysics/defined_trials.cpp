@@ -69,7 +69,7 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       place_(place),
       root_(definition.root()),
       names_(read_names(root_, definition)),
-      sequence_(definition, identity_of(definition, place)),
+      sequence_(std::in_place, definition, identity_of(definition, place)),
       object_files_(object_files(definition.objects)),
       arms_(arm_rows(definition.hands)),
       touched_bodies_(definition.objects) {
@@ -103,7 +103,7 @@ void DefinedTrials::use_script() {
   if (place_.real) {
     script_->start_early();
   }
-  sequence_.choose_by(*script_);
+  sequence_->choose_by(*script_);
 }
 
 /// Starts the script's process with the first decision that a virtual participant leaves to it.
@@ -232,25 +232,41 @@ std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
 
 std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
   if (last != nullptr) {
+    outcomes_.push_back(*last);
     const bool done = last->end == TrialEnd::kCompleted;
     const bool right = !last->responses.empty() && last->responses.front().correct == 1;
     if (done && comes_again(last->responses)) {
-      sequence_.postpone();
+      sequence_->postpone();
     } else {
       live_.conclude(*last);
-      sequence_.conclude(done, done ? outcome_of(last->responses) : kNone, right);
+      sequence_->conclude(done, done ? outcome_of(last->responses) : kNone, right);
       if (done && decisions_ != nullptr) {
         decisions_->told(last->trial.trial, last->trial.practice, last->responses);
       }
     }
   }
-  const std::optional<NextTrial> next = sequence_.next();
+  const std::optional<NextTrial> next = sequence_->next();
   if (!next) {
     return std::nullopt;
   }
   current_ = *next;
-  live_.begin(current_, sequence_.running());
+  live_.begin(current_, sequence_->running());
   return current_.plan;
+}
+
+std::optional<PlannedTrial> DefinedTrials::take_back() {
+  if (outcomes_.empty() || !can_take_back()) {
+    return std::nullopt;
+  }
+  std::vector<Outcome> kept = std::exchange(outcomes_, {});
+  kept.pop_back();
+  sequence_.emplace(d_, identity_of(d_, place_));
+  live_ = {};
+  std::optional<PlannedTrial> trial = next(nullptr);
+  for (const Outcome& outcome : kept) {
+    trial = next(&outcome);
+  }
+  return trial;
 }
 
 /// Whether an answer came too early or too late for its trial to count. It follows from what is
@@ -268,7 +284,7 @@ double DefinedTrials::outcome_of(const std::vector<record::ResponseRow>& respons
   if (current_.track < 0 || responses.empty()) {
     return kNone;
   }
-  const Track& track = *sequence_.running()[static_cast<std::size_t>(current_.track)].track;
+  const Track& track = *sequence_->running()[static_cast<std::size_t>(current_.track)].track;
   if (track.counts.empty()) {
     return !responses.empty() && responses.front().correct >= 0 ? responses.front().correct : kNone;
   }
@@ -498,7 +514,7 @@ std::vector<std::string> DefinedTrials::take_warnings() {
 }
 
 std::string DefinedTrials::why_given_up() const {
-  return fmt::format("{}", fmt::join(sequence_.ended_early(), "; "));
+  return fmt::format("{}", fmt::join(sequence_->ended_early(), "; "));
 }
 
 std::vector<std::string> DefinedTrials::notices() const {
@@ -525,7 +541,7 @@ void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {
   if (current_.track < 0) {
     return;
   }
-  const RunningTrack& running = sequence_.running()[static_cast<std::size_t>(current_.track)];
+  const RunningTrack& running = sequence_->running()[static_cast<std::size_t>(current_.track)];
   const bool done = pass_->state() == PassState::kCompleted && !comes_again(responses());
   std::vector<record::LevelRow> rows;
   const std::vector<std::string> variables = running.track->variables();

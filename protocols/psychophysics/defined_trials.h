@@ -8,6 +8,7 @@
 #include "core/record/rows/late_window_row.h"
 #include "core/record/rows/object_file_row.h"
 #include "core/record/rows/trial_rows.h"
+#include "protocols/interface/reversible_trials.h"
 #include "protocols/interface/trials.h"
 #include "protocols/psychophysics/body_report.h"
 #include "protocols/psychophysics/definition/presented.h"
@@ -26,12 +27,14 @@ class TrialsRig;
 std::vector<std::string> blocks_of(const TrialsDefinition& definition, const SessionPlace& place);
 
 /// The trials of one session as a definition states them.
-class DefinedTrials final : public Trials {
+class DefinedTrials final : public Trials, public ReversibleTrials {
  public:
   DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place);
 
   Extent extent(int most) const override;
   std::optional<PlannedTrial> next(const Outcome* last) override;
+  bool can_take_back() const override { return script_ == nullptr && decisions_ == nullptr; }
+  std::optional<PlannedTrial> take_back() override;
   std::span<const record::Phase> phases() const override;
   std::unique_ptr<Rig> virtual_rig() const override;
   record::TableList tables() const override;
@@ -91,7 +94,8 @@ class DefinedTrials final : public Trials {
   std::string script_warning_;                    // not yet passed on; empty: none
   std::unique_ptr<ScriptedDecisions> decisions_;  // null: virtual participants decide themselves
   bool decisions_kept_{false};                    // likewise
-  TrialSequence sequence_;
+  std::optional<TrialSequence> sequence_;         // made anew where an outcome is taken back
+  std::vector<Outcome> outcomes_;                 // that led it to the present trial
   NextTrial current_;
   LiveTrials live_;
   mutable std::unique_ptr<SimulatedAnswer> said_;  // of a virtual participant

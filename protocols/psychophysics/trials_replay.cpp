@@ -57,6 +57,7 @@ class TrialReplay {
         passes_(reader_.passes()),
         responses_(reader_.responses()),
         skipped_(reader_.rows<record::SkippedRow>()),
+        taken_back_(reader_.rows<record::TakenBackRow>()),
         variables_(reader_.rows<record::VariableRow>()),
         definition_(read_definition()),
         place_(place()),
@@ -133,7 +134,8 @@ class TrialReplay {
           return;
         }
       }
-      const auto outcome = recorded_outcome({passes_, responses_, skipped_}, *trial, last);
+      const auto outcome =
+          recorded_outcome({passes_, responses_, skipped_, taken_back_}, *trial, last);
       trial = outcome ? trials_.next(&*outcome) : std::nullopt;
     }
     if (known.empty()) {
@@ -270,6 +272,7 @@ class TrialReplay {
   std::vector<record::PassRow> passes_;
   std::vector<record::ResponseRow> responses_;
   std::vector<record::SkippedRow> skipped_;
+  std::vector<record::TakenBackRow> taken_back_;
   std::vector<record::VariableRow> variables_;
   std::unique_ptr<StudiedDefinition> definition_;
   SessionPlace place_;

@@ -163,6 +163,34 @@ def heading_in_frame(page, frame):
     return heading
 
 
+def in_frame(page, frame, script):
+    """Runs a script in a frame. @returns what it returns"""
+    page.call("POST", "/frame", {"id": {"element-6066-11e4-a52e-4f735466cecf": page.element(frame)}})
+    try:
+        return page.run(script)
+    finally:
+        page.call("POST", "/frame", {"id": None})
+
+
+def film(page):
+    """The film of a virtual participant's trial plays and pauses."""
+    page.click("preview_virtual")
+    wait("the film", lambda: in_frame(page, "preview", "return document.querySelector('.film-controls') !== null"))
+    def time():
+        return float(in_frame(page, "preview", "return document.querySelector('.film-controls input').value"))
+    def press_play():
+        in_frame(page, "preview", "document.querySelector('.film-controls button').click()")
+    page.run("document.getElementById('preview').scrollIntoView()")  # out of sight nothing plays
+    before, said = time(), in_frame(page, "preview", "return document.querySelector('.film-said').textContent")
+    press_play()
+    wait("it plays", lambda: time() != before)
+    wait("its words follow", lambda: in_frame(page, "preview", "return document.querySelector('.film-said').textContent") != said)
+    if in_frame(page, "preview", "return document.querySelector('.film-controls button').textContent") == "Pause":
+        press_play()
+    at = time()
+    assert time() == at, "it pauses"
+
+
 def preview(page, folder):
     """The preview is that of the text as it is being written."""
     page.run("document.querySelector('#preview_beside summary').click()")
@@ -170,9 +198,15 @@ def preview(page, folder):
     assert any("first_experiment" in each or "pulls" in each for each in heading_in_frame(page, "preview"))
     first = page.run("return document.getElementById('preview').src")
     page.picture(folder / "studio-preview.png")
+    film(page)
+    page.run("document.getElementById('preview').scrollIntoView()")
+    first = page.run("return document.getElementById('preview').src")
+    at = in_frame(page, "preview", "scrollTo(0, 300); return scrollY")
+    assert at == 300, at
     page.run("const editor = document.querySelector('.CodeMirror').CodeMirror;"
              "editor.replaceRange('# a remark\\n', {line: 0, ch: 0})")
     wait("another preview", lambda: page.run("return document.getElementById('preview').src") != first)
+    wait("it stays scrolled", lambda: in_frame(page, "preview", "return scrollY") == at)
     try_it(page, folder)
     page.run("document.querySelector('.CodeMirror').CodeMirror.undo()")
     wait("it is as saved", lambda: page.text("saved") == "As saved on disk")
@@ -199,6 +233,7 @@ def rehearse(page, folder):
     wait("its output", lambda: "2 sessions, " in words(page, "#job_1_output"))
     page.call("POST", "/refresh")
     wait("the jobs after a reload", lambda: words(page, "#job_1_state") == "done")
+    wait("what the study costs", lambda: words(page, "#job_1 .cost").startswith("lab time: a session takes "))
     page.run("document.querySelector('#job_1 .analyze').click()")
     wait("the analysis", lambda: words(page, "#job_2_state") == "done")
     page.picture(folder / "studio-jobs.png")
@@ -242,6 +277,7 @@ def begin_session(page):
     wait("its tab", lambda: len(page.call("GET", "/window/handles")) == len(before) + 1)
     new = next(each for each in page.call("GET", "/window/handles") if each not in before)
     page.call("POST", "/window", {"handle": new})
+    wait("its page", lambda: there(page, "#state"))
     state(page, "Instructions")
     assert page.text("subject").startswith("P01"), page.text("subject")
     return studio

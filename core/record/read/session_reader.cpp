@@ -16,6 +16,7 @@
 #include "core/record/read/found_table.h"
 #include "core/record/read/sample_columns.h"
 #include "core/record/rows/session_tables.h"
+#include "core/record/rows/taken_back_row.h"
 #include "core/record/table/byte_planes.h"
 #include "core/record/table/schema.h"
 
@@ -269,7 +270,13 @@ SampleColumns SessionReader::columns(std::uint64_t first, std::uint64_t count) c
 }
 
 std::vector<PassRow> SessionReader::passes() const {
-  return impl_->all(impl_->trials, trials_table());
+  std::vector<PassRow> passes = impl_->all(impl_->trials, trials_table());
+  for (const TakenBackRow& row : rows<TakenBackRow>()) {
+    if (row.pass >= 0 && std::cmp_less(row.pass, passes.size())) {
+      passes[static_cast<std::size_t>(row.pass)].status = PassStatus::kAborted;
+    }
+  }
+  return passes;
 }
 
 std::vector<EventRow> SessionReader::events() const {

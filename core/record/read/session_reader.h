@@ -60,6 +60,7 @@ class SessionReader {
   std::vector<Sample> samples(std::uint64_t first, std::uint64_t count) const;
   SampleColumns columns(std::uint64_t first, std::uint64_t count) const;
 
+  /// Passes whose answers the experimenter took back (/taken_back) are aborted ones.
   std::vector<PassRow> passes() const;
   std::vector<EventRow> events() const;
   std::vector<FrameRow> frames() const;  // none in a file of schema version 1

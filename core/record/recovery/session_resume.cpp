@@ -67,6 +67,7 @@ Resumed examine(const SessionReader& reader) {
   walk_samples(reader, found);
   found.events = reader.events();
   found.skipped = skipped_trials(reader);
+  found.taken_back = reader.rows<TakenBackRow>();
   if (reader.has(responses_table())) {
     found.responses = reader.responses();
   }

@@ -8,6 +8,7 @@
 #include "core/record/rows/response.h"
 #include "core/record/rows/run_types.h"
 #include "core/record/rows/session_types.h"
+#include "core/record/rows/taken_back_row.h"
 #include "core/record/rows/trial_facts.h"
 
 namespace haptrial::record {
@@ -28,6 +29,7 @@ struct Resumed {
   std::vector<OpenPass> open_passes;  // in order; their rows follow those of `passes`
   std::vector<ResponseRow> responses;
   std::vector<SkippedRow> skipped;
+  std::vector<TakenBackRow> taken_back;
   std::vector<AnswerRow> answers;    // to pages
   std::vector<std::int32_t> blocks;  // whose stimuli are there
   std::uint64_t rows{0};             // of /samples

@@ -13,16 +13,18 @@
 #include "core/record/rows/page_answer.h"
 #include "core/record/rows/response.h"
 #include "core/record/rows/session_tables.h"
+#include "core/record/rows/taken_back_row.h"
 #include "core/record/rows/trial_facts.h"
 #include "core/record/rows/tutoring_row.h"
 
 namespace haptrial::record {
 
 const TableList& common_tables() {
-  static const TableList tables{
-      &responses_table(),       &table_of<DeviceRow>(), &table_of<SkippedRow>(),
-      &table_of<DampingRow>(),  &table_of<MarkerRow>(), &table_of<AnswerRow>(),
-      &table_of<TutoringRow>(), &table_of<LinkRow>(),   &table_of<NetworkRow>()};
+  static const TableList tables{&responses_table(),      &table_of<DeviceRow>(),
+                                &table_of<SkippedRow>(), &table_of<TakenBackRow>(),
+                                &table_of<DampingRow>(), &table_of<MarkerRow>(),
+                                &table_of<AnswerRow>(),  &table_of<TutoringRow>(),
+                                &table_of<LinkRow>(),    &table_of<NetworkRow>()};
   return tables;
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "experiments/command/sessions/certify_device.h"
+#include "experiments/command/sessions/live_reading.h"
 #include "experiments/command/sessions/measure_loopback.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
@@ -92,6 +93,9 @@ int device_test(const DeviceTestOptions& options) {
         "--mass, --sensor, --grip-sensor and --without-sensor belong to "
         "--certificate FOLDER");
   }
+  if (options.read) {
+    return print_live_device(options, setup);
+  }
   DeviceUnderTest bench = make_bench(options, setup);
   const device::DeviceInfo& info = bench.device->info();
   fmt::print("{}{}: {:.1f} N, workspace radius {:.0f} mm\n", info.name,
@@ -132,6 +136,8 @@ void add_device_test(CLI::App& app, int& status) {
       "--definition", o.definition,
       "Definition whose set-up of the device is checked (.toml) (default: the driver's own)");
   sub->add_option("--seconds", o.seconds, with_default("Duration [s]", o.seconds));
+  sub->add_flag("--read", o.read,
+                "Only print where the handle is and which buttons are pressed, without force");
   sub->add_option("--certificate", o.certificate,
                   "Folder for a certificate: what the device does, with intervals");
   sub->add_option("--mass", o.mass,

@@ -18,6 +18,7 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/study/launch_rank.h"
 #include "experiments/study/session_name.h"
+#include "experiments/study/session_times.h"
 #include "experiments/study/study_run.h"
 
 namespace haptrial::experiments {
@@ -37,6 +38,7 @@ struct DryRunOptions {
   std::string tutor;
   bool taught{false};
   std::string language;
+  std::optional<double> setup;
   std::vector<std::string> set{};
 };
 
@@ -124,6 +126,15 @@ static std::string pictures_in(const fs::path& folder) {
          "does";
 }
 
+/// What the whole study costs in hours of the lab, as this rehearsal took.
+static void print_lab_time(const protocols::Definition& d, const fs::path& folder,
+                           std::optional<double> setup) {
+  if (const auto times = session_times(session_files(folder), d)) {
+    fmt::print("lab time: {}; pages not counted\n",
+               lab_time(*times, d.design.participants * d.sessions(), setup));
+  }
+}
+
 int dry_run(const DryRunOptions& options) {
   watch_for_interrupt();
   const Experiment experiment =
@@ -134,6 +145,7 @@ int dry_run(const DryRunOptions& options) {
       checked_number("--subjects", options.subjects.value_or(setup.design.participants), 1, 10000);
   dry.seed = checked_seed(options.seed);
   dry.jobs = checked_jobs(options.jobs);
+  const std::optional<double> between = checked_setup(options.setup);
   dry.frames_per_pass = checked_number("--frames", options.frames, 0, 1000);
   dry.max_trials =
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
@@ -190,6 +202,9 @@ int dry_run(const DryRunOptions& options) {
       fmt::print("{}\n", line);
     }
   }
+  if (dry.max_trials == 0 && dry.session == 0) {
+    print_lab_time(setup, dry.folder, between);
+  }
   if (dry.frames_per_pass > 0) {
     fmt::print("pictures: {}\n", pictures_in(dry.folder));
   }
@@ -229,6 +244,8 @@ void add_dry_run(CLI::App& app, int& status) {
   sub->add_option(
       "--frames", o.frames,
       with_default("Number of pictures to write of each pass, as the subject saw it", o.frames));
+  sub->add_option("--setup", o.setup,
+                  "Minutes in the lab between two sessions, for the lab time of the whole study");
   sub->add_option("--set", o.set,
                   "KEY=VALUE: a key of the definition that has another value, as a definition "
                   "writes it, such as observer.lapse=0.05; may be repeated")

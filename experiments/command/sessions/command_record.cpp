@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/channel/channel_set.h"
 #include "core/record/hdf5/session_writer.h"
+#include "experiments/command/sessions/live_reading.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
@@ -66,12 +67,16 @@ void note(record::SessionWriter& writer, std::int64_t now_ns, const std::string&
 
 int record(const RecordOptions& options) {
   constexpr std::chrono::milliseconds kLook{50};
+  constexpr double kForEver = 1e9;  // [s]
   watch_for_interrupt();
   const Experiment experiment = load_experiment(options.definition);
   const protocols::Definition& d = *experiment.definition;
   if (d.channels.empty()) {
     throw InputError(fmt::format("{}: has no channels; state an instrument in [channels.NAME]",
                                  options.definition));
+  }
+  if (options.file.empty()) {
+    return print_live_channels(d, options.seconds.value_or(kForEver));
   }
   const record::TableList tables =
       record::with_tables(experiment.study->protocol().tables(), record::common_tables());
@@ -93,7 +98,7 @@ int record(const RecordOptions& options) {
     }
     writer.flush();
   };
-  while (!interrupted() && watch.seconds() < options.seconds.value_or(1e9)) {
+  while (!interrupted() && watch.seconds() < options.seconds.value_or(kForEver)) {
     std::this_thread::sleep_for(kLook);
     keep();
   }
@@ -114,12 +119,16 @@ int record(const RecordOptions& options) {
 }  // namespace
 
 void add_record(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "record", "Record the channels of a definition alone",
-                             "haptrial record study.toml grip.h5 --seconds 10",
-                             {"a session file without trials", "channels.md"});
+  CLI::App* sub =
+      subcommand(app, "record", "Record the channels of a definition alone, or show their values",
+                 "haptrial record study.toml grip.h5 --seconds 10",
+                 {"a session file without trials", "channels.md"});
   auto& o = options_of<RecordOptions>(*sub, status, record);
   sub->add_option("DEFINITION", o.definition, "Definition with [channels] (.toml)")->required();
-  sub->add_option("FILE", o.file, "New session file (.h5)")->required();
+  sub->add_option(
+      "FILE", o.file,
+      "New session file (.h5); without it the newest values are printed, and nothing is "
+      "recorded");
   sub->add_option("--subject", o.subject, "Whom the recording is of")->capture_default_str();
   sub->add_option("--seconds", o.seconds, "End by itself after this time [s]")
       ->check(CLI::Range(0.1, 1e6));

@@ -17,6 +17,9 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
 #include "experiments/study/session_length.h"
+#include "experiments/study/session_times.h"
+#include "experiments/study/study_files.h"
+#include "experiments/study/study_run.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -29,6 +32,8 @@ struct RosterOptions {
   std::string csv;
   std::string exclude;
   std::string because;
+  std::string rehearsal;
+  std::optional<double> setup;
 };
 
 namespace fs = std::filesystem;
@@ -108,10 +113,29 @@ void print_roster(const Roster& roster) {
   }
 }
 
+/// Times of a rehearsal, or of the sessions that the study has had; nothing without either.
+std::optional<SessionTimes> known_times(const RosterOptions& options,
+                                        const protocols::Definition& d) {
+  if (!options.rehearsal.empty()) {
+    return session_times(session_files(options.rehearsal), d);
+  }
+  std::vector<fs::path> had;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(options.folder, ignored)) {
+    if (entry.path().extension() == ".h5") {
+      had.push_back(entry.path());
+    }
+  }
+  return session_times(had, d);
+}
+
 /// How long the rest of the study takes in sessions.
-void print_to_come(const Roster& roster, const protocols::Definition& d) {
+void print_to_come(const Roster& roster, const RosterOptions& options,
+                   const protocols::Definition& d) {
   const int left = sessions_to_come(roster);
-  if (left > 0) {
+  if (const auto times = left > 0 ? known_times(options, d) : std::nullopt) {
+    fmt::print("to come: {}\n", lab_time(*times, left, checked_setup(options.setup)));
+  } else if (left > 0) {
     const double seconds = session_seconds(d, d.design.trials);
     fmt::print("to come: {} of at most about {} each, {:.1f} hours in all, pages not counted\n",
                counted(left, "session", "sessions"), planned_minutes(seconds),
@@ -208,7 +232,7 @@ int roster(const RosterOptions& options) {
   }
   const Roster roster = make_roster(request);
   print_roster(roster);
-  print_to_come(roster, *experiment.definition);
+  print_to_come(roster, options, *experiment.definition);
   write_new(options.json, json_of(roster));
   write_new(options.csv, csv_of(roster));
   return 0;
@@ -230,6 +254,11 @@ void add_roster(CLI::App& app, int& status) {
       "Seed of the study, for orders (default: that of the sessions; 1 if there are none)");
   sub->add_option("--json", o.json, "New file for the roster as JSON");
   sub->add_option("--csv", o.csv, "New file for the roster as a table, a row for each session");
+  sub->add_option("--rehearsal", o.rehearsal,
+                  "Folder of a dry run whose sessions say how long those to come take (default: "
+                  "the sessions of FOLDER)");
+  sub->add_option("--setup", o.setup,
+                  "Minutes in the lab between two sessions, for the time that is to come");
   auto* exclude = sub->add_option("--exclude", o.exclude,
                                   "Participant whose files are moved into the folder excluded; the "
                                   "next new participant gets the place");

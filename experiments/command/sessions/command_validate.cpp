@@ -12,6 +12,8 @@
 #include "protocols/definition/speech_options.h"
 #include "protocols/interface/protocol.h"
 #include "protocols/interface/study_rules.h"
+#include "protocols/psychophysics/definition/every_value.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -77,6 +79,11 @@ int validate(const ValidateOptions& options) {
     fmt::print("{}\n", line);
   }
   const protocols::Definition& definition = *experiment.definition;
+  if (const auto* trials = dynamic_cast<const protocols::TrialsDefinition*>(&definition)) {
+    for (const std::string& line : protocols::costs_of_bodies(*trials)) {
+      fmt::print("{}\n", line);
+    }
+  }
   for (const auto& side : experiment.study->protocol().auxiliary_pages(definition)) {
     fmt::print("page beside the console: {} (haptrial run --console --side-page {})\n",
                side->title(), side->name());

@@ -25,6 +25,7 @@ struct DeviceTestOptions {
   std::string name;
   std::string definition;
   double seconds{120.0};
+  bool read{false};  // without force, and without a verdict
   std::string library;
   std::string certificate;     // folder; empty: no certificate
   double mass{0.0};            // known, on the handle; 0: none [kg]

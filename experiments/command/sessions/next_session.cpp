@@ -104,6 +104,11 @@ std::string choose_number(RunOptions& options, const Experiment& experiment) {
 
 }  // namespace
 
+std::optional<double> checked_setup(std::optional<double> minutes) {
+  constexpr double kMost = 600.0;
+  return minutes ? std::optional(checked_real("--setup", *minutes, 0.0, kMost)) : std::nullopt;
+}
+
 int checked_session(int session, const protocols::Definition& setup) {
   return checked_number("--session", session, 1, setup.sessions());
 }

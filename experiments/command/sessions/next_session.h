@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "experiments/command/sessions/run_options.h"
@@ -7,6 +8,9 @@
 #include "experiments/study/roster.h"
 
 namespace haptrial::experiments {
+
+/// Minutes between two sessions, as --setup gives them. @throws InputError beyond 0 to 600
+std::optional<double> checked_setup(std::optional<double> minutes);
 
 /// `session` if the definition has it. @throws InputError naming the option
 int checked_session(int session, const protocols::Definition& setup);

@@ -4,15 +4,17 @@ const opened_jobs = new Set();  // whose output is unfolded
 
 async function show_rehearse(main, file) {
   const subjects = make("input", {id: "subjects", type: "number", min: "1", max: "10000", value: "2", required: true});
+  const setup = make("input", {id: "setup", type: "number", min: "0", max: "600", "aria-describedby": "setup_help"});
   main.append(make("h1", {}, file), make("section", {"aria-labelledby": "rehearse_title"}, make("h2", {id: "rehearse_title"}, word("rehearse")),
     make("p", {}, word("rehearse_help")),
-    make("form", {class: "row", onsubmit: start}, make("label", {for: "subjects"}, word("virtual")), subjects, make("button", {class: "main", id: "rehearse"}, word("start")))));
+    make("form", {class: "row", onsubmit: start}, make("label", {for: "subjects"}, word("virtual")), subjects,
+      make("label", {for: "setup"}, word("setup")), setup, make("button", {class: "main", id: "rehearse"}, word("start"))), make("p", {class: "soft", id: "setup_help"}, word("setup_help"))));
   const list = make("div", {id: "jobs"});
   main.append(make("section", {"aria-labelledby": "jobs_title"}, make("h2", {id: "jobs_title"}, word("jobs")), list));
   async function start(event) {
     event.preventDefault();
     await attempt(async () => {
-      const started = await post("/rehearse", {file, subjects: Number(subjects.value)});
+      const started = await post("/rehearse", {file, subjects: Number(subjects.value), ...(setup.value === "" ? {} : {setup: Number(setup.value)})});
       opened_jobs.add(started.job);
       say(word("started", {command: started.command}));
       await watch_jobs(list);
@@ -57,7 +59,7 @@ async function show_job(list, job) {
 function job_card(list, job, id) {
   const output = printed("", id + "_output");
   const card = {state: job.state, shown: "", stateText: make("span", {id: id + "_state", role: "status"}), time: make("span", {class: "n soft"}),
-    bar: make("progress", {"aria-label": job.command, max: "1"}), count: make("span", {class: "soft"}), actions: make("span", {class: "row"})};
+    bar: make("progress", {"aria-label": job.command, max: "1"}), count: make("span", {class: "soft"}), cost: make("p", {class: "cost", lang: "en"}), actions: make("span", {class: "row"})};
   card.read = async () => { output.textContent = (await get("/job", {job: job.job})).output; output.scrollTop = output.scrollHeight; };
   card.details = make("details", {open: opened_jobs.has(job.job), ontoggle: () => {
     card.details.open ? opened_jobs.add(job.job) : opened_jobs.delete(job.job);
@@ -65,7 +67,7 @@ function job_card(list, job, id) {
   }}, make("summary", {}, word("output")), output);
   card.cancel = make("button", {type: "button", id: id + "_cancel", onclick: () => attempt(async () => { await post("/cancel", {job: job.job}); await watch_jobs(list); })}, word("stop"));
   card.element = make("section", {id, "aria-label": word("job") + " " + job.job}, make("div", {class: "row"}, card.stateText, card.time, card.bar, card.count, card.cancel, card.actions),
-    command_line(job.command), card.details);
+    card.cost, command_line(job.command), card.details);
   card.element.parts = card;
   card.list = list;
   return card;
@@ -80,7 +82,8 @@ function show_state(card, job) {
     card.bar.value = job.written / job.sessions;
     card.count.textContent = word("sessions_of", {n: job.written, all: job.sessions});
   }
-  if (job.state === "done") card.actions.replaceChildren(...(job.sessions > 0 ? [analyze_button(job.study, job.folder, card.list)] : [report_link(job.study, job.folder)]));
+  if (job.state === "done" && job.sessions > 0) attempt(async () => { card.cost.textContent = ((await get("/job", {job: job.job})).output.match(/^lab time: .*$/m) || [""])[0]; });
+  if (job.state === "done") card.actions.replaceChildren(...(job.sessions > 0 ? [analyze_button(job.study, job.folder, card.list)] : job.folder ? [report_link(job.study, job.folder)] : []));
 }
 
 const report_link = (file, folder) => make("a", {class: "report", href: "#" + ["results", file, folder].map(encodeURIComponent).join("/")}, word("show_report"));

@@ -5,7 +5,8 @@ async function show_sessions(main, file) {
   const [held, study] = await Promise.all([get("/sessions", {file}), get("/study", {file})]);
   const renew = () => shown === "#sessions/" + encodeURIComponent(file) ? show_view() : undefined;
   main.append(live_session(renew), next_session(file, study, renew),
-    make("section", {"aria-labelledby": "persons_title"}, make("h2", {id: "persons_title"}, word("participants")), participant_table(study, file, renew)));
+    make("section", {"aria-labelledby": "persons_title"}, make("h2", {id: "persons_title"}, word("participants")), participant_table(study, file, renew),
+      study.roster && study.roster.to_come ? make("p", {lang: "en"}, "To come: " + study.roster.to_come) : null));
   const parts = [[word("with_people"), held.folders.filter((each) => !each.rehearsal)], [word("rehearsals"), held.folders.filter((each) => each.rehearsal)]];
   parts.forEach(([title, folders], i) => {
     main.append(make("section", {"aria-labelledby": "part_" + i}, make("h2", {id: "part_" + i}, title),

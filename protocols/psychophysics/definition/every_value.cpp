@@ -155,10 +155,11 @@ void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& 
   }
 }
 
-/// @returns what is said of bodies that give way, if asked for
+/// @param first  bodies that give way are checked, and rigid ones described
+/// @returns words about rigid bodies
 std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValues& values,
-                                      bool with_bodies, HandleReport& handle,
-                                      PictureReport& picture, LeadReport& lead) {
+                                      bool first, HandleReport& handle, PictureReport& picture,
+                                      LeadReport& lead) {
   std::vector<std::string> bodies;
   Table root = d.root();
   const std::unique_ptr<Names> names = read_names(root, d);
@@ -176,11 +177,9 @@ std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValu
       picture.add(presented);
       lead.add(presented);
       prepare_moving_bodies(presented.fields, d.rate);
-      if (with_bodies && place == 0) {
-        prepare_bodies(presented.fields, d.rate);
+      if (first && place == 0) {
+        check_bodies(presented.fields);
         bodies = words_of_rigid_objects(presented.fields, d.rate, d.hand.damping);
-        const auto yielding = words_of_bodies(presented.fields, d.rate, d.hand.damping);
-        bodies.insert(bodies.end(), yielding.begin(), yielding.end());
       }
     }
     give(*names, d, values);
@@ -262,7 +261,42 @@ std::vector<std::string> needs_of(const TrialsDefinition& d, std::size_t block,
   return needs;
 }
 
+/// The values of one combination of a block's factors. @param high  levels at the upper ends of
+/// their ranges, else at the lower ones
+TrialValues corner_of(const TrialsDefinition& d, std::size_t block, std::size_t combination,
+                      bool high) {
+  TrialValues values;
+  values.block = block;
+  values.group = d.groups.empty() ? "" : d.groups.front().name;
+  for (std::size_t i = 0; i < d.intervals.size(); ++i) {
+    values.intervals.push_back(i);
+  }
+  give_corners(d, high, values);
+  const Block& given = d.order.blocks[block];
+  for (const Factor* factor : d.varied_in(given)) {
+    const std::size_t levels = factor->levels.size();
+    values.values.push_back({factor->name, factor->levels[combination % levels]});
+    combination /= levels;
+  }
+  values.values.insert(values.values.end(), given.values.begin(), given.values.end());
+  return values;
+}
+
 }  // namespace
+
+std::vector<std::string> costs_of_bodies(const TrialsDefinition& d) {
+  if (d.objects.empty()) {
+    return {};
+  }
+  Table root = d.root();
+  const std::unique_ptr<Names> names = read_names(root, d);
+  give(*names, d, corner_of(d, 0, 0, false));
+  give_interval(*names, d.intervals.front(), 0);
+  Presented presented = read_presented(root, *names, d, nullptr);
+  root.check();
+  prepare_bodies(presented.fields, d.rate);
+  return words_of_bodies(presented.fields, d.rate, d.hand.damping);
+}
 
 HandleText check_every_value(TrialsDefinition& d) {
   std::vector<std::string> bodies;
@@ -277,20 +311,7 @@ HandleText check_every_value(TrialsDefinition& d) {
     }
     for (std::size_t c = 0; c < combinations; ++c) {
       for (const bool high : {false, true}) {
-        TrialValues values;
-        values.block = block;
-        values.group = d.groups.empty() ? "" : d.groups.front().name;
-        for (std::size_t i = 0; i < d.intervals.size(); ++i) {
-          values.intervals.push_back(i);
-        }
-        give_corners(d, high, values);
-        std::size_t rest = c;
-        for (const Factor* factor : varied) {
-          values.values.push_back({factor->name, factor->levels[rest % factor->levels.size()]});
-          rest /= factor->levels.size();
-        }
-        const Block& given = d.order.blocks[block];
-        values.values.insert(values.values.end(), given.values.begin(), given.values.end());
+        const TrialValues values = corner_of(d, block, c, high);
         if (c == 0 && !high) {
           d.order.blocks[block].needs = needs_of(d, block, values);
         }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/deformable/touch/prepared.h"
+#include "core/deformable/touch/tissue.h"
 #include "core/deformable/touch/touch_cost.h"
 #include "core/scene/needed_damping.h"
 
@@ -108,6 +109,16 @@ void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate) {
       p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
       deformable::steps_on_a_tick(*p->moving, 1.0 / rate);
       p->rates.window = p->rate > 0.0 ? deformable::ticks_of_window(*p->mesh, rate, p->rate) : 1;
+    }
+  }
+}
+
+void check_bodies(const std::vector<scene::Field>& fields) {
+  for (const scene::Field& field : fields) {
+    const auto* p = std::get_if<scene::DeformableObjectParameters>(&field.kind);
+    if (p != nullptr && p->mesh && !p->springs) {
+      deformable::check_tissue(*p->mesh, p->tissue);
+      deformable::check_memory(*p->mesh);
     }
   }
 }

@@ -13,6 +13,10 @@ namespace haptrial::protocols {
 /// @param real  on the real clock: bodies of their own rate get a thread
 void prepare_bodies(std::vector<scene::Field>& fields, double rate, bool real = false);
 
+/// Checks the constants of the bodies among the fields, and that memory suffices to prepare them.
+/// @throws InputError as deformable::check_tissue() and check_memory()
+void check_bodies(const std::vector<scene::Field>& fields);
+
 /// Whether bodies that move can do so at this rate: prepares them, which takes little.
 /// @throws InputError as deformable::steps_on_a_tick() and ticks_of_window()
 void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate);

@@ -289,10 +289,14 @@ std::vector<Vector3d> forces_along(const FeltFields& felt, std::span<const Vecto
 
 Vector3d settled_force(const FeltFields& felt, const Vector3d& place, const Vector3d& velocity) {
   constexpr double kSettled = 0.1;  // [s]
+  constexpr int kStill = 25;        // ticks without any change, after which none is expected
   scene::Scene scene = scene_of(felt);
   Vector3d force = Vector3d::Zero();
-  for (double time = 0.0; time < kSettled; time += 1.0 / felt.rate) {
-    force = scene.force({place, velocity});
+  int still = 0;
+  for (double time = 0.0; time < kSettled && still < kStill; time += 1.0 / felt.rate) {
+    const Vector3d now = scene.force({place, velocity});
+    still = now == force ? still + 1 : 0;
+    force = now;
   }
   return force;
 }

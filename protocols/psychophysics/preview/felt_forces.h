@@ -30,7 +30,8 @@ struct FeltFields {
 /// @returns (places) [N]
 std::vector<Eigen::Vector3d> forces_along(const FeltFields& felt,
                                           std::span<const Eigen::Vector3d> way);
-/// Force on a hand that stays at a place with a velocity, once filters have settled (0.1 s).
+/// Force on a hand that stays at a place with a velocity, once filters have settled (0.1 s, or
+/// sooner where nothing changes any more).
 /// @param place  in W [m]  @param velocity  [m/s]
 Eigen::Vector3d settled_force(const FeltFields& felt, const Eigen::Vector3d& place,
                               const Eigen::Vector3d& velocity);

@@ -40,9 +40,9 @@ TEST(StudioCommandTest, ServesUntilItIsInterrupted) {
   EXPECT_THAT(none.errors, HasSubstr("/nowhere/at/all: not a folder"));
 }
 
-constexpr std::array kPictures{"studio-home.png",      "studio-mistake.png", "studio-preview.png",
-                               "studio-jobs.png",      "studio-report.png",  "studio-checklist.png",
-                               "studio-session.png",   "studio-results.png"};
+constexpr std::array kPictures{"studio-home.png",    "studio-mistake.png", "studio-preview.png",
+                               "studio-jobs.png",    "studio-report.png",  "studio-checklist.png",
+                               "studio-session.png", "studio-results.png"};
 
 /// Folder for the pictures of docs/guide-studio.md.
 const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }

@@ -186,6 +186,22 @@ TEST_F(StudioSessionsTest, DevicesAndTheirTestsAreThoseOfTheCommands) {
   EXPECT_THAT(get("/job", "job=1")["output"].get<std::string>(), HasSubstr("ticks"));
 }
 
+TEST_F(StudioSessionsTest, DevicesAndChannelsAreReadWithoutForceOrFile) {
+  const json device = post("/read_device", {{"device", "virtual"}, {"seconds", 1}});
+  EXPECT_EQ(device["command"], "haptrial device-test virtual --read --seconds 1");
+  EXPECT_EQ(ended(device["job"])["state"], "done");
+  EXPECT_THAT(get("/job", "job=1")["output"].get<std::string>(),
+              AllOf(HasSubstr("without force"), HasSubstr(" mm   buttons none")));
+  const json channels = post("/read_channels", {{"file", "mine.toml"}, {"seconds", 1}});
+  EXPECT_EQ(channels["command"], "haptrial record mine.toml --seconds 1");
+  EXPECT_EQ(ended(channels["job"])["state"], "failed");
+  EXPECT_THAT(get("/job", "job=2")["output"].get<std::string>(),
+              HasSubstr("mine.toml: has no channels"));
+  expect_refused(posting("/read_device", {{"device", "--read"}, {"seconds", 1}}), 400,
+                 "the name of one");
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
 TEST_F(StudioSessionsTest, SessionsAreWrittenForOtherPrograms) {
   const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 1}});
   ASSERT_EQ(ended(started["job"])["state"], "done");

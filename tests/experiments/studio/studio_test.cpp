@@ -253,7 +253,8 @@ TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   EXPECT_EQ(made["command"], "haptrial show mine.toml --trial 2 --no-virtual-trial");
   const std::string page = std::to_string(made["page"].get<int>());
   const std::string shown = exchange(reading("/preview_page", "page=" + page));
-  EXPECT_THAT(shown, HasSubstr("seen_before_"));
+  EXPECT_THAT(shown, AllOf(HasSubstr("seen_before_"), HasSubstr("mine.toml, trial 2"),
+                           Not(HasSubstr("draft-"))));
   EXPECT_THAT(shown,
               HasSubstr("Content-Security-Policy: sandbox allow-scripts; script-src 'nonce-"));
   EXPECT_THAT(shown, Not(HasSubstr("allow-same-origin"))) << "the page reaches nothing";
@@ -365,13 +366,14 @@ TEST_F(StudioTest, KeysAndTheMachineAreThoseOfTheCommands) {
 }
 
 TEST_F(StudioTest, ARehearsalAndItsReport) {
-  const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 2}});
+  const json started = post("/rehearse", {{"file", "mine.toml"}, {"subjects", 2}, {"setup", 15}});
   EXPECT_EQ(started["command"],
-            "haptrial dry-run mine.toml --subjects 2 --out out/mine-rehearsal-001");
+            "haptrial dry-run mine.toml --subjects 2 --out out/mine-rehearsal-001 --setup 15");
   const json done = ended(started["job"]);
   EXPECT_EQ(done["state"], "done");
   EXPECT_EQ(done["written"], 2);
-  EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("2 sessions, "));
+  EXPECT_THAT(std::string(get("/job", "job=1")["output"]),
+              AllOf(HasSubstr("2 sessions, "), HasSubstr("in the lab with 15 minutes between")));
   json folder = get("/sessions", "file=mine.toml")["folders"][0];
   EXPECT_EQ(folder["folder"], "out/mine-rehearsal-001");
   EXPECT_TRUE(folder["rehearsal"]);

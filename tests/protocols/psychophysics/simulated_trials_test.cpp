@@ -250,6 +250,29 @@ TEST_F(SimulatedTrialsTest, TrialsOfAnswersOutOfTimeComeAgainUntilAllAreInTime) 
   EXPECT_FALSE(trial);
 }
 
+TEST_F(SimulatedTrialsTest, AnOutcomeThatIsTakenBackLeavesNoTrace) {
+  ASSERT_NO_FATAL_FAILURE(
+      simulate_trials(test::felt_or_not(std::string(kTwoKeys) + "out_of_time = \"repeat\"\n")));
+  DefinedTrials trials(studied(), place());
+  EXPECT_FALSE(trials.take_back()) << "there is nothing yet";
+  std::optional<PlannedTrial> trial = trials.next(nullptr);
+  for (const Outcome& outcome : outcomes_) {
+    Outcome other = outcome;
+    for (record::ResponseRow& response : other.responses) {
+      response.correct = 1 - response.correct;
+      response.value = 3.0 - response.value;
+      response.reaction_time = 0.5;
+    }
+    trials.next(&other);
+    trial = trials.take_back();
+    ASSERT_TRUE(trial);
+    EXPECT_EQ(trial->trial, outcome.trial.trial);
+    EXPECT_EQ(trial->stimulus_seed, outcome.trial.stimulus_seed);
+    trial = trials.next(&outcome);
+  }
+  EXPECT_FALSE(trial);
+}
+
 /// The size of the pull decides: yes where it is felt above the criterion.
 TEST_F(SimulatedTrialsTest, QuestOfTwoDimensionsFindsTheCriterionOfTheParticipant) {
   ASSERT_NO_FATAL_FAILURE(simulate_trials(R"toml([experiment]

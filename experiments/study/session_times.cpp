@@ -1,0 +1,68 @@
+#include "experiments/study/session_times.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/counted.h"
+#include "core/record/read/session_reader.h"
+#include "protocols/definition/definition.h"
+
+namespace haptrial::experiments {
+namespace {
+
+/// A simulated clock stands still in breaks.
+double seconds_of(const record::SessionReader& session, const protocols::Definition& d) {
+  const double recorded = static_cast<double>(session.sample_count()) / session.info().rate;
+  if (session.info().clock != "real") {
+    const auto breaks = std::ranges::count(session.events(), "break", &record::EventRow::kind);
+    return recorded + static_cast<double>(breaks) * d.design.break_duration;
+  }
+  double last = recorded;
+  for (const record::EventRow& event : session.events()) {
+    last = std::max(last, 1e-9 * static_cast<double>(event.time_ns));
+  }
+  return last;
+}
+
+}  // namespace
+
+std::optional<SessionTimes> session_times(const std::vector<std::filesystem::path>& files,
+                                          const protocols::Definition& definition) {
+  SessionTimes times;
+  for (const std::filesystem::path& file : files) {
+    const record::SessionReader session(file);
+    if (session.info().pilot) {
+      continue;
+    }
+    const double seconds = seconds_of(session, definition);
+    times.shortest = times.sessions == 0 ? seconds : std::min(times.shortest, seconds);
+    times.longest = std::max(times.longest, seconds);
+    times.mean += (seconds - times.mean) / ++times.sessions;
+  }
+  return times.sessions > 0 ? std::optional(times) : std::nullopt;
+}
+
+static std::string minutes_text(double seconds) {
+  constexpr double kMinute = 60.0;
+  constexpr double kFew = 10.0;
+  const double all = seconds / kMinute;
+  return all < kFew ? fmt::format("{:.1f}", all) : fmt::format("{:.0f}", all);
+}
+
+std::string lab_time(const SessionTimes& times, int sessions, std::optional<double> setup) {
+  constexpr double kHour = 3600.0;
+  constexpr double kMinute = 60.0;
+  std::string text =
+      fmt::format("a session takes {} minutes ({} to {} in {}); {} take {:.1f} hours",
+                  minutes_text(times.mean), minutes_text(times.shortest),
+                  minutes_text(times.longest), counted(times.sessions, "session", "sessions"),
+                  counted(sessions, "session", "sessions"), sessions * times.mean / kHour);
+  if (setup) {
+    text += fmt::format(", {:.1f} in the lab with {:g} minutes between them",
+                        sessions * (times.mean + *setup * kMinute) / kHour, *setup);
+  }
+  return text;
+}
+
+}  // namespace haptrial::experiments
