@@ -143,9 +143,10 @@ std::vector<std::string> StudyFolder::folders_like(const std::string& definition
   return names;
 }
 
-std::string StudyFolder::fresh_rehearsal(const std::string& definition) const {
+std::string StudyFolder::fresh_folder(const std::string& definition,
+                                      const std::string& purpose) const {
   for (int number = 1;; ++number) {
-    std::string name = fmt::format("out/{}-rehearsal-{:03}", stem_of(definition), number);
+    std::string name = fmt::format("out/{}-{}-{:03}", stem_of(definition), purpose, number);
     if (!fs::exists(fs::symlink_status(root_ / name))) {
       return name;
     }

@@ -43,8 +43,8 @@ class StudyFolder {
   std::vector<std::string> export_folders(const std::string& definition) const;
   /// Where sessions with people go: "out/STEM"; need not be there.
   static std::string sessions_of(const std::string& definition);
-  /// The first name of a rehearsal's folder that is free: "out/STEM-rehearsal-001".
-  std::string fresh_rehearsal(const std::string& definition) const;
+  /// The first name of a folder for a purpose that is free: "out/STEM-rehearsal-001".
+  std::string fresh_folder(const std::string& definition, const std::string& purpose) const;
 
   /// @throws InputError for a file of more than `most` bytes.
   StampedText read(const std::filesystem::path& file, std::uintmax_t most) const;

@@ -286,7 +286,7 @@ json StudioViews::schema(const std::string& protocol) const {
 
 json StudioViews::rehearse(const std::string& file, int subjects, std::optional<int> setup) const {
   folder_.definition(file);
-  const std::string out = folder_.fresh_rehearsal(file);
+  const std::string out = folder_.fresh_folder(file, "rehearsal");
   JobState about;
   about.study = file;
   about.folder = out;
@@ -295,6 +295,15 @@ json StudioViews::rehearse(const std::string& file, int subjects, std::optional<
   if (setup) {
     words.insert(words.end(), {"--setup", std::to_string(*setup)});
   }
+  return {{"command", shown_command(words)}, {"job", commands_.start(words, about)}};
+}
+
+json StudioViews::power(const std::string& file) const {
+  folder_.definition(file);
+  JobState about;
+  about.study = file;
+  about.folder = folder_.fresh_folder(file, "power");
+  const CommandWords words{"power", "simulate", file, "--out", about.folder};
   return {{"command", shown_command(words)}, {"job", commands_.start(words, about)}};
 }
 

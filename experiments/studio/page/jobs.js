@@ -9,12 +9,17 @@ async function show_rehearse(main, file) {
     make("p", {}, word("rehearse_help")),
     make("form", {class: "row", onsubmit: start}, make("label", {for: "subjects"}, word("virtual")), subjects,
       make("label", {for: "setup"}, word("setup")), setup, make("button", {class: "main", id: "rehearse"}, word("start"))), make("p", {class: "soft", id: "setup_help"}, word("setup_help"))));
+  main.append(make("section", {"aria-labelledby": "power_title"}, make("h2", {id: "power_title"}, word("power")), make("p", {}, word("power_help")),
+    make("button", {type: "button", id: "power", onclick: () => begin_job("/power", {file})}, word("start"))));
   const list = make("div", {id: "jobs"});
   main.append(make("section", {"aria-labelledby": "jobs_title"}, make("h2", {id: "jobs_title"}, word("jobs")), list));
   async function start(event) {
     event.preventDefault();
+    await begin_job("/rehearse", {file, subjects: Number(subjects.value), ...(setup.value === "" ? {} : {setup: Number(setup.value)})});
+  }
+  async function begin_job(path, choice) {
     await attempt(async () => {
-      const started = await post("/rehearse", {file, subjects: Number(subjects.value), ...(setup.value === "" ? {} : {setup: Number(setup.value)})});
+      const started = await post(path, choice);
       opened_jobs.add(started.job);
       say(word("started", {command: started.command}));
       await watch_jobs(list);
@@ -53,7 +58,8 @@ async function show_job(list, job) {
     if (card.details.open) await card.read();
     if (ended) say(word("ended", {state: word(job.state), command: job.command}));
   }
-  card.time.textContent = word("seconds", {n: job.seconds.toFixed(1)});
+  const left = job.state === "running" && job.written > 0 ? job.seconds * (job.sessions - job.written) / job.written : 0;
+  card.time.textContent = word("seconds", {n: job.seconds.toFixed(1)}) + (left > 0 ? word("seconds_left", {n: left.toFixed(0)}) : "");
 }
 
 function job_card(list, job, id) {
@@ -83,9 +89,11 @@ function show_state(card, job) {
     card.count.textContent = word("sessions_of", {n: job.written, all: job.sessions});
   }
   if (job.state === "done" && job.sessions > 0) attempt(async () => { card.cost.textContent = ((await get("/job", {job: job.job})).output.match(/^lab time: .*$/m) || [""])[0]; });
-  if (job.state === "done") card.actions.replaceChildren(...(job.sessions > 0 ? [analyze_button(job.study, job.folder, card.list)] : job.folder ? [report_link(job.study, job.folder)] : []));
+  if (job.state === "done") card.actions.replaceChildren(...(job.sessions > 0 ? [analyze_button(job.study, job.folder, card.list)] : job.folder ? [report_of(job)] : []));
 }
 
+/// A simulated study has no sessions that another view would show.
+const report_of = (job) => / power simulate /.test(job.command) ? make("a", {class: "report", href: address("/file", {file: job.folder + "/report.html"}), target: "_blank", rel: "noopener"}, word("show_report")) : report_link(job.study, job.folder);
 const report_link = (file, folder) => make("a", {class: "report", href: "#" + ["results", file, folder].map(encodeURIComponent).join("/")}, word("show_report"));
 /// Starts an analysis; @param list  of jobs to be shown anew, if the page has one
 function analyze_button(file, folder, list) {
