@@ -402,6 +402,13 @@ TEST_F(StudioTest, ARehearsalAndItsReport) {
   EXPECT_TRUE(get("/sessions", "file=mine.toml")["folders"][0]["report_is_old"]);
 }
 
+TEST_F(StudioTest, APowerAnalysisIsAJob) {
+  const json started = post("/power", {{"file", "mine.toml"}});
+  EXPECT_EQ(started["command"], "haptrial power simulate mine.toml --out out/mine-power-001");
+  EXPECT_EQ(ended(started["job"])["state"], "failed");
+  EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("has no table [power]"));
+}
+
 TEST_F(StudioTest, HomeCountsWhoIsDone) {
   const test::CommandResult run =
       test::run_command("cd '" + folder_.path().string() +
