@@ -123,7 +123,7 @@ TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
   EXPECT_EQ(names.output, "doctor dry-run devices device-test deform\n");
   const CommandResult options = run_command(
       source + "COMP_WORDS=(haptrial dry-run --se) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
-  EXPECT_EQ(options.output, "--seed --session --set\n");
+  EXPECT_EQ(options.output, "--seed --session --set --setup\n");
   const CommandResult nested = run_command(
       source + "COMP_WORDS=(haptrial rate i) COMP_CWORD=2; _haptrial; echo ${COMPREPLY[@]}");
   EXPECT_EQ(nested.output, "import\n");

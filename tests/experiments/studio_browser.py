@@ -11,7 +11,7 @@ import pathlib
 import re
 import sys
 
-from browser import Driver, ask, state, wait
+from browser import Driver, Refused, ask, state, wait
 
 KEYS = {"Backspace": "\ue003", "Tab": "\ue004", "Enter": "\ue007"}
 CONTROL = "\ue009"
@@ -151,16 +151,25 @@ def by_form(page, folder):
 
 
 def heading_in_frame(page, frame):
-    """Waits for the heading of the page in a frame. @returns it"""
+    """Waits for the heading of the page in a frame, which may just be given another page.
+    @returns it"""
+    found = []
+
     def headings():
         page.call("POST", "/frame", {"id": None})
         page.call("POST", "/frame", {"id": {"element-6066-11e4-a52e-4f735466cecf": page.element(frame)}})
-        found = page.call("POST", "/elements", {"using": "css selector", "value": "h1"})
-        return [page.call("GET", f"/element/{next(iter(each.values()))}/text") for each in found]
-    wait("a heading in the frame", lambda: headings() != [])
-    heading = headings()
+        elements = page.call("POST", "/elements", {"using": "css selector", "value": "h1"})
+        return [page.call("GET", f"/element/{next(iter(each.values()))}/text") for each in elements]
+
+    def is_there():
+        try:
+            found[:] = headings()
+        except Refused:  # the heading went with the page before
+            found.clear()
+        return found != []
+    wait("a heading in the frame", is_there)
     page.call("POST", "/frame", {"id": None})
-    return heading
+    return found
 
 
 def in_frame(page, frame, script):

@@ -137,7 +137,7 @@ void add_device_test(CLI::App& app, int& status) {
       "Definition whose set-up of the device is checked (.toml) (default: the driver's own)");
   sub->add_option("--seconds", o.seconds, with_default("Duration [s]", o.seconds));
   sub->add_flag("--read", o.read,
-                "Only print where the handle is and which buttons are pressed, without force");
+                "Print where the handle is and which buttons are pressed, without force");
   sub->add_option("--certificate", o.certificate,
                   "Folder for a certificate: what the device does, with intervals");
   sub->add_option("--mass", o.mass,
