@@ -16,9 +16,13 @@ std::size_t require_name(Table& table, const char* key, const std::string& name,
                          const std::vector<std::string>& known) {
   const auto at = std::ranges::find(known, name);
   if (at == known.end()) {
-    table.reject(table.has(key) ? key : "kind", fmt::format("of the {} \"{}\"", key, name),
+    const bool stated = table.has(key);
+    const std::string found = stated ? fmt::format("\"{}\"", name)
+                                     : fmt::format("\"produced\" of the {} \"{}\"", key, name);
+    const std::string lead = stated ? "" : fmt::format("{} = ", key);
+    table.reject(stated ? key : "kind", found,
                  known.empty() ? std::string("none: the definition has no such name")
-                               : fmt::format("{} = one of: {}", key, fmt::join(known, ", ")));
+                               : fmt::format("{}one of: {}", lead, fmt::join(known, ", ")));
     return 0;
   }
   return static_cast<std::size_t>(at - known.begin());
@@ -36,7 +40,7 @@ void check_produced(Table& table, const ProducedNames& names, ProducedPlan& plan
     require_name(table, "target", plan.target, names.variables);
   }
   if (plan.quantity == ProducedQuantity::kPath && plan.statistic != ProducedStatistic::kMean) {
-    table.reject("statistic", "stands beside quantity = \"path\", which is one number",
+    table.reject("statistic", "given beside quantity = \"path\", which is one number",
                  "no statistic of a path");
   }
 }

@@ -126,7 +126,7 @@ static std::string pictures_in(const fs::path& folder) {
          "does";
 }
 
-/// What the whole study costs in hours of the lab, as this rehearsal took.
+/// Says how many hours in the lab the whole study takes, if sessions last as in this rehearsal.
 static void print_lab_time(const protocols::Definition& d, const fs::path& folder,
                            std::optional<double> setup) {
   if (const auto times = session_times(session_files(folder), d)) {
