@@ -9,6 +9,7 @@
 #include <array>
 #include <cctype>
 #include <chrono>
+#include <iterator>
 #include <set>
 #include <sstream>
 
@@ -31,12 +32,11 @@ bool is_session_file(const fs::path& file) {
   return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); });
 }
 
-/// Kinds of files that only commands write into folders of sessions.
+/// Kinds of files that commands make from sessions.
 bool is_made(const fs::path& file) {
   static const std::set<std::string> kKinds{".html", ".csv", ".tsv",  ".json", ".svg", ".pdf",
                                             ".png",  ".mp4", ".webm", ".xdf",  ".md",  ".gz"};
-  return kKinds.contains(file.extension().string()) && file.filename() != kList &&
-         !(file.filename() == "reasons.csv" && file.parent_path().filename() == "excluded");
+  return kKinds.contains(file.extension().string());
 }
 
 bool is_of(const fs::path& file, const std::string& subject) {
@@ -47,21 +47,78 @@ bool is_of(const fs::path& file, const std::string& subject) {
   }
 }
 
-void sort_in(const fs::path& file, const std::string& subject, Withdrawal& found) {
-  if (is_session_file(file)) {
-    if (is_of(file, subject)) {
-      if (file.extension() == ".partial" && record::FileLock::taken(file)) {
-        throw InputError(fmt::format("{}: a session of {} is being recorded; end it first",
-                                     file.string(), subject));
-      }
-      found.sessions.push_back(file);
+std::vector<fs::path> files_below(const std::vector<fs::path>& folders) {
+  std::set<fs::path> files;
+  for (const fs::path& folder : folders) {
+    if (!fs::is_directory(folder)) {
+      throw InputError(fmt::format("{}: not a folder", folder.string()));
     }
-  } else if (is_made(file)) {
-    found.made.push_back(file);
-  } else if (file.filename() != "reasons.csv" &&
-             (has_word(file.filename().string(), subject) || has_word(file_text(file), subject))) {
-    found.others.push_back(file);
+    for (const auto& each : fs::recursive_directory_iterator(folder)) {
+      if (each.is_regular_file() && !each.is_symlink()) {
+        files.insert(each.path());
+      }
+    }
   }
+  return {files.begin(), files.end()};
+}
+
+std::vector<fs::path> sessions_among(const std::vector<fs::path>& files,
+                                     const std::string& subject) {
+  std::vector<fs::path> own;
+  for (const fs::path& file : files) {
+    if (!is_session_file(file) || !is_of(file, subject)) {
+      continue;
+    }
+    if (file.extension() == ".partial" && record::FileLock::taken(file)) {
+      throw InputError(fmt::format("{}: a session of {} is being recorded; end it first",
+                                   file.string(), subject));
+    }
+    own.push_back(file);
+  }
+  return own;
+}
+
+bool names(const fs::path& file, const std::string& subject) {
+  return has_word(file.string(), subject) || has_word(file_text(file), subject);
+}
+
+/// Folders that hold the participant's sessions, or something made from them.
+std::set<fs::path> folders_with(const std::vector<fs::path>& sessions,
+                                const std::vector<fs::path>& named) {
+  std::set<fs::path> folders;
+  for (const auto* list : {&sessions, &named}) {
+    for (const fs::path& file : *list) {
+      folders.insert(file.parent_path());
+    }
+  }
+  return folders;
+}
+
+/// Sorts the files that are no sessions. A file without the participant's name counts if it lies
+/// beside one that has it, and is younger than the first session: stimuli and notes stay.
+void sort_others(const std::vector<fs::path>& files, const std::string& subject,
+                 Withdrawal& found) {
+  std::vector<fs::path> unnamed;
+  for (const fs::path& file : files) {
+    if (is_session_file(file) || file.filename() == "reasons.csv" || file.filename() == kList) {
+      continue;
+    }
+    if (!names(file, subject)) {
+      unnamed.push_back(file);
+    } else {
+      (is_made(file) ? found.made : found.others).push_back(file);
+    }
+  }
+  fs::file_time_type first = fs::file_time_type::max();
+  for (const fs::path& session : found.sessions) {
+    first = std::min(first, fs::last_write_time(session));
+  }
+  const std::set<fs::path> folders = folders_with(found.sessions, found.made);
+  std::ranges::copy_if(unnamed, std::back_inserter(found.made), [&](const fs::path& file) {
+    return is_made(file) && folders.contains(file.parent_path()) &&
+           fs::last_write_time(file) >= first;
+  });
+  std::ranges::sort(found.made);
 }
 
 void remove_reason(const fs::path& file, const std::string& subject) {
@@ -80,18 +137,14 @@ void remove_reason(const fs::path& file, const std::string& subject) {
   rows ? write_whole(file, kept) : static_cast<void>(fs::remove(file));
 }
 
-/// Folders below a folder without anything in them.
-void remove_empty(const fs::path& folder) {
-  std::vector<fs::path> below;
-  for (const auto& each : fs::recursive_directory_iterator(folder)) {
-    if (each.is_directory() && !each.is_symlink()) {
-      below.push_back(each.path());
-    }
-  }
-  for (auto each = below.rbegin(); each != below.rend(); ++each) {
-    std::error_code ignored;
-    if (fs::is_empty(*each, ignored)) {
-      fs::remove(*each, ignored);
+/// Removes the folders of deleted files that are empty now, but not the ones that were given.
+void remove_empty(const std::vector<fs::path>& deleted, const std::vector<fs::path>& given) {
+  for (const fs::path& file : deleted) {
+    fs::path folder = file.parent_path();
+    std::error_code error;
+    while (std::ranges::find(given, folder) == given.end() && fs::is_empty(folder, error) &&
+           !error && fs::remove(folder, error)) {
+      folder = folder.parent_path();
     }
   }
 }
@@ -115,25 +168,14 @@ bool has_word(std::string_view text, std::string_view word) {
 }
 
 Withdrawal find_withdrawal(const std::vector<fs::path>& folders, const std::string& subject) {
+  const std::vector<fs::path> files = files_below(folders);
   Withdrawal found;
-  for (const fs::path& folder : folders) {
-    if (!fs::is_directory(folder)) {
-      throw InputError(fmt::format("{}: not a folder", folder.string()));
-    }
-    for (const auto& each : fs::recursive_directory_iterator(folder)) {
-      if (each.is_regular_file() && !each.is_symlink()) {
-        sort_in(each.path(), subject, found);
-      }
-    }
-  }
-  for (auto* list : {&found.sessions, &found.made, &found.others}) {
-    std::ranges::sort(*list);
-    list->erase(std::unique(list->begin(), list->end()), list->end());
-  }
+  found.sessions = sessions_among(files, subject);
   if (found.sessions.empty()) {
     throw InputError(
         fmt::format("{} has no session file in {}", subject, folders.front().string()));
   }
+  sort_others(files, subject, found);
   return found;
 }
 
@@ -149,8 +191,9 @@ void withdraw(const Withdrawal& found, const std::vector<fs::path>& folders,
   }
   for (const fs::path& folder : folders) {
     remove_reason(folder / "excluded" / "reasons.csv", subject);
-    remove_empty(folder);
   }
+  remove_empty(found.sessions, folders);
+  remove_empty(found.made, folders);
   const fs::path list = folders.front() / kList;
   const auto now =
       std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());

@@ -15,16 +15,18 @@ struct Withdrawal {
 };
 
 /// Looks through folders with all that is below them. A session file is the participant's if it
-/// says so, and one that cannot be read if its name does. Whatever was made from the sessions of
-/// these folders counts, since its numbers are partly the participant's.
+/// says so, and one that cannot be read if its name does. A table, report or picture was made from
+/// sessions if it names the participant, or if it lies beside such a file or the sessions and is
+/// younger than the first of them: its numbers are partly the participant's.
 /// @throws InputError for a folder that is not there, a participant without a file, or one whose
 /// session is being recorded
 Withdrawal find_withdrawal(const std::vector<std::filesystem::path>& folders,
                            const std::string& subject);
 
 /// Deletes sessions and what was made from sessions, the participant's row of
-/// excluded/reasons.csv, and folders that become empty; adds a row to withdrawals.csv in the first
-/// folder, with the time, the user's login and how much was deleted, without the identifier.
+/// excluded/reasons.csv, and folders that become empty by that; adds a row to withdrawals.csv in
+/// the first folder, with the time, the user's login and how much was deleted, without the
+/// identifier.
 /// @param folders  as they were looked through
 /// @throws RunError for a file that cannot be deleted; those before it are gone then
 void withdraw(const Withdrawal& found, const std::vector<std::filesystem::path>& folders,

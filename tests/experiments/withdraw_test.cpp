@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -95,6 +96,23 @@ TEST_F(WithdrawTest, ExcludedFilesAndReasonsGoAndOthersStay) {
   EXPECT_TRUE(fs::exists(folder_ / "out/mine/S020.h5.partial"));
   EXPECT_EQ(file_text(folder_ / "out/mine/excluded/reasons.csv"),
             "participant,reason\nS020,slept\n");
+}
+
+TEST_F(WithdrawTest, StimuliDefinitionsAndOtherStudiesStay) {
+  const auto old = fs::last_write_time(folder_ / "out/mine/S01.h5") - std::chrono::hours(1);
+  fs::create_directories(folder_ / "stimuli/empty");
+  for (const char* name : {"README.md", "stimuli/face.png", "out/mine/stimulus.png"}) {
+    write_text(folder_ / name, "older than the study");
+    fs::last_write_time(folder_ / name, old);
+  }
+  write_text(folder_ / "plan.csv", "young, but beside no session");
+  EXPECT_EQ(run("withdraw . S02 --yes").status, 0);
+  for (const char* name : {"mine.toml", "README.md", "stimuli/face.png", "stimuli/empty",
+                           "out/mine/stimulus.png", "plan.csv", "out/mine/S01.h5"}) {
+    EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out/mine/report.html"));
+  EXPECT_THAT(files_with("S02"), IsEmpty());
 }
 
 TEST(HasWordTest, NeighboursDecide) {
