@@ -10,9 +10,6 @@ namespace haptrial::experiments {
 
 using protocols::PlannedTrial;
 
-LastAnswer::LastAnswer(const Parts& parts)
-    : p_(parts), reversible_(dynamic_cast<protocols::ReversibleTrials*>(&parts.trials)) {}
-
 int LastAnswer::begin_attempt(const PlannedTrial& trial) {
   if (now_.trial != trial.trial || now_.practice != trial.practice) {
     now_ = {trial.trial, trial.practice, {}, false};
@@ -33,7 +30,7 @@ void LastAnswer::note_answer() {
 void LastAnswer::end_trial(bool completed) {
   const Attempt over = std::exchange(now_, {});
   before_.reset();
-  if (completed && over.answered && reversible_ != nullptr && reversible_->can_take_back()) {
+  if (completed && over.answered && p_.trials.can_take_back()) {
     before_ = over;
   }
   show();
@@ -77,7 +74,7 @@ void LastAnswer::record(const Attempt& attempt, const std::string& why) {
 
 std::optional<PlannedTrial> LastAnswer::go_back() {
   next_ = Next::kAsPlanned;
-  return reversible_->take_back();
+  return p_.trials.take_back();
 }
 
 void LastAnswer::show() {

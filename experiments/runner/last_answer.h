@@ -9,7 +9,7 @@
 
 #include "experiments/control/session_controller.h"
 #include "experiments/runner/session_record.h"
-#include "protocols/interface/reversible_trials.h"
+#include "protocols/interface/trials.h"
 
 namespace haptrial::experiments {
 
@@ -27,7 +27,7 @@ class LastAnswer {
   /// The trial that follows.
   enum class Next : std::uint8_t { kAsPlanned, kSameTrial, kTrialBefore };
 
-  explicit LastAnswer(const Parts& parts);
+  explicit LastAnswer(const Parts& parts) : p_(parts) {}
 
   /// @returns the number of the attempt that begins
   int begin_attempt(const protocols::PlannedTrial& trial);
@@ -58,7 +58,6 @@ class LastAnswer {
   void show();
 
   Parts p_;
-  protocols::ReversibleTrials* reversible_;  // null: the protocol's trials cannot go back
   Attempt now_;
   std::optional<Attempt> before_;
   std::map<std::tuple<std::int32_t, bool, std::string>, int> attempts_;  // by trial, so far

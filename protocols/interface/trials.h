@@ -98,6 +98,12 @@ class Trials {
   /// @param last  of the trial before; null before the first
   /// @returns nothing when the session is over
   virtual std::optional<PlannedTrial> next(const Outcome* last) = 0;
+  /// Whether outcomes can be taken back: those that have gone to another program cannot.
+  virtual bool can_take_back() const { return false; }
+  /// Forgets the outcome that next() was given last: procedures stand as if it had not been.
+  /// Called only where can_take_back(). @returns its trial, which is presented again; nothing if
+  /// there was none
+  virtual std::optional<PlannedTrial> take_back() { return std::nullopt; }
   /// Whether a resumed session presents trials again that an earlier run had to abort. Not where
   /// later trials followed from the abort.
   virtual bool presents_aborted_again() const { return false; }

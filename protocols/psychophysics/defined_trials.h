@@ -8,7 +8,6 @@
 #include "core/record/rows/late_window_row.h"
 #include "core/record/rows/object_file_row.h"
 #include "core/record/rows/trial_rows.h"
-#include "protocols/interface/reversible_trials.h"
 #include "protocols/interface/trials.h"
 #include "protocols/psychophysics/body_report.h"
 #include "protocols/psychophysics/definition/presented.h"
@@ -27,7 +26,7 @@ class TrialsRig;
 std::vector<std::string> blocks_of(const TrialsDefinition& definition, const SessionPlace& place);
 
 /// The trials of one session as a definition states them.
-class DefinedTrials final : public Trials, public ReversibleTrials {
+class DefinedTrials final : public Trials {
  public:
   DefinedTrials(const StudiedDefinition& definition, const SessionPlace& place);
 
