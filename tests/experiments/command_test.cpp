@@ -116,6 +116,22 @@ TEST_F(CommandTest, ValidateAndDevices) {
       testing::AllOf(HasSubstr("virtual"), HasSubstr("\nrdt              force-torque sensors")));
 }
 
+/// The level of the standard of another study would give Weber fractions that mean nothing.
+TEST_F(CommandTest, ValidateWarnsOfAReferenceFarFromTheLevels) {
+  fs::create_directories(folder_);
+  const auto said_of = [this](const std::string& reference) {
+    const std::string study = (folder_ / "study.toml").string();
+    fs::copy_file(HAPTRIAL_SOURCE_DIR "/experiments/force_discrimination.toml", study,
+                  fs::copy_options::overwrite_existing);
+    EXPECT_EQ(run_command("haptrial set " + study + " analysis.reference=" + reference).status, 0);
+    const CommandResult said = run_command("haptrial validate " + study);
+    EXPECT_EQ(said.status, 0) << said.errors;
+    return said.output + said.errors;
+  };
+  EXPECT_THAT(said_of("300.0"), HasSubstr("analysis.reference (300) lies outside of the levels"));
+  EXPECT_THAT(said_of("2.0"), testing::Not(HasSubstr("lies outside")));
+}
+
 TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
   const std::string source = "source '" HAPTRIAL_SOURCE_DIR "/experiments/completion.bash'\n";
   const CommandResult names =

@@ -58,7 +58,7 @@ int steps_of(const Compliance& body, const TouchOptions& options) {
 BallTouch::BallTouch(SharedCompliance body, const TouchOptions& options)
     : body_(std::move(body)),
       options_(felt_options(*body_, options)),
-      samples_(body_->faces(), body_->rest(), steps_of(*body_, options)) {
+      samples_(body_->samples(steps_of(*body_, options))) {
   found_.resize(body_->faces().size());
   faces_.reserve(kMostFaces);
   near_.reserve(kMostNear);
@@ -70,9 +70,9 @@ BallTouch::BallTouch(SharedCompliance body, const TouchOptions& options)
   columns_.resize(kMostNear * kMostNear);
   column_at_.assign(kMostNear, 0);
   response_.resize(kMostNear * static_cast<std::size_t>(kMostPlaces));
-  last_pressed_.assign(samples_.samples.size(), 0);
-  pressed_in_.assign(samples_.samples.size(), 0);
-  looked_at_.assign(samples_.samples.size(), 0);
+  last_pressed_.assign(samples_->samples.size(), 0);
+  pressed_in_.assign(samples_->samples.size(), 0);
+  looked_at_.assign(samples_->samples.size(), 0);
   forces_.resize(kMostNear);
   loaded_.resize(kMostNear);
   deep_.resize(body_->places());
@@ -245,12 +245,12 @@ void BallTouch::take_samples(const Vector3d& centre) noexcept {
   const double reach = far + std::sqrt(most);  // of what is at rest
   ++round_;
   for (const std::int32_t face : faces_) {
-    for (const std::int32_t number : samples_.on(face)) {
+    for (const std::int32_t number : samples_->on(face)) {
       if (looked_at_[at(number)] == round_) {
         continue;
       }
       looked_at_[at(number)] = round_;
-      const SurfaceSamples::Sample& sample = samples_.samples[at(number)];
+      const SurfaceSamples::Sample& sample = samples_->samples[at(number)];
       const bool was_pressed = last_pressed_[at(number)] + 1 >= tick_;
       if (!was_pressed && (sample.rest - centre).squaredNorm() > reach * reach) {
         continue;

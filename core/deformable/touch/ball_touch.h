@@ -81,7 +81,7 @@ class BallTouch final : public BodyTouch {
   SharedCompliance body_;
   TouchOptions options_;
   std::vector<contact::NearTriangle> found_;
-  SurfaceSamples samples_;
+  std::shared_ptr<const SurfaceSamples> samples_;
   std::vector<std::int32_t> faces_;            // near the ball
   std::vector<std::int32_t> near_;             // their corners: places of the body
   std::vector<std::int32_t> number_;           // by place: into near_; -1: not near

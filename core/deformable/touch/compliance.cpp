@@ -167,6 +167,15 @@ double Compliance::stiffest_at(std::int32_t centre, double radius) const {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(k).eigenvalues().maxCoeff();
 }
 
+std::shared_ptr<const SurfaceSamples> Compliance::samples(int steps) const {
+  const std::lock_guard guard(samples_lock_);
+  std::shared_ptr<const SurfaceSamples>& known = samples_[steps];
+  if (!known) {
+    known = std::make_shared<const SurfaceSamples>(faces_, rest_, steps);
+  }
+  return known;
+}
+
 double Compliance::stiffest(double radius) const {
   double most = 0.0;
   const std::size_t step = std::max<std::size_t>(1, touched_ / kMostSampled);

@@ -3,12 +3,15 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "core/base/big_array.h"
 #include "core/contact/contact_surface.h"
+#include "core/deformable/touch/surface_samples.h"
 #include "core/deformable/touch/tissue.h"
 
 namespace haptrial::deformable {
@@ -63,6 +66,9 @@ class Compliance {
   /// Numbers of outer_tets() at a touched place.
   std::span<const std::int32_t> tets_at(std::int32_t place) const noexcept;
 
+  /// Samples of faces(), made once for each number of steps along an edge. Any thread.
+  std::shared_ptr<const SurfaceSamples> samples(int steps) const;
+
   /// A bound on how stiff a ball on the surface can be: all vertices that it could reach move
   /// together [N/m]. Infinite where it can reach a held one. Looks at up to 64 places.
   double stiffest(double radius) const;
@@ -80,7 +86,9 @@ class Compliance {
   std::vector<geometry::Tetrahedron> outer_tets_;
   std::vector<std::int32_t> first_tet_, tets_;  // by touched place
   std::unique_ptr<contact::ContactSurface> surface_;
-  BigArray<Block> blocks_;  // (places x touched)
+  mutable std::mutex samples_lock_;                                       // of the next
+  mutable std::map<int, std::shared_ptr<const SurfaceSamples>> samples_;  // by steps
+  BigArray<Block> blocks_;                                                // (places x touched)
 };
 
 /// Memory of a Compliance [bytes]: what stays, and at most while it is made.

@@ -185,6 +185,14 @@ std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definit
                       "{:g}; levels up to there are left out of the function",
                       track.name, track.low, plan.function.axis.origin));
     }
+    const double room = 0.1 * (track.high - track.low);
+    if (plan.functions && plan.reference && (plan.level.empty() || track.variable == plan.level) &&
+        (*plan.reference < track.low - room || *plan.reference > track.high + room)) {
+      warnings.push_back(
+          fmt::format("analysis.reference ({:g}) lies outside of the levels of {} ({:g} to {:g}): "
+                      "is it the level of the standard, to which Weber fractions relate?",
+                      *plan.reference, track.variable, track.low, track.high));
+    }
   }
   return warnings;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/base/parallel.h"
 #include "core/scene/needed_damping.h"
 #include "core/scene/scene.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
@@ -18,11 +19,17 @@ using Eigen::Vector3d;
 
 constexpr int kSteps = 240;     // of a line
 constexpr double kFelt = 1e-6;  // [N]
+constexpr double kFast = 0.5;   // of a hand [m/s]
+
+using Part = std::pair<double, double>;  // of a line: its ends [m]
 
 scene::Scene scene_of(const FeltFields& felt) {
   std::vector<scene::Field> fields = felt.fields;
   for (scene::Field& field : fields) {
     field.fade_in = field.fade_out = 0.0;
+    if (auto* body = std::get_if<scene::DeformableObjectParameters>(&field.kind)) {
+      body->shape = nullptr;  // no picture: scenes of several threads have one body
+    }
   }
   scene::Scene scene(fields, felt.rate);
   scene.switch_to(felt.mask);
@@ -37,29 +44,38 @@ std::vector<double> spread(double from, double to, std::size_t count) {
   return values;
 }
 
-/// Forces on a hand that is led from the place outwards, once to either end.
-ForceLine line_along(const FeltFields& felt, const Vector3d& origin, int axis, double from,
-                     double to) {
-  const double step = std::max((to - from) / kSteps, 1e-6);
-  const int below = static_cast<int>(std::lround(-from / step));
-  const int above = static_cast<int>(std::lround(to / step));
-  const auto led = [&](int steps, double each) {
-    std::vector<Vector3d> way;
-    for (int i = 0; i <= steps; ++i) {
-      way.push_back(origin + each * i * Vector3d::Unit(axis));
-    }
-    return forces_along(felt, way);
-  };
-  ForceLine line;
-  line.axis = axis;
-  for (int i = -below; i <= above; ++i) {
-    line.offsets.push_back(step * i);
+/// Forces on a hand that is led from the origin outwards, once to either end of each line.
+/// @param ends  of each line: below and above the origin [m]
+std::array<ForceLine, 3> lines_to(const FeltStage& stage, const std::array<Part, 3>& ends) {
+  std::array<double, 3> steps{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    steps[axis] = std::max((ends[axis].second - ends[axis].first) / kSteps, 1e-6);
   }
-  line.forces = led(below, -step);
-  std::ranges::reverse(line.forces);
-  line.forces.pop_back();  // the place itself
-  std::ranges::copy(led(above, step), std::back_inserter(line.forces));
-  return line;
+  std::array<std::vector<Vector3d>, 6> halves;  // of each line: below, above
+  parallel_for(halves.size(), threads_or_all(0), [&](std::size_t half) {
+    const std::size_t axis = half / 2;
+    const double step = half % 2 == 0 ? -steps[axis] : steps[axis];
+    const double end = half % 2 == 0 ? ends[axis].first : ends[axis].second;
+    std::vector<Vector3d> way;
+    for (int i = 0; i <= static_cast<int>(std::lround(end / step)); ++i) {
+      way.push_back(stage.origin + step * i * Vector3d::Unit(static_cast<int>(axis)));
+    }
+    halves[half] = forces_along(stage.felt, way);
+  });
+  std::array<ForceLine, 3> lines;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    ForceLine& line = lines[axis];
+    line.axis = static_cast<int>(axis);
+    line.forces = std::move(halves[2 * axis]);
+    const int below = static_cast<int>(line.forces.size()) - 1;
+    std::ranges::reverse(line.forces);
+    line.forces.pop_back();  // the origin itself
+    std::ranges::copy(halves[2 * axis + 1], std::back_inserter(line.forces));
+    for (int i = -below; std::ssize(line.offsets) < std::ssize(line.forces); ++i) {
+      line.offsets.push_back(steps[axis] * i);
+    }
+  }
+  return lines;
 }
 
 double largest(const std::vector<Vector3d>& forces) {
@@ -72,7 +88,7 @@ double largest(const std::vector<Vector3d>& forces) {
 
 /// The part of a line over which the force changes, with some room; a tenth of the reach where it
 /// does not.
-std::pair<double, double> part_that_matters(const ForceLine& line, double reach) {
+Part part_that_matters(const ForceLine& line, double reach) {
   constexpr double kChange = 0.01;  // of the largest force
   constexpr double kRoom = 0.15;
   double low = 0.0, high = 0.0;
@@ -89,23 +105,18 @@ std::pair<double, double> part_that_matters(const ForceLine& line, double reach)
   return {std::max(-reach, low - room), std::min(reach, high + room)};
 }
 
-using Part = std::pair<double, double>;  // of a line: its ends [m]
-
 /// Lines are as long as the longest part that matters, so that they can be compared.
 /// @returns the part of each line that matters
 std::array<Part, 3> draw_lines(FeltStage& stage, double reach) {
   std::array<Part, 3> parts;
   double low = 0.0, high = 0.0;
+  stage.lines = lines_to(stage, {Part{-reach, reach}, {-reach, reach}, {-reach, reach}});
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    parts[axis] = part_that_matters(
-        line_along(stage.felt, stage.origin, static_cast<int>(axis), -reach, reach), reach);
+    parts[axis] = part_that_matters(stage.lines[axis], reach);
     low = std::min(low, parts[axis].first);
     high = std::max(high, parts[axis].second);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    stage.lines[static_cast<std::size_t>(axis)] =
-        line_along(stage.felt, stage.origin, axis, low, high);
-  }
+  stage.lines = lines_to(stage, {Part{low, high}, {low, high}, {low, high}});
   return parts;
 }
 
@@ -132,15 +143,17 @@ Vector3d place_that_touches(const FeltStage& stage) {
 
 std::array<SpeedCurve, 3> speeds_at(const FeltFields& felt, const Vector3d& place, double fastest) {
   constexpr std::size_t kSpeeds = 21;
+  const std::vector<double> speeds = spread(-fastest, fastest, kSpeeds);
   const Vector3d at_rest = settled_force(felt, place, Vector3d::Zero());
   std::array<SpeedCurve, 3> curves;
-  for (int axis = 0; axis < 3; ++axis) {
-    SpeedCurve curve{axis, spread(-fastest, fastest, kSpeeds), {}};
-    for (const double speed : curve.speeds) {
-      curve.forces.push_back(settled_force(felt, place, speed * Vector3d::Unit(axis)) - at_rest);
-    }
-    curves[static_cast<std::size_t>(axis)] = std::move(curve);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    curves[axis] = {static_cast<int>(axis), speeds, std::vector<Vector3d>(kSpeeds)};
   }
+  parallel_for(3 * kSpeeds, threads_or_all(0), [&](std::size_t i) {
+    SpeedCurve& curve = curves[i / kSpeeds];
+    const Vector3d velocity = speeds[i % kSpeeds] * Vector3d::Unit(curve.axis);
+    curve.forces[i % kSpeeds] = settled_force(felt, place, velocity) - at_rest;
+  });
   return curves;
 }
 
@@ -157,9 +170,9 @@ void draw_speeds(FeltStage& stage, double fastest) {
 void draw_course(FeltStage& stage, double duration) {
   const auto ticks = static_cast<std::size_t>(std::lround(duration * stage.felt.rate));
   std::vector<Vector3d> course = forces_over_time(stage.felt, stage.touched, ticks);
-  const bool changes = std::ranges::any_of(course, [&](const Vector3d& force) {
-    return (force - course.front()).norm() > std::max(kFelt, 0.01 * largest(course));
-  });
+  const double least = std::max(kFelt, 0.01 * largest(course));
+  const bool changes = std::ranges::any_of(
+      course, [&](const Vector3d& force) { return (force - course.front()).norm() > least; });
   stage.course = changes ? std::move(course) : std::vector<Vector3d>();
 }
 
@@ -182,8 +195,7 @@ void choose_plane(const FeltStage& stage, bool from_above, ForcePlane& plane) {
 }
 
 /// Forces along a row, on a hand that is led from the origin to the row and along it to one end.
-void add_half_row(const FeltStage& stage, double up, std::span<const double> across,
-                  std::vector<Vector3d>& forces) {
+std::vector<Vector3d> half_row(const FeltStage& stage, double up, std::span<const double> across) {
   constexpr int kWayToRow = 12;  // steps
   const ForcePlane& plane = stage.plane;
   const Vector3d across_unit = Vector3d::Unit(plane.across), up_unit = Vector3d::Unit(plane.up);
@@ -194,23 +206,33 @@ void add_half_row(const FeltStage& stage, double up, std::span<const double> acr
   for (const double offset : across) {
     way.push_back(stage.origin + offset * across_unit + up * up_unit);
   }
-  const std::vector<Vector3d> felt = forces_along(stage.felt, way);
-  forces.insert(forces.end(), felt.begin() + kWayToRow, felt.end());
+  std::vector<Vector3d> forces = forces_along(stage.felt, way);
+  forces.erase(forces.begin(), forces.begin() + kWayToRow);
+  return forces;
 }
 
-void add_row(FeltStage& stage, double up, const std::vector<double>& across) {
+void draw_rows(FeltStage& stage, const std::vector<double>& columns,
+               const std::vector<double>& rows) {
   ForcePlane& plane = stage.plane;
-  for (const double offset : across) {
-    plane.places.push_back(stage.origin + offset * Vector3d::Unit(plane.across) +
-                           up * Vector3d::Unit(plane.up));
+  plane.columns = columns.size();
+  plane.forces.resize(rows.size() * columns.size());
+  const auto middle = std::ranges::lower_bound(columns, 0.0);
+  const std::vector<double> left(std::make_reverse_iterator(middle), columns.rend());
+  parallel_for(2 * rows.size(), threads_or_all(0), [&](std::size_t half) {
+    const auto first = plane.forces.begin() + std::ssize(columns) * static_cast<long>(half / 2);
+    if (half % 2 == 0) {
+      std::ranges::reverse_copy(half_row(stage, rows[half / 2], left), first);
+    } else {
+      std::ranges::copy(half_row(stage, rows[half / 2], std::span(middle, columns.end())),
+                        first + std::ssize(left));
+    }
+  });
+  for (const double row : rows) {
+    for (const double column : columns) {
+      plane.places.push_back(stage.origin + column * Vector3d::Unit(plane.across) +
+                             row * Vector3d::Unit(plane.up));
+    }
   }
-  const auto middle = std::ranges::lower_bound(across, 0.0);
-  const std::vector<double> left(std::make_reverse_iterator(middle), across.rend());
-  std::vector<Vector3d> forces;
-  add_half_row(stage, up, left, forces);
-  std::ranges::reverse(forces);
-  add_half_row(stage, up, std::span(middle, across.end()), forces);
-  plane.forces.insert(plane.forces.end(), forces.begin(), forces.end());
 }
 
 void draw_plane(FeltStage& stage, const std::array<Part, 3>& parts, bool from_above,
@@ -222,7 +244,6 @@ void draw_plane(FeltStage& stage, const std::array<Part, 3>& parts, bool from_ab
     plane.across = look.plane->front();
     plane.up = look.plane->back();
   }
-  plane.columns = kArrows;
   const Part& across = parts[static_cast<std::size_t>(plane.across)];
   const Part& up = parts[static_cast<std::size_t>(plane.up)];
   const double half = 0.5 * std::max(across.second - across.first, up.second - up.first);
@@ -230,10 +251,7 @@ void draw_plane(FeltStage& stage, const std::array<Part, 3>& parts, bool from_ab
     const double centre = 0.5 * (part.first + part.second);
     return spread(centre - half, centre + half, kArrows);
   };
-  const std::vector<double> columns = square(across);
-  for (const double row : square(up)) {
-    add_row(stage, row, columns);
-  }
+  draw_rows(stage, square(across), square(up));
 }
 
 std::vector<FieldNumbers> numbers_of(const TrialsDefinition& d, const FeltFields& felt) {
@@ -273,6 +291,34 @@ bool same_lines(const FeltStage& a, const FeltStage& b) {
 double looked_at(const PreviewedStage& stage) {
   constexpr double kLongest = 3.0;
   return std::clamp(stage.longest, 0.01, kLongest);
+}
+
+/// The stages of a trial in which a field acts, on each device that is a tip.
+std::vector<FeltStage> stages_with_fields(const TrialsDefinition& d, const PreviewedTrial& trial,
+                                          const std::vector<DeviceArm>& arms,
+                                          const FeltLook& look) {
+  std::vector<FeltStage> all;
+  for (std::size_t interval = 0; interval < trial.intervals.size(); ++interval) {
+    const PreviewedInterval& shown = trial.intervals[interval];
+    std::vector<scene::Field> fields = shown.presented.fields;
+    prepare_bodies(fields, d.rate);
+    for (std::size_t stage = 0; stage < shown.stages.size(); ++stage) {
+      for (std::size_t device = 0; device < shown.presented.felt.size(); ++device) {
+        const std::uint64_t mask =
+            shown.presented.stages[stage].stage.fields & shown.presented.felt[device];
+        if (mask == 0 || arms[device].part != device::Part::kTip) {
+          continue;
+        }
+        FeltStage felt;
+        felt.where = {{interval, stage}};
+        felt.device = device;
+        felt.felt = {fields, mask, d.rate};
+        felt.origin = look.through.value_or(device == 0 ? shown.start : d.hands[device].start);
+        all.push_back(std::move(felt));
+      }
+    }
+  }
+  return all;
 }
 
 }  // namespace
@@ -320,40 +366,29 @@ bool FeltStage::resists_motion() const {
 
 std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTrial& trial,
                                    const FeltLook& look) {
-  constexpr double kFast = 0.5;  // [m/s]
-  std::vector<FeltStage> stages;
   const std::vector<DeviceArm> arms = d.arms();
-  for (std::size_t interval = 0; interval < trial.intervals.size(); ++interval) {
-    const PreviewedInterval& shown = trial.intervals[interval];
-    std::vector<scene::Field> fields = shown.presented.fields;
-    prepare_bodies(fields, d.rate);
-    for (std::size_t stage = 0; stage < shown.stages.size(); ++stage) {
-      for (std::size_t device = 0; device < shown.presented.felt.size(); ++device) {
-        FeltStage felt;
-        felt.where = {{interval, stage}};
-        felt.device = device;
-        felt.felt = {fields,
-                     shown.presented.stages[stage].stage.fields & shown.presented.felt[device],
-                     d.rate};
-        if (felt.felt.mask == 0 || arms[device].part != device::Part::kTip) {
-          continue;
-        }
-        felt.origin = look.through.value_or(device == 0 ? shown.start : d.hands[device].start);
-        const std::array<Part, 3> parts = draw_lines(felt, arms[device].limits.workspace_radius);
-        felt.touched = place_that_touches(felt);
-        draw_speeds(felt, std::min(kFast, arms[device].limits.max_speed));
-        draw_course(felt, looked_at(shown.stages[stage]));
-        const auto same = std::ranges::find_if(
-            stages, [&](const FeltStage& other) { return same_lines(felt, other); });
-        if (same != stages.end()) {
-          same->where.push_back(felt.where.front());
-          continue;
-        }
-        draw_plane(felt, parts, d.view.from_above, look);
-        felt.fields = numbers_of(d, felt.felt);
-        stages.push_back(std::move(felt));
-      }
+  std::vector<FeltStage> all = stages_with_fields(d, trial, arms, look);
+  std::vector<std::array<Part, 3>> parts(all.size());
+  parallel_for(all.size(), threads_or_all(0), [&](std::size_t i) {
+    FeltStage& felt = all[i];
+    const device::EnvelopeLimits& limits = arms[felt.device].limits;
+    const StagePlace& at = felt.where.front();
+    parts[i] = draw_lines(felt, limits.workspace_radius);
+    felt.touched = place_that_touches(felt);
+    draw_speeds(felt, std::min(kFast, limits.max_speed));
+    draw_course(felt, looked_at(trial.intervals[at.interval].stages[at.stage]));
+  });
+  std::vector<FeltStage> stages;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto same = std::ranges::find_if(
+        stages, [&](const FeltStage& other) { return same_lines(all[i], other); });
+    if (same != stages.end()) {
+      same->where.push_back(all[i].where.front());
+      continue;
     }
+    draw_plane(all[i], parts[i], d.view.from_above, look);
+    all[i].fields = numbers_of(d, all[i].felt);
+    stages.push_back(std::move(all[i]));
   }
   return stages;
 }
