@@ -118,12 +118,11 @@ TEST_F(CommandTest, ValidateAndDevices) {
 
 /// The level of the standard of another study would give Weber fractions that mean nothing.
 TEST_F(CommandTest, ValidateWarnsOfAReferenceFarFromTheLevels) {
-  fs::create_directories(folder_);
   const auto said_of = [this](const std::string& reference) {
     const std::string study = (folder_ / "study.toml").string();
     fs::copy_file(HAPTRIAL_SOURCE_DIR "/experiments/force_discrimination.toml", study,
                   fs::copy_options::overwrite_existing);
-    EXPECT_EQ(run_command("haptrial set " + study + " analysis.reference=" + reference).status, 0);
+    EXPECT_EQ(run_command("haptrial set " + study + " analysis.reference " + reference).status, 0);
     const CommandResult said = run_command("haptrial validate " + study);
     EXPECT_EQ(said.status, 0) << said.errors;
     return said.output + said.errors;

@@ -352,6 +352,21 @@ def results(page, folder):
     page.run("document.querySelector('[aria-label=\"Sessions of out/pulls\"] a[download=\"report.html\"]').click()")
 
 
+def changes_since(page, url):
+    """What differs from the session that was run, and whether it may."""
+    page.open(url + "#definition/pulls.toml")
+    wait("the check", lambda: page.text("count") == "No mistakes")
+    unchanged = "since out/pulls/P01.h5: nothing has changed"
+    wait("the newest session", lambda: words(page, "#since") == unchanged)
+    page.run("const editor = document.querySelector('.CodeMirror').CodeMirror, text = editor.getValue();"
+             "const at = text.indexOf('repetitions = 2') + 'repetitions = '.length;"
+             "editor.replaceRange('3', editor.posFromIndex(at), editor.posFromIndex(at + 1)); editor.focus()")
+    wait("the change", lambda: "repetitions" in words(page, "#since"))
+    assert there(page, "#since .warn"), words(page, "#since")  # the trials of a study stay as they are
+    page.run("document.querySelector('.CodeMirror').CodeMirror.undo()")
+    wait("nothing differs", lambda: words(page, "#since") == unchanged)
+
+
 def by_keyboard_alone(page, url):
     """From home to a rehearsal: Tab, Enter and typing."""
     page.open(url)
@@ -422,6 +437,7 @@ def main():
         prepare_session(page, folder)
         live_session(page, folder)
         results(page, folder)
+        changes_since(page, url)
         bad = [each for each in page.complaints() if "/events" not in each]  # of a console that ended
         assert not bad, bad
         clean_home(page, url, folder)
