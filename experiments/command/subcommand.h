@@ -60,6 +60,7 @@ void add_start(CLI::App& app, int& status);
 void add_run(CLI::App& app, int& status);
 void add_secret(CLI::App& app, int& status);
 void add_roster(CLI::App& app, int& status);
+void add_next(CLI::App& app, int& status);
 void add_withdraw(CLI::App& app, int& status);
 void add_info(CLI::App& app, int& status);
 void add_record(CLI::App& app, int& status);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/design/sequential_looks.h"
 #include "core/base/definition/table.h"
 #include "core/record/rows/live_figures.h"
 #include "experiments/studies/curve_analysis.h"
@@ -83,6 +84,12 @@ class Study {
   }
   /// Computes, and writes report, tables and figures. @returns lines for the terminal
   virtual std::vector<std::string> analyze(const AnalysisRequest& request) const = 0;
+  /// How a study stands that may end before its last participant; nothing if it may not.
+  virtual std::optional<analysis::SequentialResult> sequential(
+      const AnalysisRequest& request) const {
+    static_cast<void>(request);
+    return std::nullopt;
+  }
   /// The study's report for simulated participants, for the simulation of power.
   /// @param definition  outlives what comes back
   /// @param asked_in    file with [power]

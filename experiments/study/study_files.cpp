@@ -245,4 +245,19 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
   return study;
 }
 
+std::vector<std::string> participants_in_order(const std::vector<fs::path>& files) {
+  std::map<std::string, std::string> begun;  // by participant
+  for (const fs::path& file : files) {
+    const record::SessionInfo info = record::SessionReader(file).info();
+    const auto [first, is_new] = begun.try_emplace(info.subject, info.start_utc);
+    first->second = std::min(first->second, info.start_utc);
+  }
+  std::vector<std::string> order;
+  for (const auto& [participant, start] : begun) {
+    order.push_back(participant);
+  }
+  std::ranges::stable_sort(order, {}, [&](const std::string& each) { return begun.at(each); });
+  return order;
+}
+
 }  // namespace haptrial::experiments

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/force_training/report/report_parts.h"
+#include "analysis/statistics/design/design_blocks.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
@@ -166,6 +167,9 @@ void add_participants(Document& document, const StudyStatistics& s, const std::s
     document.paragraph(sentence(s, test, what));
   }
   add_family(document, s.tests.planned, "Planned test");
+  if (s.tests.sequential) {
+    add_looks(document, *s.tests.sequential);
+  }
   for (const TestFamily& family : s.tests.families) {
     add_family(document, family, capitalized(family.name) + " (two-tailed)");
   }

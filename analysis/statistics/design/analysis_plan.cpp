@@ -1,6 +1,7 @@
 #include "analysis/statistics/design/analysis_plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -90,6 +91,28 @@ const Schema<TestsBeside>& beside_keys() {
   return schema;
 }
 
+/// The test that decides is a planned one, written as it stands there but for blanks.
+void check_decisive(Table& table, AnalysisPlan& plan) {
+  if (!plan.sequential) {
+    return;
+  }
+  std::vector<std::string> allowed;
+  for (const PlannedTest& test : plan.tests) {
+    allowed.push_back(text_of(test));
+  }
+  const auto test = parsed(plan.sequential->test);
+  plan.sequential->test = test ? text_of(*test) : plan.sequential->test;
+  if (plan.tests.empty()) {
+    table.reject("sequential", "without a planned test");
+    plan.sequential.reset();
+  } else if (!plan.sequential->test.empty() &&
+             std::ranges::find(allowed, plan.sequential->test) == allowed.end()) {
+    table.reject("sequential.test", fmt::format("\"{}\"", plan.sequential->test),
+                 fmt::format("a planned test: \"{}\"", fmt::join(allowed, "\", \"")));
+    plan.sequential.reset();
+  }
+}
+
 }  // namespace
 
 AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
@@ -116,8 +139,20 @@ std::string text_of(const PlannedTest& test) {
 }
 
 const Schema<AnalysisPlan>& tests_beside_schema() {
-  static const auto schema = Schema<AnalysisPlan>().keys_of(&AnalysisPlan::beside, beside_keys());
+  using P = AnalysisPlan;
+  static const auto schema =
+      Schema<P>()
+          .keys_of(&P::beside, beside_keys())
+          .table("sequential", &P::sequential, sequential_schema(),
+                 "When the study may end before its last participant, by one of its planned tests")
+          .check(check_decisive);
   return schema;
+}
+
+const PlannedTest& decisive_test(const AnalysisPlan& plan) {
+  const auto found = std::ranges::find(plan.tests, plan.sequential->test,
+                                       [](const PlannedTest& test) { return text_of(test); });
+  return found != plan.tests.end() ? *found : plan.tests.front();
 }
 
 AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {
@@ -155,7 +190,7 @@ AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>&
                 check(table, key, plan.reference);
               })
       .otherwise("the first")
-      .keys_of(&P::beside, beside_keys())
+      .check([](Table& table, P& plan) { tests_beside_schema().read(table, plan); })
       .read(analysis);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "analysis/statistics/design/sequential_plan.h"
 #include "analysis/statistics/tests/t_tests.h"
 
 namespace haptrial {
@@ -33,6 +35,7 @@ struct AnalysisPlan {
   std::vector<PlannedTest> tests;
   std::string reference;  // the condition that the others are compared with; empty: the first
   TestsBeside beside{};
+  std::optional<SequentialPlan> sequential{};  // none: everybody comes before the first test
 };
 
 /// A plan in words. Each test is as "visual < haptic"; a side is a condition, or in a study of
@@ -45,8 +48,11 @@ AnalysisPlan parse_analysis_plan(const std::vector<std::string>& tests,
 /// The same again.
 std::string text_of(const PlannedTest& test);
 
-/// The keys of an [analysis] table that ask for tests beside the planned ones.
+/// The keys of an [analysis] table that ask for tests beside the planned ones, and that say which
+/// of them decides when the study ends; read after the planned tests.
 const Schema<AnalysisPlan>& tests_beside_schema();
+/// The planned test that decides. @param plan  with `sequential`, whose test is a planned one
+const PlannedTest& decisive_test(const AnalysisPlan& plan);
 
 /// The optional keys `planned` and `reference` of an [analysis] table, and those of
 /// tests_beside_schema(). Names that are not of `conditions` are noted as problems of the table.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "analysis/statistics/design/wording.h"
@@ -70,8 +71,34 @@ void add_design_tests(Document& document, const DesignTable& table, const Design
                                    fmt::join(tests.incomplete, ", ")));
   }
   add_family(document, tests.planned);
+  if (tests.sequential) {
+    add_looks(document, *tests.sequential);
+  }
   for (const TestFamily& family : tests.families) {
     add_family(document, family);
+  }
+}
+
+void add_looks(Document& document, const SequentialResult& result) {
+  constexpr std::size_t kMost = 12;  // rows: the last ones
+  document.paragraph(fmt::format(
+      "When the study ends: {} The p values and intervals of this page take the number of "
+      "participants as fixed beforehand; that the study may end for an effect without one with a "
+      "probability of at most {:g} holds for the decision alone.",
+      words_of(result), result.plan.error));
+  TextRows rows;
+  const std::size_t first = result.looks.size() - std::min(kMost, result.looks.size());
+  for (std::size_t i = first; i < result.looks.size(); ++i) {
+    const SequentialLook& look = result.looks[i];
+    rows.push_back(
+        {fmt::format("{}", look.participants),
+         look.value ? number(*look.value) : "not defined, because " + look.value.because(),
+         number(look.bound)});
+  }
+  if (!rows.empty()) {
+    document.table({"participants",
+                    result.plan.rule == StopRule::kBayesFactor ? "Bayes factor" : "z", "bound"},
+                   rows, first > 0 ? "The last looks" : "Looks");
   }
 }
 

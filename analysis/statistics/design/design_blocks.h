@@ -12,4 +12,7 @@ namespace haptrial::analysis {
 void add_design_tests(Document& document, const DesignTable& table, const DesignTests& tests,
                       const std::string& unit);
 
+/// Adds how a sequential study stands, with its last looks.
+void add_looks(Document& document, const SequentialResult& result);
+
 }  // namespace haptrial::analysis

@@ -86,6 +86,23 @@ Json to_json(const TestFamily& family) {
   return {{"family", family.name}, {"tests", tests}};
 }
 
+Json to_json(const SequentialResult& result) {
+  Json looks = Json::array();
+  for (const SequentialLook& look : result.looks) {
+    looks.push_back({{"participants", look.participants},
+                     {result.plan.rule == StopRule::kBayesFactor ? "bayes_factor" : "z",
+                      look.value ? Json(*look.value) : Json{{"not_defined", look.value.because()}}},
+                     {"bound", look.bound}});
+  }
+  return {{"test", text_of(result.test)},
+          {"error", result.plan.error},
+          {"most_participants", result.most},
+          {"looks", looks},
+          {"ended", result.verdict != SequentialVerdict::kGoOn},
+          {"effect", result.verdict == SequentialVerdict::kEffect},
+          {"words", words_of(result)}};
+}
+
 }  // namespace
 
 Json to_json(const DesignTests& tests) {
@@ -97,12 +114,16 @@ Json to_json(const DesignTests& tests) {
   for (const TestFamily& family : tests.families) {
     families.push_back(to_json(family));
   }
-  return {{"varied", tests.design},
-          {"effects", effects},
-          {"on_ranks", defined(tests.ranks)},
-          {"planned", to_json(tests.planned).at("tests")},
-          {"families", families},
-          {"left_out", tests.incomplete}};
+  Json json{{"varied", tests.design},
+            {"effects", effects},
+            {"on_ranks", defined(tests.ranks)},
+            {"planned", to_json(tests.planned).at("tests")},
+            {"families", families},
+            {"left_out", tests.incomplete}};
+  if (tests.sequential) {
+    json["sequential"] = to_json(*tests.sequential);
+  }
+  return json;
 }
 
 std::string design_json(const DesignTests& tests) { return to_json(tests).dump(2); }

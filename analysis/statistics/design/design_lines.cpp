@@ -142,6 +142,9 @@ std::vector<std::string> planned_lines(const DesignTests& tests) {
   for (const SideTest& test : tests.planned.tests) {
     lines.push_back(line_of(test));
   }
+  if (tests.sequential) {
+    lines.push_back("When the study ends: " + words_of(*tests.sequential));
+  }
   return lines;
 }
 

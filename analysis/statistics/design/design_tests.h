@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "analysis/statistics/design/compared_sides.h"
 #include "analysis/statistics/design/design_effects.h"
 #include "analysis/statistics/design/design_table.h"
+#include "analysis/statistics/design/sequential_looks.h"
 
 namespace haptrial::analysis {
 
@@ -41,7 +43,8 @@ struct DesignTests {
   std::vector<Defined<EffectTest>> effects;
   Defined<RankAnova> ranks{Undefined{"it is for one factor"}};  // Friedman, or Kruskal and Wallis
   TestFamily planned;
-  std::vector<TestFamily> families;  // without a hypothesis: two-tailed
+  std::optional<SequentialResult> sequential;  // of the quantity that decides when a study ends
+  std::vector<TestFamily> families;            // without a hypothesis: two-tailed
 };
 
 /// @param resampling  of the permutation tests and bootstrap intervals; none with a count of 0.

@@ -41,6 +41,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_run(app, status);
   add_secret(app, status);
   add_roster(app, status);
+  add_next(app, status);
   add_withdraw(app, status);
   add_analyze(app, status);
   add_export(app, status);

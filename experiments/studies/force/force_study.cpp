@@ -55,6 +55,12 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
                     request.folder.string()));
   }
   analysis::check_plan(study.statistics.table, plan_of(request.planned, request.reference));
+  if (plan.sequential) {
+    study.statistics.tests.sequential =
+        analysis::sequential_result(study.statistics.table, analysis::decisive_test(plan),
+                                    *plan.sequential, participants_in_order(found.files),
+                                    static_cast<std::size_t>(definition.design.participants));
+  }
   study.remarks = found.remarks;
   study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
   if (request.pilots == Pilots::kLeftOut) {
@@ -91,6 +97,10 @@ class ForceStudy final : public Study {
     lines.insert(lines.end(), study.remarks.begin(), study.remarks.end());
     lines.insert(lines.end(), study.alarms.begin(), study.alarms.end());
     return lines;
+  }
+  std::optional<analysis::SequentialResult> sequential(
+      const AnalysisRequest& request) const override {
+    return analyzed(request).statistics.tests.sequential;
   }
   std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
                                                     const std::string& asked_in,

@@ -81,6 +81,34 @@ void check_planned(const trials::TrialsResult& result) {
   }
 }
 
+/// Looks at the test that decides when the study ends.
+/// @throws InputError if the plan names a quantity that the results lack
+void add_sequential(const AnalysisRequest& request, const TrialsDefinition& definition,
+                    trials::TrialsResult& result) {
+  const analysis::AnalysisPlan& plan = result.plan.plan;
+  if (!plan.sequential) {
+    return;
+  }
+  std::vector<std::string> names;
+  for (trials::Quantity& quantity : result.quantities) {
+    if (!quantity.compared) {
+      continue;
+    }
+    names.push_back(quantity.name);
+    if (plan.sequential->of.empty() || plan.sequential->of == quantity.name) {
+      quantity.tests.sequential =
+          analysis::sequential_result(quantity.table, analysis::decisive_test(plan),
+                                      *plan.sequential, participants_in_order(request.files.files),
+                                      static_cast<std::size_t>(definition.design.participants));
+      return;
+    }
+  }
+  if (!names.empty()) {
+    throw InputError(fmt::format("analysis.sequential.of is \"{}\"; allowed: {}",
+                                 plan.sequential->of, fmt::join(names, ", ")));
+  }
+}
+
 /// The sessions that a participant should have had and has not, and those that there are twice.
 void add_sessions_of(const std::string& participant, const std::multiset<int>& there, int sessions,
                      std::vector<std::string>& remarks) {
@@ -158,6 +186,8 @@ class TrialsStudy final : public Study {
     return tried_scenes(dynamic_cast<const protocols::StudiedDefinition&>(definition), request);
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override;
+  std::optional<analysis::SequentialResult> sequential(
+      const AnalysisRequest& request) const override;
   std::unique_ptr<StudySimulation> study_simulation(const protocols::Definition& definition,
                                                     const std::string& asked_in,
                                                     const std::string& watched) const override {
@@ -197,7 +227,7 @@ std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definit
   return warnings;
 }
 
-std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) const {
+trials::TrialsResult analyzed(const AnalysisRequest& request) {
   const record::SessionInfo& first = request.files.first;
   const auto owned = definition_of(first);
   const TrialsDefinition& definition = trials_of(*owned);
@@ -232,11 +262,17 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
         trials::produced_quantities(result.data, request.files.files, plan, request.threads);
   }
   check_planned(result);
+  add_sequential(request, definition, result);
   result.page_scores = trials::page_scores(request.files.files, definition.pages, group_of);
   result.title = definition.name;
   result.remarks = std::move(remarks);
   result.definition = first.definition;
   result.definition_name = first.definition_name;
+  return result;
+}
+
+std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) const {
+  const trials::TrialsResult result = analyzed(request);
   const auto own = analysis::own_findings(request.files.files);
   trials::write_trials(result, request.out, request.paper, own);
   std::vector<std::string> lines = trials::summary_lines(result);
@@ -245,6 +281,16 @@ std::vector<std::string> TrialsStudy::analyze(const AnalysisRequest& request) co
   }
   lines.insert(lines.end(), result.remarks.begin(), result.remarks.end());
   return lines;
+}
+
+std::optional<analysis::SequentialResult> TrialsStudy::sequential(
+    const AnalysisRequest& request) const {
+  for (const trials::Quantity& quantity : analyzed(request).quantities) {
+    if (quantity.tests.sequential) {
+      return quantity.tests.sequential;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ TEST(CommandLineTest, AMistypedWordNamesTheNearestOne) {
   expect_refused("haptrial anlayze x",
                  "'anlayze' is not a subcommand of haptrial; did you mean "
                  "analyze? allowed: examples, new, set, texts, doctor, studio, dry-run, start, run, "
-                 "secret, roster, withdraw, "
+                 "secret, roster, next, withdraw, "
                  "analyze, ");
   expect_refused("haptrial mesh voxelise a b",
                  "'voxelise' is not a subcommand of haptrial mesh; "

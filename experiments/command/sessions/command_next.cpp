@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "experiments/command/arguments.h"
+#include "experiments/command/subcommand.h"
+#include "experiments/studies/experiment.h"
+#include "experiments/studies/registry.h"
+#include "experiments/study/roster.h"
+#include "experiments/study/study_files.h"
+
+namespace haptrial::experiments {
+namespace {
+
+struct NextOptions {
+  std::string definition;
+  std::string folder;
+  std::optional<int> jobs;
+};
+
+/// How the study stands; nothing while nobody has finished a session, or if it cannot end early.
+std::optional<analysis::SequentialResult> standing(const NextOptions& options) {
+  if (!holds_sessions(options.folder)) {
+    return std::nullopt;
+  }
+  AnalysisRequest request;
+  request.folder = options.folder;
+  request.files = study_files(options.folder, Pilots::kLeftOut, protocol_of);
+  request.threads = checked_jobs(options.jobs);
+  return study_of(request.files.first).sequential(request);
+}
+
+void print_who_is_next(const Roster& roster) {
+  if (roster.next.empty()) {
+    fmt::print("every planned participant has had every session\n");
+    return;
+  }
+  const RosterNext& next = roster.next.front();
+  fmt::print("next: {}\n      {}\n", words_of(next, roster.sessions), next.command);
+}
+
+int next(const NextOptions& options) {
+  const Experiment experiment = load_experiment(options.definition);
+  RosterRequest request;
+  request.protocol = &experiment.study->protocol();
+  request.definition = experiment.definition.get();
+  request.definition_file = options.definition;
+  request.folder = options.folder;
+  const Roster roster = make_roster(request);
+  const auto result = standing(options);
+  if (result) {
+    fmt::print("{}\n", words_of(*result));
+  }
+  if (!result || result->verdict == analysis::SequentialVerdict::kGoOn) {
+    print_who_is_next(roster);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_next(CLI::App& app, int& status) {
+  CLI::App* sub = subcommand(app, "next", "Show whether a study goes on, and who is next",
+                             "haptrial next curl_field out/curl_field",
+                             {"nothing", "guide-experimenter.md"});
+  auto& o = options_of<NextOptions>(*sub, status, next);
+  sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
+  sub->add_option("FOLDER", o.folder, "Folder of the session files; need not be there yet")
+      ->required();
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,77 @@
+// A study that may end before its last participant, as a command.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/base/file_text.h"
+#include "tests/experiments/command.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::next_command_test {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::run_command;
+using testing::HasSubstr;
+
+class NextCommandTest : public testing::Test {
+ protected:
+  NextCommandTest() {
+    const fs::path worked = HAPTRIAL_SOURCE_DIR "/docs/worked/everyday";
+    for (const char* file : {"crossmodal_congruency.toml", "congruency.py"}) {
+      fs::copy_file(worked / file, folder_ / file);
+    }
+  }
+  CommandResult run(const std::string& command) const {
+    return run_command("cd '" + folder_.path().string() + "' && haptrial " + command);
+  }
+  void set(const std::string& key, const std::string& value) const {
+    const CommandResult done = run("set crossmodal_congruency.toml analysis." + key + " " + value);
+    EXPECT_EQ(done.status, 0) << done.errors;
+  }
+  void rehearse(int participants) const {
+    const CommandResult done = run("dry-run crossmodal_congruency.toml --subjects " +
+                                   std::to_string(participants) + " --out out");
+    EXPECT_EQ(done.status, 0) << done.errors;
+  }
+  CommandResult next() const { return run("next crossmodal_congruency.toml out"); }
+
+  test::TemporaryFolder folder_;
+};
+
+/// Lights beside the other finger slow everybody down, so a few participants decide.
+TEST_F(NextCommandTest, ADecidedStudyAsksForNobody) {
+  set("sequential.rule", "'\"bayes factor\"'");
+  EXPECT_THAT(next().output, HasSubstr("next: "));  // nobody has come
+  rehearse(5);
+  const CommandResult decided = next();
+  EXPECT_EQ(decided.status, 0) << decided.errors;
+  EXPECT_THAT(decided.output, HasSubstr("the study has ended: there is an effect"));
+  EXPECT_THAT(decided.output, testing::Not(HasSubstr("next: ")));
+  EXPECT_THAT(run("analyze out").output,
+              HasSubstr("Mean reaction time. When the study ends: congruent < incongruent, after"));
+  EXPECT_THAT(file_text(folder_ / "out/results.json"), HasSubstr("\"most_participants\": 12"));
+}
+
+TEST_F(NextCommandTest, BetweenLooksItGoesOn) {
+  set("sequential.rule", "'\"group sequential\"'");
+  set("sequential.looks", "'[4.0, 12.0]'");
+  rehearse(3);
+  EXPECT_THAT(next().output, testing::AllOf(HasSubstr("not looked at yet; go on"),
+                                            HasSubstr("at most 12 participants"),
+                                            HasSubstr("next: ")));
+}
+
+TEST_F(NextCommandTest, AQuantityThatIsNotThereIsNamed) {
+  set("sequential.of", "'\"thresholds\"'");
+  rehearse(2);
+  const CommandResult wrong = next();
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.errors, HasSubstr("analysis.sequential.of is \"thresholds\"; allowed: "));
+}
+
+}  // namespace
+}  // namespace haptrial::next_command_test
