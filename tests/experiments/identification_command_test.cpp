@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/psychometric/models/discrimination_task.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
@@ -82,6 +83,21 @@ TEST_F(IdentificationCommandTest, ShapesAreNamedAndTheirConfusionsReported) {
   EXPECT_THAT(report, HasSubstr("Shares of the answers to each stimulus"));
   EXPECT_THAT(report, HasSubstr("Chance is 0.250"));
   EXPECT_THAT(test::read_text(folder_ / "study/estimates.csv"), HasSubstr("share_right"));
+}
+
+/// The same answers, taken for those of another task.
+TEST_F(IdentificationCommandTest, DPrimeIsThatOfTheTask) {
+  test::write_text(folder_ / "odd.toml", four_shapes() + "task = \"oddity\"\n");
+  const auto analysed =
+      run("haptrial dry-run odd.toml --out study >&2 && haptrial analyze study >&2");
+  ASSERT_EQ(analysed.status, 0) << analysed.errors;
+  const auto json = nlohmann::json::parse(test::read_text(folder_ / "study/results.json"));
+  for (const auto& one : json["identification"]) {
+    const double share = one["right"].get<double>() / 16.0;
+    EXPECT_NEAR(one["d_prime"].get<double>(),
+                *analysis::task_d_prime(analysis::DiscriminationTask::kOddity, share, 3), 1e-9);
+  }
+  EXPECT_THAT(test::read_text(folder_ / "study/report.html"), HasSubstr("the odd one of three"));
 }
 
 TEST_F(IdentificationCommandTest, MistakesOfADefinitionGetASentence) {

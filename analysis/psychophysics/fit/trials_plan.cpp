@@ -346,6 +346,15 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
           check_stimulus(table, defaults, plan);
         }
       })
+      .choice("task", &P::discrimination,
+              {{"forced choice", DiscriminationTask::kForcedChoice},
+               {"oddity", DiscriminationTask::kOddity},
+               {"ABX", DiscriminationTask::kAbx},
+               {"same-different", DiscriminationTask::kSameDifferent}},
+              "Task whose d' is computed from the share of right answers: which of the stimuli it "
+              "was, which of three differs, whether the third is as the first or the second, "
+              "whether two are the same")
+      .only_if(identifies)
       .text("stage", &P::stage, "Stage whose duration is the time")
       .otherwise("times are reaction times of the answers")
       .only_if(is_timed)

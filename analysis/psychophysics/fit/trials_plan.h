@@ -8,6 +8,7 @@
 
 #include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/likelihood_fit.h"
+#include "analysis/psychometric/models/discrimination_task.h"
 #include "analysis/psychophysics/fit/cue_plan.h"
 #include "analysis/psychophysics/fit/produced_plan.h"
 #include "analysis/psychophysics/fit/pursuit_plan.h"
@@ -79,6 +80,7 @@ struct TrialsPlan {
   std::string rating;           // question with a number: how sure; empty: none
   std::string stimulus;         // factor that says what was presented, of an identification
   std::vector<std::string> choices;  // of the question, likewise
+  DiscriminationTask discrimination{DiscriminationTask::kForcedChoice};  // likewise
   std::string stage;      // whose duration is the time, of times; empty: the answer's reaction time
   bool functions{false};  // whether functions are fitted
   std::string function_name{"norm"};

@@ -162,6 +162,20 @@ void add_confusions(Document& document, const TrialsResult& result) {
   }
 }
 
+std::string words_of(DiscriminationTask task, int alternatives) {
+  switch (task) {
+    case DiscriminationTask::kOddity:
+      return "who finds the odd one of three by their differences";
+    case DiscriminationTask::kAbx:
+      return "who compares the third with either of the others by their differences";
+    case DiscriminationTask::kSameDifferent:
+      return "who judges each of two on its own and says whether both are the same";
+    case DiscriminationTask::kForcedChoice:
+      break;
+  }
+  return fmt::format("to whom {} alternatives are equally alike", alternatives);
+}
+
 void add_identification(Document& document, const TrialsResult& result,
                         const std::vector<Drawing>& drawings) {
   add_section(document, result, "Identification");
@@ -169,11 +183,12 @@ void add_identification(Document& document, const TrialsResult& result,
   add_pictures(document, drawings, "by-condition-", kMostPictures);
   add_confusions(document, result);
   add_table(document, identification_findings(result), true);
-  document.paragraph(
-      fmt::format("d' is that of an observer without bias to whom {} alternatives are equally "
-                  "alike; the shares above show where this does not hold. Chance is {:.3f}.",
-                  result.plan.choices.size(),
-                  1.0 / static_cast<double>(std::max<std::size_t>(result.plan.choices.size(), 1))));
+  const int alternatives = static_cast<int>(std::max<std::size_t>(result.plan.choices.size(), 2));
+  document.paragraph(fmt::format(
+      "d' is that of an observer without bias {}; the shares above show where this does not hold. "
+      "Chance is {:.3f}.",
+      words_of(result.plan.discrimination, alternatives),
+      task_share(result.plan.discrimination, 0.0, alternatives)));
 }
 
 void add_laws(Document& document, const TrialsResult& result,

@@ -126,19 +126,25 @@ Confusions confusions_of(const Tally& tally, const std::vector<std::string>& cho
   return confusions;
 }
 
-double d_prime_of(double share, int alternatives) {
-  if (share <= 0.0 || share >= 1.0) {
-    return (share <= 0.0 ? -1.0 : 1.0) * std::numeric_limits<double>::infinity();
+double d_prime_of(double share, const TrialsPlan& plan) {
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  if (share >= 1.0) {
+    return kEndless;
   }
-  const Defined<double> d = forced_choice_d_prime(share, alternatives);
+  if (share <= 0.0) {
+    return plan.discrimination == DiscriminationTask::kForcedChoice ? -kEndless : 0.0;
+  }
+  const Defined<double> d =
+      task_d_prime(plan.discrimination, share, static_cast<int>(plan.choices.size()));
   return d ? *d : kNotKnown;
 }
 
-void add_d_prime(IdentifiedCondition& one, int alternatives) {
+void add_d_prime(IdentifiedCondition& one, const TrialsPlan& plan) {
   const double half = 0.5 / one.trials;
-  one.d_prime = forced_choice_d_prime(std::clamp(one.share, half, 1.0 - half), alternatives);
-  one.d_low = d_prime_of(one.low, alternatives);
-  one.d_high = d_prime_of(one.high, alternatives);
+  one.d_prime = task_d_prime(plan.discrimination, std::clamp(one.share, half, 1.0 - half),
+                             static_cast<int>(plan.choices.size()));
+  one.d_low = d_prime_of(one.low, plan);
+  one.d_high = d_prime_of(one.high, plan);
 }
 
 void add_ratings(const Tally& tally, IdentifiedCondition& one) {
@@ -200,7 +206,7 @@ std::vector<IdentifiedCondition> identified(const TrialsData& data, const Trials
     const ShareInterval interval = wilson_interval(one.right, one.trials);
     one.low = interval.low;
     one.high = interval.high;
-    add_d_prime(one, static_cast<int>(plan.choices.size()));
+    add_d_prime(one, plan);
     add_ratings(tally, one);
   }
   return result;

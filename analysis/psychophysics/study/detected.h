@@ -43,7 +43,7 @@ struct IdentifiedCondition {
   Confusions confusions;
   int trials{0}, right{0};
   double share{0.0}, low{0.0}, high{0.0};  // of right answers, with Wilson's 95 % interval
-  /// d' for m alternatives, computed from the share and the ends of its interval. A share of 0 or 1
+  /// d' of the plan's task, computed from the share and the ends of its interval. A share of 0 or 1
   /// is moved by half an answer (Macmillan and Kaplan 1985). Low and high may be infinite.
   Defined<double> d_prime{Undefined{"nothing was counted"}};
   double d_low{0.0}, d_high{0.0};
@@ -54,8 +54,8 @@ struct IdentifiedCondition {
 
 /// Which of several things was presented. The factor `stimulus` of the plan says what it was, the
 /// question what it was taken for, and whether that was right. An observer without bias to whom all
-/// alternatives are equally alike has the d' of forced choice (forced_choice_d_prime); the
-/// confusions show where this does not hold.
+/// alternatives are equally alike has the d' of the plan's task (task_d_prime); the confusions show
+/// where this does not hold.
 /// Source of the interval: Wilson 1927, Journal of the American Statistical Association 22.
 std::vector<IdentifiedCondition> identified(const TrialsData& data, const TrialsPlan& plan);
 
