@@ -35,13 +35,14 @@ void check_name(Table& table, const char* key, std::string& name,
   }
 }
 
-constexpr std::array<std::pair<const char*, ReachQuantity>, 6> kQuantities{
+constexpr std::array<std::pair<const char*, ReachQuantity>, 7> kQuantities{
     {{"error", ReachQuantity::kError},
      {"movement_time", ReachQuantity::kMovementTime},
      {"peak_speed", ReachQuantity::kPeakSpeed},
      {"direction", ReachQuantity::kDirection},
      {"area", ReachQuantity::kArea},
-     {"force_compensation", ReachQuantity::kForceCompensation}}};
+     {"force_compensation", ReachQuantity::kForceCompensation},
+     {"throughput", ReachQuantity::kThroughput}}};
 
 void read_quantities(Table& table, const std::string& key, ReachingPlan& plan) {
   plan.quantities.clear();

@@ -27,6 +27,7 @@ enum class ReachQuantity : std::uint8_t {
   kDirection,          // at 150 ms, turned [rad]
   kArea,               // turned [m²]
   kForceCompensation,  // of reaches in a channel
+  kThroughput,         // of reaches to targets, see throughput() [bit/s]
 };
 
 /// Which cycles of a block such a comparison takes.

@@ -1,11 +1,13 @@
 #include "analysis/psychophysics/study/reach_quantities.h"
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "analysis/psychophysics/fit/series.h"
+#include "analysis/statistics/base/descriptive.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -49,6 +51,9 @@ Measure measure_of(ReachQuantity quantity) {
               [](Result, Reach r) {
                 return r.compensation ? std::optional(r.compensation->slope) : std::nullopt;
               }};
+    case ReachQuantity::kThroughput:
+      return {"throughput",      "throughput", "bit/s",
+              ReachKind::kPlain, nullptr,      ValueRange::kPositive};
     case ReachQuantity::kError:
       break;
   }
@@ -74,6 +79,75 @@ std::vector<bool> taken(const ReachingResult& result) {
   return all;
 }
 
+using Condition = std::pair<std::string, std::vector<std::string>>;  // a participant's
+using Reaches = std::map<Condition, std::vector<const StudyReach*>>;
+
+/// The reaches that count for a quantity, of each participant under each condition.
+Reaches reaches_of(const TrialsData& data, const ReachingResult& reaching, const TrialsPlan& plan,
+                   const std::vector<bool>& counts, ReachKind kind) {
+  Reaches all;
+  for (std::size_t i = 0; i < reaching.reaches.size(); ++i) {
+    const StudyReach& reach = reaching.reaches[i];
+    if (counts[i] && reach.kind == kind) {
+      const StudyTrial& trial = data.trials[reach.trial];
+      all[{data.session_of(trial).participant, factors_of(data, trial, plan)}].push_back(&reach);
+    }
+  }
+  return all;
+}
+
+std::optional<double> mean_of(const Measure& measure, const ReachingResult& reaching,
+                              const std::vector<const StudyReach*>& reaches) {
+  double sum = 0.0, count = 0.0;
+  for (const StudyReach* reach : reaches) {
+    if (const auto value = measure.of(reaching, *reach)) {
+      sum += *value;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+}
+
+/// Bits per second of reaches over one distance to targets of one size.
+std::optional<double> throughput_of_size(const std::vector<const StudyReach*>& reaches) {
+  constexpr double kWidth = 4.133;  // standard deviations that hold 96 % of the ends
+  std::vector<double> extents;
+  double way = 0.0, time = 0.0;
+  for (const StudyReach* reach : reaches) {
+    const ReachMetrics& m = reach->metrics;
+    if (m.endpoint_extent && m.movement_time) {
+      extents.push_back(*m.endpoint_extent);
+      way += (reach->way.target - reach->way.start).norm() + *m.endpoint_extent;
+      time += *m.movement_time;
+    }
+  }
+  const auto spread = moments(extents);
+  if (!spread || extents.size() < 3 || !(spread->variance() > 0.0) || !(time > 0.0)) {
+    return std::nullopt;
+  }
+  const auto n = static_cast<double>(extents.size());
+  const double width = kWidth * std::sqrt(spread->variance());
+  return std::log2(way / n / width + 1.0) / (time / n);
+}
+
+/// Mean over the combinations of distance and size, to a tenth of a millimetre.
+std::optional<double> throughput(const std::vector<const StudyReach*>& reaches) {
+  std::map<std::pair<long, long>, std::vector<const StudyReach*>> sizes;
+  const auto tenths = [](double length) { return std::lround(1e4 * length); };
+  for (const StudyReach* reach : reaches) {
+    sizes[{tenths((reach->way.target - reach->way.start).norm()), tenths(reach->way.target_radius)}]
+        .push_back(reach);
+  }
+  double sum = 0.0, count = 0.0;
+  for (const auto& [size, of] : sizes) {
+    if (const auto bits = throughput_of_size(of)) {
+      sum += *bits;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+}
+
 }  // namespace
 
 std::vector<Quantity> reach_quantities(const TrialsData& data, const ReachingResult& reaching,
@@ -85,21 +159,13 @@ std::vector<Quantity> reach_quantities(const TrialsData& data, const ReachingRes
   const std::vector<bool> counts = taken(reaching);
   for (const ReachQuantity each : reaching.plan.quantities) {
     const Measure measure = measure_of(each);
-    std::map<std::pair<std::string, std::vector<std::string>>, std::pair<double, double>> sums;
-    for (std::size_t i = 0; i < reaching.reaches.size(); ++i) {
-      const StudyReach& reach = reaching.reaches[i];
-      const auto value = measure.of(reaching, reach);
-      if (counts[i] && reach.kind == measure.kind && value) {
-        const StudyTrial& trial = data.trials[reach.trial];
-        auto& [sum, count] =
-            sums[{data.session_of(trial).participant, factors_of(data, trial, plan)}];
-        sum += *value;
-        count += 1.0;
-      }
-    }
     std::vector<QuantityValue> values;
-    for (const auto& [of, sum] : sums) {
-      values.push_back({of.first, of.second, sum.first / sum.second});
+    for (const auto& [of, reaches] : reaches_of(data, reaching, plan, counts, measure.kind)) {
+      const auto value = each == ReachQuantity::kThroughput ? throughput(reaches)
+                                                            : mean_of(measure, reaching, reaches);
+      if (value) {
+        values.push_back({of.first, of.second, *value});
+      }
     }
     all.push_back(quantity(measure.name, measure.title, measure.unit, values, plan, measure.range));
   }

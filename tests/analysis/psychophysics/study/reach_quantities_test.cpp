@@ -10,6 +10,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "tests/analysis/psychophysics/study/simulated_reaches.h"
 #include "tests/support/message_of.h"
 
@@ -27,7 +28,7 @@ TEST(ReachQuantitiesTest, AValueIsTheMeanOfTheCyclesThatThePlanTakes) {
     plan.reaching.cycles = cycles;
     const auto study = simulated_reaches({}, plan.reaching);
     const auto quantities = reach_quantities(study.data, study.reaching, plan);
-    ASSERT_EQ(quantities.size(), 6u);
+    ASSERT_EQ(quantities.size(), 7u);
     EXPECT_EQ(quantities[1].name, "movement_time");
     EXPECT_EQ(quantities[1].table.cells.size(), 6u) << "two groups, three blocks";
     // The first participant's block "during", by hand.
@@ -79,6 +80,41 @@ TEST(ReachQuantitiesTest, WhatDiffersIsFoundByThePlannedTests) {
   EXPECT_NEAR(std::abs(blocks.t->difference), 0.02, 0.005);
 }
 
+/// Reaches over 60 and 120 mm that end 4 mm around the target and take 0.4 and 0.6 s.
+TEST(ReachQuantitiesTest, ThroughputIsBitsOfTheWidthThatWasUsedOverTime) {
+  constexpr int kReaches = 4000;
+  TrialsPlan plan = reach_plan({"group"});
+  plan.reaching.quantities = {ReachQuantity::kThroughput};
+  auto made = simulated_reaches({}, plan.reaching);
+  made.data.sessions.resize(2);
+  made.data.sessions[1].group = "b";
+  made.data.trials.clear();
+  made.reaching.reaches.clear();
+  made.reaching.persons.clear();
+  RandomStream random(1, "ends");
+  for (int i = 0; i < kReaches; ++i) {
+    const bool is_far = i % 4 < 2;
+    StudyTrial trial;
+    trial.session = static_cast<std::size_t>(i % 2);
+    StudyReach reach;
+    reach.trial = made.data.trials.size();
+    reach.way.target = {is_far ? 0.12 : 0.06, 0.0, 0.0};
+    reach.metrics.endpoint_extent = 0.004 * random.normal();
+    reach.metrics.movement_time = (is_far ? 0.6 : 0.4) * (i % 2 == 0 ? 1.0 : 2.0);
+    made.data.trials.push_back(trial);
+    made.reaching.reaches.push_back(reach);
+    made.reaching.persons.push_back(trial.session);
+  }
+  const auto quantities = reach_quantities(made.data, made.reaching, plan);
+  ASSERT_EQ(quantities.size(), 1u);
+  const double width = std::sqrt(2.0 * M_PI * M_E) * 0.004;  // of a normal's entropy
+  const double bits =
+      0.5 * (std::log2(0.06 / width + 1.0) / 0.4 + std::log2(0.12 / width + 1.0) / 0.6);
+  const auto& means = quantities[0].table.means;
+  EXPECT_NEAR(*means[0][0] / bits, 1.0, 0.03);
+  EXPECT_NEAR(*means[1][1] / (bits / 2.0), 1.0, 0.03);
+}
+
 TEST(ReachQuantitiesTest, WithoutConditionsThereAreNone) {
   TrialsPlan plan = reach_plan({"group"});
   plan.by.clear();
@@ -92,7 +128,7 @@ TEST(ReachQuantitiesTest, EveryTestKeepsItsLevel) {
   for (const std::vector<std::string>& by :
        {std::vector<std::string>{"group"}, {"block"}, {"group", "block"}}) {
     const auto levels = test::null_reaches(by, kStudies, 3, 2);
-    EXPECT_GE(levels.size(), 6u * 4u);
+    EXPECT_GE(levels.size(), 7u * 4u);
     for (const test::NullLevel& level : levels) {
       EXPECT_LE(level.found, band.high) << level.test;
       EXPECT_EQ(level.replications, kStudies) << level.test;

@@ -64,6 +64,8 @@ void add_person(const SimulatedReaches& study, std::size_t person, ReachesOfStud
       reach.metrics.peak_speed = speed.next();
       reach.metrics.direction_error = direction.next();
       reach.metrics.signed_area = area.next();
+      reach.way.target = {i % 2 == 0 ? 0.05 : 0.10, 0.0, 0.0};
+      reach.metrics.endpoint_extent = 0.003 * random.normal();
       if (i % 4 == 3) {
         reach.kind = ReachKind::kClamp;
         analysis::ForceCompensation found{};
@@ -95,7 +97,8 @@ TrialsPlan reach_plan(const std::vector<std::string>& by) {
   plan.permutations = 0;
   plan.reaching.quantities = {ReachQuantity::kError,     ReachQuantity::kMovementTime,
                               ReachQuantity::kPeakSpeed, ReachQuantity::kDirection,
-                              ReachQuantity::kArea,      ReachQuantity::kForceCompensation};
+                              ReachQuantity::kArea,      ReachQuantity::kForceCompensation,
+                              ReachQuantity::kThroughput};
   std::vector<std::string> tests;
   for (const std::string& factor : by) {
     tests.emplace_back(factor == "group" ? "a < b" : "after > before");
