@@ -279,6 +279,58 @@ TEST_F(EverydayTest, ForceMatching) {
   EXPECT_EQ(results_.at("quantities").size(), 4u);
 }
 
+/// Worth of an item in the choices of a participant, climbed along the gradient.
+double worth_of(const std::vector<Row>& rows, char item) {
+  std::map<std::pair<char, char>, double> wins;
+  for (const char a : {'A', 'B', 'C', 'D'}) {
+    for (const char b : {'A', 'B', 'C', 'D'}) {
+      wins[{a, b}] = a == b ? 0.0 : 0.5;
+    }
+  }
+  for (const Row& row : rows) {
+    const char one = row.at("first")[0], other = row.at("second")[0];
+    ++(row.at("stiffer.correct") == "1" ? wins[{one, other}] : wins[{other, one}]);
+  }
+  std::map<char, double> worth{{'A', 0.0}, {'B', 0.0}, {'C', 0.0}, {'D', 0.0}};
+  for (int step = 0; step < 4000; ++step) {
+    std::map<char, double> slope;
+    for (const auto& [pair, count] : wins) {
+      const double d = worth[pair.first] - worth[pair.second];
+      const double rise = count * std::exp(-0.5 * d * d) / std::sqrt(2.0 * M_PI) /
+                          (0.5 * std::erfc(-d / std::sqrt(2.0)));
+      slope[pair.first] += rise;
+      slope[pair.second] -= rise;
+    }
+    for (auto& [name, value] : worth) {
+      value += 0.01 * slope[name];
+    }
+  }
+  return worth[item];
+}
+
+TEST_F(EverydayTest, StiffnessPairs) {
+  rehearse("stiffness_pairs", 3);
+  for (const char item : {'A', 'B', 'C', 'D'}) {
+    const std::string name(1, item);
+    EXPECT_NEAR(reported("worth", name),
+                over_participants([&](const auto& rows) { return worth_of(rows, item); }), 1e-6);
+    const auto share = [&](const std::vector<Row>& rows) {
+      double met = 0.0, chosen = 0.0;
+      for (const Row& row : rows) {
+        const bool first = row.at("first") == name, second = row.at("second") == name;
+        met += first || second ? 1.0 : 0.0;
+        chosen += (first && row.at("stiffer.correct") == "1") ||
+                          (second && row.at("stiffer.correct") == "0")
+                      ? 1.0
+                      : 0.0;
+      }
+      return chosen / met;
+    };
+    EXPECT_NEAR(reported("share_chosen", name), over_participants(share), 1e-12);
+  }
+  EXPECT_GT(reported("worth", "D"), reported("worth", "A"));
+}
+
 /// No definition of the folder is without a test.
 TEST(EverydayFolderTest, EveryDefinitionIsRehearsed) {
   std::string tests;

@@ -28,6 +28,7 @@ const std::vector<std::pair<std::string, AnalysisKind>>& kinds() {
       {"reaching", AnalysisKind::kReaching},
       {"pursuit", AnalysisKind::kPursuit},
       {"produced", AnalysisKind::kProduced},
+      {"paired", AnalysisKind::kPaired},
       {"none", AnalysisKind::kNone}};
   return all;
 }
@@ -42,13 +43,18 @@ bool has_name(const std::vector<std::string>& names, const std::string& name) {
 /// signal is or make cycles.
 std::vector<std::string> usual_by(AnalysisKind kind, const PlanDefaults& defaults) {
   const bool none = kind == AnalysisKind::kDetection || kind == AnalysisKind::kIdentification ||
-                    kind == AnalysisKind::kReaching;
+                    kind == AnalysisKind::kReaching || kind == AnalysisKind::kPaired;
   return none ? std::vector<std::string>{} : defaults.factors;
 }
 
-void check_by(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan) {
+std::vector<std::string> names_of(const PlanDefaults& defaults) {
   std::vector<std::string> known = defaults.factors;
   known.insert(known.end(), defaults.names.begin(), defaults.names.end());
+  return known;
+}
+
+void check_by(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const std::vector<std::string> known = names_of(defaults);
   for (const std::string& name : plan.by) {
     if (!has_name(known, name)) {
       table.reject("by", fmt::format("an array with \"{}\"", name),
@@ -380,6 +386,9 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
         if (plan.kind == AnalysisKind::kProduced) {
           plan.produced = read_produced_plan(table, defaults.produced);
         }
+        if (plan.kind == AnalysisKind::kPaired) {
+          plan.paired = read_paired_plan(table, names_of(defaults));
+        }
         plan.by = usual_by(plan.kind, defaults);
         if (is_timed(plan) && table.has("level")) {
           plan.by.clear();  // factors may make the level, or vary for other reasons
@@ -392,7 +401,13 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
                 plan.by = table.texts(key);
                 check_by(table, defaults, plan);
               })
-      .otherwise("all factors; of detection, identification, reaching and times over a level none")
+      .otherwise(
+          "all factors; of detection, identification, reaching, paired and times over a level none")
+      .derive([](P& plan) {
+        if (plan.kind == AnalysisKind::kPaired) {
+          plan.by.emplace_back(kItem);
+        }
+      })
       .custom(
           "tests",
           "Tests that were planned before the data: \"a < b\", \"a > b\" or \"a != b\" of levels "

@@ -10,6 +10,7 @@
 #include "analysis/psychometric/fit/likelihood_fit.h"
 #include "analysis/psychometric/models/discrimination_task.h"
 #include "analysis/psychophysics/fit/cue_plan.h"
+#include "analysis/psychophysics/fit/paired_plan.h"
 #include "analysis/psychophysics/fit/produced_plan.h"
 #include "analysis/psychophysics/fit/pursuit_plan.h"
 #include "analysis/psychophysics/fit/reaching_plan.h"
@@ -33,6 +34,7 @@ enum class AnalysisKind {
   kReaching,        // movements, which have an analysis of their own
   kPursuit,         // how the hand follows a target that moves
   kProduced,        // forces and movements that a stage's hand produces
+  kPaired,          // which of two items was chosen: their worths
 };
 
 /// Levels by the name of their factor, as tables show them.
@@ -101,6 +103,7 @@ struct TrialsPlan {
   ReachingPlan reaching;        // where `kind` is kReaching
   PursuitPlan pursuit;          // where `kind` is kPursuit
   ProducedPlan produced;        // where `kind` is kProduced
+  PairedPlan paired;            // where `kind` is kPaired; `by` then ends with kItem
 
   bool uses_level() const {
     return functions || kind == AnalysisKind::kMagnitude || kind == AnalysisKind::kAdjustment ||

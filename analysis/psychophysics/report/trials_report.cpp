@@ -9,10 +9,23 @@
 #include "analysis/psychophysics/report/trials_figures.h"
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/psychophysics/study/paired_quantities.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::trials {
 namespace {
+
+void add_paired_methods(Document& document, const PairedPlan& plan) {
+  const bool odds = plan.model == PairedModel::kBradleyTerry;
+  document.paragraph(fmt::format(
+      "Worths are those of {}, fitted to the choices of each participant under a condition by "
+      "maximum likelihood; {} choice of either item was added to each pair, so that items that "
+      "were "
+      "always or never chosen have one. Their mean over a participant's items is 0.",
+      odds ? "the model of Bradley and Terry (1952), in log odds"
+           : "Thurstone's case V (1927), in standard deviations of a difference",
+      number(kAddedChoices)));
+}
 
 void add_produced_methods(Document& document, const ProducedPlan& plan) {
   document.paragraph(fmt::format(
@@ -157,6 +170,9 @@ void add_methods(Document& document, const TrialsResult& result) {
   }
   if (plan.kind == AnalysisKind::kProduced) {
     add_produced_methods(document, plan.produced);
+  }
+  if (plan.kind == AnalysisKind::kPaired) {
+    add_paired_methods(document, plan.paired);
   }
   if (plan.kind == AnalysisKind::kTimes) {
     add_time_methods(document, plan);

@@ -13,6 +13,7 @@
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/psychophysics/report/write_trials.h"
+#include "analysis/psychophysics/study/paired_quantities.h"
 #include "analysis/psychophysics/study/produced_quantities.h"
 #include "analysis/psychophysics/study/pursuit_quantities.h"
 #include "analysis/psychophysics/study/reach_quantities.h"
@@ -256,6 +257,9 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   if (plan.kind == trials::AnalysisKind::kPursuit) {
     result.quantities =
         trials::pursuit_quantities(result.data, request.files.files, plan, request.threads);
+  }
+  if (plan.kind == trials::AnalysisKind::kPaired) {
+    result.quantities = trials::paired_quantities(result.data, plan);
   }
   if (plan.kind == trials::AnalysisKind::kProduced) {
     result.quantities =

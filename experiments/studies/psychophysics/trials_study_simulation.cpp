@@ -128,11 +128,13 @@ class TrialsStudySimulation final : public StudySimulation {
         watched.find(", permutation") != std::string::npos ? plan_.permutations : 0;
     if (plan_.kind == trials::AnalysisKind::kReaching ||
         plan_.kind == trials::AnalysisKind::kPursuit ||
-        plan_.kind == trials::AnalysisKind::kProduced || plan_.cues) {
-      throw InputError(fmt::format(
-          "{}: power by simulation does not know analyses of movements or of two cues; watch a "
-          "psychometric, detection, identification, magnitude or adjustment analysis",
-          d_.file_name));
+        plan_.kind == trials::AnalysisKind::kProduced ||
+        plan_.kind == trials::AnalysisKind::kPaired || plan_.cues) {
+      throw InputError(
+          fmt::format("{}: power by simulation does not know analyses of movements, of pairs or of "
+                      "two cues; watch a "
+                      "psychometric, detection, identification, magnitude or adjustment analysis",
+                      d_.file_name));
     }
     const int most = std::max(1, d_.most_trials());
     hours_of_trial_ = d_.longest(most) / most / 3600.0;

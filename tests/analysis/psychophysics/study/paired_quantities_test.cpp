@@ -1,0 +1,90 @@
+#include "analysis/psychophysics/study/paired_quantities.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "analysis/psychophysics/study/trials_result.h"
+#include "core/base/random.h"
+#include "tests/analysis/psychophysics/study/null_trials.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+TrialsPlan paired_plan() {
+  TrialsPlan plan;
+  plan.kind = AnalysisKind::kPaired;
+  plan.by = {kItem};
+  plan.permutations = 0;
+  plan.question = "better";
+  plan.paired.first = "first";
+  plan.paired.second = "second";
+  plan.plan = parse_analysis_plan({"a < b"}, "", "tests");
+  return plan;
+}
+
+StudyTrial choice(std::size_t session, const char* first, const char* second, bool of_first) {
+  StudyTrial trial;
+  trial.session = session;
+  trial.variables.push_back({"first", 0, kNotKnown, first});
+  trial.variables.push_back({"second", 0, kNotKnown, second});
+  GivenAnswer answer;
+  answer.question = "better";
+  answer.text = of_first ? "first" : "second";
+  answer.correct = of_first ? 1 : 0;
+  trial.answers.push_back(answer);
+  return trial;
+}
+
+/// Ten people who choose one of three items without preferring any.
+TrialsData indifferent(std::uint64_t seed) {
+  TrialsData data;
+  RandomStream random(seed, "choices");
+  for (std::size_t person = 0; person < 10; ++person) {
+    StudySession session;
+    session.participant = "P" + std::to_string(person);
+    data.sessions.push_back(session);
+    for (int repetition = 0; repetition < 6; ++repetition) {
+      for (const auto& [first, second] : {std::pair("a", "b"), {"a", "c"}, {"b", "c"}}) {
+        data.trials.push_back(choice(person, first, second, random.uniform() < 0.5));
+      }
+    }
+  }
+  return data;
+}
+
+TEST(PairedQuantitiesTest, TestsKeepTheirLevel) {
+  constexpr std::size_t kStudies = 2000;
+  const TrialsPlan plan = paired_plan();
+  const auto band = test::binomial_band(kStudies, 1.0 - 1e-6);
+  const auto levels = test::null_levels(kStudies, 2, [&](std::size_t number) {
+    TrialsResult result;
+    result.plan = plan;
+    result.data = indifferent(number + 1);
+    result.quantities = paired_quantities(result.data, plan);
+    test::NullLevels own;
+    for (const NamedTest& test : tests_of(result)) {
+      own.note(test.name, true, test.p < 0.05);
+    }
+    return own;
+  });
+  EXPECT_GE(levels.size(), 8u);
+  for (const test::NullLevel& level : levels) {
+    EXPECT_LE(level.found, band.high) << level.test;
+  }
+}
+
+TEST(PairedQuantitiesTest, TrialsWithoutAnAnswerOrWithOneItemTwiceDoNotCount) {
+  TrialsData data = indifferent(1);
+  const auto before = paired_quantities(data, paired_plan());
+  data.trials.push_back(choice(0, "a", "a", true));
+  data.trials.push_back(choice(0, "a", "b", true));
+  data.trials.back().answers.clear();
+  const auto after = paired_quantities(data, paired_plan());
+  EXPECT_EQ(before[0].table.means, after[0].table.means);
+  EXPECT_EQ(before[1].table.means, after[1].table.means);
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials
