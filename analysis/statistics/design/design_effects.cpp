@@ -1,12 +1,14 @@
 #include "analysis/statistics/design/design_effects.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "analysis/statistics/variance/anova.h"
 #include "analysis/statistics/variance/factorial_anova.h"
 #include "analysis/statistics/variance/mixed_anova.h"
+#include "analysis/statistics/variance/multifactor_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "analysis/statistics/variance/welch_anova.h"
 
@@ -154,6 +156,71 @@ Effects two_between(const DesignTable& table) {
           between_effect(together(table.factors[0], table.factors[1]), test, found->interaction)};
 }
 
+/// The cell of a participant under levels of the factors within.
+/// @param cell  any of the participant's  @param number  of the levels, the last running fastest
+std::size_t cell_within(const DesignTable& table, std::size_t cell,
+                        const std::vector<std::size_t>& within, std::size_t number) {
+  std::vector<std::size_t> levels = table.cells[cell];
+  for (std::size_t f = within.size(); f-- > 0;) {
+    const std::size_t count = table.factors[within[f]].levels.size();
+    levels[within[f]] = number % count;
+    number /= count;
+  }
+  return static_cast<std::size_t>(std::ranges::find(table.cells, levels) - table.cells.begin());
+}
+
+MultifactorTable multifactor_table(const DesignTable& table, const std::vector<std::size_t>& within,
+                                   const std::vector<std::size_t>& between) {
+  MultifactorTable values;
+  std::size_t cells = 1;
+  for (const std::size_t f : within) {
+    values.within.push_back(table.factors[f].levels.size());
+    cells *= values.within.back();
+  }
+  for (const std::size_t f : between) {
+    values.between.push_back(table.factors[f].levels.size());
+  }
+  for (const std::size_t s : table.complete()) {
+    const auto& means = table.means[s];
+    const auto own = static_cast<std::size_t>(
+        std::ranges::find_if(means, [](const auto& mean) { return mean.has_value(); }) -
+        means.begin());
+    auto& row = values.values.emplace_back();
+    for (std::size_t number = 0; number < cells; ++number) {
+      row.push_back(*means[cell_within(table, own, within, number)]);
+    }
+    auto& group = values.groups.emplace_back();
+    for (const std::size_t f : between) {
+      group.push_back(table.cells[own][f]);
+    }
+  }
+  return values;
+}
+
+/// Three or four factors, each within or between participants.
+Effects several(const DesignTable& table) {
+  std::vector<std::size_t> within, between;
+  for (std::size_t f = 0; f < table.factors.size(); ++f) {
+    (table.factors[f].within ? within : between).push_back(f);
+  }
+  Effects effects;
+  for (const MultifactorEffect& found :
+       multifactor_anova(multifactor_table(table, within, between))) {
+    std::vector<std::string> names;
+    for (const std::size_t f : found.between) {
+      names.push_back(table.factors[between[f]].name);
+    }
+    for (const std::size_t f : found.within) {
+      names.push_back(table.factors[within[f]].name);
+    }
+    effects.push_back(within_effect(fmt::format("{}", fmt::join(names, " × ")),
+                                    fmt::format("analysis of variance of {} factors",
+                                                table.factors.size() == 3 ? "three" : "four"),
+                                    found.test));
+  }
+  return effects;
+}
+
 /// The table without factors of one level, which vary nothing.
 DesignTable varied(DesignTable table) {
   for (std::size_t f = table.factors.size(); f-- > 0;) {
@@ -179,11 +246,14 @@ Effects design_effects(const DesignTable& all) {
   if (factors.size() == 1) {
     return factors[0].within ? one_within(table) : one_between(table);
   }
-  if (factors.size() > 2) {
-    return {Undefined{"there are more than two factors; their cells are compared two by two"}};
+  if (factors.size() > 4) {
+    return {Undefined{"there are more than four factors; their cells are compared two by two"}};
   }
   if (!table.crossed) {
     return {Undefined{"some combinations of levels have no trials; cells are compared two by two"}};
+  }
+  if (factors.size() > 2) {
+    return several(table);
   }
   if (factors[0].within == factors[1].within) {
     return factors[0].within ? two_within(table) : two_between(table);

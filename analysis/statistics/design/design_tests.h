@@ -56,6 +56,7 @@ struct DesignTests {
 /// | two within | two-way repeated measures |
 /// | one within, one between | mixed analysis of variance, marginal squares (type III) |
 /// | two between | two-way analysis of variance, marginal squares (type III) |
+/// | three or four | each factor and combination, marginal squares (type III) |
 /// | more, or combinations that nobody had | none: cells are compared two by two |
 DesignTests design_tests(const DesignTable& table, const AnalysisPlan& plan,
                          const Resampling& resampling);
