@@ -20,6 +20,7 @@ struct BidsOptions {
   std::vector<std::string> authors{};  // as the data set is to name them
   std::string program_version{};       // of the exporting program
   std::vector<std::pair<std::string, std::string>> phases{};  // of protocols, with meanings
+  double motion{0.0};  // rate of the tip's movement beside the recording [Hz]; 0: without
   int jobs{1};
   CompareDefinitions compare{};  // none: every difference is binding
 };

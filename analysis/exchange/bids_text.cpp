@@ -223,7 +223,7 @@ std::string dataset_description(std::span<const Session> sessions, const BidsOpt
       options.name.empty() ? experiment_name(sessions.front().source.info) : options.name;
   Json json;
   json["Name"] = (simulated ? "SIMULATED: " : "") + name;
-  json["BIDSVersion"] = "1.10.0";
+  json["BIDSVersion"] = "1.11.0";
   json["DatasetType"] = "raw";
   if (!options.authors.empty()) {
     json["Authors"] = options.authors;
@@ -235,7 +235,7 @@ std::string dataset_description(std::span<const Session> sessions, const BidsOpt
   return text_of(json);
 }
 
-std::string readme(std::span<const Session> sessions) {
+std::string readme(std::span<const Session> sessions, double motion) {
   std::string text;
   if (any_simulated(sessions)) {
     text = std::string(kSimulated) + "\n\n";
@@ -244,6 +244,12 @@ std::string readme(std::span<const Session> sessions) {
   const char* passes = "passes (a trial has one of each phase, more if it was interrupted)";
   const char* stimuli =
       targets ? "stimuli/           the ideal movement and target force of each block\n" : "";
+  const std::string moved =
+      motion > 0.0 ? fmt::format(
+                         "motion/            the tip's movement, {} of its samples a second\n"
+                         "                   (picked, not filtered), and the events again\n",
+                         motion)
+                   : "";
   const char* force = targets ? " The learnt force points down\nand is given as a magnitude." : "";
   text += fmt::format(
       "{}: a force-feedback experiment, exported from session files of haptrial.\n\n"
@@ -253,7 +259,7 @@ std::string readme(std::span<const Session> sessions) {
       "phenotype/         answers to questionnaires, where there are any\n"
       "beh/*_physio.*     the recording: a row for each tick of the servo loop, without heading;\n"
       "                   columns, units and rate stand in the .json beside it\n"
-      "{}"
+      "{}{}"
       "code/              the definition of the experiment\n\n"
       "Row k of a recording is tick k after the one of StartTime, also where the session file\n"
       "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
@@ -263,7 +269,7 @@ std::string readme(std::span<const Session> sessions) {
       "Practice passes have practice = 1 in the events, and negative numbers of blocks. "
       "Recordings\n"
       "of pilot sessions have Pilot = true in the .json beside them.\n",
-      experiment_name(sessions.front().source.info), passes, stimuli, force);
+      experiment_name(sessions.front().source.info), passes, stimuli, moved, force);
   return text;
 }
 
@@ -295,10 +301,13 @@ std::string sessions_table(std::span<const Session> of_subject) {
   return text;
 }
 
-std::string scans_table(const Session& session) {
+std::string scans_table(const Session& session, const std::string& motion) {
   std::string text = "filename\tacq_time\n";
   RowText row(text, Delimited::kTsv);
   row.add("beh/" + session.stem() + "_physio.tsv.gz").add(session.source.info.start_utc).end();
+  if (!motion.empty()) {
+    row.add(motion).add(session.source.info.start_utc).end();
+  }
   return text;
 }
 
@@ -336,7 +345,7 @@ std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnD
 namespace {
 
 /// Every recording of a session describes its task in these words.
-Json described_task(const Session& session) {
+Json task_json(const Session& session) {
   const auto& info = session.source.info;
   Json json;
   const std::string name = experiment_name(info);
@@ -352,9 +361,11 @@ Json described_task(const Session& session) {
 
 }  // namespace
 
+std::string described_task(const Session& session) { return text_of(task_json(session)); }
+
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {
   const auto& info = session.source.info;
-  Json json = described_task(session);
+  Json json = task_json(session);
   json["SamplingFrequency"] = info.rate;
   json["StartTime"] = static_cast<double>(samples.first_sequence) / info.rate;
   json["Columns"] = Json::array();
@@ -379,7 +390,7 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
 
 std::string channel_sidecar(const Session& session, const record::TableDescription& table,
                             const analysis::ChannelQuality& channel) {
-  Json json = described_task(session);
+  Json json = task_json(session);
   json["SamplingFrequency"] = channel.rate();
   json["StartTime"] = channel.first;
   json["Simulated"] = session.source.info.simulated;

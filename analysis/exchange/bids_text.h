@@ -27,13 +27,15 @@ struct Session {
 };
 
 std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options);
-std::string readme(std::span<const Session> sessions);
+/// @param motion  rate of the movement beside the recording [Hz]; 0: there is none
+std::string readme(std::span<const Session> sessions, double motion);
 
 std::string participants_table(std::span<const Session> sessions);
 std::string participants_sidecar(std::span<const Session> sessions);
 /// One row for each session of a subject.
 std::string sessions_table(std::span<const Session> of_subject);
-std::string scans_table(const Session& session);
+/// @param motion  recording of the movement, below the session's folder; empty: there is none
+std::string scans_table(const Session& session, const std::string& motion);
 
 /// One row for each pass and each event, by time. @param columns  of pass_facts(), of all sessions
 std::string events_table(const Session& session, const record::SessionReader& reader,
@@ -41,6 +43,8 @@ std::string events_table(const Session& session, const record::SessionReader& re
 std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnDoc>& columns);
 /// The description of a table's columns as JSON.
 std::string sidecar_of(const std::vector<ColumnDoc>& docs);
+/// What every recording's sidecar says of the task, as JSON.
+std::string described_task(const Session& session);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
 /// The sidecar of a channel's recording; its samples have the times of their columns.
 std::string channel_sidecar(const Session& session, const record::TableDescription& table,

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "analysis/exchange/bids_label.h"
+#include "analysis/exchange/bids_motion.h"
 #include "analysis/exchange/bids_pages.h"
 #include "analysis/exchange/bids_text.h"
 #include "analysis/exchange/channel_text.h"
@@ -64,6 +65,7 @@ std::vector<Session> named_sessions(std::span<const fs::path> files,
       std::any_of(sources.begin(), sources.end(), [](const auto& s) { return s.of > 1; });
   for (const auto& source : sources) {
     refuse_other_study(source, sources.front(), compare);
+    refuse_imported(source, "--bids");
     const std::string label = label_of("subject", source.info.subject, source.file);
     const auto [twin, is_new] = subjects.emplace(label, source.info.subject);
     if (!is_new && twin->second != source.info.subject) {
@@ -119,7 +121,8 @@ void write_channel_recordings(const NewFolder& out, const Session& session,
 }
 
 WrittenSamples write_session(const NewFolder& out, const Session& session,
-                             const std::vector<ColumnDoc>& columns, Counter& counter) {
+                             const std::vector<ColumnDoc>& columns, const BidsOptions& options,
+                             Counter& counter) {
   const record::SessionReader reader(session.source.file);
   const std::string stem = session.folder() + "/beh/" + session.stem();
   write_stimuli(out, session, reader);
@@ -128,10 +131,15 @@ WrittenSamples write_session(const NewFolder& out, const Session& session,
   file.close();
   out.write(stem + "_physio.json", bids::recording_sidecar(session, samples));
   write_channel_recordings(out, session, reader);
-  out.write(stem + "_events.tsv", bids::events_table(session, reader, samples, columns));
+  const std::string events = bids::events_table(session, reader, samples, columns);
+  out.write(stem + "_events.tsv", events);
+  const bool moves = options.motion > 0.0 && samples.ticks > 0;
+  if (moves) {
+    bids::write_motion(out, session, reader, options.motion, events);
+  }
   const std::string prefix = session.session.empty() ? "" : "_" + session.session;
   out.write(fmt::format("{}/{}{}_scans.tsv", session.folder(), session.subject, prefix),
-            bids::scans_table(session));
+            bids::scans_table(session, moves ? bids::motion_file(session) : std::string()));
   return samples;
 }
 
@@ -154,7 +162,7 @@ void write_whole(const NewFolder& out, std::span<const Session> sessions,
                  const std::vector<ColumnDoc>& columns, const BidsOptions& options) {
   const auto& first = sessions.front();
   out.write("dataset_description.json", bids::dataset_description(sessions, options));
-  out.write("README", bids::readme(sessions));
+  out.write("README", bids::readme(sessions, options.motion));
   out.write("participants.tsv", bids::participants_table(sessions));
   out.write("participants.json", bids::participants_sidecar(sessions));
   out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar(options, columns));
@@ -187,7 +195,7 @@ BidsSummary export_bids(std::span<const fs::path> files, const fs::path& folder,
   share_out(
       sessions.size(), options.jobs,
       [&](std::size_t i, Counter& counter) {
-        written[i] = write_session(out, sessions[i], columns, counter);
+        written[i] = write_session(out, sessions[i], columns, options, counter);
       },
       watch);
   out.publish();

@@ -29,6 +29,10 @@ struct ExportSession {
 /// @throws InputError when there is no file, one cannot be read, or one is given twice.
 std::vector<ExportSession> sessions_to_export(std::span<const std::filesystem::path> files);
 
+/// @throws InputError for a session whose trials another program presented, of which no time is
+/// known. @param option  for the format that needs times
+void refuse_imported(const ExportSession& session, const char* option);
+
 /// The experiment's name as its definition has it, or without one that of the definition's file.
 std::string experiment_name(const record::SessionInfo& info);
 

@@ -31,6 +31,7 @@ struct ExportOptions {
   bool samples{false};
   std::string name;
   std::vector<std::string> authors;
+  std::optional<double> motion;
   std::optional<int> jobs;
 };
 
@@ -57,6 +58,7 @@ void export_as_bids(const ExportOptions& options, const std::vector<fs::path>& f
                                    options.authors,
                                    program_version(),
                                    known_phases(),
+                                   options.motion.value_or(0.0),
                                    jobs,
                                    [](const auto& first, const auto& second) {
                                      return protocols::study_changes(protocol_of(first), first,
@@ -91,6 +93,11 @@ void check_form(const ExportOptions& options) {
   };
   allow(options.bids, "--author", !options.authors.empty(), "--bids");
   allow(options.bids, "--name", !options.name.empty(), "--bids");
+  allow(options.bids, "--motion", options.motion.has_value(), "--bids");
+  if (options.motion) {
+    constexpr double kSlowest = 1.0, kFastest = 10'000.0;  // [Hz]
+    checked_real("--motion", *options.motion, kSlowest, kFastest);
+  }
   allow(options.csv, "--samples", options.samples, "--csv");
 }
 
@@ -120,6 +127,9 @@ void add_export(CLI::App& app, int& status) {
   sub->add_option("FILE", o.files, "Session file (.h5) or folder of session files; may be repeated")
       ->required();
   sub->add_option("--bids", o.bids, "New folder for a BIDS data set");
+  sub->add_option("--motion", o.motion,
+                  "Rate [Hz] of the tip's movement as Motion-BIDS, beside the recordings of --bids "
+                  "(default: without)");
   sub->add_option("--csv", o.csv, "New folder for tidy tables (.csv)");
   sub->add_option("--curves", o.curves, "New folder for the scored curves (.csv)");
   sub->add_flag("--samples", o.samples,
