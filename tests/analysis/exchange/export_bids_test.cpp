@@ -147,12 +147,12 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
     GTEST_SKIP() << "no network, so no validator: " << output_;
   }
   ASSERT_EQ(had, 0) << output_;
+  const std::string validator = "node '" + output_.substr(0, output_.find('\n')) + "'";
   // It knows axes of motion by letters that BIDS 1.11 has replaced: A, P, S and I for F, B, U and
   // D.
   ASSERT_EQ(shell("find" + quoted(folder_ / "out") +
                   " -name '*_channels.json' -exec sed -i 's/\"RUB\"/\"RSP\"/' {} +"),
             0);
-  const std::string validator = "node '" + output_.substr(0, output_.find('\n')) + "'";
   EXPECT_EQ(shell(validator + quoted(folder_ / "out")), 0) << output_;
   EXPECT_THAT(output_, Not(HasSubstr("[ERR]")));
   EXPECT_THAT(output_, HasSubstr("4 - Subjects"));
