@@ -40,20 +40,10 @@ Json json_of(const ColumnDoc& doc) {
   return json;
 }
 
-bool any_simulated(std::span<const Session> sessions) {
-  return std::any_of(sessions.begin(), sessions.end(),
-                     [](const auto& s) { return s.source.info.simulated; });
-}
-
 bool any_stimuli(std::span<const Session> sessions) {
   return std::any_of(sessions.begin(), sessions.end(),
                      [](const auto& s) { return s.source.stimuli; });
 }
-
-constexpr const char* kSimulated =
-    "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the experiment "
-    "and "
-    "its analysis work, not how people behave.";
 
 constexpr const char* kPilotNotice = "PILOT SESSION: no part of the study.";
 
@@ -198,6 +188,11 @@ void add_facts(const std::map<std::string, std::string>& cells,
 
 }  // namespace
 
+bool any_simulated(std::span<const Session> sessions) {
+  return std::any_of(sessions.begin(), sessions.end(),
+                     [](const auto& s) { return s.source.info.simulated; });
+}
+
 std::string sidecar_of(const std::vector<ColumnDoc>& docs) {
   Json json;
   for (const auto& doc : docs) {
@@ -217,7 +212,7 @@ std::string Session::stimulus(std::int32_t block) const {
                      block < 0 ? "practice" : "block", std::abs(block));
 }
 
-std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options) {
+std::string dataset_description(std::span<const Session> sessions, const DataSetOptions& options) {
   const bool simulated = any_simulated(sessions);
   const std::string name =
       options.name.empty() ? experiment_name(sessions.front().source.info) : options.name;
@@ -238,7 +233,7 @@ std::string dataset_description(std::span<const Session> sessions, const BidsOpt
 std::string readme(std::span<const Session> sessions, double motion) {
   std::string text;
   if (any_simulated(sessions)) {
-    text = std::string(kSimulated) + "\n\n";
+    text = std::string(kSimulatedNotice) + "\n\n";
   }
   const bool targets = any_stimuli(sessions);
   const char* passes = "passes (a trial has one of each phase, more if it was interrupted)";
@@ -338,7 +333,7 @@ std::string events_table(const Session& session, const record::SessionReader& re
   return text;
 }
 
-std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnDoc>& columns) {
+std::string events_sidecar(const DataSetOptions& options, const std::vector<ColumnDoc>& columns) {
   return sidecar_of(event_docs(options.phases, columns));
 }
 
@@ -351,7 +346,7 @@ Json task_json(const Session& session) {
   const std::string name = experiment_name(info);
   json["TaskName"] = bids_label(name) == session.task ? name : session.task;
   const std::string marks =
-      fmt::format("{}{}{}", info.simulated ? kSimulated : "",
+      fmt::format("{}{}{}", info.simulated ? kSimulatedNotice : "",
                   info.simulated && info.pilot ? " " : "", info.pilot ? kPilotNotice : "");
   if (!marks.empty()) {
     json["TaskDescription"] = marks;

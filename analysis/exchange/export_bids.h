@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "analysis/exchange/bids_options.h"
+#include "analysis/exchange/data_set_options.h"
 #include "analysis/exchange/export_sessions.h"
 
 namespace haptrial::exchange {
@@ -27,7 +27,7 @@ struct BidsSummary {
 /// of several experiments, or two subjects have the same letters and digits; RunError when the disk
 /// is full.
 BidsSummary export_bids(std::span<const std::filesystem::path> files,
-                        const std::filesystem::path& folder, const BidsOptions& options,
+                        const std::filesystem::path& folder, const DataSetOptions& options,
                         const Watch& watch);
 
 }  // namespace haptrial::exchange

@@ -12,6 +12,12 @@
 
 namespace haptrial::exchange {
 
+/// What stands in a data set with virtual participants.
+inline constexpr const char* kSimulatedNotice =
+    "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the experiment "
+    "and "
+    "its analysis work, not how people behave.";
+
 /// A session file and its place among those of its subject.
 struct ExportSession {
   std::filesystem::path file;

@@ -193,9 +193,9 @@ TEST_F(ExchangeTest, AnImportLeavesTheReportOfSessionsAlone) {
 TEST_F(ExchangeTest, BadArgumentsGetASentence) {
   make_study("--subjects 1 --trials 1");
   const std::map<std::string, std::string> sentences{
-      {"export " + path("study"), "give exactly one of --bids, --csv and --curves"},
+      {"export " + path("study"), "give exactly one of --bids, --psych-ds, --xdf, --csv and --curves"},
       {"export --bids a --csv b " + path("study"),
-       "give exactly one of --bids, --csv and --curves"},
+       "give exactly one of --bids, --psych-ds, --xdf, --csv and --curves"},
       {"export --csv x --author A " + path("study"), "--author is given without --bids"},
       {"export --curves x --name A " + path("study"), "--name is given without --bids"},
       {"export --bids x --samples " + path("study"), "--samples is given without --csv"},

@@ -31,7 +31,7 @@ class ExportBidsTest : public testing::Test {
     return files_.back();
   }
 
-  BidsSummary run(const BidsOptions& options = {}) {
+  BidsSummary run(const DataSetOptions& options = {}) {
     return export_bids(files_, folder_ / "out", options, ignore);
   }
 
