@@ -6,6 +6,7 @@
 #include "analysis/exchange/export_bids.h"
 #include "analysis/exchange/export_csv.h"
 #include "analysis/exchange/export_psych_ds.h"
+#include "analysis/exchange/export_xdf.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
@@ -28,6 +29,7 @@ struct ExportOptions {
   std::vector<std::string> files;
   std::string bids;
   std::string psych_ds;
+  std::string xdf;
   std::string csv;
   std::string curves;
   bool samples{false};
@@ -83,6 +85,14 @@ void export_as_psych_ds(const ExportOptions& options, const std::vector<fs::path
              counted(done.subjects, "participant"), counted(done.passes, "pass"), options.psych_ds);
 }
 
+void export_as_xdf(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
+  ExportWatch watch(files);
+  const auto done = exchange::export_xdf(files, options.xdf, jobs,
+                                         [&](std::uint64_t samples) { watch(samples); });
+  fmt::print("{}, {}, {}\nfiles: {}\n", counted(done.sessions, "session"),
+             counted(done.streams, "stream"), counted(done.samples, "sample"), options.xdf);
+}
+
 void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
   ExportWatch watch(files);
   const auto done = exchange::export_csv(files, options.csv,
@@ -93,10 +103,10 @@ void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& fi
 }
 
 void check_form(const ExportOptions& options) {
-  const int targets = !options.bids.empty() + !options.psych_ds.empty() + !options.csv.empty() +
-                      !options.curves.empty();
+  const int targets = !options.bids.empty() + !options.psych_ds.empty() + !options.xdf.empty() +
+                      !options.csv.empty() + !options.curves.empty();
   if (targets != 1) {
-    throw InputError("give exactly one of --bids, --psych-ds, --csv and --curves");
+    throw InputError("give exactly one of --bids, --psych-ds, --xdf, --csv and --curves");
   }
   const std::string data_set = options.bids + options.psych_ds;
   const auto allow = [](const std::string& form, const char* name, bool given, const char* with) {
@@ -123,6 +133,8 @@ int export_sessions(const ExportOptions& options) {
     export_as_bids(options, files, jobs);
   } else if (!options.psych_ds.empty()) {
     export_as_psych_ds(options, files);
+  } else if (!options.xdf.empty()) {
+    export_as_xdf(options, files, jobs);
   } else if (!options.csv.empty()) {
     export_as_csv(options, files, jobs);
   } else {
@@ -137,7 +149,7 @@ void add_export(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(
       app, "export", "Write sessions in the formats of other programs",
       "haptrial export --bids data-set out/force_training-001",
-      {"the folder that --bids, --psych-ds, --csv or --curves names", "guide-analyst.md"});
+      {"the folder that --bids, --psych-ds, --xdf, --csv or --curves names", "guide-analyst.md"});
   auto& o = options_of<ExportOptions>(*sub, status, export_sessions);
   sub->add_option("FILE", o.files, "Session file (.h5) or folder of session files; may be repeated")
       ->required();
@@ -146,6 +158,9 @@ void add_export(CLI::App& app, int& status) {
                   "Rate [Hz] of the tip's movement as Motion-BIDS, beside the recordings of --bids "
                   "(default: without)");
   sub->add_option("--psych-ds", o.psych_ds, "New folder for a Psych-DS data set");
+  sub->add_option(
+      "--xdf", o.xdf,
+      "New folder for files of the Extensible Data Format, one for each session (.xdf)");
   sub->add_option("--csv", o.csv, "New folder for tidy tables (.csv)");
   sub->add_option("--curves", o.curves, "New folder for the scored curves (.csv)");
   sub->add_flag("--samples", o.samples,
