@@ -53,8 +53,8 @@ std::vector<ColumnDoc> pass_docs(const Levels& phases, const std::vector<ColumnD
   return docs;
 }
 
-void add_pass(const Session& session, const record::PassRow& pass, std::size_t index, bool timed,
-              RowText& row) {
+void add_pass_cells(const Session& session, const record::PassRow& pass, std::size_t index,
+                    bool timed, RowText& row) {
   const ExportSession& source = session.source;
   row.add(source.info.subject).add(source.number);
   row.add(truth(source.info.simulated)).add(truth(source.info.pilot));
@@ -73,8 +73,8 @@ void add_pass(const Session& session, const record::PassRow& pass, std::size_t i
 }
 
 /// The passes of a session. @returns how many there are
-std::size_t write_passes(const NewFolder& out, const Session& session,
-                         const std::vector<ColumnDoc>& facts) {
+std::size_t write_pass_table(const NewFolder& out, const Session& session,
+                             const std::vector<ColumnDoc>& facts) {
   const record::SessionReader reader(session.source.file);
   const bool timed = record::imported_from(reader).empty();
   const PassFacts own = pass_facts(reader);
@@ -82,7 +82,7 @@ std::size_t write_passes(const NewFolder& out, const Session& session,
   std::string text = heading(pass_docs({}, facts), Delimited::kCsv);
   RowText row(text, Delimited::kCsv);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    add_pass(session, passes[i], i, timed, row);
+    add_pass_cells(session, passes[i], i, timed, row);
     for (const ColumnDoc& column : facts) {
       const auto cell = own.cells[i].find(column.name);
       row.add(cell != own.cells[i].end() ? cell->second : std::string());
@@ -107,8 +107,8 @@ Json variable_of(const ColumnDoc& doc) {
   return variable;
 }
 
-Json described(const std::string& name, const std::string& description,
-               const std::vector<ColumnDoc>& columns) {
+Json schema_org_data_set(const std::string& name, const std::string& description,
+                         const std::vector<ColumnDoc>& columns) {
   Json json{{"@context", "https://schema.org/"},
             {"@type", "Dataset"},
             {"name", name},
@@ -119,11 +119,11 @@ Json described(const std::string& name, const std::string& description,
   return json;
 }
 
-std::string text_of(const Json& json) {
+std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string name_of(std::span<const Session> sessions, const DataSetOptions& options) {
+std::string data_set_name(std::span<const Session> sessions, const DataSetOptions& options) {
   const std::string name =
       options.name.empty() ? experiment_name(sessions.front().source.info) : options.name;
   return (any_simulated(sessions) ? "SIMULATED: " : "") + name;
@@ -132,15 +132,15 @@ std::string name_of(std::span<const Session> sessions, const DataSetOptions& opt
 std::string dataset_description(std::span<const Session> sessions, const DataSetOptions& options,
                                 const std::vector<ColumnDoc>& columns) {
   const std::string mark = any_simulated(sessions) ? std::string(kSimulatedNotice) + " " : "";
-  Json json = described(name_of(sessions, options),
-                        mark + "Trials of an experiment, exported from session files of haptrial.",
-                        columns);
+  Json json = schema_org_data_set(
+      data_set_name(sessions, options),
+      mark + "Trials of an experiment, exported from session files of haptrial.", columns);
   for (const std::string& author : options.authors) {
     json["author"].push_back({{"@type", "Person"}, {"name", author}});
   }
   json["measurementTechnique"] = "haptrial " + options.program_version + ", export --psych-ds";
   json["keywords"] = {"Psych-DS", experiment_name(sessions.front().source.info)};
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string readme(std::span<const Session> sessions, const DataSetOptions& options) {
@@ -153,7 +153,7 @@ std::string readme(std::span<const Session> sessions, const DataSetOptions& opti
       "them.\n"
       "- `materials/`: the definition of the experiment.\n\n"
       "Left out on purpose: samples, consent and free notes about participants.\n",
-      name_of(sessions, options),
+      data_set_name(sessions, options),
       any_simulated(sessions) ? std::string(kSimulatedNotice) + "\n\n" : "");
 }
 
@@ -161,8 +161,8 @@ void write_questionnaires(const NewFolder& out, std::span<const Session> session
   for (const bids::Phenotype& page : bids::phenotypes(sessions, Delimited::kCsv)) {
     const std::string stem = fmt::format("data/questionnaire-{}_data", page.name);
     out.write(stem + ".csv", page.table);
-    out.write(stem + ".json",
-              text_of(described(page.name, "Answers to the page " + page.name, page.columns)));
+    out.write(stem + ".json", json_text(schema_org_data_set(
+                                  page.name, "Answers to the page " + page.name, page.columns)));
   }
 }
 
@@ -182,7 +182,7 @@ PsychDsSummary export_psych_ds(std::span<const fs::path> files, const fs::path& 
   PsychDsSummary summary;
   std::set<std::string> subjects;
   for (const Session& session : sessions) {
-    summary.passes += write_passes(out, session, facts);
+    summary.passes += write_pass_table(out, session, facts);
     subjects.insert(session.subject);
   }
   out.publish();

@@ -84,8 +84,8 @@ std::map<std::uint64_t, double> write_device(const SessionReader& reader, XdfFil
 }
 
 /// A pass as JSON, with what it presented and what was answered.
-std::string text_of(const record::PassRow& pass, std::size_t index, double rate,
-                    const std::map<std::string, std::string>& facts) {
+std::string pass_text(const record::PassRow& pass, std::size_t index, double rate,
+                      const std::map<std::string, std::string>& facts) {
   nlohmann::ordered_json json;
   json["pass"] = index;
   json["trial"] = pass.trial;
@@ -104,13 +104,13 @@ std::string text_of(const record::PassRow& pass, std::size_t index, double rate,
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void write_passes(const SessionReader& reader, const std::map<std::uint64_t, double>& begins,
-                  XdfFile& file, std::uint32_t stream) {
+void write_pass_markers(const SessionReader& reader, const std::map<std::uint64_t, double>& begins,
+                        XdfFile& file, std::uint32_t stream) {
   const PassFacts facts = pass_facts(reader);
   const std::vector<record::PassRow> passes = reader.passes();
   for (std::size_t i = 0; i < passes.size(); ++i) {
     file.add(stream, begins.at(passes[i].first_sample),
-             text_of(passes[i], i, reader.info().rate, facts.cells[i]));
+             pass_text(passes[i], i, reader.info().rate, facts.cells[i]));
   }
 }
 
@@ -164,7 +164,7 @@ void write_channel_stream(const SessionReader& reader, const analysis::ChannelQu
 
 /// Streams without samples are left out: some readers fail on them.
 /// @returns how many streams the file has
-std::size_t write_session(const fs::path& path, const ExportSession& session, Counter& counter) {
+std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counter& counter) {
   const SessionReader reader(session.file);
   XdfFile file(path, about(session.info));
   std::size_t streams = 0;
@@ -175,13 +175,13 @@ std::size_t write_session(const fs::path& path, const ExportSession& session, Co
   }
   if (!begins.empty()) {
     ++streams;
-    write_passes(reader, begins, file,
-                 file.add_stream({"passes",
-                                  "Markers",
-                                  XdfFormat::kString,
-                                  0.0,
-                                  {{"pass", ""}},
-                                  "a pass as JSON, as it began"}));
+    write_pass_markers(reader, begins, file,
+                       file.add_stream({"passes",
+                                        "Markers",
+                                        XdfFormat::kString,
+                                        0.0,
+                                        {{"pass", ""}},
+                                        "a pass as JSON, as it began"}));
   }
   if (!reader.events().empty()) {
     ++streams;
@@ -198,7 +198,7 @@ std::size_t write_session(const fs::path& path, const ExportSession& session, Co
   return streams;
 }
 
-std::string name_of(const ExportSession& session) {
+std::string xdf_name(const ExportSession& session) {
   return session.of > 1 ? fmt::format("{}-session-{}.xdf", session.info.subject, session.number)
                         : session.info.subject + ".xdf";
 }
@@ -216,7 +216,7 @@ XdfSummary export_xdf(std::span<const fs::path> files, const fs::path& folder, i
   share_out(
       sessions.size(), jobs,
       [&](std::size_t i, Counter& counter) {
-        streams[i] = write_session(out.place(name_of(sessions[i])), sessions[i], counter);
+        streams[i] = write_xdf(out.place(xdf_name(sessions[i])), sessions[i], counter);
       },
       watch);
   out.publish();

@@ -137,6 +137,25 @@ TEST_F(TrialsImportTest, GivesTheThresholdsOfRForPeopleOfAnotherLaboratory) {
   EXPECT_EQ(compared, 18);
 }
 
+TEST_F(TrialsImportTest, WhatWasImportedIsExportedIfNoTimesAreNeeded) {
+  test::write_text(folder_ / "t.csv",
+                   "subject,level,response,correct\nP1,1,left,1\nP1,2,right,0\nP1,3,,\n");
+  const CommandResult run = run_command(fmt::format(
+      "haptrial import {} --out {} && haptrial export --csv {} {} && haptrial export --psych-ds {} "
+      "{} && /usr/bin/python3 '{}/tests/analysis/exchange/read_psych_ds.py' {} {}/P1.h5",
+      path("t.csv"), path("study"), path("csv"), path("study"), path("psych"), path("study"),
+      HAPTRIAL_SOURCE_DIR, path("psych"), path("study")));
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("1 trial without an answer"));
+  EXPECT_THAT(run.output, testing::EndsWith("equal\n"));
+  for (const char* form : {"--bids", "--xdf"}) {
+    const CommandResult no =
+        run_command(fmt::format("haptrial export {} {} {}", form, path("x"), path("study")));
+    EXPECT_EQ(no.status, 2);
+    EXPECT_THAT(no.errors, HasSubstr("was imported, so that no time of a trial is known"));
+  }
+}
+
 TEST_F(TrialsImportTest, AMistakeIsASentenceAndLeavesNothing) {
   test::write_text(folder_ / "t.csv", "subject,level,correct\nP1,1,1\nP1,two,0\n");
   const auto refused = [&](const std::string& more) {

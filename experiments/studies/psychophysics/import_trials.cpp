@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 namespace trials = analysis::trials;
 using protocols::TrialsDefinition;
 
-const TrialsDefinition& trials_of(const Experiment& experiment) {
+const TrialsDefinition& stated_trials(const Experiment& experiment) {
   const auto* definition = dynamic_cast<const TrialsDefinition*>(experiment.definition.get());
   if (definition == nullptr) {
     throw InputError(fmt::format("{}: is of protocol '{}'; allowed: protocol = \"trials\"",
@@ -37,13 +37,6 @@ const TrialsDefinition& trials_of(const Experiment& experiment) {
                                  experiment.study->protocol().name()));
   }
   return *definition;
-}
-
-trials::TrialsPlan plan_of(const TrialsDefinition& definition) {
-  Table root = definition.root();
-  trials::TrialsPlan plan = read_trials_analysis(root);
-  root.check();
-  return plan;
 }
 
 std::string level_of(const TrialsDefinition& d, const trials::TrialsPlan& plan) {
@@ -165,11 +158,11 @@ ImportSummary import_trials(TrialsImport request) {
         parse_experiment(trials::imported_definition(study, request.analysis), "study.toml");
   } else {
     experiment = load_experiment(request.definition);
-    const TrialsDefinition& d = trials_of(experiment);
+    const TrialsDefinition& d = stated_trials(experiment);
     add_columns_of(d, plan_of(d), request.files.front(), request.columns);
     study = trials::read_trial_tables(request.files, request.columns);
   }
-  const TrialsDefinition& definition = trials_of(experiment);
+  const TrialsDefinition& definition = stated_trials(experiment);
   const trials::ImportedNames names = names_of(definition, plan_of(definition), study.columns);
   const Sessions sessions = sessions_of(study, definition);
   exchange::NewFolder out(request.out);

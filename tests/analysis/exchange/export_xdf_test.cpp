@@ -6,13 +6,15 @@
 #include <xdf.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "analysis/files/xdf_file.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/channel/channel_row.h"
+#include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
@@ -21,7 +23,6 @@ namespace haptrial::exchange::export_xdf_test {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -101,6 +102,37 @@ TEST_F(ExportXdfTest, PassesAndEventsAreMarkersAtTheirTimes) {
   EXPECT_EQ(pass, passes.size());
   EXPECT_TRUE(noticed);
   EXPECT_THAT(xdf.fileHeader, HasSubstr("<simulated>true</simulated>"));
+}
+
+TEST_F(ExportXdfTest, AChannelIsAStreamOfDoublesOnTheSessionsClock) {
+  const channel::ChannelTable grip("grip", {{"force", "N"}}, 64);
+  std::vector<channel::ChannelRow> rows(500);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].sample = i;
+    rows[i].time_ns = 20'000'001 * static_cast<std::int64_t>(i) + 7;
+    rows[i].values[0] = std::sin(0.1 * static_cast<double>(i));
+  }
+  record::SessionInfo info;
+  info.subject = "P1";
+  info.clock = "simulated";
+  info.start_utc = "2026-11-20T09:30:00Z";
+  record::SessionWriter writer(folder_ / "a.h5", info,
+                               {&grip.table(), &record::table_of<channel::IncidentRow>()});
+  writer.add(record::Rows(grip.table(), rows.data(), rows.size()));
+  writer.set_timing({}, {0, 0, 0});
+  writer.close();
+  files_ = {folder_ / "a.h5"};
+  EXPECT_EQ(export_xdf(files_, folder_ / "out", 1, ignore).streams, 1u);
+  const Xdf xdf = load(folder_ / "out/P1.xdf");
+  const Xdf::Stream& theirs = stream(xdf, "grip");
+  EXPECT_EQ(theirs.info.channel_format, "double64");
+  ASSERT_EQ(theirs.time_stamps.size(), rows.size());
+  EXPECT_EQ(theirs.info.channels.back().at("label"), "force");
+  EXPECT_EQ(theirs.info.channels.back().at("unit"), "N");
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_NEAR(theirs.time_stamps[i], 1e-9 * static_cast<double>(rows[i].time_ns), 1e-9);
+    EXPECT_EQ(theirs.time_series.back()[i], static_cast<float>(rows[i].values[0]));
+  }
 }
 
 TEST_F(ExportXdfTest, SeveralSessionsHaveNumbers) {
