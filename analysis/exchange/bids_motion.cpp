@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "analysis/files/delimited.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange::bids {
@@ -93,7 +95,8 @@ class MotionText {
     ++rows_;
   }
 
-  const std::string& text() const { return text_; }
+  /// The rows since the last call.
+  std::string take() { return std::exchange(text_, {}); }
   std::uint64_t rows() const { return rows_; }
 
  private:
@@ -130,14 +133,15 @@ void write_motion(const NewFolder& out, const Session& session, const record::Se
                   double rate, const std::string& events) {
   check_rate(session, rate);
   MotionText motion(session.source.info.rate, rate);
+  const std::string stem = session.folder() + "/" + stem_of(session);
+  const std::filesystem::path file = out.place(stem + "_motion.tsv");
   const std::uint64_t count = reader.sample_count();
   for (std::uint64_t row = 0; row < count; row += kPiece) {
     for (const record::Sample& sample : reader.samples(row, std::min(kPiece, count - row))) {
       motion.add(sample);
     }
+    append_text(file, motion.take());
   }
-  const std::string stem = session.folder() + "/" + stem_of(session);
-  out.write(stem + "_motion.tsv", motion.text());
   out.write(stem + "_motion.json", sidecar(session, rate, motion.rows()));
   out.write(stem + "_channels.tsv", channels_table());
   out.write(stem + "_channels.json", channels_sidecar());

@@ -1,8 +1,10 @@
 // haptrial import: a study of trials that another program presented.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -58,48 +60,101 @@ class TrialsImportTest : public testing::Test {
   }
 
   /// The trials of an exported study in one table, as another program might have written them.
-  void write_table(const std::string& tables, const std::string& name) {
-    std::map<std::string, Row> levels;
+  void write_table(const std::string& tables, const std::vector<std::string>& factors) {
+    std::map<std::string, Row> trials;
+    const auto trial = [&](const Row& row) -> Row& {
+      return trials[row.at("subject") + " " + row.at("pass")];
+    };
     for (const Row& row : rows_of(folder_ / (tables + "/levels.csv"))) {
-      levels[row.at("subject") + row.at("pass")] = row;
+      trial(row).insert({{"level", row.at("applied")},
+                         {"track", row.at("track")},
+                         {"outcome", row.at("outcome")}});
     }
-    std::ofstream out(folder_ / name);
-    out << "subject,staircase,stim,response,correct,rt_s,simulated\n";
-    for (const Row& row : rows_of(folder_ / (tables + "/responses.csv"))) {
-      const auto level = levels.find(row.at("subject") + row.at("pass"));
-      if (level != levels.end()) {
-        out << row.at("subject") << ',' << level->second["track"] << ',' << level->second["applied"]
-            << ',' << row.at("text") << ',' << row.at("correct") << ',' << row.at("reaction_time")
-            << ",true\n";
+    for (const Row& row : rows_of(folder_ / (tables + "/variables.csv"))) {
+      if (row.at("interval") == "0") {
+        const auto word = row.find("word");
+        trial(row)[row.at("name")] =
+            word != row.end() && !word->second.empty() ? word->second : row.at("value");
       }
+    }
+    for (const Row& row : rows_of(folder_ / (tables + "/responses.csv"))) {
+      Row& own = trial(row);
+      const bool first = !own.contains("answer");
+      const std::string answer = row.at("text").empty() ? row.at("value") : row.at("text");
+      own[first ? "answer" : "rating"] = answer;
+      own.insert({{"correct", row.at("correct")}, {"rt", row.at("reaction_time")}});
+    }
+    std::vector<std::string> columns{"level",  "track", "probe",  "outcome",
+                                     "answer", "rt",    "rating", "correct"};
+    columns.insert(columns.end(), factors.begin(), factors.end());
+    std::ofstream out(folder_ / "theirs.csv");
+    out << fmt::format("subject,simulated,{}\n", fmt::join(columns, ","));
+    for (const Row& row : rows_of(folder_ / (tables + "/trials.csv"))) {
+      if (row.at("practice") == "1" || row.at("status") != "completed") {
+        continue;
+      }
+      Row& own = trial(row);
+      own["correct"] = own["correct"] == "-1" ? "" : own["correct"];
+      out << row.at("subject") << ",true";
+      for (const std::string& column : columns) {
+        out << ',' << own[column];
+      }
+      out << '\n';
     }
   }
 
   test::TemporaryFolder folder_;
 };
 
-TEST_F(TrialsImportTest, GivesTheEstimatesOfTheNativeSessions) {
+/// A shipped experiment, factors that blocks or trials vary, and columns that it lacks.
+struct Shipped {
+  const char* name;
+  std::vector<std::string> factors;
+  std::vector<std::string> absent;
+};
+
+class ShippedTrials : public TrialsImportTest, public testing::WithParamInterface<Shipped> {};
+
+TEST_P(ShippedTrials, GiveTheEstimatesOfTheNativeSessions) {
+  const Shipped& shipped = GetParam();
   const std::string definition =
-      fmt::format("'{}/experiments/stiffness_discrimination.toml'", HAPTRIAL_SOURCE_DIR);
+      fmt::format("'{}/experiments/{}.toml'", HAPTRIAL_SOURCE_DIR, shipped.name);
   const CommandResult native = run_command(
       fmt::format("haptrial dry-run {} --subjects 3 --out {} && haptrial analyze {} && haptrial "
                   "export --csv {} {}",
                   definition, path("native"), path("native"), path("tables"), path("native")));
   ASSERT_EQ(native.status, 0) << native.errors;
-  write_table("tables", "theirs.csv");
+  write_table("tables", shipped.factors);
+  std::string options = "--column probe=probe --column outcome=outcome --time-unit s";
+  for (const std::string& factor : shipped.factors) {
+    options += " --factor " + factor;
+  }
+  for (const std::string& role : shipped.absent) {
+    options += " --column " + role + "=";
+  }
   const CommandResult run = run_command(fmt::format(
-      "haptrial import {} --column level=stim --definition {} --out {} && haptrial analyze {} && "
+      "haptrial import {} {} --definition {} --out {} && haptrial analyze {} && "
       "haptrial info {}/S01.h5",
-      path("theirs.csv"), definition, path("study"), path("study"), path("study")));
+      path("theirs.csv"), options, definition, path("study"), path("study"), path("study")));
   ASSERT_EQ(run.status, 0) << run.errors;
-  EXPECT_EQ(test::read_text(folder_ / "study/estimates.csv"),
-            test::read_text(folder_ / "native/estimates.csv"));
+  const std::string ours = test::read_text(folder_ / "study/estimates.csv");
+  EXPECT_EQ(ours, test::read_text(folder_ / "native/estimates.csv"));
+  EXPECT_GT(std::count(ours.begin(), ours.end(), '\n'), 3);
   const std::string sum = run_command("sha256sum " + path("theirs.csv") + " | cut -c-64").output;
   EXPECT_THAT(run.output, HasSubstr("theirs.csv, SHA-256 " + sum.substr(0, 64)));
   EXPECT_THAT(run.output, HasSubstr("recording   imported: no ticks were recorded"));
   EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("SIMULATED"));
   EXPECT_THAT(test::read_text(folder_ / "study/report.md"), Not(HasSubstr("force limit")));
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    TrialsImportTest, ShippedTrials,
+    testing::Values(Shipped{"stiffness_discrimination", {}, {"rating"}},
+                    Shipped{"viscosity_magnitude", {}, {"rating", "correct"}},
+                    Shipped{"wall_detection", {}, {}},
+                    Shipped{"force_discrimination", {}, {"rating"}},
+                    Shipped{"shape_recognition", {"shape"}, {"level", "track", "outcome"}}),
+    [](const auto& shipped) { return std::string(shipped.param.name); });
 
 // R 4.2.2: glm(cbind(faster, slower) ~ speed, binomial(probit)); -intercept / slope of each.
 TEST_F(TrialsImportTest, GivesTheThresholdsOfRForPeopleOfAnotherLaboratory) {

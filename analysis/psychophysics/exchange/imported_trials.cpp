@@ -71,7 +71,9 @@ class TableRows {
     trial.session = count(row, &C::session);
     trial.block = count(row, &C::block);
     trial.track = word(row, &C::track);
-    trial.level = number(row, &C::level);
+    trial.probe = word(row, &C::probe);
+    trial.probe = trial.probe == "no" ? "" : trial.probe;
+    trial.level = trial.probe.empty() ? number(row, &C::level) : optional_number(row, &C::level);
     trial.answer = word(row, &C::answer);
     trial.rating = word(row, &C::rating);
     trial.outcome = optional_number(row, &C::outcome);

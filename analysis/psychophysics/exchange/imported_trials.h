@@ -25,6 +25,7 @@ struct ImportedTrial {
   int block{1};
   bool simulated{false};
   std::string track;
+  std::string probe;  // empty: it is no catch trial
   double level{std::numeric_limits<double>::quiet_NaN()};
   std::string answer;                                        // empty: none was given
   int correct{-1};                                           // 1 right, 0 wrong, -1 not known

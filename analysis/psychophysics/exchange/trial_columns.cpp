@@ -156,6 +156,7 @@ const std::vector<std::pair<const char*, Column>>& TrialColumns::roles() {
                                                                {"correct", &C::correct},
                                                                {"time", &C::time},
                                                                {"rating", &C::rating},
+                                                               {"probe", &C::probe},
                                                                {"outcome", &C::outcome},
                                                                {"simulated", &C::simulated}};
   return all;

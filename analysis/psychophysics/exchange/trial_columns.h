@@ -40,6 +40,7 @@ struct TrialColumns {
   std::string correct;      // whether the answer was right
   std::string time;         // reaction time, in units of `time_unit`
   std::string rating;       // a second answer: how sure somebody is
+  std::string probe;        // which catch trial it is; nothing or "no": none
   std::string outcome;      // what a procedure learnt from the answer
   std::string simulated;    // whether the participant is a program
   double time_unit{0.0};    // [s]; 0: not known

@@ -30,6 +30,10 @@ class SessionRows {
   void add(const ImportedTrial& trial) {
     add_answers(trial);
     add_level(trial);
+    if (!study_.columns.probe.empty()) {
+      add_variable({row_, 0, "probe", std::numeric_limits<double>::quiet_NaN(),
+                    trial.probe.empty() ? "no" : trial.probe});
+    }
     std::string condition = "trials";
     for (std::size_t i = 0; i < trial.factors.size(); ++i) {
       const std::string& name = study_.columns.factors[i].variable;
@@ -105,7 +109,7 @@ class SessionRows {
       return;
     }
     add_variable({row_, 0, names_.level, trial.level, ""});
-    if (!names_.level_is_set) {
+    if (!names_.level_is_set || !trial.probe.empty()) {
       return;
     }
     double outcome = trial.outcome;

@@ -118,7 +118,7 @@ void add_import(CLI::App& app, int& status) {
                   "one is made)");
   sub->add_option("--column", o.columns,
                   "ROLE=COLUMN: the column for participant, session, block, track, level, answer, "
-                  "correct, time, rating, outcome or simulated, in place of the guessed one; may "
+                  "correct, time, rating, probe, outcome or simulated, in place of the guessed one; may "
                   "be repeated")
       ->allow_extra_args(false);
   sub->add_option("--factor", o.factors, "Column of a factor, or NAME=COLUMN; may be repeated")
