@@ -116,10 +116,11 @@ void add_import(CLI::App& app, int& status) {
   sub->add_option("--definition", o.definition,
                   "Definition of protocol \"trials\" by which the trials are analysed (default: "
                   "one is made)");
-  sub->add_option("--column", o.columns,
-                  "ROLE=COLUMN: the column for participant, session, block, track, level, answer, "
-                  "correct, time, rating, probe, outcome or simulated, in place of the guessed one; may "
-                  "be repeated")
+  sub->add_option(
+         "--column", o.columns,
+         "ROLE=COLUMN: the column for participant, session, block, track, level, answer, "
+         "correct, time, rating, probe, outcome or simulated, in place of the guessed one; may "
+         "be repeated")
       ->allow_extra_args(false);
   sub->add_option("--factor", o.factors, "Column of a factor, or NAME=COLUMN; may be repeated")
       ->allow_extra_args(false);
@@ -127,13 +128,15 @@ void add_import(CLI::App& app, int& status) {
                   "COLUMN=VALUE: rows with another value are no trials; may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--time-unit", o.time_unit,
-                  "Unit of reaction times: s or ms (default: s of PsychoPy, ms of jsPsych, else as "
+                  "Unit of reaction times: s or ms (default: s of PsychoPy, ms of jsPsych, of "
+                  "other tables as "
                   "the column's name ends)")
       ->check(CLI::IsMember({"s", "ms"}));
   sub->add_option("--name", o.name, "Name of the study (default: imported)");
-  sub->add_option("--kind", o.kind,
-                  "Kind of the analysis (default: psychometric with levels and right answers, else "
-                  "times)");
+  sub->add_option(
+      "--kind", o.kind,
+      "Kind of the analysis (default: psychometric with levels and right answers, times "
+      "without)");
   sub->add_option("--yes", o.yes, "Answer that counts 1 (default: the right one)");
   sub->add_option("--guess", o.guess,
                   "Guess rate of psychometric functions (default: 1 / number of answers)");
