@@ -75,9 +75,9 @@ std::vector<ColumnDoc> docs_of(const Page& page, bool several) {
   return docs;
 }
 
-std::string table_of(const Page& page, bool several) {
-  std::string text = heading(docs_of(page, several), Delimited::kTsv);
-  RowText row(text, Delimited::kTsv);
+std::string table_of(const Page& page, bool several, Delimited kind) {
+  std::string text = heading(docs_of(page, several), kind);
+  RowText row(text, kind);
   for (const Showing& showing : page.showings) {
     row.add(showing.session->subject);
     if (several) {
@@ -95,7 +95,7 @@ std::string table_of(const Page& page, bool several) {
 
 }  // namespace
 
-std::vector<Phenotype> phenotypes(std::span<const Session> sessions) {
+std::vector<Phenotype> phenotypes(std::span<const Session> sessions, Delimited kind) {
   std::vector<Page> pages;
   bool several = false;
   for (const Session& session : sessions) {
@@ -117,7 +117,7 @@ std::vector<Phenotype> phenotypes(std::span<const Session> sessions) {
     for (int number = 2; !names.insert(name).second; ++number) {
       name = fmt::format("{}{}", label.empty() ? "page" : label, number);
     }
-    made.push_back({name, table_of(page, several), sidecar_of(docs_of(page, several))});
+    made.push_back({name, table_of(page, several, kind), docs_of(page, several)});
   }
   return made;
 }

@@ -12,11 +12,12 @@ namespace haptrial::exchange::bids {
 struct Phenotype {
   std::string name;  // of its files, without extension
   std::string table;
-  std::string sidecar;
+  std::vector<ColumnDoc> columns;
 };
 
 /// All pages but those of consent, in the order in which they first occur. A page that was shown
 /// several times has a row each time.
-std::vector<Phenotype> phenotypes(std::span<const Session> sessions);
+/// @param kind  of the tables
+std::vector<Phenotype> phenotypes(std::span<const Session> sessions, Delimited kind);
 
 }  // namespace haptrial::exchange::bids

@@ -40,20 +40,10 @@ Json json_of(const ColumnDoc& doc) {
   return json;
 }
 
-bool any_simulated(std::span<const Session> sessions) {
-  return std::any_of(sessions.begin(), sessions.end(),
-                     [](const auto& s) { return s.source.info.simulated; });
-}
-
 bool any_stimuli(std::span<const Session> sessions) {
   return std::any_of(sessions.begin(), sessions.end(),
                      [](const auto& s) { return s.source.stimuli; });
 }
-
-constexpr const char* kSimulated =
-    "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the experiment "
-    "and "
-    "its analysis work, not how people behave.";
 
 constexpr const char* kPilotNotice = "PILOT SESSION: no part of the study.";
 
@@ -198,6 +188,11 @@ void add_facts(const std::map<std::string, std::string>& cells,
 
 }  // namespace
 
+bool any_simulated(std::span<const Session> sessions) {
+  return std::any_of(sessions.begin(), sessions.end(),
+                     [](const auto& s) { return s.source.info.simulated; });
+}
+
 std::string sidecar_of(const std::vector<ColumnDoc>& docs) {
   Json json;
   for (const auto& doc : docs) {
@@ -217,13 +212,13 @@ std::string Session::stimulus(std::int32_t block) const {
                      block < 0 ? "practice" : "block", std::abs(block));
 }
 
-std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options) {
+std::string dataset_description(std::span<const Session> sessions, const DataSetOptions& options) {
   const bool simulated = any_simulated(sessions);
   const std::string name =
       options.name.empty() ? experiment_name(sessions.front().source.info) : options.name;
   Json json;
   json["Name"] = (simulated ? "SIMULATED: " : "") + name;
-  json["BIDSVersion"] = "1.10.0";
+  json["BIDSVersion"] = "1.11.0";
   json["DatasetType"] = "raw";
   if (!options.authors.empty()) {
     json["Authors"] = options.authors;
@@ -235,15 +230,21 @@ std::string dataset_description(std::span<const Session> sessions, const BidsOpt
   return text_of(json);
 }
 
-std::string readme(std::span<const Session> sessions) {
+std::string readme(std::span<const Session> sessions, double motion) {
   std::string text;
   if (any_simulated(sessions)) {
-    text = std::string(kSimulated) + "\n\n";
+    text = std::string(kSimulatedNotice) + "\n\n";
   }
   const bool targets = any_stimuli(sessions);
   const char* passes = "passes (a trial has one of each phase, more if it was interrupted)";
   const char* stimuli =
       targets ? "stimuli/           the ideal movement and target force of each block\n" : "";
+  const std::string moved =
+      motion > 0.0 ? fmt::format(
+                         "motion/            the tip's movement, {} of its samples a second\n"
+                         "                   (picked, not filtered), and the events again\n",
+                         motion)
+                   : "";
   const char* force = targets ? " The learnt force points down\nand is given as a magnitude." : "";
   text += fmt::format(
       "{}: a force-feedback experiment, exported from session files of haptrial.\n\n"
@@ -253,7 +254,7 @@ std::string readme(std::span<const Session> sessions) {
       "phenotype/         answers to questionnaires, where there are any\n"
       "beh/*_physio.*     the recording: a row for each tick of the servo loop, without heading;\n"
       "                   columns, units and rate stand in the .json beside it\n"
-      "{}"
+      "{}{}"
       "code/              the definition of the experiment\n\n"
       "Row k of a recording is tick k after the one of StartTime, also where the session file\n"
       "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
@@ -263,7 +264,7 @@ std::string readme(std::span<const Session> sessions) {
       "Practice passes have practice = 1 in the events, and negative numbers of blocks. "
       "Recordings\n"
       "of pilot sessions have Pilot = true in the .json beside them.\n",
-      experiment_name(sessions.front().source.info), passes, stimuli, force);
+      experiment_name(sessions.front().source.info), passes, stimuli, moved, force);
   return text;
 }
 
@@ -295,10 +296,13 @@ std::string sessions_table(std::span<const Session> of_subject) {
   return text;
 }
 
-std::string scans_table(const Session& session) {
+std::string scans_table(const Session& session, const std::string& motion) {
   std::string text = "filename\tacq_time\n";
   RowText row(text, Delimited::kTsv);
   row.add("beh/" + session.stem() + "_physio.tsv.gz").add(session.source.info.start_utc).end();
+  if (!motion.empty()) {
+    row.add(motion).add(session.source.info.start_utc).end();
+  }
   return text;
 }
 
@@ -329,20 +333,20 @@ std::string events_table(const Session& session, const record::SessionReader& re
   return text;
 }
 
-std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnDoc>& columns) {
+std::string events_sidecar(const DataSetOptions& options, const std::vector<ColumnDoc>& columns) {
   return sidecar_of(event_docs(options.phases, columns));
 }
 
 namespace {
 
 /// Every recording of a session describes its task in these words.
-Json described_task(const Session& session) {
+Json task_json(const Session& session) {
   const auto& info = session.source.info;
   Json json;
   const std::string name = experiment_name(info);
   json["TaskName"] = bids_label(name) == session.task ? name : session.task;
   const std::string marks =
-      fmt::format("{}{}{}", info.simulated ? kSimulated : "",
+      fmt::format("{}{}{}", info.simulated ? kSimulatedNotice : "",
                   info.simulated && info.pilot ? " " : "", info.pilot ? kPilotNotice : "");
   if (!marks.empty()) {
     json["TaskDescription"] = marks;
@@ -352,9 +356,11 @@ Json described_task(const Session& session) {
 
 }  // namespace
 
+std::string described_task(const Session& session) { return text_of(task_json(session)); }
+
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples) {
   const auto& info = session.source.info;
-  Json json = described_task(session);
+  Json json = task_json(session);
   json["SamplingFrequency"] = info.rate;
   json["StartTime"] = static_cast<double>(samples.first_sequence) / info.rate;
   json["Columns"] = Json::array();
@@ -379,7 +385,7 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
 
 std::string channel_sidecar(const Session& session, const record::TableDescription& table,
                             const analysis::ChannelQuality& channel) {
-  Json json = described_task(session);
+  Json json = task_json(session);
   json["SamplingFrequency"] = channel.rate();
   json["StartTime"] = channel.first;
   json["Simulated"] = session.source.info.simulated;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/exchange/bids_options.h"
 #include "analysis/exchange/columns.h"
+#include "analysis/exchange/data_set_options.h"
 #include "analysis/exchange/export_sessions.h"
 #include "analysis/exchange/sample_text.h"
 #include "analysis/quality/channel_quality.h"
@@ -26,21 +26,28 @@ struct Session {
   std::string stimulus(std::int32_t block) const;  // below stimuli/
 };
 
-std::string dataset_description(std::span<const Session> sessions, const BidsOptions& options);
-std::string readme(std::span<const Session> sessions);
+/// Whether a participant of any session is virtual.
+bool any_simulated(std::span<const Session> sessions);
+
+std::string dataset_description(std::span<const Session> sessions, const DataSetOptions& options);
+/// @param motion  rate of the movement beside the recording [Hz]; 0: there is none
+std::string readme(std::span<const Session> sessions, double motion);
 
 std::string participants_table(std::span<const Session> sessions);
 std::string participants_sidecar(std::span<const Session> sessions);
 /// One row for each session of a subject.
 std::string sessions_table(std::span<const Session> of_subject);
-std::string scans_table(const Session& session);
+/// @param motion  recording of the movement, below the session's folder; empty: there is none
+std::string scans_table(const Session& session, const std::string& motion);
 
 /// One row for each pass and each event, by time. @param columns  of pass_facts(), of all sessions
 std::string events_table(const Session& session, const record::SessionReader& reader,
                          const WrittenSamples& samples, const std::vector<ColumnDoc>& columns);
-std::string events_sidecar(const BidsOptions& options, const std::vector<ColumnDoc>& columns);
+std::string events_sidecar(const DataSetOptions& options, const std::vector<ColumnDoc>& columns);
 /// The description of a table's columns as JSON.
 std::string sidecar_of(const std::vector<ColumnDoc>& docs);
+/// What every recording's sidecar says of the task, as JSON.
+std::string described_task(const Session& session);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
 /// The sidecar of a channel's recording; its samples have the times of their columns.
 std::string channel_sidecar(const Session& session, const record::TableDescription& table,

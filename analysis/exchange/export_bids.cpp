@@ -7,14 +7,14 @@
 #include <set>
 
 #include "analysis/exchange/bids_label.h"
+#include "analysis/exchange/bids_motion.h"
 #include "analysis/exchange/bids_pages.h"
 #include "analysis/exchange/bids_text.h"
 #include "analysis/exchange/channel_text.h"
-#include "analysis/exchange/pass_facts.h"
+#include "analysis/exchange/data_set_sessions.h"
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
-#include "core/record/read/definition_versions.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {
@@ -22,61 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using bids::Session;
-
-std::string label_of(const std::string& what, const std::string& text, const fs::path& file) {
-  const std::string label = bids_label(text);
-  if (label.empty()) {
-    throw InputError(
-        fmt::format("{}: the {} '{}' has no ASCII letter or digit, which a BIDS label needs; "
-                    "choose another name",
-                    file.string(), what, text));
-  }
-  return label;
-}
-
-/// The label of the experiment's name, or of its file's when the name has no letter or digit of
-/// ASCII.
-std::string task_of(const ExportSession& session) {
-  const std::string label = bids_label(experiment_name(session.info));
-  const fs::path file(session.info.definition_name);
-  return label.empty() ? label_of("experiment", file.stem().string(), session.file) : label;
-}
-
-void refuse_other_study(const ExportSession& session, const ExportSession& first,
-                        const CompareDefinitions& compare) {
-  const DefinitionChanges changes =
-      compare ? compare(first.info, session.info)
-              : definition_changes(first.info.definition, session.info.definition, {});
-  if (!changes.same_study()) {
-    throw InputError(
-        fmt::format("{}: was recorded with another definition than {}: {}; export each study into "
-                    "a folder of its own",
-                    session.file.string(), first.file.string(), sentence_of(changes.binding)));
-  }
-}
-
-std::vector<Session> named_sessions(std::span<const fs::path> files,
-                                    const CompareDefinitions& compare) {
-  std::vector<Session> sessions;
-  std::map<std::string, std::string> subjects;  // label to subject
-  const std::vector<ExportSession> sources = sessions_to_export(files);
-  const bool several =
-      std::any_of(sources.begin(), sources.end(), [](const auto& s) { return s.of > 1; });
-  for (const auto& source : sources) {
-    refuse_other_study(source, sources.front(), compare);
-    const std::string label = label_of("subject", source.info.subject, source.file);
-    const auto [twin, is_new] = subjects.emplace(label, source.info.subject);
-    if (!is_new && twin->second != source.info.subject) {
-      throw InputError(
-          fmt::format("{}: subject {} would be sub-{}, like {}; choose subjects that differ in "
-                      "their letters and digits",
-                      source.file.string(), source.info.subject, label, twin->second));
-    }
-    sessions.push_back({source, "sub-" + label, several ? fmt::format("ses-{}", source.number) : "",
-                        task_of(source)});
-  }
-  return sessions;
-}
 
 void write_stimuli(const NewFolder& out, const Session& session,
                    const record::SessionReader& reader) {
@@ -89,15 +34,6 @@ void write_stimuli(const NewFolder& out, const Session& session,
     file.write(stimulus_text(rows, Delimited::kTsv));
     file.close();
   }
-}
-
-/// Columns of what passes presented and what was answered, over all sessions.
-std::vector<ColumnDoc> fact_columns(std::span<const Session> sessions) {
-  std::vector<ColumnDoc> columns;
-  for (const Session& session : sessions) {
-    merge_columns(pass_facts(record::SessionReader(session.source.file)).columns, columns);
-  }
-  return columns;
 }
 
 /// Each channel is a continuous recording of its own. One that gave events alone has no rate and
@@ -119,7 +55,8 @@ void write_channel_recordings(const NewFolder& out, const Session& session,
 }
 
 WrittenSamples write_session(const NewFolder& out, const Session& session,
-                             const std::vector<ColumnDoc>& columns, Counter& counter) {
+                             const std::vector<ColumnDoc>& columns, const DataSetOptions& options,
+                             Counter& counter) {
   const record::SessionReader reader(session.source.file);
   const std::string stem = session.folder() + "/beh/" + session.stem();
   write_stimuli(out, session, reader);
@@ -128,41 +65,31 @@ WrittenSamples write_session(const NewFolder& out, const Session& session,
   file.close();
   out.write(stem + "_physio.json", bids::recording_sidecar(session, samples));
   write_channel_recordings(out, session, reader);
-  out.write(stem + "_events.tsv", bids::events_table(session, reader, samples, columns));
+  const std::string events = bids::events_table(session, reader, samples, columns);
+  out.write(stem + "_events.tsv", events);
+  const bool moves = options.motion > 0.0 && samples.ticks > 0;
+  if (moves) {
+    bids::write_motion(out, session, reader, options.motion, events);
+  }
   const std::string prefix = session.session.empty() ? "" : "_" + session.session;
   out.write(fmt::format("{}/{}{}_scans.tsv", session.folder(), session.subject, prefix),
-            bids::scans_table(session));
+            bids::scans_table(session, moves ? bids::motion_file(session) : std::string()));
   return samples;
 }
 
-/// Every version that a session was recorded with; more than one where texts, say, were changed.
-void write_definitions(const NewFolder& out, std::span<const Session> sessions) {
-  const std::string stem = "code/" + sessions.front().task;
-  std::set<std::string> written;
-  for (const Session& session : sessions) {
-    const record::SessionReader reader(session.source.file);
-    for (const auto& version : record::definition_versions(reader)) {
-      if (written.insert(version.text).second) {
-        const std::string number = written.size() > 1 ? fmt::format("-{}", written.size()) : "";
-        out.write(stem + number + ".toml", version.text);
-      }
-    }
-  }
-}
-
 void write_whole(const NewFolder& out, std::span<const Session> sessions,
-                 const std::vector<ColumnDoc>& columns, const BidsOptions& options) {
+                 const std::vector<ColumnDoc>& columns, const DataSetOptions& options) {
   const auto& first = sessions.front();
   out.write("dataset_description.json", bids::dataset_description(sessions, options));
-  out.write("README", bids::readme(sessions));
+  out.write("README", bids::readme(sessions, options.motion));
   out.write("participants.tsv", bids::participants_table(sessions));
   out.write("participants.json", bids::participants_sidecar(sessions));
   out.write(fmt::format("task-{}_events.json", first.task), bids::events_sidecar(options, columns));
-  for (const bids::Phenotype& page : bids::phenotypes(sessions)) {
+  for (const bids::Phenotype& page : bids::phenotypes(sessions, Delimited::kTsv)) {
     out.write("phenotype/" + page.name + ".tsv", page.table);
-    out.write("phenotype/" + page.name + ".json", page.sidecar);
+    out.write("phenotype/" + page.name + ".json", bids::sidecar_of(page.columns));
   }
-  write_definitions(out, sessions);
+  write_definitions(out, sessions, "code");
   if (first.session.empty()) {
     return;
   }
@@ -178,8 +105,11 @@ void write_whole(const NewFolder& out, std::span<const Session> sessions,
 }  // namespace
 
 BidsSummary export_bids(std::span<const fs::path> files, const fs::path& folder,
-                        const BidsOptions& options, const Watch& watch) {
-  const std::vector<Session> sessions = named_sessions(files, options.compare);
+                        const DataSetOptions& options, const Watch& watch) {
+  const std::vector<Session> sessions = data_set_sessions(files, options.compare);
+  for (const Session& session : sessions) {
+    refuse_imported(session.source, "--bids");
+  }
   NewFolder out(folder);
   const std::vector<ColumnDoc> columns = fact_columns(sessions);
   write_whole(out, sessions, columns, options);
@@ -187,7 +117,7 @@ BidsSummary export_bids(std::span<const fs::path> files, const fs::path& folder,
   share_out(
       sessions.size(), options.jobs,
       [&](std::size_t i, Counter& counter) {
-        written[i] = write_session(out, sessions[i], columns, counter);
+        written[i] = write_session(out, sessions[i], columns, options, counter);
       },
       watch);
   out.publish();

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "analysis/exchange/bids_options.h"
+#include "analysis/exchange/data_set_options.h"
 #include "analysis/exchange/export_sessions.h"
 
 namespace haptrial::exchange {
@@ -18,15 +18,16 @@ struct BidsSummary {
   bool simulated{false};
 };
 
-/// Writes session files as a data set of the Brain Imaging Data Structure, version 1.10: events,
-/// and every tick of the loop as a continuous recording under beh/ (docs/decisions/0007). What
+/// Writes session files as a data set of the Brain Imaging Data Structure, version 1.11: events,
+/// and every tick of the loop as a continuous recording under beh/ (docs/decisions/0007); the tip's
+/// movement alone under motion/ if it is asked for. What
 /// participants said in free text, and their consent, stays out.
 /// @param folder  new or empty; it appears whole or not at all.
-/// @throws InputError when there is no file, one is damaged or given twice, the files are of
-/// several experiments, or two subjects have the same letters and digits; RunError when the disk is
-/// full.
+/// @throws InputError when there is no file, one is damaged, imported or given twice, the files are
+/// of several experiments, or two subjects have the same letters and digits; RunError when the disk
+/// is full.
 BidsSummary export_bids(std::span<const std::filesystem::path> files,
-                        const std::filesystem::path& folder, const BidsOptions& options,
+                        const std::filesystem::path& folder, const DataSetOptions& options,
                         const Watch& watch);
 
 }  // namespace haptrial::exchange

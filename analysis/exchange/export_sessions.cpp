@@ -10,6 +10,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/record/read/imported.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {
@@ -79,6 +80,14 @@ std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
     session.of = count[session.info.subject];
   }
   return sessions;
+}
+
+void refuse_imported(const ExportSession& session, const char* option) {
+  if (!record::imported_from(record::SessionReader(session.file)).empty()) {
+    throw InputError(fmt::format(
+        "{}: was imported, so that no time of a trial is known, which {} needs; use --csv",
+        session.file.string(), option));
+  }
 }
 
 std::string experiment_name(const record::SessionInfo& info) {

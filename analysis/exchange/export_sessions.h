@@ -12,6 +12,12 @@
 
 namespace haptrial::exchange {
 
+/// What stands in a data set with virtual participants.
+inline constexpr const char* kSimulatedNotice =
+    "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the experiment "
+    "and "
+    "its analysis work, not how people behave.";
+
 /// A session file and its place among those of its subject.
 struct ExportSession {
   std::filesystem::path file;
@@ -28,6 +34,10 @@ struct ExportSession {
 /// @returns the sessions by subject, then start.
 /// @throws InputError when there is no file, one cannot be read, or one is given twice.
 std::vector<ExportSession> sessions_to_export(std::span<const std::filesystem::path> files);
+
+/// @throws InputError for a session whose trials another program presented, of which no time is
+/// known. @param option  for the format that needs times
+void refuse_imported(const ExportSession& session, const char* option);
 
 /// The experiment's name as its definition has it, or without one that of the definition's file.
 std::string experiment_name(const record::SessionInfo& info);

@@ -13,10 +13,11 @@ namespace haptrial::exchange {
 namespace {
 
 bool is_taken(const std::string& name) {
-  constexpr std::array<std::string_view, 17> kTaken{
+  constexpr std::array<std::string_view, 21> kTaken{
       "onset",         "duration",  "trial_type",   "stim_file", "pass",     "phase",
       "trial",         "block",     "repetition",   "attempt",   "practice", "status",
-      "stimulus_seed", "run_onset", "run_duration", "event",     "text"};
+      "stimulus_seed", "run_onset", "run_duration", "event",     "text",     "subject",
+      "session",       "simulated", "pilot"};
   return std::ranges::find(kTaken, name) != kTaken.end();
 }
 

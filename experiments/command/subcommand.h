@@ -73,6 +73,7 @@ void add_device_test(CLI::App& app, int& status);
 // analysis, curves: recorded data, of here or elsewhere; sizes of studies
 void add_analyze(CLI::App& app, int& status);
 void add_export(CLI::App& app, int& status);
+void add_import(CLI::App& app, int& status);
 void add_evaluate(CLI::App& app, int& status);
 void add_statistics(CLI::App& app, int& status);
 void add_align(CLI::App& app, int& status);

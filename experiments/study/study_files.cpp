@@ -11,6 +11,7 @@
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
+#include "core/record/read/imported.h"
 #include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
@@ -68,12 +69,29 @@ std::string names_of(const std::vector<fs::path>& files) {
 /// The programs that recorded the sessions, and the one that analyses them now.
 std::string remark_on_programs(const std::vector<fs::path>& files) {
   std::set<std::string> programs;
+  bool imported = true;
   for (const fs::path& file : files) {
-    const record::SessionInfo info = record::SessionReader(file).info();
+    const record::SessionReader reader(file);
+    const record::SessionInfo& info = reader.info();
+    imported = imported && !record::imported_from(reader).empty();
     programs.insert(fmt::format("haptrial {} ({})", info.program_version, info.program_commit));
   }
-  return fmt::format("Recorded by {}; analysed by haptrial {} ({}).", fmt::join(programs, " and "),
-                     program_version(), program_commit());
+  return fmt::format("{} by {}; analysed by haptrial {} ({}).", imported ? "Imported" : "Recorded",
+                     fmt::join(programs, " and "), program_version(), program_commit());
+}
+
+/// The tables that trials were imported from, which another program presented.
+std::string remark_on_imports(const std::vector<fs::path>& files) {
+  std::set<std::string> tables;
+  for (const fs::path& file : files) {
+    tables.insert(record::imported_from(record::SessionReader(file)));
+  }
+  tables.erase("");
+  return tables.empty() ? ""
+                        : fmt::format(
+                              "Another program presented these trials, so that nothing is known of "
+                              "devices and their times; imported from {}.",
+                              fmt::join(tables, "; "));
 }
 
 /// Marks of experimenters, in words by participant, and how many trials they are on.
@@ -238,6 +256,9 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
   }
   remark_on_marks(study.files, study.remarks);
   remark_on_trials(study.files, study.remarks);
+  if (const std::string remark = remark_on_imports(study.files); !remark.empty()) {
+    study.remarks.push_back(remark);
+  }
   study.remarks.push_back(remark_on_programs(study.files));
   const std::vector<std::string> changed =
       definition_remarks(protocol_of(study.first), study.files);

@@ -77,14 +77,15 @@ TEST_F(ExchangeTest, TheShippedStudyComesBackFromItsCurves) {
   EXPECT_THAT(report, Not(HasSubstr("Timing of the servo loop")));
 }
 
-TEST_F(ExchangeTest, EventsOfBidsSayWhatWasAskedAndAnswered) {
+TEST_F(ExchangeTest, DataSetsSayWhatWasAskedAndAnswered) {
   test::write_text(folder_ / "study.toml",
                    test::read_text(HAPTRIAL_SOURCE_DIR "/experiments/first_experiment.toml") +
                        "[pages]\nafter = [\"load\"]\n[pages.load]\nkind = \"nasa_tlx\"\n");
   const CommandResult done =
       run_command("haptrial dry-run " + path("study.toml") + " --subjects 2 --trials 8 --out " +
                   path("study") + " && haptrial export " + path("study") + " --bids " +
-                  path("bids") + " && haptrial analyze " + path("study"));
+                  path("bids") + " && haptrial export --psych-ds " + path("psych") + " " +
+                  path("study") + " && haptrial analyze " + path("study"));
   ASSERT_EQ(done.status, 0) << done.errors;
   const CommandResult read = run_command(
       "/usr/bin/python3 -c \"import pandas, sys\n"
@@ -99,6 +100,10 @@ TEST_F(ExchangeTest, EventsOfBidsSayWhatWasAskedAndAnswered) {
       path("study/trials.csv") + " " + path("bids/phenotype/load.tsv"));
   EXPECT_EQ(read.output, "8 True True True True\n['sub-S01', 'sub-S02'] True True\n")
       << read.errors;
+  const CommandResult rules = run_command(
+      "/usr/bin/python3 '" HAPTRIAL_SOURCE_DIR "/tests/analysis/exchange/read_psych_ds.py' " +
+      path("psych") + " " + path("study/S01.h5") + " " + path("study/S02.h5"));
+  EXPECT_EQ(rules.output, "equal\n") << rules.errors;
 }
 
 TEST_F(ExchangeTest, OneTableWithFactorsAndNamesOfItsOwn) {
@@ -131,7 +136,8 @@ TEST_F(ExchangeTest, OneTableWithFactorsAndNamesOfItsOwn) {
 
 TEST_F(ExchangeTest, EveryFormOfExportWritesANewFolder) {
   make_study("--subjects 2 --trials 3");
-  for (const char* form : {"--bids", "--csv", "--csv --samples", "--curves"}) {
+  for (const char* form : {"--bids", "--bids --motion 100", "--psych-ds", "--xdf", "--csv",
+                           "--csv --samples", "--curves"}) {
     const std::string option = std::string(form).substr(0, std::string(form).find(' '));
     const std::string more = std::string(form).substr(option.size());
     const std::string line = "haptrial export " + option + " " + path("out") + more + " " +
@@ -193,11 +199,14 @@ TEST_F(ExchangeTest, AnImportLeavesTheReportOfSessionsAlone) {
 TEST_F(ExchangeTest, BadArgumentsGetASentence) {
   make_study("--subjects 1 --trials 1");
   const std::map<std::string, std::string> sentences{
-      {"export " + path("study"), "give exactly one of --bids, --csv and --curves"},
+      {"export " + path("study"),
+       "give exactly one of --bids, --psych-ds, --xdf, --csv and --curves"},
       {"export --bids a --csv b " + path("study"),
-       "give exactly one of --bids, --csv and --curves"},
+       "give exactly one of --bids, --psych-ds, --xdf, --csv and --curves"},
       {"export --csv x --author A " + path("study"), "--author is given without --bids"},
       {"export --curves x --name A " + path("study"), "--name is given without --bids"},
+      {"export --csv x --motion 100 " + path("study"), "--motion is given without --bids"},
+      {"export --bids x --motion 2000 " + path("study"), "allowed: up to the loop's 1000 Hz"},
       {"export --bids x --samples " + path("study"), "--samples is given without --csv"},
       {"export --csv '' --bids x " + path("study"), "--csv is empty"},
       {"export --bids " + path("out") + " " + path("absent.h5"), "no such file"},

@@ -166,7 +166,11 @@ void add_trial_quality(Document& document, const TrialsResult& result,
   add_section(document, result, "Quality");
   add_serial(document, result);
   add_reach_quality(document, result);
-  document.paragraph(limit_words(result.participants));
+  const bool staged = std::ranges::any_of(
+      result.data.trials, [](const StudyTrial& trial) { return !trial.stages.empty(); });
+  if (staged) {  // imported trials have none, and no device
+    document.paragraph(limit_words(result.participants));
+  }
   for (const std::string& sentence : body_lines(result)) {
     document.paragraph(sentence);
   }

@@ -45,6 +45,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_withdraw(app, status);
   add_analyze(app, status);
   add_export(app, status);
+  add_import(app, status);
   add_align(app, status);
   add_evaluate(app, status);
   add_compare(app, status);

@@ -11,6 +11,7 @@
 #include "analysis/quality/timing.h"
 #include "core/base/counted.h"
 #include "core/record/hdf5/file_lock.h"
+#include "core/record/read/imported.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/overruns.h"
 #include "core/record/read/readable.h"
@@ -105,7 +106,8 @@ void print_progress(const record::SessionReader& reader, const record::Integrity
 
 /// Whether a kind of event is one that a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
-  constexpr std::array<std::string_view, 17> kTold{"consent_declined",
+  constexpr std::array<std::string_view, 18> kTold{record::kImportedEvent,
+                                                   "consent_declined",
                                                    "consent_by_experimenter",
                                                    "repaired",
                                                    "session_stopped",
@@ -167,7 +169,10 @@ int info(const std::string& file) {
     fmt::print("another haptrial is recording into this file\n");
   }
   print_progress(reader, integrity);
-  fmt::print("recording   {}\n", integrity.ok ? "intact: every tick is recorded" : "NOT intact");
+  const bool imported = !record::imported_from(reader).empty();
+  fmt::print("recording   {}\n", !integrity.ok ? "NOT intact"
+                                 : imported    ? "imported: no ticks were recorded"
+                                               : "intact: every tick is recorded");
   return integrity.ok && integrity.state == record::RunState::kEnded ? 0 : 1;
 }
 

@@ -229,6 +229,13 @@ analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
   return plan;
 }
 
+analysis::trials::TrialsPlan plan_of(const protocols::TrialsDefinition& definition) {
+  Table root = definition.root();
+  analysis::trials::TrialsPlan plan = read_trials_analysis(root);
+  root.check();
+  return plan;
+}
+
 analysis::trials::ProcedureOf procedures_of(const protocols::TrialsDefinition& definition) {
   return [&definition](const std::string& name) -> std::unique_ptr<psychometric::Procedure> {
     for (const protocols::Track& track : definition.tracks) {

@@ -48,13 +48,6 @@ std::unique_ptr<protocols::Definition> definition_of(const record::SessionInfo& 
   return definition;
 }
 
-trials::TrialsPlan plan_of(const protocols::Definition& definition) {
-  Table root = definition.root();
-  trials::TrialsPlan plan = read_trials_analysis(root);
-  root.check();
-  return plan;
-}
-
 /// Tests that were given to analyze stand in place of the definition's.
 void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
                   std::vector<std::string>& remarks) {
@@ -193,12 +186,12 @@ class TrialsStudy final : public Study {
                                                     const std::string& asked_in,
                                                     const std::string& watched) const override {
     return trials_study_simulation(dynamic_cast<const protocols::StudiedDefinition&>(definition),
-                                   plan_of(definition), asked_in, watched);
+                                   plan_of(trials_of(definition)), asked_in, watched);
   }
 };
 
 std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {
-  const trials::TrialsPlan plan = plan_of(d);
+  const trials::TrialsPlan plan = plan_of(trials_of(d));
   std::vector<std::string> warnings;
   if (plan.level_assumed && plan.uses_level()) {
     warnings.push_back(

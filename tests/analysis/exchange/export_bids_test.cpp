@@ -31,7 +31,7 @@ class ExportBidsTest : public testing::Test {
     return files_.back();
   }
 
-  BidsSummary run(const BidsOptions& options = {}) {
+  BidsSummary run(const DataSetOptions& options = {}) {
     return export_bids(files_, folder_ / "out", options, ignore);
   }
 
@@ -96,6 +96,21 @@ TEST_F(ExportBidsTest, AMissingTickIsARowWithoutValues) {
   expect_equal_to_the_files();
 }
 
+TEST_F(ExportBidsTest, MotionIsOneTickForEachPeriodOfItsRate) {
+  write("a.h5", {.subject = "P-01", .rate = 1000.0, .gap_at = 1100, .gap = 500});
+  write("b.h5", {.subject = "P-02", .clock = "real", .first_tick = 100});
+  run({.motion = 60.0});  // no divisor of either rate
+  expect_equal_to_the_files();
+}
+
+TEST_F(ExportBidsTest, MotionIsNoFasterThanTheLoop) {
+  write("a.h5", {.rate = 500.0});
+  EXPECT_THROW(run({.motion = 501.0}), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  run({.motion = 500.0});
+  expect_equal_to_the_files();
+}
+
 TEST_F(ExportBidsTest, AfterASuspensionEventsStandBesideTheirTicks) {
   // The event is of 1.5 s on the clock; of that the loop was suspended for half a second from 0.8 s
   // on in one session, and for a second from 1 s on in the other.
@@ -122,7 +137,10 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   write("c.h5", {.subject = "P_2", .gap_at = 100, .gap = 3, .odd_values = true});
   write("d.h5", {.subject = "P_3", .trials = 0, .pilot = true});
   write("e.h5", {.subject = "P_4", .pilot = true, .practice = 1, .ticks_of_no_pass = 5});
-  run({.name = "A study", .authors = {"A. Author", "B. Author"}, .program_version = "0.1.0"});
+  run({.name = "A study",
+       .authors = {"A. Author", "B. Author"},
+       .program_version = "0.1.0",
+       .motion = 50.0});
   const int had = shell("/usr/bin/python3" + quoted(kHere / "bids_validator.py") +
                         quoted(fs::path(HAPTRIAL_BINARY_DIR)));
   if (had == 3) {
@@ -130,6 +148,11 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   }
   ASSERT_EQ(had, 0) << output_;
   const std::string validator = "node '" + output_.substr(0, output_.find('\n')) + "'";
+  // It knows axes of motion by letters that BIDS 1.11 has replaced: A, P, S and I for F, B, U and
+  // D.
+  ASSERT_EQ(shell("find" + quoted(folder_ / "out") +
+                  " -name '*_channels.json' -exec sed -i 's/\"RUB\"/\"RSP\"/' {} +"),
+            0);
   EXPECT_EQ(shell(validator + quoted(folder_ / "out")), 0) << output_;
   EXPECT_THAT(output_, Not(HasSubstr("[ERR]")));
   EXPECT_THAT(output_, HasSubstr("4 - Subjects"));

@@ -1,6 +1,8 @@
 """Reads a BIDS data set with pandas and holds it against the session files, read with h5py.
 
     read_bids.py DATA_SET SESSION.h5 [SESSION.h5 ...]     one session of each subject
+
+A data set with motion/ is held against the ticks that are nearest to the times of its rate.
 """
 import json
 import pathlib
@@ -48,6 +50,40 @@ def check(file):
     assert sidecar["time"]["Units"] == "s"
     check_events(file, folder, samples)
     check_stimuli(file, folder)
+    if (folder.parent / "motion").exists():
+        check_motion(file, folder.parent / "motion", samples)
+        ours = next((folder.parent / "motion").glob("*_events.tsv")).read_text()
+        assert ours == next(folder.glob("*_events.tsv")).read_text()
+
+
+def check_motion(file, folder, samples):
+    sidecar = json.loads(next(folder.glob("*_motion.json")).read_text())
+    channels = pd.read_csv(next(folder.glob("*_channels.tsv")), sep="\t", keep_default_na=False)
+    frames = json.loads(next(folder.glob("*_channels.json")).read_text())["reference_frame"]["Levels"]
+    # The specification's rules: the columns in their order, one name for each, known types.
+    assert list(channels.columns[:5]) == ["name", "component", "type", "tracked_point", "units"]
+    assert channels.name.is_unique
+    assert set(channels.type) <= {"ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC",
+                                  "ORNT", "POS", "VEL"}
+    assert set(channels.reference_frame) - {"n/a"} == set(frames)
+    assert frames["world"]["SpatialAxes"] == "RUB"
+    for kind, count in channels.type.value_counts().items():
+        assert sidecar[kind + "ChannelCount"] == count
+    assert sidecar["MotionChannelCount"] == len(channels) and sidecar["TaskName"]
+    table = pd.read_csv(next(folder.glob("*_motion.tsv")), sep="\t", header=None,
+                        names=list(channels.name), na_values="n/a")
+    rate, loop = sidecar["SamplingFrequency"], file.attrs["rate"]
+    ticks = np.floor(np.arange(len(table)) * loop / rate + 0.5).astype(int)
+    assert int(samples["sequence"][-1]) - loop / rate <= ticks[-1] <= int(samples["sequence"][-1])
+    there = np.isin(ticks, samples["sequence"])
+    assert table[~there].isna().all(axis=None)
+    rows = np.searchsorted(samples["sequence"], ticks[there])
+    for axis in "xyz":
+        for column, ours in (("pos", "position"), ("vel", "velocity")):
+            theirs = table[there][f"tip_{column}_{axis}"].to_numpy().astype("f4")
+            assert np.array_equal(theirs, samples[f"{ours}_{axis}"][rows]), (column, axis)
+    late = table[there].latency.to_numpy() * 1e9
+    assert (np.round(late) == samples["time_ns"][rows] - samples["time_ns"][0]).all()
 
 
 def read_events(folder):

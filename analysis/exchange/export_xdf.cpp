@@ -1,0 +1,227 @@
+#include "analysis/exchange/export_xdf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "analysis/exchange/channel_text.h"
+#include "analysis/exchange/columns.h"
+#include "analysis/exchange/pass_facts.h"
+#include "analysis/files/new_folder.h"
+#include "analysis/files/xdf_file.h"
+#include "analysis/quality/channel_quality.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::exchange {
+namespace {
+
+namespace fs = std::filesystem;
+using record::SessionReader;
+
+constexpr std::uint64_t kRowsAtOnce = 32768;  // rows read at a time
+
+double seconds(std::int64_t time_ns) { return 1e-9 * static_cast<double>(time_ns); }
+
+std::vector<std::pair<std::string, std::string>> about(const record::SessionInfo& info) {
+  return {{"subject", info.subject},
+          {"session", std::to_string(info.session)},
+          {"experiment", experiment_name(info)},
+          {"device", info.device},
+          {"simulated", truth(info.simulated)},
+          {"pilot", truth(info.pilot)},
+          {"datetime", info.start_utc},
+          {"program", fmt::format("haptrial {} ({})", info.program_version, info.program_commit)}};
+}
+
+XdfStream device_stream(const record::SessionInfo& info) {
+  XdfStream stream{"device", "Haptics", XdfFormat::kFloat32, info.rate, {}};
+  stream.description = fmt::format(
+      "{}every tick of the loop; x to the participant's right, y up, z towards the participant",
+      info.simulated ? "SIMULATED PARTICIPANT: " : "");
+  for (const ColumnDoc& doc : sample_docs()) {
+    if (doc.name != "sequence" && doc.name != "time") {
+      stream.channels.push_back({doc.name, doc.unit});
+    }
+  }
+  return stream;
+}
+
+std::vector<double> values_of(const record::Sample& s) {
+  std::vector<double> values{static_cast<double>(s.pass), static_cast<double>(s.stage)};
+  for (const Eigen::Vector3d& vector : {s.position, s.velocity, s.force}) {
+    values.insert(values.end(), vector.begin(), vector.end());
+  }
+  values.insert(values.end(), {s.applied_force, s.target_force, s.saturated ? 1.0 : 0.0});
+  return values;
+}
+
+/// Writes every tick. @returns the times of the passes' first ticks [s]
+std::map<std::uint64_t, double> write_device(const SessionReader& reader, XdfFile& file,
+                                             std::uint32_t stream, Counter& counter) {
+  std::map<std::uint64_t, double> begins;
+  for (const record::PassRow& pass : reader.passes()) {
+    begins[pass.first_sample] = static_cast<double>(pass.first_sample) / reader.info().rate;
+  }
+  const std::uint64_t rows = reader.sample_count();
+  for (std::uint64_t row = 0; row < rows; row += kRowsAtOnce) {
+    const std::uint64_t count = std::min(kRowsAtOnce, rows - row);
+    for (const record::Sample& sample : reader.samples(row, count)) {
+      file.add(stream, seconds(sample.time_ns), values_of(sample));
+      if (const auto begin = begins.find(sample.sequence); begin != begins.end()) {
+        begin->second = seconds(sample.time_ns);
+      }
+    }
+    counter.add(count);
+    counter.check();
+  }
+  return begins;
+}
+
+/// A pass as JSON, with what it presented and what was answered.
+std::string pass_text(const record::PassRow& pass, std::size_t index, double rate,
+                      const std::map<std::string, std::string>& facts) {
+  nlohmann::ordered_json json;
+  json["pass"] = index;
+  json["trial"] = pass.trial;
+  json["trial_type"] = pass.condition;
+  json["phase"] = record::name_of(pass.phase);
+  json["block"] = pass.block;
+  json["attempt"] = pass.attempt;
+  json["practice"] = pass.practice;
+  json["status"] = pass.status == record::PassStatus::kCompleted ? "completed" : "aborted";
+  json["duration"] = pass.last_sample < pass.first_sample
+                         ? 0.0
+                         : static_cast<double>(pass.last_sample - pass.first_sample + 1) / rate;
+  for (const auto& [name, value] : facts) {
+    json[name] = value;
+  }
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void write_pass_markers(const SessionReader& reader, const std::map<std::uint64_t, double>& begins,
+                        XdfFile& file, std::uint32_t stream) {
+  const PassFacts facts = pass_facts(reader);
+  const std::vector<record::PassRow> passes = reader.passes();
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    file.add(stream, begins.at(passes[i].first_sample),
+             pass_text(passes[i], i, reader.info().rate, facts.cells[i]));
+  }
+}
+
+void write_events(const SessionReader& reader, XdfFile& file, std::uint32_t stream) {
+  std::vector<record::EventRow> events = reader.events();
+  std::ranges::stable_sort(events, {}, &record::EventRow::time_ns);
+  for (const record::EventRow& event : events) {
+    file.add(stream, seconds(event.time_ns),
+             event.text.empty() ? event.kind : event.kind + ": " + event.text);
+  }
+}
+
+double number_of(const record::Cell& cell) {
+  return std::visit(
+      [](const auto& value) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
+          return static_cast<double>(value);
+        } else {
+          return std::numeric_limits<double>::quiet_NaN();
+        }
+      },
+      cell);
+}
+
+/// One channel as a stream: all columns of its table but the time.
+void write_channel_stream(const SessionReader& reader, const analysis::ChannelQuality& channel,
+                          XdfFile& file) {
+  const auto table = reader.description("channel_" + channel.name);
+  XdfStream stream{channel.name, "Channel", XdfFormat::kDouble64, channel.rate(), {}};
+  std::size_t time_column = 0, column = 0;
+  for (const ColumnDoc& doc : docs_of(*table)) {
+    if (doc.name == "time_ns") {
+      time_column = column;
+    } else {
+      stream.channels.push_back({doc.name, doc.unit});
+    }
+    ++column;
+  }
+  const std::uint32_t number = file.add_stream(stream);
+  std::vector<double> values;
+  reader.each_row(*table, [&](const std::vector<record::Cell>& cells) {
+    values.clear();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (i != time_column) {
+        values.push_back(number_of(cells[i]));
+      }
+    }
+    file.add(number, 1e-9 * number_of(cells[time_column]), values);
+  });
+}
+
+/// Streams without samples are left out: some readers fail on them.
+/// @returns how many streams the file has
+std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counter& counter) {
+  const SessionReader reader(session.file);
+  XdfFile file(path, about(session.info));
+  std::size_t streams = 0;
+  std::map<std::uint64_t, double> begins;
+  if (reader.sample_count() > 0) {
+    ++streams;
+    begins = write_device(reader, file, file.add_stream(device_stream(session.info)), counter);
+  }
+  if (!begins.empty()) {
+    ++streams;
+    write_pass_markers(reader, begins, file,
+                       file.add_stream({"passes",
+                                        "Markers",
+                                        XdfFormat::kString,
+                                        0.0,
+                                        {{"pass", ""}},
+                                        "a pass as JSON, as it began"}));
+  }
+  if (!reader.events().empty()) {
+    ++streams;
+    write_events(reader, file,
+                 file.add_stream({"events", "Markers", XdfFormat::kString, 0.0, {{"event", ""}}}));
+  }
+  for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
+    if (channel.samples > 0) {
+      ++streams;
+      write_channel_stream(reader, channel, file);
+    }
+  }
+  file.close();
+  return streams;
+}
+
+std::string xdf_name(const ExportSession& session) {
+  return session.of > 1 ? fmt::format("{}-session-{}.xdf", session.info.subject, session.number)
+                        : session.info.subject + ".xdf";
+}
+
+}  // namespace
+
+XdfSummary export_xdf(std::span<const fs::path> files, const fs::path& folder, int jobs,
+                      const Watch& watch) {
+  const std::vector<ExportSession> sessions = sessions_to_export(files);
+  for (const ExportSession& session : sessions) {
+    refuse_imported(session, "--xdf");
+  }
+  NewFolder out(folder);
+  std::vector<std::size_t> streams(sessions.size());
+  share_out(
+      sessions.size(), jobs,
+      [&](std::size_t i, Counter& counter) {
+        streams[i] = write_xdf(out.place(xdf_name(sessions[i])), sessions[i], counter);
+      },
+      watch);
+  out.publish();
+  return {sessions.size(), std::accumulate(streams.begin(), streams.end(), std::size_t{0}),
+          total_samples(sessions)};
+}
+
+}  // namespace haptrial::exchange

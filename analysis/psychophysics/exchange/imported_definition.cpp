@@ -1,0 +1,235 @@
+#include "analysis/psychophysics/exchange/imported_definition.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "analysis/psychophysics/exchange/field_text.h"
+#include "core/base/error.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+constexpr std::size_t kMostChoices = 64;
+
+/// A text in TOML's quotes.
+std::string toml_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (byte < ' ' || byte == 0x7f) {
+      result += fmt::format("\\u{:04X}", byte);
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
+bool takes_numbers(const std::string& kind) { return kind == "magnitude" || kind == "adjustment"; }
+
+std::string kind_of(const ImportedStudy& study, const ImportedAnalysis& analysis) {
+  const TrialColumns& columns = study.columns;
+  if (!analysis.kind.empty()) {
+    return analysis.kind;
+  }
+  const bool judged = !columns.correct.empty() || !analysis.yes.empty();
+  if (!columns.level.empty() && !judged && !columns.answer.empty()) {
+    throw InputError(fmt::format(
+        "no column says whether answers are right; add --column correct=COLUMN, or --yes ANSWER "
+        "for the answer that counts 1; allowed: {}",
+        fmt::join(answers_of(study), ", ")));
+  }
+  return !columns.level.empty() && judged ? "psychometric"
+         : !columns.time.empty()          ? "times"
+                                          : "none";
+}
+
+/// The words of a factor in a definition: numbers, or quoted words.
+std::string factor_levels(const ImportedStudy& study, std::size_t factor) {
+  std::set<double> numbers;
+  std::set<std::string> words;
+  for (const ImportedTrial& trial : study.trials) {
+    const ImportedValue& value = trial.factors[factor];
+    value.word.empty() ? static_cast<void>(numbers.insert(value.number))
+                       : static_cast<void>(words.insert(toml_text(value.word)));
+  }
+  return words.empty() ? fmt::format("{}", fmt::join(numbers, ", "))
+                       : fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string factors_table(const ImportedStudy& study) {
+  if (study.columns.factors.empty()) {
+    return "";
+  }
+  std::string text = "\n[factors]\n";
+  for (std::size_t i = 0; i < study.columns.factors.size(); ++i) {
+    text += fmt::format("{} = [{}]\n", study.columns.factors[i].variable, factor_levels(study, i));
+  }
+  return text;
+}
+
+std::string choices_of(const std::vector<std::string>& words) {
+  std::vector<std::string> entries;
+  for (const std::string& word : words) {
+    entries.push_back(fmt::format("  {{ value = {} }},\n", toml_text(word)));
+  }
+  return fmt::format("choices = [\n{}]\n", fmt::join(entries, ""));
+}
+
+std::string first_response(const ImportedStudy& study, const std::string& kind) {
+  const std::vector<std::string> answers = answers_of(study);
+  if (answers.empty() && study.columns.time.empty()) {
+    return "";
+  }
+  std::string text =
+      fmt::format("\n[[responses]]\nname = \"{0}\"\nquestion = \"{0}\"\n", kImportedAnswer);
+  if (takes_numbers(kind) || answers.empty()) {
+    const auto word = std::ranges::find_if_not(
+        answers, [](const std::string& each) { return number_in(each).has_value(); });
+    if (word != answers.end()) {
+      throw InputError(fmt::format("{} has the answer '{}'; allowed: numbers, as --kind {} needs",
+                                   study.columns.answer, *word, kind));
+    }
+    return text + "number = [-1000000000.0, 1000000000.0]\n";
+  }
+  if (answers.size() > kMostChoices) {
+    throw InputError(
+        fmt::format("{} has {} different answers; allowed: at most {} choices, or numbers with "
+                    "--kind magnitude",
+                    study.columns.answer, answers.size(), kMostChoices));
+  }
+  return text + choices_of(answers.size() == 1 ? std::vector<std::string>{answers.front(), "other"}
+                                               : answers);
+}
+
+/// A second question of whole numbers in the table's range.
+std::string rating_response(const ImportedStudy& study) {
+  if (study.columns.rating.empty()) {
+    return "";
+  }
+  int low = 0, high = 0;
+  bool first = true;
+  for (const ImportedTrial& trial : study.trials) {
+    if (trial.rating.empty()) {
+      continue;
+    }
+    int value = 0;
+    const char* end = trial.rating.data() + trial.rating.size();
+    const auto [at, error] = std::from_chars(trial.rating.data(), end, value);
+    if (error != std::errc() || at != end) {
+      throw InputError(fmt::format("{}:{}: {} is '{}'; allowed: a whole number",
+                                   study.sources[trial.source].name, trial.line,
+                                   study.columns.rating, trial.rating));
+    }
+    low = first ? value : std::min(low, value);
+    high = first ? value : std::max(high, value);
+    first = false;
+  }
+  return fmt::format("\n[[responses]]\nname = \"{0}\"\nquestion = \"{0}\"\nscale = [{1}, {2}]\n",
+                     kImportedRating, low, std::max(high, low + 1));
+}
+
+std::string analysis_table(const ImportedStudy& study, const ImportedAnalysis& analysis,
+                           const std::string& kind) {
+  std::string text = fmt::format("\n[analysis]\nkind = {}\n", toml_text(kind));
+  if (!study.columns.level.empty()) {
+    text += fmt::format("level = \"{}\"\n", kImportedLevel);
+  }
+  if (!analysis.yes.empty()) {
+    text += fmt::format("yes = {}\n", toml_text(analysis.yes));
+  }
+  if (kind != "psychometric") {
+    return text;
+  }
+  const std::size_t answers = answers_of(study).size();
+  if (analysis.guess) {
+    text += fmt::format("guess = {}\n", *analysis.guess);
+  } else if (analysis.yes.empty() && study.columns.answer.empty()) {
+    throw InputError(
+        "no column has the answers, so that nobody knows how often guessing is right; add --guess "
+        "RATE, as 0.5 of two alternatives");
+  } else if (analysis.yes.empty() && answers > 1) {
+    text += fmt::format("guess = {}\n", 1.0 / static_cast<double>(answers));
+  }
+  return text;
+}
+
+/// The most trials that a session has.
+std::size_t most_trials(const ImportedStudy& study) {
+  std::map<std::pair<std::string, int>, std::size_t> counts;
+  std::size_t most = 0;
+  for (const ImportedTrial& trial : study.trials) {
+    most = std::max(most, ++counts[{trial.participant, trial.session}]);
+  }
+  return most;
+}
+
+std::string design_table(const ImportedStudy& study) {
+  std::set<std::string> people;
+  int sessions = 1;
+  for (const ImportedTrial& trial : study.trials) {
+    people.insert(trial.participant);
+    sessions = std::max(sessions, trial.session);
+  }
+  std::string text = fmt::format("\n[design]\nparticipants = {}\n", people.size());
+  return sessions > 1 ? text + fmt::format("sessions = {}\n", sessions) : text;
+}
+
+}  // namespace
+
+std::string answer_word(const ImportedStudy& study, const ImportedTrial& trial) {
+  if (!study.columns.answer.empty()) {
+    return trial.answer;
+  }
+  return trial.correct < 0 ? "" : trial.correct == 1 ? "right" : "wrong";
+}
+
+std::vector<std::string> answers_of(const ImportedStudy& study) {
+  std::set<std::string> answers;
+  if (study.columns.answer.empty() && !study.columns.correct.empty()) {
+    answers = {"right", "wrong"};
+  }
+  for (const ImportedTrial& trial : study.trials) {
+    answers.insert(answer_word(study, trial));
+  }
+  answers.erase("");
+  return {answers.begin(), answers.end()};
+}
+
+std::string imported_definition(const ImportedStudy& study, const ImportedAnalysis& analysis) {
+  const std::string kind = kind_of(study, analysis);
+  if (const auto answers = answers_of(study);
+      !analysis.yes.empty() && std::ranges::find(answers, analysis.yes) == answers.end()) {
+    throw InputError(fmt::format("--yes is '{}', which is no answer; allowed: {}", analysis.yes,
+                                 fmt::join(answers, ", ")));
+  }
+  std::string text = fmt::format(
+      "# Trials that another program presented and `haptrial import` read from {}.\n"
+      "# They are analysed as [analysis] says; after a change, import them again with\n"
+      "# --definition.\n\n"
+      "[experiment]\nprotocol = \"trials\"\nname = {}\n",
+      study.columns.origin == TableOrigin::kPlain
+          ? "a table"
+          : fmt::format("a table of {}", name_of(study.columns.origin)),
+      toml_text(analysis.name));
+  text += design_table(study);
+  if (!study.columns.level.empty()) {
+    text += fmt::format("\n[variables]\n{} = 0.0  # of each trial\n", kImportedLevel);
+  }
+  text += factors_table(study);
+  text += fmt::format("\n[[blocks]]\nname = \"trials\"\ntrials = {}\n", most_trials(study));
+  text += "\n[[stages]]\nname = \"presented\"\nuntil = { time = 0.0 }\n";
+  return text + first_response(study, kind) + rating_response(study) +
+         analysis_table(study, analysis, kind);
+}
+
+}  // namespace haptrial::analysis::trials

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/psychophysics/exchange/imported_trials.h"
+
+namespace haptrial::analysis::trials {
+
+/// Names of the variable and questions in a definition that is made for a table.
+inline constexpr const char* kImportedLevel = "level";
+inline constexpr const char* kImportedAnswer = "answer";
+inline constexpr const char* kImportedRating = "rating";
+
+/// How trials from a table are to be analysed.
+struct ImportedAnalysis {
+  std::string name;             // of the study
+  std::string kind;             // of [analysis]; empty: as the columns are
+  std::string yes;              // answer that counts 1; empty: the right one
+  std::optional<double> guess;  // rate of the functions; nothing: 1 / answers
+};
+
+/// Answers of the trials, sorted; with right and wrong alone these two words.
+std::vector<std::string> answers_of(const ImportedStudy& study);
+
+/// The answer of a trial as a word: "right" or "wrong" where the table has no answers.
+std::string answer_word(const ImportedStudy& study, const ImportedTrial& trial);
+
+/// Text of a definition of protocol "trials" by which imported trials are analysed. It presents
+/// nothing: its only stage ends at once.
+/// @throws InputError if the columns do not say which answer counts, or do not fit the kind
+std::string imported_definition(const ImportedStudy& study, const ImportedAnalysis& analysis);
+
+}  // namespace haptrial::analysis::trials

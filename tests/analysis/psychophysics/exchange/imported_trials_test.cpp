@@ -1,0 +1,174 @@
+// Tables of other programs become trials, or one sentence says why not.
+#include "analysis/psychophysics/exchange/imported_trials.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "analysis/files/csv.h"
+#include "analysis/files/sha256.h"
+#include "analysis/psychophysics/exchange/imported_definition.h"
+#include "core/base/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::analysis::trials {
+namespace {
+
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+// As PsychoPy 2023 writes it: a comma at the end of each line, a row for the instructions.
+constexpr const char* kPsychoPy =
+    "trials.thisTrialN,welcome.keys,welcome.rt,resp.keys,resp.corr,resp.rt,speed,trials.intensity,"
+    "participant,session,expName,psychopyVersion,\n"
+    ",space,1.5,,,,,,ann,001,weights,2023.2.3,\n"
+    "0,,,left,1,0.482,slow,2.5,ann,001,weights,2023.2.3,\n"
+    "1,,,None,0,,fast,3.5,ann,001,weights,2023.2.3,\n"
+    "2,,,right,0,0.75,fast,4.5,ann,001,weights,2023.2.3,\n";
+
+// As jsPsych 7 writes it: everything quoted, times in milliseconds.
+constexpr const char* kJsPsych =
+    "\"rt\",\"response\",\"trial_type\",\"trial_index\",\"time_elapsed\",\"subject\",\"task\","
+    "\"correct\",\"level\"\n"
+    "\"1543.2\",\"\",\"instructions\",\"0\",\"1550\",\"bob\",\"\",\"\",\"\"\n"
+    "\"612\",\"f\",\"html-keyboard-response\",\"1\",\"2300\",\"bob\",\"judge\",\"true\",\"0.4\"\n"
+    "\"null\",\"null\",\"html-keyboard-response\",\"2\",\"4300\",\"bob\",\"judge\",\"false\",\"0."
+    "8\"\n";
+
+class ImportedTrialsTest : public testing::Test {
+ protected:
+  std::filesystem::path file(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+
+  static TrialColumns guessed(const std::string& text) {
+    return guess_columns(CsvTable::parse(text, "t.csv"));
+  }
+
+  ImportedStudy read(const std::string& text, TrialColumns columns) {
+    return read_trial_tables({file("t.csv", text)}, columns);
+  }
+
+  std::string refusal(const std::string& text, TrialColumns columns) {
+    try {
+      read(text, std::move(columns));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "nothing was refused";
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ImportedTrialsTest, ReadsATableOfPsychoPy) {
+  TrialColumns columns = guessed(kPsychoPy);
+  EXPECT_EQ(columns.origin, TableOrigin::kPsychoPy);
+  EXPECT_EQ(columns.answer, "resp.keys");
+  EXPECT_EQ(columns.level, "trials.intensity");
+  add_factor("speed", columns);
+  const ImportedStudy study = read(kPsychoPy, columns);
+  ASSERT_EQ(study.trials.size(), 3u);
+  EXPECT_EQ(study.left_out, 1u);
+  EXPECT_EQ(study.unanswered, 1u);
+  const ImportedTrial& first = study.trials[0];
+  EXPECT_EQ(first.participant, "ann");
+  EXPECT_EQ(first.session, 1);
+  EXPECT_EQ(first.answer, "left");
+  EXPECT_EQ(first.correct, 1);
+  EXPECT_EQ(first.time, 0.482);
+  EXPECT_EQ(first.level, 2.5);
+  EXPECT_EQ(first.factors[0].word, "slow");
+  EXPECT_EQ(first.line, 3u);
+  EXPECT_EQ(study.trials[1].answer, "");
+  EXPECT_EQ(study.trials[1].correct, -1) << "nobody answered, whatever the program says";
+  EXPECT_TRUE(std::isnan(study.trials[1].time));
+}
+
+TEST_F(ImportedTrialsTest, ReadsATableOfJsPsych) {
+  TrialColumns columns = guessed(kJsPsych);
+  EXPECT_EQ(columns.origin, TableOrigin::kJsPsych);
+  EXPECT_THAT(refusal(kJsPsych, columns), HasSubstr("t.csv:2: level is ''; allowed: a finite "));
+  add_filter("task=judge", columns);
+  const ImportedStudy study = read(kJsPsych, columns);
+  ASSERT_EQ(study.trials.size(), 2u);
+  EXPECT_DOUBLE_EQ(study.trials[0].time, 0.612);
+  EXPECT_EQ(study.trials[0].correct, 1);
+  EXPECT_EQ(study.unanswered, 1u);
+}
+
+TEST_F(ImportedTrialsTest, EachMistakeIsOneSentenceWithItsLine) {
+  const std::string head = "subject,level,correct,rt_ms\n";
+  TrialColumns columns = guessed(head + "a,1,1,3\n");
+  EXPECT_EQ(columns.time_unit, 1e-3);
+  const auto found = [&](const char* row) { return refusal(head + "a,1,1,500\n" + row, columns); };
+  EXPECT_THAT(found("a,high,1,500\n"), HasSubstr("t.csv:3: level is 'high'; allowed: a finite"));
+  EXPECT_THAT(found("a,2,maybe,500\n"), HasSubstr("t.csv:3: correct is 'maybe'; allowed: 1 or 0"));
+  EXPECT_THAT(found("a,2,1,-4\n"), HasSubstr("t.csv:3: rt_ms is '-4'; allowed: a number of at"));
+  EXPECT_THAT(found("a b,2,1,4\n"), HasSubstr("t.csv:3: subject is 'a b'; allowed: 1 to 32 let"));
+  EXPECT_THAT(found("a,2,1\n"), HasSubstr("t.csv:3: the row has 3 fields; allowed: 4"));
+  columns.level = "levle";
+  EXPECT_THAT(found(""), HasSubstr("there is no column 'levle'; did you mean level?"));
+}
+
+TEST_F(ImportedTrialsTest, NeedsToKnowWhatTimesAndAnswersMean) {
+  const std::string text = "subject,level,response,rt\na,1,left,500\na,2,right,400\n";
+  TrialColumns columns = guessed(text);
+  EXPECT_THAT(refusal(text, columns), HasSubstr("add --time-unit s or --time-unit ms"));
+  columns.time_unit = 1.0;
+  const ImportedStudy study = read(text, columns);
+  try {
+    imported_definition(study, {"study", "", "", {}});
+    ADD_FAILURE() << "no answer was called right";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--yes ANSWER"));
+    EXPECT_THAT(error.what(), EndsWith("allowed: left, right"));
+  }
+  EXPECT_THAT(imported_definition(study, {"study", "", "right", {}}), HasSubstr("yes = \"right\""));
+}
+
+TEST_F(ImportedTrialsTest, ASessionIsInOneTable) {
+  const auto a = file("a.csv", "subject,session,correct\nP1,1,1\n");
+  const auto b = file("b.csv", "subject,session,correct\nP1,2,1\n");
+  const TrialColumns columns = guess_columns(CsvTable::load(a));
+  EXPECT_EQ(read_trial_tables({a, b}, columns).trials.size(), 2u);
+  file("b.csv", "subject,session,correct\nP1,1,1\n");
+  EXPECT_THROW(read_trial_tables({a, b}, columns), InputError);
+}
+
+TEST_F(ImportedTrialsTest, AFileIsItsParticipantWithoutAColumn) {
+  const auto a = file("P07.csv", "level,correct\n1,1\n2,0\n");
+  EXPECT_EQ(read_trial_tables({a}, guess_columns(CsvTable::load(a))).trials[1].participant, "P07");
+}
+
+TEST_F(ImportedTrialsTest, FactorsWithAWordAreWords) {
+  const std::string text = "subject,correct,mass\na,1,2\na,0,2\na,1,full\n";
+  TrialColumns columns = guessed(text);
+  add_factor("mass", columns);
+  const ImportedStudy study = read(text, columns);
+  EXPECT_EQ(study.trials[0].factors[0].word, "2");
+  EXPECT_THAT(imported_definition(study, {"study", "none", "", {}}),
+              HasSubstr("mass = [\"2\", \"full\"]"));
+}
+
+TEST_F(ImportedTrialsTest, NamesThatTheAnalysisHasAreNoFactors) {
+  TrialColumns columns;
+  EXPECT_THROW(add_factor("group", columns), InputError);
+  EXPECT_THROW(add_factor("two words", columns), InputError);
+  EXPECT_THROW(set_column("anwser=x", columns), InputError);
+  EXPECT_THROW(set_column("answer", columns), InputError);
+  add_factor("hand=which hand", columns);
+  EXPECT_EQ(columns.factors[0].column, "which hand");
+}
+
+// FIPS 180-2, appendix B.1.
+TEST(Sha256Test, GivesTheStandardsAnswer) {
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials

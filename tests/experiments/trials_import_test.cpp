@@ -1,0 +1,237 @@
+// haptrial import: a study of trials that another program presented.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+using test::CommandResult;
+using test::run_command;
+using testing::HasSubstr;
+using testing::Not;
+
+using Row = std::map<std::string, std::string>;
+
+/// The rows of a table without quotes, by the names of its columns.
+std::vector<Row> rows_of(const fs::path& file) {
+  std::istringstream text(test::read_text(file));
+  const auto fields = [](const std::string& line) {
+    std::vector<std::string> all;
+    std::istringstream in(line);
+    for (std::string field; std::getline(in, field, ',');) {
+      all.push_back(field);
+    }
+    return all;
+  };
+  std::string line;
+  std::getline(text, line);
+  const std::vector<std::string> names = fields(line);
+  std::vector<Row> rows;
+  while (std::getline(text, line)) {
+    Row row;
+    const std::vector<std::string> values = fields(line);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      row[names[i]] = values[i];
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+class TrialsImportTest : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const {
+    return fmt::format("'{}'", (folder_ / name).string());
+  }
+
+  /// The trials of an exported study in one table, as another program might have written them.
+  void write_table(const std::string& tables, const std::vector<std::string>& factors) {
+    std::map<std::string, Row> trials;
+    const auto trial = [&](const Row& row) -> Row& {
+      return trials[row.at("subject") + " " + row.at("pass")];
+    };
+    for (const Row& row : rows_of(folder_ / (tables + "/levels.csv"))) {
+      trial(row).insert({{"level", row.at("applied")},
+                         {"track", row.at("track")},
+                         {"outcome", row.at("outcome")}});
+    }
+    for (const Row& row : rows_of(folder_ / (tables + "/variables.csv"))) {
+      if (row.at("interval") == "0") {
+        const auto word = row.find("word");
+        trial(row)[row.at("name")] =
+            word != row.end() && !word->second.empty() ? word->second : row.at("value");
+      }
+    }
+    for (const Row& row : rows_of(folder_ / (tables + "/responses.csv"))) {
+      Row& own = trial(row);
+      const bool first = !own.contains("answer");
+      const std::string answer = row.at("text").empty() ? row.at("value") : row.at("text");
+      own[first ? "answer" : "rating"] = answer;
+      own.insert({{"correct", row.at("correct")}, {"rt", row.at("reaction_time")}});
+    }
+    std::vector<std::string> columns{"level",  "track", "probe",  "outcome",
+                                     "answer", "rt",    "rating", "correct"};
+    columns.insert(columns.end(), factors.begin(), factors.end());
+    std::ofstream out(folder_ / "theirs.csv");
+    out << fmt::format("subject,simulated,{}\n", fmt::join(columns, ","));
+    for (const Row& row : rows_of(folder_ / (tables + "/trials.csv"))) {
+      if (row.at("practice") == "1" || row.at("status") != "completed") {
+        continue;
+      }
+      Row& own = trial(row);
+      own["correct"] = own["correct"] == "-1" ? "" : own["correct"];
+      out << row.at("subject") << ",true";
+      for (const std::string& column : columns) {
+        out << ',' << own[column];
+      }
+      out << '\n';
+    }
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+/// A shipped experiment, factors that blocks or trials vary, and columns that it lacks.
+struct Shipped {
+  const char* name;
+  std::vector<std::string> factors;
+  std::vector<std::string> absent;
+};
+
+class ShippedTrials : public TrialsImportTest, public testing::WithParamInterface<Shipped> {};
+
+TEST_P(ShippedTrials, GiveTheEstimatesOfTheNativeSessions) {
+  const Shipped& shipped = GetParam();
+  const std::string definition =
+      fmt::format("'{}/experiments/{}.toml'", HAPTRIAL_SOURCE_DIR, shipped.name);
+  const CommandResult native = run_command(
+      fmt::format("haptrial dry-run {} --subjects 3 --out {} && haptrial analyze {} && haptrial "
+                  "export --csv {} {}",
+                  definition, path("native"), path("native"), path("tables"), path("native")));
+  ASSERT_EQ(native.status, 0) << native.errors;
+  write_table("tables", shipped.factors);
+  std::string options = "--column probe=probe --column outcome=outcome --time-unit s";
+  for (const std::string& factor : shipped.factors) {
+    options += " --factor " + factor;
+  }
+  for (const std::string& role : shipped.absent) {
+    options += " --column " + role + "=";
+  }
+  const CommandResult run = run_command(fmt::format(
+      "haptrial import {} {} --definition {} --out {} && haptrial analyze {} && "
+      "haptrial info {}/S01.h5",
+      path("theirs.csv"), options, definition, path("study"), path("study"), path("study")));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  const std::string ours = test::read_text(folder_ / "study/estimates.csv");
+  EXPECT_EQ(ours, test::read_text(folder_ / "native/estimates.csv"));
+  EXPECT_GT(std::count(ours.begin(), ours.end(), '\n'), 3);
+  const std::string sum = run_command("sha256sum " + path("theirs.csv") + " | cut -c-64").output;
+  EXPECT_THAT(run.output, HasSubstr("theirs.csv, SHA-256 " + sum.substr(0, 64)));
+  EXPECT_THAT(run.output, HasSubstr("recording   imported: no ticks were recorded"));
+  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("SIMULATED"));
+  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), Not(HasSubstr("force limit")));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    TrialsImportTest, ShippedTrials,
+    testing::Values(Shipped{"stiffness_discrimination", {}, {"rating"}},
+                    Shipped{"viscosity_magnitude", {}, {"rating", "correct"}},
+                    Shipped{"wall_detection", {}, {}},
+                    Shipped{"force_discrimination", {}, {"rating"}},
+                    Shipped{"shape_recognition", {"shape"}, {"level", "track", "outcome"}}),
+    [](const auto& shipped) { return std::string(shipped.param.name); });
+
+// R 4.2.2: glm(cbind(faster, slower) ~ speed, binomial(probit)); -intercept / slope of each.
+TEST_F(TrialsImportTest, GivesTheThresholdsOfRForPeopleOfAnotherLaboratory) {
+  const auto data = test::shared_data("psychometric/vibro_exp3.csv");
+  if (!data) {
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds psychometric/vibro_exp3.csv";
+  }
+  const std::map<std::string, std::pair<double, double>> theirs{
+      {"MI", {9.07496303, 8.53275227}}, {"NI", {8.65494077, 8.39214017}},
+      {"MA", {8.67804586, 8.77122643}}, {"RV", {9.12969822, 8.55203558}},
+      {"FA", {8.39313500, 8.05864180}}, {"NN", {8.29155284, 7.91248153}},
+      {"AK", {8.29257927, 8.36820004}}, {"AR", {7.74553138, 8.81536436}},
+      {"DN", {8.82812764, 8.28101001}}};
+  const std::string expand =
+      "awk -F, '{gsub(/\"/, \"\")} NR == 1 {print \"subject,speed,vibration,response\"} NR > 1 "
+      "{for (i = 0; i < $3 + $4; ++i) print $5 \",\" $1 \",\" $2 \",\" (i < $3 ? \"faster\" : "
+      "\"slower\")}' ";
+  const CommandResult run = run_command(fmt::format(
+      "set -e; {} '{}' > {}; haptrial import {} --column level=speed --factor vibration --yes "
+      "faster --guess 0 --out {}; sed -i '$alapse = 0.0' {}; haptrial import {} --column "
+      "level=speed --definition {} --out {}; haptrial analyze {}",
+      expand, data->string(), path("t.csv"), path("t.csv"), path("first"), path("first/study.toml"),
+      path("t.csv"), path("first/study.toml"), path("study"), path("study")));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  int compared = 0;
+  for (const Row& row : rows_of(folder_ / "study/estimates.csv")) {
+    if (row.at("source") == "likelihood" && row.at("name") == "threshold") {
+      const auto& [still, vibrating] = theirs.at(row.at("participant"));
+      EXPECT_NEAR(std::stod(row.at("estimate")), row.at("vibration") == "0" ? still : vibrating,
+                  1e-6)
+          << row.at("participant");
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 18);
+}
+
+TEST_F(TrialsImportTest, WhatWasImportedIsExportedIfNoTimesAreNeeded) {
+  test::write_text(folder_ / "t.csv",
+                   "subject,level,response,correct\nP1,1,left,1\nP1,2,right,0\nP1,3,,\n");
+  const CommandResult run = run_command(fmt::format(
+      "haptrial import {} --out {} && haptrial export --csv {} {} && haptrial export --psych-ds {} "
+      "{} && /usr/bin/python3 '{}/tests/analysis/exchange/read_psych_ds.py' {} {}/P1.h5",
+      path("t.csv"), path("study"), path("csv"), path("study"), path("psych"), path("study"),
+      HAPTRIAL_SOURCE_DIR, path("psych"), path("study")));
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("1 trial without an answer"));
+  EXPECT_THAT(run.output, testing::EndsWith("equal\n"));
+  for (const char* form : {"--bids", "--xdf"}) {
+    const CommandResult no =
+        run_command(fmt::format("haptrial export {} {} {}", form, path("x"), path("study")));
+    EXPECT_EQ(no.status, 2);
+    EXPECT_THAT(no.errors, HasSubstr("was imported, so that no time of a trial is known"));
+  }
+}
+
+TEST_F(TrialsImportTest, AMistakeIsASentenceAndLeavesNothing) {
+  test::write_text(folder_ / "t.csv", "subject,level,correct\nP1,1,1\nP1,two,0\n");
+  const auto refused = [&](const std::string& more) {
+    const CommandResult run =
+        run_command("haptrial import " + path("t.csv") + " --out " + path("study") + " " + more);
+    EXPECT_EQ(run.status, 2) << more;
+    EXPECT_FALSE(fs::exists(folder_ / "study")) << more;
+    return run.errors;
+  };
+  EXPECT_THAT(refused("--guess 0.5"), HasSubstr("t.csv:3: level is 'two'; allowed: a finite"));
+  EXPECT_THAT(refused("--only level=1"), HasSubstr("add --guess RATE, as 0.5"));
+  EXPECT_THAT(refused("--column right=correct"), HasSubstr("--column is 'right=correct'"));
+  EXPECT_THAT(refused("--kind psychometrics --only level=1 --guess 0.5"), HasSubstr("kind"));
+  EXPECT_THAT(refused(fmt::format("--definition '{}/experiments/force_training.toml'",
+                                  HAPTRIAL_SOURCE_DIR)),
+              HasSubstr("allowed: protocol = \"trials\""));
+  EXPECT_THAT(refused(fmt::format("--only level=1 --definition "
+                                  "'{}/experiments/stiffness_discrimination.toml'",
+                                  HAPTRIAL_SOURCE_DIR)),
+              HasSubstr("add --column track=COLUMN"));
+}
+
+}  // namespace
+}  // namespace haptrial
