@@ -8,6 +8,7 @@
 
 #include "analysis/statistics/variance/mixed_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
+#include "core/base/random.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -110,6 +111,31 @@ TEST(MultifactorAnovaTest, OfTwoFactorsItIsTheAnalysisOfTwoFactors) {
   EXPECT_NEAR(one["G"].f, marginal->group->f, 1e-10);
   EXPECT_NEAR(one["A"].f, marginal->condition->f, 1e-10);
   EXPECT_NEAR(one["GA"].p_greenhouse_geisser, marginal->interaction->p_greenhouse_geisser, 1e-10);
+}
+
+/// 2,000 studies of people who do not differ: two groups of five and seven, 2 x 3 conditions.
+TEST(MultifactorAnovaTest, EveryEffectKeepsItsLevel) {
+  constexpr int kStudies = 2000;
+  std::map<std::string, int> found;
+  RandomStream random(1, "null");
+  for (int study = 0; study < kStudies; ++study) {
+    MultifactorTable table{{2, 3}, {2}, {}, {}};
+    for (std::size_t s = 0; s < 12; ++s) {
+      table.groups.push_back({s < 5 ? std::size_t{0} : std::size_t{1}});
+      auto& row = table.values.emplace_back();
+      const double person = 2.0 * random.normal();
+      for (int cell = 0; cell < 6; ++cell) {
+        row.push_back(person + random.normal());
+      }
+    }
+    for (const auto& [name, effect] : effects_of(table)) {
+      found[name] += effect.p < 0.05 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(found.size(), 7u);
+  for (const auto& [name, count] : found) {
+    EXPECT_NEAR(count, 100, 35) << name;  // 3.6 standard deviations
+  }
 }
 
 TEST(MultifactorAnovaTest, WhatIsNotDefinedSaysWhy) {
