@@ -18,7 +18,7 @@ const HierarchicalFunctions* converged(const TrialsResult& result) {
   return made && *made && (**made).fit.converged ? &**made : nullptr;
 }
 
-void add_word(FindingRow& row, const std::string& name, const std::string& title,
+void add_text(FindingRow& row, const std::string& name, const std::string& title,
               const std::string& word, JsonForm form = JsonForm::kPlain) {
   row.push_back(Finding{.name = name, .title = title, .value = word, .form = form});
 }
@@ -69,12 +69,12 @@ class GroupRows {
   void add(const std::string& quantity, const std::string& title, const std::string& condition,
            const Posterior& posterior, const std::string& unit) {
     FindingRow& row = table_.rows.emplace_back();
-    add_word(row, "participant", "", "all", JsonForm::kAbsent);
-    add_word(row, "source", "", "hierarchical", JsonForm::kAbsent);
-    add_word(row, "quantity", "", quantity);
-    add_word(row, "", "quantity", unit.empty() ? title : fmt::format("{} ({})", title, unit),
+    add_text(row, "participant", "", "all", JsonForm::kAbsent);
+    add_text(row, "source", "", "hierarchical", JsonForm::kAbsent);
+    add_text(row, "quantity", "", quantity);
+    add_text(row, "", "quantity", unit.empty() ? title : fmt::format("{} ({})", title, unit),
              JsonForm::kAbsent);
-    add_word(row, "condition", "condition", condition.empty() ? "all" : condition);
+    add_text(row, "condition", "condition", condition.empty() ? "all" : condition);
     add_posterior(row, "posterior", "median", posterior, unit,
                   condition.empty() ? quantity : fmt::format("{}, {}", quantity, condition));
     add_diagnostics(row, posterior.chains.r_hat, posterior.chains.effective);
@@ -135,12 +135,12 @@ FindingRow person_row(const TrialsResult& result, const HierarchicalFunctions& a
   const hierarchical::FunctionPosterior& psi = all.fit.functions[function];
   const std::size_t condition = all.condition_of[function];
   FindingRow row;
-  add_word(row, "participant", "participant", all.participants[person]);
+  add_text(row, "participant", "participant", all.participants[person]);
   for (std::size_t f = 0; f < all.levels[condition].size(); ++f) {
-    add_word(row, "by/" + result.plan.by[f], "", all.levels[condition][f], JsonForm::kAbsent);
+    add_text(row, "by/" + result.plan.by[f], "", all.levels[condition][f], JsonForm::kAbsent);
   }
-  add_word(row, "source", "", "hierarchical", JsonForm::kAbsent);
-  add_word(row, "condition", "condition", all.conditions[condition]);
+  add_text(row, "source", "", "hierarchical", JsonForm::kAbsent);
+  add_text(row, "condition", "condition", all.conditions[condition]);
   add_posterior(row, "threshold", "threshold", as_level(psi.threshold, axis), axis.unit,
                 "threshold");
   add_posterior(row, "width", "width", psi.width, axis.x_unit(), "width");

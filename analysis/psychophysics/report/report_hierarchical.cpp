@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "analysis/document/number.h"
-#include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::trials {
@@ -16,9 +15,9 @@ namespace {
 using hierarchical::HierarchicalFit;
 using hierarchical::Posterior;
 
-constexpr double kUnusual = 0.05;  // of a predictive p
+constexpr double kUnusualShare = 0.05;  // of a predictive p
 
-std::string with_unit(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
+std::string unit_after(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
 
 std::string chains_words(const HierarchicalFit& fit) {
   return fmt::format(
@@ -44,7 +43,7 @@ std::string thresholds_words(const TrialsResult& result, const HierarchicalFunct
     const Posterior& p = all.fit.conditions[c].threshold;
     words.push_back(fmt::format(
         "{}{}{}", number_with_interval(axis.level(p.median), axis.level(p.low), axis.level(p.high)),
-        with_unit(axis.unit), all.conditions[c].empty() ? "" : " under " + all.conditions[c]));
+        unit_after(axis.unit), all.conditions[c].empty() ? "" : " under " + all.conditions[c]));
   }
   return fmt::format("{}", fmt::join(words, ", "));
 }
@@ -58,7 +57,7 @@ std::string differences_words(const TrialsResult& result, const HierarchicalFunc
     words += fmt::format("; {} less {}: {}{}, {} with a posterior probability of {}",
                          all.conditions[each.second], all.conditions[each.first],
                          number_with_interval(d.median, d.low, d.high),
-                         with_unit(result.plan.function.axis.x_unit()), above ? "higher" : "lower",
+                         unit_after(result.plan.function.axis.x_unit()), above ? "higher" : "lower",
                          share > 0.999 ? "above 0.999" : fmt::format("{:.3f}", share));
   }
   return words;
@@ -84,7 +83,7 @@ std::string prior_words(const TrialsResult& result, const HierarchicalFit& fit) 
 void add_replications(Document& document, const HierarchicalFunctions& all) {
   std::vector<std::string> unusual;
   for (std::size_t person = 0; person < all.participants.size(); ++person) {
-    if (all.fit.people[person].predictive_p < kUnusual) {
+    if (all.fit.people[person].predictive_p < kUnusualShare) {
       unusual.push_back(all.participants[person]);
     }
   }
@@ -92,7 +91,7 @@ void add_replications(Document& document, const HierarchicalFunctions& all) {
       "Posterior predictive check: the p of a participant is the share of answers drawn from the "
       "posterior whose deviance is at least that of the answers given. It is below {:g} in {} of "
       "{}{}.",
-      kUnusual, unusual.size(), counted(all.participants.size(), "participant"),
+      kUnusualShare, unusual.size(), counted(all.participants.size(), "participant"),
       unusual.empty() ? ""
                       : fmt::format(" ({}), whose answers scatter more than a function with "
                                     "constant parameters explains",

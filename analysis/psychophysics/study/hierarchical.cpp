@@ -10,7 +10,7 @@
 namespace haptrial::analysis::trials {
 namespace {
 
-constexpr std::size_t kFewest = 3;  // participants
+constexpr std::size_t kFewestPeople = 3;  // participants
 
 /// People and conditions by number. Answers come by person and condition.
 std::vector<hierarchical::PersonAnswers> answers_of(const std::vector<AnsweredSeries>& series,
@@ -43,7 +43,7 @@ Defined<HierarchicalFunctions> hierarchical_functions(const std::vector<Answered
                                                       const TrialsPlan& plan, int threads) {
   HierarchicalFunctions made;
   std::vector<hierarchical::PersonAnswers> answers = answers_of(series, made);
-  if (made.participants.size() < kFewest) {
+  if (made.participants.size() < kFewestPeople) {
     return Undefined{"there are fewer than three participants"};
   }
   for (const hierarchical::PersonAnswers& each : answers) {

@@ -170,6 +170,8 @@ Coverage coverage(const HierarchicalStudy& study, std::size_t studies, std::uint
     const Model model = simulated_model(study, truth, random);
     Sampling sampling;
     sampling.seed = derived_seed(seed, fmt::format("chains {}", i));
+    sampling.chains = 2;
+    sampling.most_draws = sampling.draws;  // the ends of an interval need no more
     const HierarchicalFit fit = hierarchical_fit(model, sampling);
     const auto holds = [](const Posterior& p, double value) {
       return p.low <= value && value <= p.high ? 1 : 0;
