@@ -41,7 +41,7 @@ struct ConditionDifference {
 /// Standard deviations over people.
 struct Spread {
   Posterior between;  // of people, under one condition
-  Posterior within;   // of a person's difference between two conditions; if `Spreads::has_within`
+  Posterior within;   // of a person's difference between two conditions; if `has_within` of the fit
 };
 
 struct PersonPosterior {

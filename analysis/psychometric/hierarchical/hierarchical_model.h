@@ -65,7 +65,7 @@ class Model {
   double middle() const noexcept { return middle_; }  // of the levels [axis]
   double range() const noexcept { return range_; }    // highest - lowest level [axis]
 
-  /// The functions of one person and condition.
+  /// Rates of a person.
   struct Rates {
     double lapse{0.0}, guess{0.0};
   };
@@ -76,7 +76,7 @@ class Model {
   double log_likelihood(std::size_t series, double threshold, double log_width,
                         const Rates& rates) const noexcept;
 
-  /// Its slope by (m, v, l, g) and Fisher's information, to which it adds both.
+  /// Slope of the log-likelihood of a series by (m, v, l, g), and Fisher's information.
   struct Curvature {
     std::array<double, kFamilies> slope{};
     std::array<std::array<double, kFamilies>, kFamilies> information{};

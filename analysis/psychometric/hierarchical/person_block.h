@@ -26,7 +26,7 @@ class PersonBlock {
   /// Learns where the block lies from what was noted since the last time.
   void learn();
 
-  /// What the slices are drawn around.
+  /// Centre and shape of a slice.
   enum class Around {
     kApproximation,  // the normal posterior that the approximation and the families give
     kLearnt,         // the draws of the warm-up; the approximation where there are none

@@ -21,7 +21,7 @@ struct Sampling {
   int threads{1};                  // at least 1; results do not depend on it
 };
 
-/// Where the numbers of a state stand in its list: for each family that is sought its means, its
+/// Places of a state's numbers in its list: for each family that is sought its means, its
 /// spread between people, if it has one its spread within them, and its values. Thresholds and
 /// widths are in units of the range of the levels.
 struct NumberPlaces {
