@@ -266,6 +266,7 @@ function(haptrial_test_needs)
   target_link_libraries(test_psychometric_fit PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
                                                       haptrial_psychometric)  # virtual sessions
   target_link_libraries(test_psychometric_models PRIVATE PkgConfig::gsl)
+  target_link_libraries(test_psychometric_hierarchical PRIVATE PkgConfig::gsl)
   target_link_libraries(test_psychophysics_analysis PRIVATE nlohmann_json::nlohmann_json PkgConfig::gsl
                                                      haptrial_record_hdf5)
   target_sources(test_force_analysis

@@ -33,6 +33,12 @@ foreach(source ${benchmarks})
     target_link_libraries(bench_${name} PRIVATE haptrial_psychometric haptrial_psychometric_models)
     continue()
   endif()
+  if(name STREQUAL hierarchical)
+    target_sources(bench_hierarchical
+                   PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/psychometric/hierarchical/hierarchical_study.cpp)
+    target_link_libraries(bench_hierarchical PRIVATE haptrial_psychometric_hierarchical fmt::fmt PkgConfig::gsl)
+    continue()
+  endif()
   if(name STREQUAL device_certificate)
     target_sources(bench_device_certificate
                    PRIVATE ${CMAKE_SOURCE_DIR}/tests/analysis/device/device_coverage.cpp

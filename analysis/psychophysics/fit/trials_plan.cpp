@@ -304,6 +304,10 @@ Schema<TrialsPlan> make_function_schema(const PlanDefaults& defaults) {
               })
       .otherwise("no Weber fractions")
       .flag("bayesian", &P::bayesian, "Whether a Bayesian fit of each function is added")
+      .flag("hierarchical", &P::hierarchical,
+            "Whether one Bayesian model of all participants and conditions is added: thresholds, "
+            "widths and lapse rates of the group and of each participant, from three participants "
+            "on")
       .integer("resamples", &P::resamples, 0, 100'000, "Resamples of the bootstrap")
       .check([&](Table& table, P& plan) {
         plan.cues = read_cue_plan(table, defaults.cues, plan.by, guess_of(plan));

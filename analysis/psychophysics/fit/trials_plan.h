@@ -94,6 +94,7 @@ struct TrialsPlan {
   std::optional<double> reference;  // standard stimulus, for Weber fractions [unit of the level]
   bool bayesian{true};
   bool population{true};        // the mixed model of all participants
+  bool hierarchical{false};     // the Bayesian model of all participants and conditions
   bool track_intervals{true};   // of the procedures' own estimates
   bool serial{true};            // drift and repetition
   std::size_t resamples{1999};  // of each function

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/psychophysics/report/report_hierarchical.h"
 #include "analysis/psychophysics/report/report_surfaces.h"
 #include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_findings.h"
@@ -128,6 +129,7 @@ void add_functions(Document& document, const TrialsResult& result,
   add_pictures(document, drawings, "function-", kMostPictures);
   add_fit_table(document, result);
   add_population(document, result);
+  add_hierarchical(document, result);
 }
 
 void add_detections(Document& document, const TrialsResult& result,

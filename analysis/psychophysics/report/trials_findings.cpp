@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/psychophysics/report/report_hierarchical.h"
 #include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/statistics/design/result_json_internal.h"
@@ -468,7 +469,8 @@ std::string estimates_csv(const TrialsResult& result) {
     }
   }
   for (const auto table : {track_findings, detection_findings, identification_findings,
-                           exponent_findings, time_findings}) {
+                           exponent_findings, time_findings, hierarchical_group_findings,
+                           hierarchical_people_findings}) {
     tables.push_back(table(result));
   }
   return findings_csv(tables, labels);

@@ -24,7 +24,7 @@ FindingTable cue_findings(const TrialsResult& result, const CueLevel& level);
 
 /// A tidy table with a row for each estimate: participant, the plan's factors, track, source
 /// (likelihood, posterior of adaptive trials, bayesian, cues, procedure, detection, identification,
-/// magnitude), name, estimate, low, high (95 %), unit. What is not known is empty; what is not
+/// magnitude, hierarchical), name, estimate, low, high (95 %), unit. What is not known is empty; what is not
 /// defined has no row.
 std::string estimates_csv(const TrialsResult& result);
 

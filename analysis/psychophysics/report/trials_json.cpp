@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/document/finding_json_internal.h"
+#include "analysis/psychophysics/report/report_hierarchical.h"
 #include "analysis/psychophysics/report/report_surfaces.h"
 #include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_findings.h"
@@ -198,6 +199,11 @@ class ResultsJson {
                      {"reference", plan.reference ? Json(*plan.reference) : Json()}});
     add_table(function_findings(result_));
     add("population", to_json(result_.population));
+    if (result_.hierarchical) {
+      add("hierarchical_sentence", hierarchical_sentence(result_));
+      add_table(hierarchical_group_findings(result_));
+      add_table(hierarchical_people_findings(result_));
+    }
     add_table(serial_findings(result_));
     add("drift_over_participants", to_json(result_.drift));
     add("repetition_over_participants", to_json(result_.repetition));

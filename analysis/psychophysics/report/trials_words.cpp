@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/psychophysics/report/report_hierarchical.h"
 #include "analysis/statistics/design/design_lines.h"
 #include "analysis/statistics/design/wording.h"
 
@@ -288,6 +289,9 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
   }
   for (const Quantity& q : result.quantities) {
     add_tests(q, !result.cues, lines);
+  }
+  if (result.hierarchical) {
+    lines.push_back(hierarchical_sentence(result));
   }
   if (result.reaching) {
     add_reaching(*result.reaching, lines);

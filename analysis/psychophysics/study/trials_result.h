@@ -13,6 +13,7 @@
 #include "analysis/psychophysics/fit/track_estimate.h"
 #include "analysis/psychophysics/study/cue_study.h"
 #include "analysis/psychophysics/study/detected.h"
+#include "analysis/psychophysics/study/hierarchical.h"
 #include "analysis/psychophysics/study/magnitudes.h"
 #include "analysis/psychophysics/study/population.h"
 #include "analysis/psychophysics/study/quantity.h"
@@ -48,6 +49,7 @@ struct TrialsResult {
   Defined<TTest> drift{Undefined{"nothing was fitted"}};  // mean over participants against 0
   Defined<TTest> repetition{Undefined{"nothing was fitted"}};
   Defined<PopulationModel> population{Undefined{"nothing was fitted"}};
+  std::optional<Defined<HierarchicalFunctions>> hierarchical;  // if the plan asks for them
   std::vector<DetectedCondition> detected;
   std::vector<IdentifiedCondition> identified;
   std::vector<MagnitudeCondition> magnitudes;

@@ -160,6 +160,9 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
   if (plan.population) {
     result.population = population_model(result.series, plan);
   }
+  if (plan.hierarchical) {
+    result.hierarchical = hierarchical_functions(result.series, plan, threads);
+  }
   if (plan.cues) {
     result.cues = cue_study(result.data, result.series, result.fits, plan);
   }

@@ -121,6 +121,7 @@ class TrialsStudySimulation final : public StudySimulation {
       : d_(definition), plan_(std::move(plan)), asked_in_(std::move(asked_in)) {
     plan_.resamples = 0;
     plan_.bayesian = false;
+    plan_.hierarchical = false;
     plan_.track_intervals = false;
     plan_.serial = watched.find(": ") == std::string::npos;  // names of other tests have one
     plan_.population = !plan_.by.empty();                    // it tests nothing but conditions

@@ -67,6 +67,7 @@ origin = 0.0
 threshold_at = 0.6
 reference = 320.0
 bayesian = false
+hierarchical = true
 resamples = 500
 )");
   EXPECT_THAT(plan.by, ElementsAre("track"));
@@ -80,6 +81,7 @@ resamples = 500
   EXPECT_EQ(plan.function.share, 0.6);
   EXPECT_EQ(plan.reference, 320.0);
   EXPECT_FALSE(plan.bayesian);
+  EXPECT_TRUE(plan.hierarchical);
   EXPECT_EQ(plan.resamples, 500u);
   ASSERT_EQ(plan.plan.tests.size(), 1u);
   EXPECT_EQ(plan.plan.tests[0].tail, Tail::kLess);
