@@ -13,6 +13,7 @@
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/session_controller.h"
+#include "experiments/plan/plan_log.h"
 #include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/devices.h"
 #include "experiments/runner/earlier_run.h"
@@ -633,18 +634,24 @@ void Session::give_up() noexcept {
 SessionSummary run_session(const SessionRequest& request) {
   if (request.resume && close_what_had_ended(request)) {
     SessionSummary closed;
+    note_closed_session(request.file);
     closed.notices.push_back("the session had ended before: its file only had to be closed");
     return closed;
   }
   auto session = std::make_unique<Session>(request);
+  SessionSummary done;
   try {
-    return session->run();
+    done = session->run();
   } catch (...) {
     if (session->hangs()) {
       static_cast<void>(session.release());  // its servo thread may yet come back to it
     }
     throw;
   }
+  if (!done.stopped) {
+    note_closed_session(request.file);
+  }
+  return done;
 }
 
 }  // namespace haptrial::experiments
