@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/exception_words.h"
 #include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
@@ -629,12 +630,22 @@ void Session::give_up() noexcept {
   }
 }
 
+/// The session is done whether or not its plan's log can be written.
+void note_closed(const std::filesystem::path& file) {
+  try {
+    note_closed_session(file);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "warning: the plan's log does not have this session: {}\n",
+               sentence_of(error));
+  }
+}
+
 }  // namespace
 
 SessionSummary run_session(const SessionRequest& request) {
   if (request.resume && close_what_had_ended(request)) {
     SessionSummary closed;
-    note_closed_session(request.file);
+    note_closed(request.file);
     closed.notices.push_back("the session had ended before: its file only had to be closed");
     return closed;
   }
@@ -649,7 +660,7 @@ SessionSummary run_session(const SessionRequest& request) {
     throw;
   }
   if (!done.stopped) {
-    note_closed_session(request.file);
+    note_closed(request.file);
   }
   return done;
 }

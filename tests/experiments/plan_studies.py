@@ -7,6 +7,7 @@ FOLDER is new. Prints a line for each study that was judged wrongly, then counts
 status is 1 if there was one.
 """
 
+import hashlib
 import json
 import pathlib
 import random
@@ -138,6 +139,19 @@ class Study:
 
     def log(self):
         return self.out / "study.plan.log"
+
+
+def check_chain(study):
+    """Computes the chain of a log, and the digests of its sessions, by another implementation."""
+    link = hashlib.sha256((study.out / "study.plan.json").read_bytes()).hexdigest()
+    for line in study.log().read_text().splitlines():
+        words, own = line.rsplit("\t", 1)
+        link = hashlib.sha256(f"{link}\n{words}".encode()).hexdigest()
+        if link != own:
+            raise RuntimeError(f"the chain breaks at {line}")
+    for file in study.out.rglob("*.h5"):
+        if hashlib.sha256(file.read_bytes()).hexdigest() not in study.log().read_text():
+            raise RuntimeError(f"{file} is not in the log")
 
 
 def edit(file, code):
@@ -454,6 +468,8 @@ def judge(study, plant):
     """Empty if the report names what was planted and nothing else; else what is wrong."""
     must, may, words = (plant(study) or (set(), set(), []))
     found = study.deviations()
+    if not must:
+        check_chain(study)
     kinds = {each["kind"] for each in found}
     sentences = " | ".join(each["what"] for each in found if each["kind"] in must)
     if not must <= kinds:

@@ -59,7 +59,7 @@ int plan(const PlanOptions& options) {
 void add_plan(CLI::App& app, int& status) {
   CLI::App* sub = subcommand(
       app, "plan", "Write a study's preregistration, which sessions and reports then name",
-      "haptrial plan study.toml", {"study.plan.json, .html and .md, once", "guide-plan.md"});
+      "haptrial plan first_experiment", {"NAME.plan.json, .html and .md, once", "guide-plan.md"});
   auto& o = options_of<PlanOptions>(*sub, status, plan);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
   sub->add_option("--out", o.out,
