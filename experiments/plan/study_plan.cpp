@@ -40,6 +40,7 @@ PlanJson to_json(const StudyPlan& plan) {
           {"tests", plan.tests},
           {"exclusions", plan.exclusions},
           {"stopping", plan.stopping},
+          {"ends_early", plan.ends_early},
           {"looks", plan.looks},
           {"retain_until", plan.retain_until},
           {"power", plan.power},
@@ -63,6 +64,7 @@ StudyPlan from_json(const PlanJson& json) {
   json.at("tests").get_to(plan.tests);
   json.at("exclusions").get_to(plan.exclusions);
   json.at("stopping").get_to(plan.stopping);
+  json.at("ends_early").get_to(plan.ends_early);
   json.at("looks").get_to(plan.looks);
   json.at("retain_until").get_to(plan.retain_until);
   json.at("power").get_to(plan.power);

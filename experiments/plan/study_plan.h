@@ -16,6 +16,9 @@ struct PlannedGroup {
   bool operator==(const PlannedGroup&) const = default;
 };
 
+/// The rule of analysis.sequential under which data may be analysed after every participant.
+inline constexpr const char* kAtAnyTime = "bayes factor";
+
 /// A preregistration: what a study states before its first participant. It is one JSON file,
 /// NAME.plan.json beside the definition NAME.toml and beside the sessions, which is never changed.
 struct StudyPlan {
@@ -33,9 +36,10 @@ struct StudyPlan {
   std::vector<std::string> tests;       // planned ones of the definition
   std::vector<std::string> exclusions;  // reasons for which a participant is left out
   std::string stopping;                 // rule, in words
-  std::vector<int> looks;               // participants at which data is analysed before the end
-  std::string retain_until;             // date, "2036-12-31"; empty: not stated
-  std::vector<std::string> power;       // sentences; empty: not stated
+  std::string ends_early;    // rule of analysis.sequential, "bayes factor"; empty: it does not
+  std::vector<int> looks;    // participants at which data is analysed before the end
+  std::string retain_until;  // date, "2036-12-31"; empty: not stated
+  std::vector<std::string> power;  // sentences; empty: not stated
 
   std::string sha256;  // of the file; empty until it is read
 

@@ -134,6 +134,34 @@ TEST_F(StudyPlanTest, ReportsOfDrillingsOpenWithIt) {
   EXPECT_EQ(stated_and_done("statistics.json")["findings"]["deviations"]["estimate"], 0);
 }
 
+/// Lights beside the other finger slow everybody down, so a few participants decide.
+TEST_F(StudyPlanTest, AStatedRuleMayEndTheStudyAndLookAtAnyTime) {
+  for (const char* file : {"crossmodal_congruency.toml", "congruency.py"}) {
+    fs::copy_file(fs::path(HAPTRIAL_SOURCE_DIR "/docs/worked/everyday") / file, folder_ / file);
+  }
+  fs::rename(folder_ / "crossmodal_congruency.toml", folder_ / "study.toml");
+  ASSERT_EQ(run("set study.toml analysis.sequential.rule '\"bayes factor\"'").status, 0);
+  ASSERT_EQ(run("plan study.toml").status, 0);
+  ASSERT_EQ(run("dry-run study.toml --subjects 2 --parts out").status, 0);
+  ASSERT_EQ(run("analyze out").status, 0);
+  ASSERT_EQ(run("dry-run study.toml --subjects 6 --parts out").status, 0);
+  const auto next = run("next study.toml out");
+  ASSERT_THAT(next.output, HasSubstr("the study has ended: there is an effect"));
+  const int decided = std::stoi(next.output.substr(next.output.find("after ") + 6));
+  ASSERT_EQ(run("analyze out").status, 0);
+  const auto all = stated_and_done("results.json")["tables"];
+  ASSERT_EQ(all["deviations"].size(), 1U) << all;
+  EXPECT_EQ(all["deviations"][0]["kind"], "people_extra");
+  EXPECT_THAT(std::string(all["deviations"][0]["what"]),
+              HasSubstr("ended by its rule after " + std::to_string(decided)));
+  for (int number = decided + 1; number <= 6; ++number) {
+    const std::string who = "S0" + std::to_string(number);
+    ASSERT_EQ(run("withdraw out " + who + " --yes").status, 0);
+  }
+  ASSERT_EQ(run("analyze out").status, 0);
+  EXPECT_EQ(stated_and_done("results.json")["findings"]["deviations"]["estimate"], 0);
+}
+
 TEST_F(StudyPlanTest, SessionsOfAnotherPlanAreRefused) {
   write_study("");
   ASSERT_EQ(run("plan study.toml").status, 0);

@@ -36,6 +36,9 @@ std::string program_of(const record::SessionInfo& info) {
 /// ones are left out.
 std::map<int, std::vector<const PlanEntry*>> early_looks(const PlannedStudy& study) {
   std::map<int, std::vector<const PlanEntry*>> looks;
+  if (study.plan.ends_early == kAtAnyTime) {
+    return looks;
+  }
   for (const PlanEntry& entry : study.log.entries) {
     const auto people =
         entry.what == kAnalysed ? entry.values("people") : std::vector<std::string>();

@@ -63,7 +63,10 @@ void add_people(const PlannedStudy& study, std::vector<Deviation>& deviations) {
   const auto had = sessions_had(study.sessions);
   const StudyPlan& plan = study.plan;
   int in_groups = 0;
-  if (plan.groups.size() > 1) {
+  if (study.ended) {
+    compare_people(fmt::format("the study ended by its rule after {}: ", *study.ended),
+                   *study.ended, static_cast<int>(had.size()), deviations);
+  } else if (plan.groups.size() > 1) {
     for (const PlannedGroup& group : plan.groups) {
       const auto done = static_cast<int>(std::ranges::count_if(
           had, [&](const auto& each) { return planned_group(plan, each.first) == group.name; }));

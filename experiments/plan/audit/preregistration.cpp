@@ -5,8 +5,10 @@
 
 #include <algorithm>
 
+#include "analysis/statistics/design/sequential_plan.h"
 #include "analysis/statistics/tests/power.h"
 #include "core/base/counted.h"
+#include "core/base/definition/schema.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
@@ -33,6 +35,33 @@ std::vector<std::string> planned_tests(const protocols::Definition& definition) 
     }
   }
   return {};
+}
+
+/// The rule by which the study may end early, and the looks that it states.
+void add_early_end(const protocols::Definition& definition, StudyPlan& plan) {
+  Table root = definition.root();
+  if (!root.has("analysis") || !root.table("analysis").has("sequential")) {
+    return;
+  }
+  Table table = root.table("analysis").table("sequential");
+  const auto rule = analysis::sequential_schema().read(table);
+  const bool at_looks = rule.rule == analysis::StopRule::kGroupSequential;
+  plan.ends_early = at_looks ? "group sequential" : kAtAnyTime;
+  for (const double look : rule.looks) {
+    plan.looks.push_back(static_cast<int>(look));
+  }
+  plan.stopping += fmt::format(
+      "; or earlier, as soon as the rule \"{}\" of analysis.sequential decides", plan.ends_early);
+}
+
+/// When the data is analysed before the end.
+std::string looks_of(const StudyPlan& plan) {
+  if (plan.ends_early == kAtAnyTime) {
+    return "the data may be analysed after every participant";
+  }
+  return plan.looks.empty() ? "the data is analysed at the end alone"
+                            : fmt::format("the data is also analysed with {} participants",
+                                          fmt::join(plan.looks, ", "));
 }
 
 std::vector<PlannedGroup> planned_groups(const protocols::Definition& definition) {
@@ -115,6 +144,7 @@ StudyPlan make_plan(const Experiment& experiment, const fs::path& simulation) {
   for (const double look : table.looks) {
     plan.looks.push_back(static_cast<int>(look));
   }
+  add_early_end(d, plan);
   plan.retain_until = table.retain_until;
   plan.power = simulation.empty() ? power_of_t(table, plan.participants())
                                   : simulated_power(simulation, plan.name, plan.participants());
@@ -135,10 +165,7 @@ analysis::Document preregistration(const StudyPlan& plan,
   page.points({sample_of(plan)});
   page.points(or_none(plan.power, "the power is not stated"));
   page.heading("End and analyses before it");
-  page.points({"data collection ends: " + plan.stopping,
-               plan.looks.empty() ? "the data is analysed at the end alone"
-                                  : fmt::format("the data is also analysed with {} participants",
-                                                fmt::join(plan.looks, ", "))});
+  page.points({"data collection ends: " + plan.stopping, looks_of(plan)});
   page.heading("Exclusions");
   page.points(or_none(plan.exclusions, "nobody is excluded"));
   page.paragraph(

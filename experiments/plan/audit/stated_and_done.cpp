@@ -7,6 +7,8 @@
 
 #include "analysis/exchange/own_findings.h"
 #include "core/base/counted.h"
+#include "core/base/error.h"
+#include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -34,7 +36,29 @@ std::string exclusions_done(const PlannedStudy& study) {
   return list_of(all, "nobody");
 }
 
+/// Participants after whom the rule of the sessions' definition ended the study, decided or with as
+/// many as may come; nothing if it goes on, or if too few have come to say so.
+std::optional<int> ended_after(const fs::path& folder) {
+  AnalysisRequest request;
+  request.folder = folder;
+  try {
+    request.files = study_files(folder, Pilots::kLeftOut, protocol_of);
+    const auto result = study_of(request.files.first).sequential(request);
+    if (!result || result->verdict == analysis::SequentialVerdict::kGoOn) {
+      return std::nullopt;
+    }
+    return static_cast<int>(result->verdict == analysis::SequentialVerdict::kUndecided
+                                ? result->most
+                                : result->looks.back().participants);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 std::string looks_stated(const StudyPlan& plan) {
+  if (plan.ends_early == kAtAnyTime) {
+    return "after any participant";
+  }
   return plan.looks.empty()
              ? "at the end"
              : fmt::format("with {} participants, and at the end", fmt::join(plan.looks, ", "));
@@ -75,8 +99,10 @@ analysis::FindingTable comparison(const PlannedStudy& study) {
   analysis::FindingTable table{.name = "stated_and_done", .title = "Plan and study"};
   table.rows = {
       row("participants", std::to_string(plan.participants()),
-          fmt::format("{} with every session, {} in all{}", complete_people(plan, study.sessions),
-                      sessions_had(study.sessions).size(), withdrawals(study))),
+          fmt::format(
+              "{} with every session, {} in all{}{}", complete_people(plan, study.sessions),
+              sessions_had(study.sessions).size(), withdrawals(study),
+              study.ended ? fmt::format("; ended by its rule after {}", *study.ended) : "")),
       row("sessions of each", std::to_string(plan.sessions),
           fmt::format("{}, {} done",
                       counted(std::ranges::count_if(study.sessions, &SessionFacts::counts),
@@ -125,6 +151,9 @@ PlannedStudy planned_study(const fs::path& plan) {
                      exclusion_reasons(folder)};
   for (SessionFacts& each : study.sessions) {
     each.sha256 = sha256_of_file(each.file);
+  }
+  if (!study.plan.ends_early.empty()) {
+    study.ended = ended_after(folder);
   }
   return study;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,7 @@ struct PlannedStudy {
   PlanLog log;
   std::vector<SessionFacts> sessions;
   std::map<std::string, std::vector<std::string>> reasons;  // of exclusions, by participant
+  std::optional<int> ended{};  // participants after whom a stated rule ended the study
 };
 
 /// @param plan  file in the folder of its sessions. @throws InputError if it cannot be read

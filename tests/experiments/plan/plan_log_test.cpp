@@ -35,6 +35,7 @@ StudyPlan a_plan() {
   plan.hypotheses = {"Grüße are \"felt\""};
   plan.exclusions = {"left early"};
   plan.stopping = "when it is over";
+  plan.ends_early = "group sequential";
   plan.looks = {6, 9};
   plan.retain_until = "2036-12-31";
   return plan;
