@@ -135,28 +135,37 @@ void add_table(Document& document, const FindingTable& table, bool folded) {
   text.write(document, folded ? table.title : "");
 }
 
+static void add_list(Document& part, const FindingList& list,
+                     const std::vector<Drawing>& drawings) {
+  part.heading(list.heading);
+  if (const std::vector<std::string> lines = lines_of(list.findings); !lines.empty()) {
+    part.points(lines);
+  }
+  for (const FindingTable& table : list.tables) {
+    part.subheading(table.title);
+    add_table(part, table, false);
+  }
+  for (const Figure& figure : list.figures) {
+    const auto named = [&](const Drawing& d) { return d.figure.name == figure.name; };
+    part.picture(*std::ranges::find_if(drawings, named));
+  }
+}
+
 void add_findings(Document& document, const std::vector<FindingList>& lists,
                   const std::vector<Drawing>& drawings) {
-  Document part;
+  Document opening, part;
   for (const FindingList& list : lists) {
-    part.heading(list.heading);
-    if (const std::vector<std::string> lines = lines_of(list.findings); !lines.empty()) {
-      part.points(lines);
-    }
-    for (const FindingTable& table : list.tables) {
-      part.subheading(table.title);
-      add_table(part, table, false);
-    }
-    for (const Figure& figure : list.figures) {
-      const auto named = [&](const Drawing& d) { return d.figure.name == figure.name; };
-      part.picture(*std::ranges::find_if(drawings, named));
-    }
+    add_list(list.opens ? opening : part, list, drawings);
   }
   const auto methods = std::ranges::find_if(document.blocks, [](const Document::Block& block) {
     const auto* heading = std::get_if<Document::Heading>(&block);
     return heading != nullptr && heading->level == 2 && heading->text.starts_with("Methods");
   });
   document.blocks.insert(methods, part.blocks.begin(), part.blocks.end());
+  const auto first = std::ranges::find_if_not(document.blocks, [](const Document::Block& block) {
+    return std::holds_alternative<Document::Alarm>(block);
+  });
+  document.blocks.insert(first, opening.blocks.begin(), opening.blocks.end());
 }
 
 std::string findings_csv(const std::vector<FindingTable>& tables,

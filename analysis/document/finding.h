@@ -76,6 +76,7 @@ struct FindingList {
   FindingRow findings{};
   std::vector<FindingTable> tables{};
   std::vector<Figure> figures{};
+  bool opens{false};  // stands before everything else in the report
 };
 
 /// "Way of the hand: 0.3120 [0.2900, 0.3340] m (n = 12)".
@@ -88,7 +89,8 @@ std::vector<std::string> lines_of(const FindingList& list);
 /// The table of those findings that have a title. Columns that are empty in every row are left out.
 /// @param folded  under the table's title
 void add_table(Document& document, const FindingTable& table, bool folded);
-/// Heading, lines, tables, and pictures of the figures of lists, before the document's methods.
+/// Heading, lines, tables, and pictures of the figures of lists, before the document's methods; of
+/// a list that opens the report at its beginning, after its alarms.
 /// @param drawings  those of the figures are among them, by name; they outlive the document
 void add_findings(Document& document, const std::vector<FindingList>& lists,
                   const std::vector<Drawing>& drawings);

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace haptrial::analysis {
 
 /// SHA-256 of some bytes in 64 hexadecimal digits, as sha256sum prints it.
-std::string sha256(std::string_view bytes);
+std::string sha256_of(std::string_view bytes);
+/// The same of a file. @throws InputError naming a file that cannot be read
+std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace haptrial::analysis

@@ -52,6 +52,7 @@ void add_texts(CLI::App& app, int& status);
 void add_doctor(CLI::App& app, int& status);
 void add_keys(CLI::App& app, int& status);
 void add_show(CLI::App& app, int& status);
+void add_plan(CLI::App& app, int& status);
 void add_studio(CLI::App& app, int& status);
 
 // sessions: to run them, look into them, mend and show them; definitions and devices

@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/exception_words.h"
 #include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/session_controller.h"
+#include "experiments/plan/plan_log.h"
 #include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/devices.h"
 #include "experiments/runner/earlier_run.h"
@@ -628,23 +630,39 @@ void Session::give_up() noexcept {
   }
 }
 
+/// The session is done whether or not its plan's log can be written.
+void note_closed(const std::filesystem::path& file) {
+  try {
+    note_closed_session(file);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "warning: the plan's log does not have this session: {}\n",
+               sentence_of(error));
+  }
+}
+
 }  // namespace
 
 SessionSummary run_session(const SessionRequest& request) {
   if (request.resume && close_what_had_ended(request)) {
     SessionSummary closed;
+    note_closed(request.file);
     closed.notices.push_back("the session had ended before: its file only had to be closed");
     return closed;
   }
   auto session = std::make_unique<Session>(request);
+  SessionSummary done;
   try {
-    return session->run();
+    done = session->run();
   } catch (...) {
     if (session->hangs()) {
       static_cast<void>(session.release());  // its servo thread may yet come back to it
     }
     throw;
   }
+  if (!done.stopped) {
+    note_closed(request.file);
+  }
+  return done;
 }
 
 }  // namespace haptrial::experiments

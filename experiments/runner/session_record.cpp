@@ -6,6 +6,7 @@
 
 #include "core/record/read/definition_versions.h"
 #include "core/record/rows/taken_back_row.h"
+#include "experiments/plan/plan_log.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/session_opening.h"
 
@@ -78,6 +79,7 @@ void SessionRecord::open(const std::string& text) {
     tell_what_was_kept();
   }
   event(before_.rows > 0 ? "session_resumed" : "session_start", text);
+  note_plan();
   writer_.note_counts({0, 0, 0});
   keep_definition();
   if (const std::string state = markers_.sound_state(); !state.empty()) {
@@ -89,6 +91,19 @@ void SessionRecord::open(const std::string& text) {
   if (before_.rows > 0) {
     writer_.sync();  // all of it can be read again from here on
   }
+}
+
+/// Keeps which plan the session belongs to, and whether it was begun for its first trials alone.
+void SessionRecord::note_plan() {
+  std::string text = plan_event(request_.file.parent_path());
+  if (text.empty()) {
+    return;
+  }
+  const int trials = trials_.extent(request_.max_trials).trials;
+  if (trials < trials_.extent(0).trials) {
+    text += fmt::format(" first_trials={}", trials);
+  }
+  event(kPlanEvent, text);
 }
 
 /// Tells whoever started the session again what was kept, before anything else happens.

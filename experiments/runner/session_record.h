@@ -121,6 +121,7 @@ class SessionRecord final : public protocols::SessionFile {
   void keep_markers(bool last);
   void add_pass(record::PassStatus status, std::uint64_t first_sample, std::uint64_t last_sample);
   void tell_notices();
+  void note_plan();
   void tell_what_was_kept();
   record::TimingSummary counts() const;
   void write_timing(record::RunState state);

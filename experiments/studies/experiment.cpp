@@ -14,6 +14,7 @@
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
 #include "experiments/studies/mark_rule.h"
+#include "experiments/studies/plan_table.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/button_uses.h"
@@ -40,6 +41,7 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
   experiment.definition = experiment.study->protocol().read(root, file_name, folder);
   experiment.study->read_analysis(root, folder != nullptr);
   read_mark_rule(root);
+  read_plan_table(root);
   protocols::check_markers(root, *experiment.definition);
   if (root.has("power")) {
     read_power_plan(root);

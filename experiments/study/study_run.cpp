@@ -15,6 +15,7 @@
 #include "core/base/parallel.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
+#include "experiments/plan/study_plan.h"
 #include "experiments/runner/session.h"
 #include "experiments/runner/version.h"
 #include "experiments/study/dry_parts.h"
@@ -184,6 +185,13 @@ class SessionWorkers {
   std::exception_ptr failure_;
 };
 
+/// The plan of the sessions, before the first of them.
+void take_plan(const DryRun& dry_run) {
+  if (!dry_run.definition.empty()) {
+    adopt_plan(dry_run.definition, dry_run.folder);
+  }
+}
+
 /// Everything on which the sessions of a dry run depend.
 std::string facts_of(const protocols::Definition& definition, const DryRun& dry_run) {
   const std::string language =
@@ -208,9 +216,11 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   const double ticks_each = definition.rate * definition.longest(trials);
   if (dry_run.parts) {
     DryParts parts(dry_run.folder, facts_of(definition, dry_run));
+    take_plan(dry_run);
     return SessionWorkers(first, ticks_each, dry_run, &parts).run();
   }
   OutputFolder folder(dry_run.folder);
+  take_plan(dry_run);
   if (dry_run.taught) {
     fs::create_directory(dry_run.folder / kTeaching);
   }

@@ -18,8 +18,9 @@ struct DryRun {
   int max_trials{0};  // of each session; 0: all
   int session{0};     // of each participant; 0: all of the definition, in their order
   std::optional<protocols::TutorChoice> tutor;  // see SessionRequest
-  bool taught{false};            // each participant by a second one over a simulated network
-  std::filesystem::path folder;  // created; one session file per participant
+  bool taught{false};                // each participant by a second one over a simulated network
+  std::filesystem::path folder;      // created; one session file per participant
+  std::filesystem::path definition;  // file, whose plan is copied there; empty: it has none
   /// The folder is the state: finished sessions stay and are not run again. Without frames, tutor
   /// and teachers.
   bool parts{false};

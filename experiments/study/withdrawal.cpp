@@ -2,8 +2,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <pwd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -13,11 +11,13 @@
 #include <set>
 #include <sstream>
 
+#include "analysis/files/sha256.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/whole_file.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/plan/plan_log.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -30,6 +30,11 @@ bool is_session_file(const fs::path& file) {
   constexpr std::array kEndings{".h5", ".h5.partial", ".h5.copying"};
   const std::string name = file.filename().string();
   return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); });
+}
+
+/// A plan and its log, which name nobody and are never changed.
+bool is_plan(const fs::path& file) {
+  return file.filename().string().find(".plan.") != std::string::npos;
 }
 
 /// Kinds of files that commands make from sessions.
@@ -100,7 +105,8 @@ void sort_others(const std::vector<fs::path>& files, const std::string& subject,
                  Withdrawal& found) {
   std::vector<fs::path> unnamed;
   for (const fs::path& file : files) {
-    if (is_session_file(file) || file.filename() == "reasons.csv" || file.filename() == kList) {
+    if (is_session_file(file) || file.filename() == "reasons.csv" || file.filename() == kList ||
+        is_plan(file)) {
       continue;
     }
     if (!names(file, subject)) {
@@ -149,9 +155,16 @@ void remove_empty(const std::vector<fs::path>& deleted, const std::vector<fs::pa
   }
 }
 
-std::string login() {
-  const passwd* entry = ::getpwuid(::getuid());
-  return entry != nullptr ? entry->pw_name : std::to_string(::getuid());
+/// Digests of the participant's session files in a folder, also of excluded ones.
+std::vector<std::string> digests_in(const fs::path& folder, const std::vector<fs::path>& sessions) {
+  std::vector<std::string> digests;
+  for (const fs::path& file : sessions) {
+    const fs::path parent = file.parent_path();
+    if (file.extension() == ".h5" && (parent == folder || parent == folder / "excluded")) {
+      digests.push_back(analysis::sha256_of_file(file));
+    }
+  }
+  return digests;
 }
 
 }  // namespace
@@ -181,6 +194,10 @@ Withdrawal find_withdrawal(const std::vector<fs::path>& folders, const std::stri
 
 void withdraw(const Withdrawal& found, const std::vector<fs::path>& folders,
               const std::string& subject) {
+  std::vector<std::vector<std::string>> digests;
+  for (const fs::path& folder : folders) {
+    digests.push_back(digests_in(folder, found.sessions));
+  }
   for (const auto* list : {&found.sessions, &found.made}) {
     for (const fs::path& file : *list) {
       std::error_code error;
@@ -192,6 +209,9 @@ void withdraw(const Withdrawal& found, const std::vector<fs::path>& folders,
   for (const fs::path& folder : folders) {
     remove_reason(folder / "excluded" / "reasons.csv", subject);
   }
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    note_files(folders[i], kWithdrawn, digests[i]);
+  }
   remove_empty(found.sessions, folders);
   remove_empty(found.made, folders);
   const fs::path list = folders.front() / kList;
@@ -199,7 +219,7 @@ void withdraw(const Withdrawal& found, const std::vector<fs::path>& folders,
       std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
   append_text(list, fmt::format("{}{:%FT%TZ},{},{},{}\n",
                                 fs::exists(list) ? "" : "time,login,sessions,made_from_sessions\n",
-                                now, login(), found.sessions.size(), found.made.size()));
+                                now, login_name(), found.sessions.size(), found.made.size()));
 }
 
 }  // namespace haptrial::experiments

@@ -92,6 +92,9 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
     Table room = root.table("room");
     room_schema().read(room);
   }
+  if (root.has("plan")) {
+    root.leave("plan");  // of who writes the study's preregistration
+  }
   definition.text = root.source();
   definition.document = std::make_shared<Table>(root.unread());
   definition.file_name = std::filesystem::path(file_name).filename().string();

@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view kVirtualDevice = "virtual";
 
 /// Keys of every study that may differ: participants' texts and display, and how many are to come;
-/// targets of markers and sounds; questions to the data.
+/// targets of markers and sounds; questions to the data, and what its plan states.
 DefinitionRules of_every_study() {
   DefinitionRules rules;
   rules.free = {"texts",
@@ -29,6 +29,7 @@ DefinitionRules of_every_study() {
                 "markers.pulse",
                 "sounds.device",
                 "power",
+                "plan",
                 "design.participants",
                 "analysis.planned",
                 "analysis.reference"};

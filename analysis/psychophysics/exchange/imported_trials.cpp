@@ -219,7 +219,7 @@ void read_table(const fs::path& file, ImportedStudy& study) {
   const std::string text = file_text(file);
   const CsvTable table = CsvTable::parse(text, file.string());
   const std::size_t source = study.sources.size();
-  study.sources.push_back({file.filename().string(), sha256(text)});
+  study.sources.push_back({file.filename().string(), sha256_of(text)});
   const TableRows rows(table, study.columns, file.stem().string());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!rows.passes_filters(row) || !rows.is_trial(row)) {

@@ -12,6 +12,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/plan/audit/stated_and_done.h"
 #include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
@@ -63,6 +64,9 @@ int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads, 
   request.folder = options.folder;
   request.files = with_recorded_kinds(
       options.folder, [&] { return study_files(options.folder, pilots, protocol_of); });
+  if (pilots == Pilots::kLeftOut) {
+    note_analysis(options.folder, options.planned, options.reference);
+  }
   request.out = report_folder(options.folder, pilots);
   request.pilots = pilots;
   request.threads = threads;
@@ -144,6 +148,7 @@ void add_analyze(CLI::App& app, int& status) {
       app, "analyze", "Score and test the sessions of a folder and write the report",
       "haptrial analyze out/force_training-001",
       {"scores.csv, statistics.json, figures and report.html in DIR", "guide-analyst.md"});
+  add_stated_and_done();
   auto& o = options_of<AnalyzeOptions>(*sub, status, analyze);
   sub->add_option("DIR", o.folder, "Folder of session files (.h5)");
   sub->add_flag("--pilots", o.pilots,

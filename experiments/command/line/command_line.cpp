@@ -56,6 +56,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_replay(app, status);
   add_validate(app, status);
   add_show(app, status);
+  add_plan(app, status);
   add_keys(app, status);
   add_power(app, status);
   add_devices(app, status);

@@ -143,6 +143,7 @@ int dry_run(const DryRunOptions& options) {
   DryRun dry;
   dry.participants =
       checked_number("--subjects", options.subjects.value_or(setup.design.participants), 1, 10000);
+  dry.definition = options.definition;
   dry.seed = checked_seed(options.seed);
   dry.jobs = checked_jobs(options.jobs);
   const std::optional<double> between = checked_setup(options.setup);

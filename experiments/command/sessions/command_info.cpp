@@ -106,7 +106,8 @@ void print_progress(const record::SessionReader& reader, const record::Integrity
 
 /// Whether a kind of event is one that a person did or has to know; the rest is in /events.
 bool is_told(const std::string& kind) {
-  constexpr std::array<std::string_view, 18> kTold{record::kImportedEvent,
+  constexpr std::array<std::string_view, 19> kTold{record::kImportedEvent,
+                                                   "plan",
                                                    "consent_declined",
                                                    "consent_by_experimenter",
                                                    "repaired",

@@ -14,6 +14,7 @@
 #include "experiments/command/sessions/exclude.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/plan/study_plan.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
 #include "experiments/study/session_length.h"
@@ -143,6 +144,16 @@ void print_to_come(const Roster& roster, const RosterOptions& options,
   }
 }
 
+/// Says if the data has been kept for as long as the plan beside it states.
+void print_retention(const fs::path& folder) {
+  const auto plan = plan_in(folder);
+  const std::string over =
+      plan ? retention_sentence(read_study_plan(*plan), utc_now().substr(0, 10)) : "";
+  if (!over.empty()) {
+    fmt::print("{}\n", over);
+  }
+}
+
 std::string json_of(const Roster& roster) {
   nlohmann::ordered_json json;
   json["sessions"] = roster.sessions;
@@ -233,6 +244,7 @@ int roster(const RosterOptions& options) {
   const Roster roster = make_roster(request);
   print_roster(roster);
   print_to_come(roster, options, *experiment.definition);
+  print_retention(options.folder);
   write_new(options.json, json_of(roster));
   write_new(options.csv, csv_of(roster));
   return 0;

@@ -29,6 +29,7 @@
 #include "experiments/control/fatal_stop_handler.h"
 #include "experiments/control/keyboard.h"
 #include "experiments/control/signals.h"
+#include "experiments/plan/study_plan.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/backup.h"
@@ -245,6 +246,7 @@ RunEnd run_command(const RunOptions& asked) {
     throw InputError(
         fmt::format("{}: the folder cannot be created ({})", options.out, error.message()));
   }
+  adopt_plan(options.definition, options.out);
   choose_devices(options, request);
   request.auxiliary_pages = auxiliary_pages;
   request.window = options.window;

@@ -5,8 +5,10 @@
 #include <algorithm>
 
 #include "analysis/files/delimited.h"
+#include "analysis/files/sha256.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "experiments/plan/plan_log.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -50,9 +52,12 @@ void exclude(const Roster& roster, const fs::path& folder, const std::string& su
   }
   fs::create_directories(excluded);
   add_reason(excluded / "reasons.csv", subject, reason);
+  std::vector<std::string> digests;
   for (const RosterSession& session : person->sessions) {
     fs::rename(folder / session.file, excluded / session.file);
+    digests.push_back(analysis::sha256_of_file(excluded / session.file));
   }
+  note_files(folder, kExcluded, digests);
 }
 
 }  // namespace haptrial::experiments

@@ -14,6 +14,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/studies/mark_rule.h"
+#include "experiments/studies/plan_table.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
 
@@ -183,6 +184,7 @@ std::vector<KnownKey> keys_of(const Study& study) {
     }
     study.read_analysis(root, true);
     read_mark_rule(root);
+    read_plan_table(root);
     if (root.has("power")) {
       read_power_plan(root);
     }

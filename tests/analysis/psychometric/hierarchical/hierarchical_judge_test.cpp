@@ -48,7 +48,7 @@ void expect_interval(const Posterior& p, double median, double low, double high)
 TEST(HierarchicalJudgeTest, GivesTheAnswersOfJagsForSpeedAndVibration) {
   const auto path = test::shared_data("psychometric/vibro_exp3.csv");
   if (!path) {
-    GTEST_SKIP() << "../shared/data/psychometric/vibro_exp3.csv is not there";
+    GTEST_SKIP() << "neither HAPTRIAL_DATA nor ../shared/data holds psychometric/vibro_exp3.csv";
   }
   std::ifstream file(*path);
   LikelihoodOptions options{.function = psychometric::parameters_named("norm"),

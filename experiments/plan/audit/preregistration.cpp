@@ -1,0 +1,213 @@
+#include "experiments/plan/audit/preregistration.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "analysis/files/sha256.h"
+#include "analysis/statistics/design/sequential_plan.h"
+#include "analysis/statistics/tests/power.h"
+#include "core/base/counted.h"
+#include "core/base/definition/schema.h"
+#include "core/base/definition/table.h"
+#include "core/base/error.h"
+#include "core/base/file_text.h"
+#include "core/base/whole_file.h"
+#include "experiments/runner/version.h"
+#include "experiments/studies/plan_table.h"
+#include "protocols/definition/groups.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Planned tests as the definition writes them, under the key that its protocol has.
+std::vector<std::string> planned_tests(const protocols::Definition& definition) {
+  Table root = definition.root();
+  if (!root.has("analysis")) {
+    return {};
+  }
+  Table analysis = root.table("analysis");
+  for (const char* key : {"planned", "tests"}) {
+    if (analysis.has(key)) {
+      return analysis.texts(key);
+    }
+  }
+  return {};
+}
+
+/// The rule by which the study may end early, and the looks that it states.
+void add_early_end(const protocols::Definition& definition, StudyPlan& plan) {
+  Table root = definition.root();
+  if (!root.has("analysis") || !root.table("analysis").has("sequential")) {
+    return;
+  }
+  Table table = root.table("analysis").table("sequential");
+  const auto rule = analysis::sequential_schema().read(table);
+  const bool at_looks = rule.rule == analysis::StopRule::kGroupSequential;
+  plan.ends_early = at_looks ? "group sequential" : kAtAnyTime;
+  for (const double look : rule.looks) {
+    plan.looks.push_back(static_cast<int>(look));
+  }
+  plan.stopping += fmt::format(
+      "; or earlier, as soon as the rule \"{}\" of analysis.sequential decides", plan.ends_early);
+}
+
+/// When the data is analysed before the end.
+std::string looks_of(const StudyPlan& plan) {
+  if (plan.ends_early == kAtAnyTime) {
+    return "the data may be analysed after every participant";
+  }
+  return plan.looks.empty() ? "the data is analysed at the end alone"
+                            : fmt::format("the data is also analysed with {} participants",
+                                          fmt::join(plan.looks, ", "));
+}
+
+std::vector<PlannedGroup> planned_groups(const protocols::Definition& definition) {
+  const auto groups = protocols::study_groups(definition.text, definition.file_name);
+  if (groups.size() < 2) {
+    const int stated = groups.empty() ? 0 : groups.front().participants;
+    return {{"", stated > 0 ? stated : definition.design.participants}};
+  }
+  std::vector<PlannedGroup> planned;
+  for (const protocols::StudyGroup& group : groups) {
+    planned.push_back({group.name, group.participants});
+  }
+  return planned;
+}
+
+/// Power of the t test that [plan] states; of two samples n is the size of the smaller half.
+std::vector<std::string> power_of_t(const PlanTable& table, int participants) {
+  if (!table.effect) {
+    return {};
+  }
+  const bool two = table.design == PlannedDesign::kTwoSample;
+  const analysis::TPlan plan{two ? analysis::TDesign::kTwoSample
+                             : table.design == PlannedDesign::kPaired
+                                 ? analysis::TDesign::kPaired
+                                 : analysis::TDesign::kOneSample,
+                             table.alpha, false};
+  const int n = two ? participants / 2 : participants;
+  const auto power = analysis::t_power(plan, n, std::abs(*table.effect));
+  return {
+      fmt::format("a two-tailed {} t test at {:g} with {} participants{} finds a standardized "
+                  "effect of {:g} with {}",
+                  two                                      ? "two-sample"
+                  : table.design == PlannedDesign::kPaired ? "paired"
+                                                           : "one-sample",
+                  table.alpha, n, two ? " in each group" : "", *table.effect,
+                  power ? fmt::format("a power of {:.3f}", *power)
+                        : "no known power, because " + power.because())};
+}
+
+std::vector<std::string> or_none(const std::vector<std::string>& texts, const char* none) {
+  return texts.empty() ? std::vector<std::string>{none} : texts;
+}
+
+std::string sample_of(const StudyPlan& plan) {
+  std::string groups;
+  for (const PlannedGroup& group : plan.groups) {
+    groups += group.name.empty() ? ""
+                                 : fmt::format("{}{} {}", groups.empty() ? ": " : ", ", group.name,
+                                               group.participants);
+  }
+  return fmt::format("{}{}; {} each", counted(plan.participants(), "participant", "participants"),
+                     groups, counted(plan.sessions, "session", "sessions"));
+}
+
+}  // namespace
+
+StudyPlan make_plan(const Experiment& experiment, const fs::path& simulation) {
+  const protocols::Definition& d = *experiment.definition;
+  Table root = d.root();
+  const PlanTable table = read_plan_table(root);
+  StudyPlan plan;
+  plan.name = d.name;
+  plan.made_utc = utc_now();
+  plan.login = login_name();
+  plan.program = fmt::format("haptrial {} ({})", program_version(), program_commit());
+  plan.definition_name = d.file_name;
+  plan.definition = d.text;
+  plan.definition_sha256 = analysis::sha256_of(d.text);
+  plan.scripts_sha256 = d.scripts().empty() ? "" : analysis::sha256_of(d.scripts());
+  plan.groups = planned_groups(d);
+  plan.sessions = d.sessions();
+  plan.hypotheses = table.hypotheses;
+  plan.tests = planned_tests(d);
+  plan.exclusions = table.exclusions;
+  plan.stopping =
+      table.stopping.empty()
+          ? fmt::format("when {} had every session",
+                        counted(plan.participants(), "participant has", "participants have"))
+          : table.stopping;
+  for (const double look : table.looks) {
+    plan.looks.push_back(static_cast<int>(look));
+  }
+  add_early_end(d, plan);
+  plan.retain_until = table.retain_until;
+  plan.power = simulation.empty() ? power_of_t(table, plan.participants())
+                                  : simulated_power(simulation, plan.name, plan.participants());
+  return plan;
+}
+
+analysis::Document preregistration(const StudyPlan& plan,
+                                   const std::vector<std::string>& description) {
+  analysis::Document page;
+  page.title = "Plan of " + plan.name;
+  page.subtitle = fmt::format("Made at {} by {} with {}, before the sessions that name it.",
+                              plan.made_utc, plan.login, plan.program);
+  page.heading("Hypotheses");
+  page.points(or_none(plan.hypotheses, "none is stated: what the tests find is exploratory"));
+  page.heading("Planned tests");
+  page.points(or_none(plan.tests, "those that the analysis of the definition makes by itself"));
+  page.heading("Participants and their number");
+  page.points({sample_of(plan)});
+  page.points(or_none(plan.power, "the power is not stated"));
+  page.heading("End and analyses before it");
+  page.points({"data collection ends: " + plan.stopping, looks_of(plan)});
+  page.heading("Exclusions");
+  page.points(or_none(plan.exclusions, "nobody is excluded"));
+  page.paragraph(
+      "Trials that the experimenter marks are left out only if analysis.exclude_marked of the "
+      "definition says so.");
+  page.heading("Procedure");
+  page.points(description);
+  page.heading("Data");
+  page.points({plan.retain_until.empty() ? std::string("how long the data is kept is not stated")
+                                         : "the data is kept until " + plan.retain_until});
+  page.heading("Digests");
+  page.table({"of", "SHA-256"},
+             {{"this plan, as a file", plan.sha256},
+              {"the definition", plan.definition_sha256},
+              {"scripts beside it", plan.scripts_sha256.empty() ? "none" : plan.scripts_sha256}});
+  page.heading("Definition");
+  page.source(plan.definition_name, plan.definition);
+  return page;
+}
+
+bool write_plan(const StudyPlan& plan, const fs::path& file,
+                const std::vector<std::string>& description) {
+  if (fs::exists(file)) {
+    const StudyPlan there = read_study_plan(file);
+    const std::vector<std::string> changed = plan_differences(there, plan);
+    if (!changed.empty()) {
+      throw InputError(fmt::format(
+          "{}: is another plan, made at {}, and is never changed: {}; name another folder with "
+          "--out",
+          file.string(), there.made_utc, fmt::join(changed, "; ")));
+    }
+    return false;
+  }
+  WholeFile whole(file);
+  whole.write(plan_json(plan));
+  whole.finish();
+  const analysis::Document page = preregistration(read_study_plan(file), description);
+  fs::path document = file;
+  write_whole(document.replace_extension(".html"), analysis::to_html(page));
+  write_whole(document.replace_extension(".md"), analysis::to_markdown(page));
+  return true;
+}
+
+}  // namespace haptrial::experiments
