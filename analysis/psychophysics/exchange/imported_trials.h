@@ -52,7 +52,7 @@ struct ImportedStudy {
 
 /// Reads tables of one study. A row without a value in all of the columns that say what was
 /// presented or answered is no trial, and is counted.
-/// @param settings  of columns(), factors and filters; roles that are stated replace guesses
+/// @param columns  with factors and filters; roles that are stated replace guesses
 /// @throws InputError  FILE:LINE: COLUMN is 'FOUND'; allowed: ALLOWED
 ///   for a field that cannot be read; also for a column that is absent, a time without a unit, a
 ///   participant's session that two tables have, and no trials at all
