@@ -52,6 +52,7 @@ class BoardSessionTest : public testing::Test {
     test::write_text(folder_ / "study.toml",
                      text +
                          "[envelope]\nmax_force = 3.0\nworkspace_radius = 0.05\nmax_speed = 2.0\n"
+                         "holding_force = 2.0\n"
                          "max_jump = 0.1\n" +
                          board + "patience = 1.0\nstart_time = 60.0\n");
   }
