@@ -10,12 +10,12 @@ constexpr double kLeastVariance = 1e-12;
 
 double TEllipse::log_density(const Eigen::VectorXd& at) const {
   constexpr double kAll = static_cast<double>(kTailDegrees);
-  const double distance = (factor_.matrixU() * (at - centre_)).squaredNorm();
+  const double distance = (root_.triangularView<Eigen::Upper>() * (at - centre_)).squaredNorm();
   return -0.5 * (kAll + static_cast<double>(at.size())) * std::log1p(distance / kAll);
 }
 
 Eigen::VectorXd TEllipse::partner(const Eigen::VectorXd& at, RandomStream& random) const {
-  const double distance = (factor_.matrixU() * (at - centre_)).squaredNorm();
+  const double distance = (root_.triangularView<Eigen::Upper>() * (at - centre_)).squaredNorm();
   double squares = 0.0;  // chi-square: the t distribution is a mixture of normal ones
   for (Eigen::Index i = 0; i < at.size() + kTailDegrees; ++i) {
     const double z = random.normal();
@@ -25,7 +25,7 @@ Eigen::VectorXd TEllipse::partner(const Eigen::VectorXd& at, RandomStream& rando
   for (double& z : noise) {
     z = random.normal() * std::sqrt((static_cast<double>(kTailDegrees) + distance) / squares);
   }
-  return factor_.matrixU().solve(noise);
+  return root_.triangularView<Eigen::Upper>().solve(noise);
 }
 
 void EllipseLearner::add(const Eigen::VectorXd& draw) {

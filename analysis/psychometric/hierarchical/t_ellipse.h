@@ -18,7 +18,7 @@ class TEllipse {
   TEllipse() = default;
   /// @param precision  inverse of the scale matrix, positive definite
   TEllipse(Eigen::VectorXd centre, const Eigen::MatrixXd& precision)
-      : centre_(std::move(centre)), factor_(precision) {}
+      : centre_(std::move(centre)), root_(precision.llt().matrixU()) {}
 
   double log_density(const Eigen::VectorXd& at) const;  // up to a constant
 
@@ -34,7 +34,7 @@ class TEllipse {
   Eigen::VectorXd partner(const Eigen::VectorXd& at, RandomStream& random) const;
 
   Eigen::VectorXd centre_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXd root_;  // upper triangle U: the precision is U' U
 };
 
 /// Learns such a distribution from draws.
