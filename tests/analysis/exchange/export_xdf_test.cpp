@@ -17,6 +17,7 @@
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
 #include "tests/analysis/exchange/small_session.h"
+#include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::exchange::export_xdf_test {
@@ -30,6 +31,11 @@ void ignore(std::uint64_t) {}
 
 class ExportXdfTest : public testing::Test {
  protected:
+  void SetUp() override {
+    if (test::kAddressSanitizer) {
+      GTEST_SKIP() << "libxdf reads beyond the end of its own texts, which ends a sanitizer's run";
+    }
+  }
   void write(const std::string& name, const SmallSession& session) {
     write_session(folder_ / name, session);
     files_.push_back(folder_ / name);
