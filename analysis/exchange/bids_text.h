@@ -46,7 +46,7 @@ std::string events_table(const Session& session, const record::SessionReader& re
 std::string events_sidecar(const DataSetOptions& options, const std::vector<ColumnDoc>& columns);
 /// The description of a table's columns as JSON.
 std::string sidecar_of(const std::vector<ColumnDoc>& docs);
-/// What every recording's sidecar says of the task, as JSON.
+/// The description of the task that every recording's sidecar has, as JSON.
 std::string described_task(const Session& session);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
 /// The sidecar of a channel's recording; its samples have the times of their columns.

@@ -12,7 +12,7 @@
 
 namespace haptrial::exchange {
 
-/// What stands in a data set with virtual participants.
+/// The words that a data set with virtual participants has.
 inline constexpr const char* kSimulatedNotice =
     "SIMULATED PARTICIPANTS: these data come from virtual subjects. They say how the experiment "
     "and "

@@ -8,7 +8,7 @@ namespace haptrial::analysis {
 
 /// SHA-256 of some bytes in 64 hexadecimal digits, as sha256sum prints it.
 std::string sha256_of(std::string_view bytes);
-/// The same of a file. @throws InputError naming a file that cannot be read
+/// SHA-256 of a file's bytes, likewise. @throws InputError naming a file that cannot be read
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace haptrial::analysis

@@ -12,7 +12,7 @@ namespace haptrial::experiments {
 // are only added. Each has the digest of the line before and of itself, the first that of the
 // plan, so that a line that is changed, taken out or put in breaks the chain behind it.
 
-/// What was done, a word of a line.
+/// The words for what was done, one in each line.
 inline constexpr const char* kSessionClosed = "session";  // begun=TIME sha256=DIGEST
 inline constexpr const char* kAnalysed = "analysis";      // people=7 tests=definition
 inline constexpr const char* kExcluded = "exclusion";     // sha256=DIGEST ...

@@ -334,6 +334,12 @@ bool RosterPerson::never_took_part() const {
                                    [](const RosterSession& each) { return each.trials == 0; });
 }
 
-Roster make_roster(const RosterRequest& request) { return RosterMaker(request).make(); }
+Roster make_roster(const RosterRequest& request) {
+  if (std::filesystem::exists(request.folder) && !std::filesystem::is_directory(request.folder)) {
+    throw InputError(request.folder.string() +
+                     ": not a folder; give the folder of the session files");
+  }
+  return RosterMaker(request).make();
+}
 
 }  // namespace haptrial::experiments

@@ -92,7 +92,7 @@ struct RosterRequest {
 /// (groups.h). A new participant gets the lowest free number of the group that has the smallest
 /// share of its participants; the number of a participant who was excluded or declined before
 /// any trial is free again, and its next holder has another identifier.
-/// @throws InputError for a file of another study or seed; names it
+/// @throws InputError for a file of another study or seed, and a folder that is none; names it
 Roster make_roster(const RosterRequest& request);
 
 }  // namespace haptrial::experiments

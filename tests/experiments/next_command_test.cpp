@@ -60,9 +60,22 @@ TEST_F(NextCommandTest, BetweenLooksItGoesOn) {
   set("sequential.rule", "'\"group sequential\"'");
   set("sequential.looks", "'[4.0, 12.0]'");
   rehearse(3);
-  EXPECT_THAT(next().output, testing::AllOf(HasSubstr("not looked at yet; go on"),
-                                            HasSubstr("at most 12 participants"),
-                                            HasSubstr("next: ")));
+  EXPECT_THAT(next().output,
+              testing::AllOf(HasSubstr("not looked at yet; go on"),
+                             HasSubstr("at most 12 participants"), HasSubstr("next: ")));
+}
+
+TEST_F(NextCommandTest, LooksThatNobodyReachesAreWarnedOf) {
+  set("sequential.rule", "'\"group sequential\"'");
+  set("sequential.looks", "'[6.0, 40.0]'");
+  EXPECT_THAT(run("validate crossmodal_congruency.toml").output,
+              HasSubstr("after 40 participants, but design.participants is 12"));
+}
+
+TEST_F(NextCommandTest, AFileIsNoFolder) {
+  const CommandResult wrong = run("next crossmodal_congruency.toml congruency.py");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.errors, HasSubstr("congruency.py: not a folder"));
 }
 
 TEST_F(NextCommandTest, AQuantityThatIsNotThereIsNamed) {

@@ -6,8 +6,8 @@
 
 namespace haptrial::analysis {
 
-/// What a participant has to say about the stimuli of a trial. The d' of each is that of an
-/// observer without bias.
+/// The question about the stimuli of a trial. The d' of each task is that of an observer without
+/// bias.
 enum class DiscriminationTask : std::uint8_t {
   kForcedChoice,   // which of m stimuli it was: forced_choice_share()
   kOddity,         // which of three differs from the two others, by their differences

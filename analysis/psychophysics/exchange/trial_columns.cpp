@@ -31,7 +31,7 @@ std::string named(const CsvTable& table, Names names) {
   return "";
 }
 
-/// What stands before an ending in the columns that have it.
+/// The names of the columns with an ending, without it.
 std::vector<std::string> stems(const CsvTable& table, std::string_view ending) {
   std::vector<std::string> found;
   for (const std::string& column : table.columns()) {

@@ -10,9 +10,9 @@ namespace haptrial::analysis::trials {
 /// Choices that each pair of items is given besides the answers, of either.
 inline constexpr double kAddedChoices = 0.5;
 
-/// What participants chose in pairs, tested between items: the worths of PairedPlan::model, and the
-/// share of the trials with an item in which it was chosen. A value is one participant's for an
-/// item under a condition. Only items that the participant met there have one.
+/// Choices in pairs, tested between items: the worths of PairedPlan::model, and the share of the
+/// trials with an item in which it was chosen. A value is one participant's for an item under a
+/// condition. Only items that the participant met there have one.
 std::vector<Quantity> paired_quantities(const TrialsData& data, const TrialsPlan& plan);
 
 }  // namespace haptrial::analysis::trials

@@ -115,6 +115,17 @@ SequentialResult sequential_result(const DesignTable& table, const PlannedTest& 
   return result;
 }
 
+std::vector<std::string> sequential_warnings(const AnalysisPlan& plan, int participants) {
+  if (!plan.sequential || plan.sequential->rule != StopRule::kGroupSequential ||
+      plan.sequential->looks.back() == participants) {
+    return {};
+  }
+  return {fmt::format(
+      "the last of analysis.sequential.looks is after {:g} participants, but design.participants "
+      "is {}: the study then ends undecided with another error, or asks for more than are planned",
+      plan.sequential->looks.back(), participants)};
+}
+
 std::string words_of(const SequentialResult& result) {
   const std::string test = text_of(result.test);
   if (result.looks.empty()) {

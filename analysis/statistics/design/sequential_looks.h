@@ -41,6 +41,9 @@ SequentialResult sequential_result(const DesignTable& table, const PlannedTest& 
                                    const SequentialPlan& plan, std::span<const std::string> order,
                                    std::size_t most);
 
+/// Sentences on looks that the planned participants do not reach, or that leave some of them out.
+std::vector<std::string> sequential_warnings(const AnalysisPlan& plan, int participants);
+
 /// "after 14 of at most 40 participants … : go on."
 std::string words_of(const SequentialResult& result);
 

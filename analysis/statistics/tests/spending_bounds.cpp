@@ -16,7 +16,7 @@ constexpr double kFarthest = 9.0;      // standard deviations that the density i
 constexpr int kSteps = 300;            // of the density; even, for Simpson's rule
 constexpr double kLeastSpent = 1e-15;  // less than this is no bound
 
-/// What is spent of a one-sided error.
+/// The part of a one-sided error that is spent by then.
 double spent(double share, double error, Spending spending) {
   if (spending == Spending::kPocock) {
     return error * std::log1p((std::numbers::e - 1.0) * share);

@@ -235,9 +235,6 @@ int roster(const RosterOptions& options) {
   if (options.seed) {
     request.seed = checked_seed(*options.seed);
   }
-  if (fs::exists(options.folder) && !fs::is_directory(options.folder)) {
-    throw InputError(options.folder + ": not a folder; give the folder of the session files");
-  }
   if (!options.exclude.empty()) {
     exclude(make_roster(request), options.folder, options.exclude, options.because);
   }

@@ -11,7 +11,7 @@
 
 namespace haptrial::experiments {
 
-/// What a session file says of itself to somebody who compares it with a plan.
+/// The facts of a session file that are compared with a plan.
 struct SessionFacts {
   std::filesystem::path file;
   std::string name;          // with "excluded/" in front if it lies there

@@ -76,7 +76,11 @@ class ForceStudy final : public Study {
   const protocols::Protocol& protocol() const override { return protocols::force_training(); }
   void read_analysis(Table& root, bool fresh) const override { read_curve_analysis(root, fresh); }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override {
-    return warnings_of(curve_analysis_of(d).scoring);
+    const CurveAnalysis curves = curve_analysis_of(d);
+    std::vector<std::string> warnings = warnings_of(curves.scoring);
+    std::ranges::move(analysis::sequential_warnings(curves.plan, d.design.participants),
+                      std::back_inserter(warnings));
+    return warnings;
   }
   std::optional<CurveAnalysis> curves(const record::SessionInfo& session) const override {
     return parse_curve_analysis(session.definition, session.definition_name);

@@ -19,7 +19,7 @@ analysis::trials::PlanDefaults plan_defaults(const protocols::TrialsDefinition& 
 /// The table [analysis] of a definition. Problems are noted.
 analysis::trials::TrialsPlan read_trials_analysis(Table& root);
 
-/// The same of a definition that was read. @throws InputError for what is wrong with the table
+/// The plan of a definition that was read. @throws InputError for what is wrong with the table
 analysis::trials::TrialsPlan plan_of(const protocols::TrialsDefinition& definition);
 
 /// Begins the procedures of a definition anew, by the names that /levels has.

@@ -192,7 +192,8 @@ class TrialsStudy final : public Study {
 
 std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {
   const trials::TrialsPlan plan = plan_of(trials_of(d));
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings =
+      analysis::sequential_warnings(plan.plan, d.design.participants);
   if (plan.level_assumed && plan.uses_level()) {
     warnings.push_back(
         fmt::format("procedures set several variables, and analysis.level names none of them; "
