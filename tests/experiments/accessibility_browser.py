@@ -38,6 +38,18 @@ def view(page, url, name):
     wait(name + " without waiting", lambda: "checking" not in page.run("return document.body.innerText"))
 
 
+# The colours of every alarm, whether or not this session has one.
+ALARMS = """
+document.getElementById('light').classList.add('bad');
+document.querySelectorAll('.force').forEach((each) => each.classList.add('near'));
+for (const id of ['aborts', 'fault', 'pilot']) {
+  const each = document.getElementById(id);
+  each.hidden = false;
+  each.insertAdjacentHTML('beforeend', each.tagName === 'UL' ? '<li>an alarm</li>' : ' an alarm');
+}
+"""
+
+
 def session(page, url, check):
     """The console of a session, and the view that began it."""
     view(page, url, "sessions/pulls.toml")
@@ -67,6 +79,8 @@ def session(page, url, check):
     page.click("start")
     state(page, "Running")
     check("the console in a trial")
+    page.run(ALARMS)
+    check("the console with every alarm")
     page.click("abort")
     check("the console's question")
     page.click("for_good")
