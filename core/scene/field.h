@@ -24,13 +24,12 @@ namespace haptrial::scene {
 /// The parameters of every kind of field; each struct's header has its law, units and bounds.
 using FieldKind =
     std::variant<ConstantParameters, RampParameters, PulseParameters, MeasuredParameters,
-                 SpringParameters,
-                 LineChannelParameters, AxisChannelParameters, PlaneParameters, SurfaceParameters,
-                 GratingParameters, TextureParameters, ViscousParameters, MatrixViscousParameters,
-                 InertiaParameters, FrictionParameters, SineVibrationParameters,
-                 NoiseVibrationParameters, TapParameters, DetentParameters, ClickParameters,
-                 MoverParameters, PathParameters, RigidObjectParameters, DeformableObjectParameters,
-                 RegisteredParameters>;
+                 SpringParameters, LineChannelParameters, AxisChannelParameters, PlaneParameters,
+                 SurfaceParameters, GratingParameters, TextureParameters, ViscousParameters,
+                 MatrixViscousParameters, InertiaParameters, FrictionParameters,
+                 SineVibrationParameters, NoiseVibrationParameters, TapParameters, DetentParameters,
+                 ClickParameters, MoverParameters, PathParameters, CurveParameters,
+                 RigidObjectParameters, DeformableObjectParameters, RegisteredParameters>;
 
 /// One field of force as a definition states it: plain data that may change between trials.
 struct Field {

@@ -40,7 +40,7 @@ struct FieldState {
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // as the field filtered it [m/s]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};   // of a surface, towards the free side
   /// Surfaces and clicks: how deep the hand is in. Spring, channel, plane: how far it is from them.
-  /// Mover: the way still to go; path: to the point that travels it. Grating, texture: the height
+  /// Mover: the way still to go; path: to the point that travels it; curve: to the curve. Grating, texture: the height
   /// under the hand. Friction: the bristle's deflection. [m]
   double depth{0.0};
   Eigen::Vector3d proxy{Eigen::Vector3d::Zero()};  // of a solid, in W [m]

@@ -36,4 +36,26 @@ Eigen::Vector3d PathGuide::force(const Felt& felt, FieldState& state) noexcept {
   return controller_.force(target, felt.hand, felt.shares);
 }
 
+CurveHold::CurveHold(const CurveParameters& p, const Setting&)
+    : curve_(std::make_unique<control::SampledCurve>(p.points)),
+      constraint_(std::make_unique<control::CurveConstraint>(*curve_, p.gains)),
+      controller_(p.gains) {}
+
+void CurveHold::adopt(const CurveHold& before) noexcept {
+  const control::CurvePlace& place = before.constraint_->place();
+  const bool same =
+      curve_->size() == before.curve_->size() && curve_->length() == before.curve_->length();
+  if (same) {
+    constraint_->start_at(place.arc);
+  } else {
+    constraint_->start(place.position);
+  }
+}
+
+Eigen::Vector3d CurveHold::force(const Felt& felt, FieldState& state) noexcept {
+  const PointState target = constraint_->follow(felt.hand);
+  state.depth = (target.position - felt.hand.position).norm();
+  return controller_.force(target, felt.hand, felt.shares);
+}
+
 }  // namespace haptrial::scene

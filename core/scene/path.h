@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
+#include "core/control/curve_constraint.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/field_state.h"
 #include "core/stimulus/spatial_trajectory.h"
@@ -33,6 +35,37 @@ class PathGuide {
 
  private:
   stimulus::SpatialTrajectory path_;
+  control::PdController controller_;
+};
+
+class CurveHold;
+
+struct CurveParameters {
+  using Law = CurveHold;
+  std::vector<Eigen::Vector3d> points{Eigen::Vector3d::Zero(),
+                                      Eigen::Vector3d::UnitX()};  // (N x 3), N >= 2 [m]
+  control::PdGains gains{900.0, 10.0};                            // k >= 0 [N/m], b >= 0 [N·s/m]
+
+  StiffnessBound bound() const { return {true, gains.stiffness, gains.damping}; }
+  FieldTraits traits() const { return {}; }
+};
+
+/// Holds the hand on a curve through `points` and leaves it free along it, at its own pace: a
+/// virtual fixture (core/control/curve_constraint.h). Passive. Source: Morris 2006, §6.2.
+class CurveHold {
+ public:
+  /// @throws std::invalid_argument naming the parameter that breaks its bound
+  CurveHold(const CurveParameters& parameters, const Setting& setting);
+
+  void start(const PointState& hand) noexcept { constraint_->start(hand.position); }
+  /// Goes on at the place of `before`, where the two curves are the same; else at the nearest one.
+  void adopt(const CurveHold& before) noexcept;
+  Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+
+ private:
+  // Behind pointers, since the constraint looks at the curve and a law may be moved.
+  std::unique_ptr<const control::SampledCurve> curve_;
+  std::unique_ptr<control::CurveConstraint> constraint_;
   control::PdController controller_;
 };
 

@@ -15,9 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-using Law = std::variant<Constant, Ramp, Pulse, Measured, Hold, Surface, Grating, Texture, Viscous,
-                         Inertia, Friction, SineVibration, NoiseVibration, Tap, Detent, Click,
-                         Mover, PathGuide, RigidObject, DeformableObject, RegisteredField>;
+using Law =
+    std::variant<Constant, Ramp, Pulse, Measured, Hold, Surface, Grating, Texture, Viscous, Inertia,
+                 Friction, SineVibration, NoiseVibration, Tap, Detent, Click, Mover, PathGuide,
+                 CurveHold, RigidObject, DeformableObject, RegisteredField>;
 
 template <class Each>
 concept SurfaceLaw = requires(Each& law) {

@@ -158,6 +158,9 @@ std::vector<SpaceLine> lines_of_field(const scene::Field& field) {
   if (const auto* path = std::get_if<scene::PathParameters>(&field.kind)) {
     return lines_of(path->points);
   }
+  if (const auto* curve = std::get_if<scene::CurveParameters>(&field.kind)) {
+    return lines_of(curve->points);
+  }
   return {};
 }
 

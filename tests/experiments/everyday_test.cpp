@@ -4,6 +4,8 @@
 
 #include "tests/experiments/everyday.h"
 
+#include <numbers>
+
 namespace haptrial::everyday_test {
 namespace {
 
@@ -24,6 +26,26 @@ TEST_F(EverydayTest, BimanualSize) {
   rehearse("bimanual_size", 2);
   expect_staircases({1, 2, 0.0, false}, 4);
   EXPECT_NEAR(reported("threshold"), 0.03, 0.004) << "nobody is biased";
+}
+
+TEST_F(EverydayTest, Duration) {
+  rehearse("duration", 3);
+  EXPECT_NEAR(reported("threshold"), 0.4, 0.02) << "equal to the standard";
+  EXPECT_NEAR(reported("difference_limen"), 0.6745 * std::numbers::sqrt2 * 0.1 * 0.4, 0.01)
+      << "each vibration is felt with a tenth";
+}
+
+/// The chord is 80 mm long, the bow 95 mm; the virtual hand gives way to both fixtures in part.
+TEST_F(EverydayTest, GuidedPath) {
+  rehearse("guided_path", 3);
+  std::map<std::string, double> path;
+  for (const json& condition : results_.at("quantities").at(0).at("conditions")) {
+    path[condition.at("condition")] = condition.at("mean").at("mean");
+  }
+  EXPECT_THAT(path, testing::SizeIs(3));
+  EXPECT_NEAR(path["free"], 0.08 - 0.004, 0.003) << "from start to the near side of the goal";
+  EXPECT_GT(path["curve"], path["free"] + 0.003);
+  EXPECT_GT(path["region"], path["free"] + 0.0003);
 }
 
 TEST_F(EverydayTest, GripStiffness) {

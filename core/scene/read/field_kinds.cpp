@@ -12,12 +12,12 @@ using control::PdGains;
 
 std::vector<KindOfField>& all_fields() {
   static std::vector<KindOfField> kinds{
-      constant_field(),     ramp_field(),     pulse_field(),    spring_field(),
-      wall_field(),         box_field(),      sphere_field(),   cylinder_field(),
-      channel_field(),      plane_field(),    viscous_field(),  matrix_viscous_field(),
-      inertia_field(),      friction_field(), grating_field(),  texture_field(),
-      vibration_field(),    tap_field(),      detent_field(),   click_field(),
-      minimum_jerk_field(), path_field(),     measured_field(),
+      constant_field(),     ramp_field(),     pulse_field(),   spring_field(),
+      wall_field(),         box_field(),      sphere_field(),  cylinder_field(),
+      channel_field(),      plane_field(),    viscous_field(), matrix_viscous_field(),
+      inertia_field(),      friction_field(), grating_field(), texture_field(),
+      vibration_field(),    tap_field(),      detent_field(),  click_field(),
+      minimum_jerk_field(), path_field(),     curve_field(),   measured_field(),
   };
   return kinds;
 }

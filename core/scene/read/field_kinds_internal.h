@@ -31,6 +31,7 @@ KindOfField detent_field();
 KindOfField click_field();
 KindOfField minimum_jerk_field();
 KindOfField path_field();
+KindOfField curve_field();
 
 inline constexpr double kNoFade = 0.0;  // of what has a course in time of its own [s]
 

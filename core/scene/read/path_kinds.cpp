@@ -50,7 +50,7 @@ std::vector<Eigen::Vector3d> read_curve(Table& table) {
   return stimulus::SpatialTrajectory(curve.shape, random).points();
 }
 
-void read_points(Table& table, PathParameters& p) {
+void read_points(Table& table, std::vector<Eigen::Vector3d>& into) {
   const bool both = table.has("points") && table.has("curve");
   if (both) {
     table.reject("curve", "stands beside points; keep one of the two");
@@ -62,20 +62,23 @@ void read_points(Table& table, PathParameters& p) {
     return each != points.front();
   });
   if (moves) {
-    p.points = std::move(points);
+    into = std::move(points);
   } else {
     table.reject("points", "go nowhere; write two places or more that are not the same");
   }
 }
 
+constexpr const char* kPoints = "Places that a path or curve goes through";
+constexpr const char* kPointsAbsent = "needed; or a curve";
+
 const Schema<PathParameters>& path_schema() {
   using P = PathParameters;
   static const auto schema =
       Schema<P>()
-          .custom("points", "Places that a path goes through",
-                  [](Table& table, const std::string&, P& p) { read_points(table, p); })
+          .custom("points", kPoints,
+                  [](Table& table, const std::string&, P& p) { read_points(table, p.points); })
           .required()
-          .otherwise("needed; or a curve")
+          .otherwise(kPointsAbsent)
           .number("duration", &P::duration, kDurationBounds, "s",
                   "Duration of a pulse or of a movement")
           .required()
@@ -83,8 +86,22 @@ const Schema<PathParameters>& path_schema() {
   return schema;
 }
 
+const Schema<CurveParameters>& curve_schema() {
+  using P = CurveParameters;
+  static const auto schema =
+      Schema<P>()
+          .custom("points", kPoints,
+                  [](Table& table, const std::string&, P& p) { read_points(table, p.points); })
+          .required()
+          .otherwise(kPointsAbsent)
+          .keys_of(&P::gains, field_gains_schema());
+  return schema;
+}
+
 }  // namespace
 
 KindOfField path_field() { return {"path", read_by<PathParameters, path_schema>}; }
+
+KindOfField curve_field() { return {"curve", read_by<CurveParameters, curve_schema>}; }
 
 }  // namespace haptrial::scene

@@ -4,15 +4,18 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace haptrial::subject {
 namespace {
 
-constexpr double kSlowTime = 0.05;     // of the slow part of a force [s]
-constexpr double kFreeAtLeast = 0.05;  // between two contacts [s]
-constexpr double kLeastWay = 1e-4;     // sd of a deflection that has a slope [m]
-constexpr double kUnit = 0.01;         // of what a sphere is fitted to: sums near 1 [m]
-constexpr double kLeastFixed = 1e-6;   // of squares in it: 10 µm
+constexpr double kSlowTime = 0.05;      // of the slow part of a force [s]
+constexpr double kFreeAtLeast = 0.05;   // between two contacts [s]
+constexpr double kPushFilter = 0.01;    // of force and acceleration for a mass [s]
+constexpr double kLeastTremble = 0.01;  // of a fluctuation that has a frequency [N]
+constexpr double kLeastWay = 1e-4;      // sd of a deflection that has a slope [m]
+constexpr double kUnit = 0.01;          // of what a sphere is fitted to: sums near 1 [m]
+constexpr double kLeastFixed = 1e-6;    // of squares in it: 10 µm
 
 }  // namespace
 
@@ -58,6 +61,31 @@ double ContactEpisodes::unevenness() const noexcept {
   return radius > 0.0 ? 0.5 * kUnit * std::sqrt(std::max(0.0, error)) / radius : 0.0;
 }
 
+void ContactEpisodes::Fluctuation::add(const Eigen::Vector3d& force, double dt) noexcept {
+  slow = age > 0.0 ? slow + std::min(1.0, dt / kSlowTime) * (force - slow) : force;
+  const Eigen::Vector3d now = force - slow;
+  age += dt;
+  if (age > 2.0 * kSlowTime) {
+    squares += dt * now.squaredNorm();
+    changes += dt * (now - fast).squaredNorm();
+  }
+  fast = now;
+  period = dt;
+}
+
+void ContactEpisodes::Pushing::add(const Eigen::Vector3d& f, const Eigen::Vector3d& v,
+                                   double dt) noexcept {
+  const double share = std::min(1.0, dt / kPushFilter);
+  if (age > 0.0) {
+    force += share * (f - force);
+    acceleration += share * ((v - before) / dt - acceleration);
+    fa += dt * force.dot(acceleration);
+    aa += dt * acceleration.squaredNorm();
+  }
+  before = v;
+  age += dt;
+}
+
 ContactEpisodes::ContactEpisodes(const SenseParameters& senses) noexcept
     : contact_force_(senses.contact_force), moving_speed_(senses.moving_speed) {}
 
@@ -83,8 +111,13 @@ void ContactEpisodes::feel(const Eigen::Vector3d& force, const PointState& hand,
   if (touching) {
     touch(force, hand.position - start_, dt);
     ball_.add(hand.position - start_, hand.velocity.norm() * dt);
+    first_touch_ = first_touch_ < 0.0 ? time_ : first_touch_;
+    last_touch_ = time_ + dt;
   }
   move(force, hand.velocity, touching, dt);
+  throughout_.add(force, dt);
+  pushing_.add(force, hand.velocity, dt);
+  time_ += dt;
 }
 
 void ContactEpisodes::touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p,
@@ -197,6 +230,24 @@ double ContactEpisodes::extent() const noexcept {
   return contacts_ == 1 ? (first_ - start_).norm() : apart_;
 }
 
+double ContactEpisodes::frequency() const noexcept {
+  const double counted = throughout_.age - 2.0 * kSlowTime;
+  if (!(counted > 0.0) || throughout_.squares < kLeastTremble * kLeastTremble * counted) {
+    return 0.0;
+  }
+  // A sine of frequency w changes over a period T by 2 sin(w T / 2) times its size.
+  const double half = 0.5 * std::sqrt(throughout_.changes / throughout_.squares);
+  return std::asin(std::min(1.0, half)) / (std::numbers::pi * throughout_.period);
+}
+
+double ContactEpisodes::mass() const noexcept {
+  return pushing_.aa > 0.0 ? std::max(0.0, -pushing_.fa / pushing_.aa) : 0.0;
+}
+
+double ContactEpisodes::duration() const noexcept {
+  return first_touch_ < 0.0 ? time_ : last_touch_ - first_touch_;
+}
+
 double ContactEpisodes::resistance() const noexcept {
   return line_.weight > 0.0 ? std::max(0.0, line_.y / line_.weight) : 0.0;
 }
@@ -220,6 +271,12 @@ ContactEpisode ContactEpisodes::met(Quantity quantity) const noexcept {
       return {unevenness(), 0.0};
     case Quantity::kContrast:
       return {contrast(), force()};
+    case Quantity::kFrequency:
+      return {frequency(), 0.0};
+    case Quantity::kMass:
+      return {mass(), 0.0};
+    case Quantity::kDuration:
+      return {duration(), 0.0};
   }
   return {};
 }

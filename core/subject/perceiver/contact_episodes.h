@@ -14,8 +14,8 @@ namespace haptrial::subject {
 /// its position and velocity; in contact |f| is above contact_force, moving |v| above moving_speed.
 ///
 ///     force       mean of |f| over the greater half of the time in contact (upper_mean.h)
-///     stiffness   -slope of n·f over n·p in the longest contact, n the axis along which f acts
-///     most viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
+///     stiffness   -slope of n·f over n·p in the longest contact, n the axis of most force
+///     viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
 ///     friction    ∫ r |v| dt / ∫ |v| dt, while moving: what springs give back does not count
 ///     roughness   root mean square of f less its slow part (first order, 50 ms), moving in contact
 ///     extent      greatest way between the places where contacts began, after the first; with one
@@ -25,6 +25,10 @@ namespace haptrial::subject {
 ///     contrast    greatest stiffness of the contacts (the first 16 with a slope) over their
 ///     median;
 ///                 1 with fewer than two
+///     frequency   of the sine whose change from tick to tick has the same ratio to its size, root
+///                 mean squares, as that of f less its slow part; 0 where that is below 10 mN
+///     mass        -∫ f·a dt / ∫ a·a dt, both behind the same filter (first order, 10 ms)
+///     duration    from the first tick in contact to the last; without any since the start
 ///
 /// Slopes are least-squares lines with an offset. Servo thread: no allocation, lock, I/O or throw.
 class ContactEpisodes {
@@ -43,6 +47,9 @@ class ContactEpisodes {
   double extent() const noexcept;                          // [m]
   double unevenness() const noexcept;                      // [m]
   double contrast() const noexcept;                        // >= 1
+  double frequency() const noexcept;                       // >= 0 [Hz]
+  double mass() const noexcept;                            // >= 0 [kg]
+  double duration() const noexcept;                        // [s]
   double resistance() const noexcept;                      // mean r while moving [N]
   ContactEpisode met(Quantity quantity) const noexcept;
 
@@ -67,6 +74,20 @@ class ContactEpisodes {
     Eigen::Vector4d right{Eigen::Vector4d::Zero()};  // Σ (p, 1) |p|²
     Eigen::Matrix4d left{Eigen::Matrix4d::Zero()};   // Σ (p, 1)(p, 1)'
   };
+  /// Sums over the part of the force that is not slow, at rest and in motion.
+  struct Fluctuation {
+    void add(const Eigen::Vector3d& force, double dt) noexcept;
+    Eigen::Vector3d slow{Eigen::Vector3d::Zero()}, fast{Eigen::Vector3d::Zero()};  // [N]
+    double age{0.0}, period{0.0};                                                  // [s]
+    double squares{0.0}, changes{0.0};  // of the fast part and of its change a tick [N² s]
+  };
+  /// Sums over force and acceleration behind one filter.
+  struct Pushing {
+    void add(const Eigen::Vector3d& force, const Eigen::Vector3d& v, double dt) noexcept;
+    Eigen::Vector3d before{Eigen::Vector3d::Zero()};  // v a tick ago [m/s]
+    Eigen::Vector3d force{Eigen::Vector3d::Zero()}, acceleration{Eigen::Vector3d::Zero()};
+    double age{0.0}, fa{0.0}, aa{0.0};
+  };
   double stiffness_of(const Cloud& cloud) const noexcept;
   void touch(const Eigen::Vector3d& force, const Eigen::Vector3d& p, double dt) noexcept;
   void move(const Eigen::Vector3d& force, const Eigen::Vector3d& v, bool touching,
@@ -86,6 +107,9 @@ class ContactEpisodes {
   Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};  // [N]
   double slow_age_{0.0};                           // in contact and moving [s]
   double fluctuation_{0.0}, rough_time_{0.0};
+  Fluctuation throughout_;
+  Pushing pushing_;
+  double time_{0.0}, first_touch_{-1.0}, last_touch_{0.0};  // since the start [s]
   Eigen::Vector3d start_{Eigen::Vector3d::Zero()}, first_{Eigen::Vector3d::Zero()};
   double farthest_{0.0};  // from the start [m]
   double apart_{0.0};     // contacts from the first [m]

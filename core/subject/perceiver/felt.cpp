@@ -24,6 +24,9 @@ void check(const SenseParameters& p) {
   require(spread(p.displacement_weber), "displacement_weber must be at least 0");
   require(spread(p.speed_weber), "speed_weber must be at least 0");
   require(spread(p.extent_weber), "extent_weber must be at least 0");
+  require(spread(p.frequency_weber), "frequency_weber must be at least 0");
+  require(spread(p.mass_weber), "mass_weber must be at least 0");
+  require(spread(p.duration_weber), "duration_weber must be at least 0");
   require(size(p.usual_deflection), "usual_deflection must be above 0");
   require(spread(p.contact_force), "contact_force must be at least 0");
   require(size(p.moving_speed), "moving_speed must be above 0");
@@ -35,8 +38,24 @@ FeltNoise draw_noise(RandomStream& random) noexcept {
   n.floor = random.normal();
   n.displacement = random.normal();
   n.speed = random.normal();
-  n.extent = random.normal();
+  n.amount = random.normal();
   return n;
+}
+
+std::optional<double> weber_at_once(const SenseParameters& s, Quantity quantity) noexcept {
+  switch (quantity) {
+    case Quantity::kExtent:
+    case Quantity::kUnevenness:
+      return s.extent_weber;
+    case Quantity::kFrequency:
+      return s.frequency_weber;
+    case Quantity::kMass:
+      return s.mass_weber;
+    case Quantity::kDuration:
+      return s.duration_weber;
+    default:
+      return std::nullopt;
+  }
 }
 
 double felt(const SenseParameters& s, Quantity quantity, const ContactEpisode& met,
@@ -46,8 +65,8 @@ double felt(const SenseParameters& s, Quantity quantity, const ContactEpisode& m
       quantity == Quantity::kRoughness) {
     return met.amount * gain + s.force_floor * n.floor;
   }
-  if (quantity == Quantity::kExtent || quantity == Quantity::kUnevenness) {
-    return met.amount * std::exp(s.extent_weber * n.extent);
+  if (const std::optional<double> weber = weber_at_once(s, quantity)) {
+    return met.amount * std::exp(*weber * n.amount);
   }
   if (quantity == Quantity::kContrast) {
     return met.amount *

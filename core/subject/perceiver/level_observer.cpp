@@ -40,12 +40,7 @@ ContactEpisode LevelObserver::met(double level) const noexcept {
       return spring(1.0 / level);
     case Quantity::kViscosity:
       return {level, level * exploration_.speed};
-    case Quantity::kForce:
-    case Quantity::kFriction:
-    case Quantity::kRoughness:
-    case Quantity::kExtent:
-    case Quantity::kUnevenness:
-    case Quantity::kContrast:
+    default:
       break;
   }
   return {level, level};
@@ -80,8 +75,8 @@ Decision LevelObserver::yes_no(int trial, double level) noexcept {
 
 double LevelObserver::weber(double level) const noexcept {
   const auto root = [](double a, double b, double c) { return std::sqrt(a * a + b * b + c * c); };
-  if (quantity_ == Quantity::kExtent || quantity_ == Quantity::kUnevenness) {
-    return senses_.extent_weber;
+  if (const auto at_once = weber_at_once(senses_, quantity_)) {
+    return *at_once;
   }
   const double force = met(level).force;
   const double floor = force > 0.0 ? senses_.force_floor / force : 0.0;

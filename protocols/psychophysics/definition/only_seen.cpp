@@ -21,7 +21,7 @@ std::vector<std::string> texts_or_none(Table& table, const char* key) {
 
 /// Whether a field leads the hand somewhere.
 bool leads(Table& root, const std::string& field) {
-  static const std::set<std::string> kLeading{"spring", "minimum_jerk", "path"};
+  static const std::set<std::string> kLeading{"spring", "minimum_jerk", "path", "curve"};
   if (!root.has("fields") || !root.table("fields").has(field)) {
     return false;
   }

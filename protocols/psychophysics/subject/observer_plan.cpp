@@ -128,7 +128,10 @@ Schema<ObserverPlan> make_observer_schema(const ObserverNames& names,
                {"roughness", Quantity::kRoughness},
                {"extent", Quantity::kExtent},
                {"unevenness", Quantity::kUnevenness},
-               {"contrast", Quantity::kContrast}},
+               {"contrast", Quantity::kContrast},
+               {"frequency", Quantity::kFrequency},
+               {"mass", Quantity::kMass},
+               {"duration", Quantity::kDuration}},
               "Quantity that virtual participants feel and judge")
       .custom("in_stage", "Stage in which virtual participants feel what they judge",
               [&names](Table& table, const std::string& key, P& plan) {

@@ -84,6 +84,16 @@ inline std::vector<Example> conservative_scenes() {
 }
 
 /// Passive scenes: those of springs, and the others that take energy from every hand.
+/// A curve with a corner and a bow, about the origin.
+inline std::vector<Eigen::Vector3d> bent_curve() {
+  std::vector<Eigen::Vector3d> points{{-0.03, 0.0, 0.01}, {-0.01, 0.005, 0.01}};
+  for (int i = 0; i <= 40; ++i) {
+    const double angle = 0.05 * i;
+    points.emplace_back(0.015 * std::sin(angle), 0.002 * angle, -0.015 * std::cos(angle));
+  }
+  return points;
+}
+
 inline std::vector<Example> passive_scenes() {
   std::vector<Example> all = conservative_scenes();
   using Model = FrictionParameters::Model;
@@ -93,6 +103,7 @@ inline std::vector<Example> passive_scenes() {
   MatrixViscousParameters matrix;
   matrix.matrix << -8.0, 2.0, 0.0, 2.0, -5.0, 1.0, 0.0, 1.0, -1.0;
   const std::vector<Example> others{
+      {"curve", {field("curve", CurveParameters{bent_curve(), {600.0, 4.0}})}},
       {"viscous", {field("oil", ViscousParameters{8.0})}},
       {"viscous, filtered", {field("oil", ViscousParameters{8.0, 25.0})}},
       {"matrix", {field("oil", matrix)}},

@@ -542,6 +542,40 @@ TEST(PathGuideTest, LeadsAHandAlongThePath) {
   EXPECT_LT(worst, 0.002);
 }
 
+TEST(CurveHoldTest, PullsAcrossTheCurveAndLeavesTheHandFreeAlongIt) {
+  CurveHold hold({kCorner, {900.0, 10.0}}, kSetting);
+  FieldState state;
+  const PointState hand{{0.01, 0.002, 0.0}, {0.3, 0.0, 0.1}};
+  hold.start(hand);
+  const Vector3d force = hold.force({hand, 0.0, nullptr}, state);
+  EXPECT_LT((force - Vector3d(0.0, -900.0 * 0.002, -10.0 * 0.1)).norm(), 1e-9);
+  EXPECT_NEAR(state.depth, 0.002, 1e-12);
+}
+
+/// A curve that nearly closes: the hand goes round it, and what follows in another trial of the
+/// same curve goes on at its strand, though the other one is nearer.
+TEST(CurveHoldTest, KeepsItsStrandFromTrialToTrial) {
+  const std::vector<Vector3d> hairpin{
+      {0.0, 0.0, 0.0}, {0.05, 0.0, 0.0}, {0.05, 0.0, 0.01}, {0.0, 0.0, 0.01}};
+  CurveHold hold({hairpin, {900.0, 0.0}}, kSetting);
+  FieldState state;
+  hold.start({{0.02, 0.0, 0.001}, Vector3d::Zero()});
+  const PointState strayed{{0.02, 0.0, 0.007}, Vector3d::Zero()};
+  EXPECT_NEAR(hold.force({strayed, 0.0, nullptr}, state).z(), -900.0 * 0.007, 1e-9);
+  CurveHold next({hairpin, {900.0, 0.0}}, kSetting);
+  next.adopt(hold);
+  EXPECT_NEAR(next.force({strayed, 0.0, nullptr}, state).z(), -900.0 * 0.007, 1e-9);
+  CurveHold other({{{0.0, 0.0, 0.02}, {0.05, 0.0, 0.02}}, {900.0, 0.0}}, kSetting);
+  other.adopt(next);
+  EXPECT_NEAR(other.force({strayed, 0.0, nullptr}, state).z(), 900.0 * 0.013, 1e-9);
+}
+
+TEST(CurveHoldTest, RefusesWhatIsNoCurve) {
+  const auto told = [](auto law) { return test::message_of<std::invalid_argument>(law); };
+  EXPECT_THAT(told([] { CurveHold({{kOrigin}, {900.0, 10.0}}, kSetting); }), HasSubstr("points"));
+  EXPECT_THAT(told([] { CurveHold({kCorner, {-1.0, 10.0}}, kSetting); }), HasSubstr("stiffness"));
+}
+
 TEST(FieldTest, BadParametersAreNamed) {
   const auto told = [](auto law) { return test::message_of<std::invalid_argument>(law); };
   EXPECT_THAT(told([] { Ramp({kOrigin, kOrigin, 0.0}, kSetting); }), HasSubstr("rise"));

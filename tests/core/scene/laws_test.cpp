@@ -250,9 +250,9 @@ TEST(NeededDampingTest, SaysWhatColgateAndSchenkelSay) {
 
 TEST(NeededDampingTest, FieldsOfTimeAndLateAccelerationAreNotPassive) {
   const std::vector<FieldKind> active{
-      RampParameters{},           PulseParameters{}, InertiaParameters{}, SineVibrationParameters{},
-      NoiseVibrationParameters{}, TapParameters{},   MoverParameters{},   PathParameters{},
-      MeasuredParameters{}};
+      RampParameters{},          PulseParameters{},          InertiaParameters{},
+      SineVibrationParameters{}, NoiseVibrationParameters{}, TapParameters{},
+      MoverParameters{},         PathParameters{},           MeasuredParameters{}};
   for (const FieldKind& kind : active) {
     EXPECT_FALSE(stiffness_bound({test::field("active", kind)}, 0).passive) << kind.index();
   }

@@ -62,6 +62,7 @@ std::vector<Field> every_kind() {
           field("click", ClickParameters{}),
           field("mover", MoverParameters{}),
           field("path", PathParameters{}),
+          field("curve", CurveParameters{}),
           field("ball", SurfaceParameters{Sphere{}})};
 }
 

@@ -51,6 +51,7 @@ key      = { type = "click", at = [0, 0, 0], direction = [0, -1, 0], peak = 2.0,
 return   = { type = "minimum_jerk", to = [0, 0, 0], duration = 0.8, stiffness = 300.0, damping = 20.0 }
 lead     = { type = "path", points = [[0, 0, 0], [0.03, 0, 0], [0.03, 0, 0.04]], duration = 2.0, stiffness = 900.0, damping = 100.0 }
 stray    = { type = "path", curve = { length_x = 0.1, range_z = 0.06, seed = 3 }, duration = 9.0, stiffness = 900.0, damping = 100.0 }
+rail     = { type = "curve", points = [[0, 0, 0], [0.03, 0, 0], [0.03, 0, 0.04]], stiffness = 900.0, damping = 10.0 }
 )";
 
 std::map<std::string, Field> by_name(const std::vector<Field>& fields) {
@@ -78,8 +79,9 @@ TEST(ReadFieldTest, EveryKindIsReadAndMakesAScene) {
   const std::vector<Field> fields = read(kEveryKind);
   EXPECT_NO_THROW(Scene(fields, kRate));
   const auto all = by_name(fields);
-  EXPECT_EQ(all.size(), 26u);
+  EXPECT_EQ(all.size(), 27u);
   EXPECT_EQ(std::get<PathParameters>(all.at("lead").kind).points[2], Vector3d(0.03, 0.0, 0.04));
+  EXPECT_EQ(std::get<CurveParameters>(all.at("rail").kind).points[1], Vector3d(0.03, 0.0, 0.0));
   const auto& spring = std::get<SpringParameters>(all.at("guide").kind);
   EXPECT_EQ(spring.to, Vector3d(0.0, 0.02, 0.0));
   EXPECT_EQ(spring.gains.stiffness, 150.0);

@@ -165,6 +165,37 @@ TEST(ContactEpisodesTest, OfASinusoidRoughnessIsItsRootMeanSquare) {
   EXPECT_NEAR(met.roughness(), 0.3 / std::numbers::sqrt2, 0.06 * 0.3);
 }
 
+TEST(ContactEpisodesTest, AVibrationHasItsFrequencyAtRestAndOnASpring) {
+  for (const double frequency : {20.0, 100.0, 250.0}) {
+    const auto hum = field("hum", scene::SineVibrationParameters{{0.0, 1.0, 0.0}, 0.3, frequency});
+    const ContactEpisodes held = explore({hum}, Rest{}, 2.0);
+    EXPECT_NEAR(held.frequency(), frequency, 0.02 * frequency);
+    EXPECT_EQ(held.met(Quantity::kFrequency).amount, held.frequency());
+    const auto spring = field("spring", scene::SpringParameters{Vector3d::Zero(), {200.0, 1.0}});
+    EXPECT_NEAR(explore({hum, spring}, Press{kDown, 1.0, 0.5}, 2.0).frequency(), frequency,
+                0.05 * frequency);
+  }
+  EXPECT_EQ(explore({}, Rest{}, 2.0).frequency(), 0.0);
+}
+
+TEST(ContactEpisodesTest, AMassIsFeltByBeingAcceleratedAlsoInOil) {
+  const Stroke stroke{{1.0, 0.0, 0.0}, 0.03, 1.5};
+  for (const double mass : {0.2, 0.6}) {
+    const auto inertia = field("mass", scene::InertiaParameters{mass, 20.0});
+    EXPECT_NEAR(explore({inertia}, stroke, 4.0).mass(), mass, 0.06 * mass);
+    const auto oil = field("oil", scene::ViscousParameters{5.0});
+    EXPECT_NEAR(explore({inertia, oil}, stroke, 4.0).mass(), mass, 0.1 * mass);
+  }
+  EXPECT_NEAR(explore({}, stroke, 4.0).mass(), 0.0, 1e-9);
+}
+
+TEST(ContactEpisodesTest, ADurationIsThatOfTheContact) {
+  const auto pulse = field("pulse", scene::PulseParameters{{0.0, 1.0, 0.0}, 0.4, 0.6, 0.05});
+  const ContactEpisodes met = explore({pulse}, Rest{}, 2.0);
+  EXPECT_NEAR(met.duration(), 0.6, 0.1) << "but for its edges below the contact's force";
+  EXPECT_NEAR(explore({}, Rest{}, 2.0).duration(), 2.0, 1e-9);
+}
+
 TEST(ContactEpisodesTest, TheExtentIsTheWayBetweenTwoWalls) {
   for (const double gap : {0.03, 0.05}) {
     const auto wall = [&](const char* name, double side) {

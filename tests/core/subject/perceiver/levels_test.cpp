@@ -102,7 +102,9 @@ TEST(LevelsTest, ManyTrialsFollowTheFunctionForEveryQuantity) {
   for (const auto& [quantity, reference] :
        {Case{Quantity::kForce, 2.0}, Case{Quantity::kStiffness, 300.0},
         Case{Quantity::kViscosity, 20.0}, Case{Quantity::kFriction, 1.0},
-        Case{Quantity::kRoughness, 1.0}, Case{Quantity::kExtent, 0.04}}) {
+        Case{Quantity::kRoughness, 1.0}, Case{Quantity::kExtent, 0.04},
+        Case{Quantity::kFrequency, 100.0}, Case{Quantity::kMass, 0.3},
+        Case{Quantity::kDuration, 0.5}}) {
     JudgementParameters judgement;
     judgement.lapse = 0.04;
     judgement.noise = 0.03;
