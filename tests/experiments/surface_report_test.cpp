@@ -99,6 +99,46 @@ TEST_F(SurfaceReportTest, TheFunctionIsFittedOverBothVariables) {
   EXPECT_THAT(file_text(folder_ / "out/surfaces.csv"), HasSubstr("\nS01,"));
 }
 
+/// The same forces without a formula: the threshold of x over y is a quarter of a circle.
+TEST_F(SurfaceReportTest, AThresholdWithoutAFormula) {
+  std::string text = kPlane;
+  const auto from = text.find("kind = \"quest_plus\""), to = text.find("[observer]");
+  text.replace(from, to - from, R"toml(kind = "surface"
+unit = "N"
+counts = "$answer == 1"
+guess = 0.0
+lapse = 0.01
+rising = ["y"]
+present = "$x + $y <= 2.5"
+stop = { trials = 90 }
+[procedure.stimulus]
+x = { from = 0.0, to = 2.0, count = 21, resolution = 0.1 }
+y = { from = 0.0, to = 1.2, count = 9 }
+)toml");
+  const nlohmann::json results = report_of(text);
+  ASSERT_EQ(results["surfaces"].size(), 3u);
+  int points = 0;
+  for (const nlohmann::json& one : results["surfaces"]) {
+    EXPECT_EQ(one["variables"], nlohmann::json({"y", "x"})) << "x over y";
+    for (const nlohmann::json& point : one["threshold"]) {
+      const double y = point["first"];
+      if (y > 0.5 || point["second"].empty()) {
+        continue;
+      }
+      EXPECT_NEAR(std::hypot(y, point["second"][0].get<double>()), 0.8, 0.15) << "the criterion";
+      EXPECT_LT(point["low_95"].get<double>(), point["second"][0].get<double>());
+      ++points;
+    }
+  }
+  EXPECT_GE(points, 9);
+  const std::string report = file_text(folder_ / "out/report.md");
+  EXPECT_THAT(report, HasSubstr("No formula is assumed"));
+  EXPECT_THAT(report, HasSubstr("threshold of x at y 0.3"));
+  EXPECT_THAT(report, Not(HasSubstr("inf")));
+  EXPECT_THAT(report, HasSubstr("surface-S01-"));
+  EXPECT_THAT(file_text(folder_ / "out/estimates.csv"), HasSubstr("threshold of x at y 0.6"));
+}
+
 /// Whoever looks for a lump says yes or no: d' over all trials, and which lumps are found.
 TEST_F(SurfaceReportTest, ADetectionHasItToo) {
   const std::string definition = std::string(HAPTRIAL_SOURCE_DIR) + "/experiments/lump_search.toml";

@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "core/psychometric/procedure/quest_plus.h"
+#include "core/psychometric/procedure/threshold_surface.h"
 
 namespace haptrial::analysis::trials {
 namespace {
 
-constexpr std::size_t kPoints = 9;  // of the contour, in tables
+constexpr std::size_t kPoints = 9;        // of the contour, in tables
+constexpr std::size_t kDrawnPoints = 33;  // of a contour without a formula
 
 void add_contour(SurfaceCondition& one, const psychometric::QuestDefinition& definition) {
   if (one.variables.size() != 2) {
@@ -32,7 +35,83 @@ void add_contour(SurfaceCondition& one, const psychometric::QuestDefinition& def
   }
 }
 
+/// The line through the thresholds of the first variable over the second, which is drawn to the
+/// right.
+Contour contour_of(const std::vector<double>& over,
+                   const std::vector<psychometric::SurfaceThreshold>& found, double share) {
+  Contour contour{share, {}, {}, {}};
+  const auto add = [&](std::vector<Segment>& line, double psychometric::SurfaceThreshold::*of,
+                       std::size_t i) {
+    if (std::isfinite(found[i].*of) && std::isfinite(found[i + 1].*of)) {
+      line.push_back({{over[i], found[i].*of}, {over[i + 1], found[i + 1].*of}});
+    }
+  };
+  for (std::size_t i = 0; i + 1 < over.size(); ++i) {
+    add(contour.middle, &psychometric::SurfaceThreshold::median, i);
+    add(contour.hardly, &psychometric::SurfaceThreshold::low, i);
+    add(contour.sure, &psychometric::SurfaceThreshold::high, i);
+  }
+  return contour;
+}
+
+std::vector<psychometric::SurfaceThreshold> thresholds_over(
+    const psychometric::ThresholdSurface& surface, const std::vector<double>& over) {
+  std::vector<psychometric::Level> others;
+  for (const double each : over) {
+    others.push_back({each});
+  }
+  return surface.thresholds(others);
+}
+
+std::vector<double> spaced(const std::vector<double>& levels, std::size_t count) {
+  std::vector<double> some;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(count - 1);
+    some.push_back(levels.front() + share * (levels.back() - levels.front()));
+  }
+  return some;
+}
+
+/// NaN, which is open, for an end beyond the levels.
+double end_of(double level) {
+  return std::isfinite(level) ? level : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// A surface without a formula, from the answers of all sessions.
+void fit_smooth(SurfaceCondition& one, psychometric::SurfaceParameters parameters) {
+  parameters.trials = static_cast<int>(one.trials.size());
+  psychometric::ThresholdSurface surface(parameters);
+  for (const SurfaceTrial& trial : one.trials) {
+    surface.report(static_cast<double>(trial.outcome), trial.stimulus);
+  }
+  one.fit = SurfaceFit{one.trials.size(), {}, {}};
+  one.share = parameters.target;
+  if (one.variables.size() != 2) {
+    one.no_contour = "it is drawn over two variables; the thresholds stand with the procedures";
+    return;
+  }
+  const std::vector<double>& levels = parameters.variables[1].levels;
+  const std::vector<double> drawn = spaced(levels, kDrawnPoints), told = spaced(levels, kPoints);
+  one.contour = contour_of(drawn, thresholds_over(surface, drawn), one.share);
+  const auto found = thresholds_over(surface, told);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    ContourPoint point{told[i], {}, end_of(found[i].low), end_of(found[i].high)};
+    if (std::isfinite(found[i].median)) {
+      point.second = {found[i].median};
+    }
+    one.points.push_back(std::move(point));
+  }
+  std::swap(one.variables[0], one.variables[1]);
+  for (SurfaceTrial& trial : one.trials) {
+    std::swap(trial.stimulus[0], trial.stimulus[1]);
+  }
+}
+
 void fit(SurfaceCondition& one, const psychometric::Procedure* procedure) {
+  if (const auto* smooth = dynamic_cast<const psychometric::ThresholdSurface*>(procedure)) {
+    fit_smooth(one, smooth->parameters());
+    return;
+  }
   const auto* quest = dynamic_cast<const psychometric::QuestPlus*>(procedure);
   if (quest == nullptr) {
     one.fit = Undefined{"its procedure states no function of several variables"};

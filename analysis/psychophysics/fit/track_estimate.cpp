@@ -91,7 +91,7 @@ AnsweredSeries series_of(const TrackEstimate& track) {
   return series;
 }
 
-/// Whether a function of what the procedure learnt from is fitted.
+/// Whether a function of what the procedure learnt from is fitted, whose parameters it may tell.
 bool fitted(const TrackEstimate& track, const TrialsPlan& plan) {
   return plan.functions && plan.yes.empty() && (plan.level.empty() || plan.level == track.variable);
 }
@@ -119,7 +119,7 @@ Defined<CredibleInterval> simulated_interval(const TrackEstimate& track, const T
 
 void add_interval(TrackEstimate& track, const TrialsPlan& plan, const ProcedureOf& procedure_of) {
   if (track.adaptive && !track.estimates.empty() && track.estimates.front().interval &&
-      fitted(track, plan)) {
+      !track.target && fitted(track, plan)) {
     for (psychometric::Estimate& e : track.estimates) {
       e.interval.reset();
     }
@@ -183,6 +183,7 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
                         first.variable,
                         {},
                         false,
+                        {},
                         false,
                         {},
                         0,
@@ -206,6 +207,7 @@ std::vector<TrackEstimate> track_estimates(const TrialsData& data,
     }
     if (procedure) {
       tracks[i].adaptive = true;
+      tracks[i].target = procedure->target();
       tracks[i].range = procedure->range();
       tracks[i].at_end = steps_at_end(tracks[i]);
       replay(tracks[i], levels[i], *procedure);

@@ -28,6 +28,7 @@ struct TrackEstimate {
   std::string variable;
   std::vector<TrackStep> steps;
   bool adaptive{false};                           // its procedure chose levels by the answers
+  std::optional<double> target{};                 // share of answers 1 that the procedure seeks
   bool finished{false};                           // else it was broken off
   std::optional<psychometric::LevelRange> range;  // of what the procedure may present
   std::size_t at_end{0};  // steps at an end of the range, but for those before the first change
@@ -48,8 +49,8 @@ using ProcedureOf = std::function<std::unique_ptr<psychometric::Procedure>(const
 /// reversals.
 std::vector<TrackEstimate> track_estimates(const TrialsData& data, const ProcedureOf& procedure_of);
 
-/// 95 % intervals of the estimates: what the procedure states itself unless a function is fitted
-/// (its posterior assumes lapse and guess rates, the function's does not), Student's t if its error
+/// 95 % intervals of the estimates: what the procedure states itself (unless it is of the parameters
+/// of a function that is fitted here, too, without the rates that its posterior assumes), Student's t if its error
 /// has degrees of freedom, else track_interval() with the posterior of the track's own trials. That
 /// one takes a function of the plan; without an interval the track says why.
 void add_track_intervals(std::vector<TrackEstimate>& tracks, const TrialsPlan& plan,

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::trials {
@@ -32,8 +34,10 @@ void add_parameters(Document& document, const std::vector<SurfaceCondition>& sur
                       p.at_edge ? "cut off by its range" : ""});
     }
   }
-  document.table({"participant", "trials", "parameter", "posterior mean", "95 %", ""}, rows,
-                 "Every participant's parameters");
+  if (!rows.empty()) {
+    document.table({"participant", "trials", "parameter", "posterior mean", "95 %", ""}, rows,
+                   "Every participant's parameters");
+  }
 }
 
 std::string second_of(const ContourPoint& point) {
@@ -80,6 +84,21 @@ void add_points(Document& document, const std::vector<SurfaceCondition>& surface
   }
 }
 
+std::string method_of(const std::vector<SurfaceCondition>& surfaces) {
+  const bool formula = std::ranges::any_of(surfaces, [](const SurfaceCondition& one) {
+    return one.fit && !one.fit->parameters.empty();
+  });
+  return formula
+             ? "The definition's own formula is fitted over all its variables: the posterior of "
+               "its "
+               "parameters from every answer, with the definition's priors, between the lowest and "
+               "the highest value that it lists. Intervals are the central 95 % of the posterior."
+             : "No formula is assumed: the threshold is a smooth function of the other variables, "
+               "a "
+               "Gaussian process whose smoothness is learnt from the answers. Intervals are the "
+               "central 95 % of what is believed after every answer.";
+}
+
 }  // namespace
 
 void add_surfaces(Document& document, const TrialsResult& result,
@@ -97,14 +116,14 @@ void add_surfaces(Document& document, const TrialsResult& result,
   }
   add_parameters(document, result.surfaces);
   add_points(document, result.surfaces, result.plan.function.axis.unit);
-  document.paragraph(fmt::format(
-      "The definition's own formula is fitted over all its variables: the posterior of its "
-      "parameters from every answer, with the definition's priors, between the lowest and the "
-      "highest value that it lists. Intervals are the central 95 % of the posterior. The threshold "
-      "is where the probability of the answer 1 is {:g} %; its interval is that of the second "
-      "variable at one value of the first. \"Open\" is an end beyond the range of the second "
-      "variable. Conditions are not tested against each other here.",
-      100.0 * (result.surfaces.empty() ? 0.5 : result.surfaces.front().share)));
+  document.paragraph(
+      method_of(result.surfaces) +
+      fmt::format(" The threshold is where the probability of the answer 1 is {:g} %; its interval "
+                  "is that of "
+                  "one variable at one value of the other. \"Open\" is an end beyond the range. "
+                  "Conditions are "
+                  "not tested against each other here.",
+                  100.0 * (result.surfaces.empty() ? 0.5 : result.surfaces.front().share)));
 }
 
 }  // namespace haptrial::analysis::trials

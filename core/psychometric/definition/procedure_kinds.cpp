@@ -12,6 +12,7 @@
 #include "core/psychometric/definition/read_psi.h"
 #include "core/psychometric/definition/read_quest.h"
 #include "core/psychometric/definition/read_staircase.h"
+#include "core/psychometric/definition/read_surface.h"
 
 namespace haptrial::psychometric {
 namespace {
@@ -23,6 +24,7 @@ std::vector<ProcedureKind>& all_kinds() {
       {"pest", read_pest},
       {"psi", read_psi},
       {"quest_plus", read_quest, OutcomeForm::kAnswer, "stimulus"},
+      {"surface", read_surface, OutcomeForm::kAnswer, "stimulus"},
       {"constant", read_constant},
       {"adjustment", read_adjustment, OutcomeForm::kAdjustment},
       {"magnitude", read_magnitude, OutcomeForm::kMagnitude},

@@ -12,7 +12,8 @@ const Schema<PestParameters>& pest_schema() {
   using P = PestParameters;
   static const auto schema =
       Schema<P>()
-          .number("target", &P::target, {0.01, 0.99}, "1", "Share of right answers that PEST seeks")
+          .number("target", &P::target, {0.01, 0.99}, "1",
+                  "Share of answers 1, such as right ones, that PEST or a surface seeks")
           .number("deviation", &P::deviation, kPositive, "1",
                   "Deviation of the count of right answers from the target beyond which PEST makes "
                   "a step")

@@ -69,37 +69,6 @@ const Schema<TrackDimension>& resolution_schema() {
   return schema;
 }
 
-void read_stimulus(const TrackKeys& keys, QuestDefinition& quest, Track& track) {
-  Table all = keys.of("stimulus").table("stimulus");
-  for (const std::string& name : all.keys_as_written()) {
-    all.describe({name, std::string("Levels of the variable of this name") + kForms, "", true});
-    QuestDimension levels = read_dimension(all, name);
-    TrackDimension own{name};
-    if (all.is_table(name)) {
-      Table table = all.table(name);
-      resolution_schema().read(table, own);
-    }
-    if (levels.values.empty()) {
-      continue;
-    }
-    const auto [low, high] = std::ranges::minmax(levels.values);
-    own.low = low;
-    own.high = high;
-    if (quest.stimulus.empty()) {
-      track.variable = name;
-      track.low = own.low;
-      track.high = own.high;
-      track.resolution = own.resolution;
-    } else {
-      track.further.push_back(own);
-    }
-    quest.stimulus.push_back(std::move(levels));
-  }
-  if (quest.stimulus.empty()) {
-    keys.of("stimulus").reject("stimulus", "names no variable; add NAME = [levels]");
-  }
-}
-
 struct NormalPrior {
   double mean{0.0};
   double sd{1.0};
@@ -331,6 +300,39 @@ void check_size(const QuestDefinition& quest) {
 
 }  // namespace
 
+std::vector<QuestDimension> read_stimulus(const TrackKeys& keys, Track& track) {
+  std::vector<QuestDimension> stimulus;
+  Table all = keys.of("stimulus").table("stimulus");
+  for (const std::string& name : all.keys_as_written()) {
+    all.describe({name, std::string("Levels of the variable of this name") + kForms, "", true});
+    QuestDimension levels = read_dimension(all, name);
+    TrackDimension own{name};
+    if (all.is_table(name)) {
+      Table table = all.table(name);
+      resolution_schema().read(table, own);
+    }
+    if (levels.values.empty()) {
+      continue;
+    }
+    const auto [low, high] = std::ranges::minmax(levels.values);
+    own.low = low;
+    own.high = high;
+    if (stimulus.empty()) {
+      track.variable = name;
+      track.low = own.low;
+      track.high = own.high;
+      track.resolution = own.resolution;
+    } else {
+      track.further.push_back(own);
+    }
+    stimulus.push_back(std::move(levels));
+  }
+  if (stimulus.empty()) {
+    keys.of("stimulus").reject("stimulus", "names no variable; add NAME = [levels]");
+  }
+  return stimulus;
+}
+
 QuestStop read_quest_stop(const TrackKeys& keys, Track& track) {
   const TrackStop stop = read_stop(keys, track);
   return {stop.trials, stop.entropy};
@@ -355,7 +357,7 @@ void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>&
 void read_quest(const TrackKeys& keys, Track& track) {
   const QuestStop stop = read_quest_stop(keys, track);
   QuestDefinition quest;
-  read_stimulus(keys, quest, track);
+  quest.stimulus = read_stimulus(keys, track);
   read_parameters(keys, quest);
   AnswerModel model;
   answer_model_schema().read(keys.track, keys.procedure, model);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/psychometric/procedure/quest_plus.h"
 
@@ -12,6 +13,9 @@ struct TrackKeys;
 /// Description of `function`, which psi has, too.
 inline constexpr const char* kFunctionText = "Sigmoid of the psychometric function, by its name";
 inline constexpr const char* kFunctionAbsent = "logistic, or of quest_plus a probability";
+
+/// Reads `stimulus`, the variables that a track sets, with their levels. Problems are noted.
+std::vector<QuestDimension> read_stimulus(const TrackKeys& keys, Track& track);
 
 /// Reads `stop` of psi or QUEST+.
 QuestStop read_quest_stop(const TrackKeys& keys, Track& track);
