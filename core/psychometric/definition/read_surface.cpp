@@ -35,7 +35,7 @@ const Schema<SurfaceParameters>& rates_schema() {
   using P = SurfaceParameters;
   static const auto schema =
       Schema<P>()
-          .number("target", &P::target, {0.0, 1.0, true}, "1",
+          .number("target", &P::target, {0.01, 0.99}, "1",
                   "Share of answers 1, such as right ones, that PEST or a surface seeks")
           .otherwise("0.5; of a surface halfway between guess and 1 - lapse")
           .number("guess", &P::guess, {0.0, 0.99}, "1",

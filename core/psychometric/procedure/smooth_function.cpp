@@ -122,7 +122,8 @@ SmoothBelief::SmoothBelief(const Eigen::VectorXd& deviations)
     : mean_(Eigen::VectorXd::Zero(deviations.size())),
       covariance_(deviations.cwiseAbs2().asDiagonal()) {}
 
-double SmoothBelief::visit(std::size_t fact, const Eigen::VectorXd& row, const ProbitLink& link) {
+SmoothBelief::Visit SmoothBelief::visit(std::size_t fact, const Eigen::VectorXd& row,
+                                        const ProbitLink& link) {
   facts_.resize(std::max(facts_.size(), fact + 1));
   Fact& old = facts_[fact];
   const Eigen::VectorXd reach = covariance_ * row;
@@ -130,29 +131,29 @@ double SmoothBelief::visit(std::size_t fact, const Eigen::VectorXd& row, const P
   const double without = 1.0 - old.precision * variance;
   constexpr double kLeast = 1e-9;
   if (!(variance > 0.0) || without < kLeast) {
-    return 1.0;
+    return {};
   }
   // Mean and variance along the row without this fact.
   const double v = variance / without;
   const double m = (row.dot(mean_) - variance * old.shift) / without;
   const auto [probability, pull, bend] = change_by(link, m, v);
   if (!(probability > 0.0)) {
-    return 1.0;
+    return {};
   }
   const double rest = 1.0 - bend * v;
   if (rest < kLeast) {
-    return probability;
+    return {probability};
   }
   const Fact now{bend / rest, (pull + m * bend) / rest};
   const double added = now.precision - old.precision;
   const double grown = 1.0 + added * variance;
   if (grown < kLeast) {
-    return probability;
+    return {probability};
   }
   mean_ += reach * ((now.shift - old.shift - added * row.dot(mean_)) / grown);
   covariance_.noalias() -= (added / grown) * reach * reach.transpose();
   old = now;
-  return probability;
+  return {probability, added * grown};
 }
 
 }  // namespace haptrial::psychometric

@@ -58,9 +58,13 @@ class SmoothBelief {
  public:
   explicit SmoothBelief(const Eigen::VectorXd& deviations);
 
+  /// What a visit did: the covariance lost `lost` h h', h the new covariance times the fact's row.
+  struct Visit {
+    double probability{1.0};  // of the fact, by all others
+    double lost{0.0};
+  };
   /// Takes in fact number `fact`, for the first time or anew.
-  /// @returns its probability by all others
-  double visit(std::size_t fact, const Eigen::VectorXd& row, const ProbitLink& link);
+  Visit visit(std::size_t fact, const Eigen::VectorXd& row, const ProbitLink& link);
 
   const Eigen::VectorXd& mean() const noexcept { return mean_; }
   const Eigen::MatrixXd& covariance() const noexcept { return covariance_; }

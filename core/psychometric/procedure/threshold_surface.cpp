@@ -20,6 +20,7 @@ constexpr std::array kSlopes{1.5, 4.0, 10.0};
 constexpr std::array kBends{0.25, 1.0, 1.0};
 constexpr std::array kLengths{1.2, 1.2, 0.7};  // of each bend
 constexpr double kSteep = 20.0;                // of a link that is a step nearly
+constexpr std::size_t kPresented = 1000;       // of the levels that are listed
 constexpr std::size_t kJudged = 160;           // levels by which a choice is judged
 constexpr std::size_t kCompared = 40;          // levels of which one is chosen
 constexpr std::size_t kPlaces = 65;            // along a line on which a threshold is sought
@@ -60,6 +61,20 @@ std::vector<double> thinned(const std::vector<double>& list, std::size_t most) {
     some.push_back(list[(i * (list.size() - 1) + (most - 1) / 2) / (most - 1)]);
   }
   return some;
+}
+
+/// All places of a long list, or `most` of them by chance, the same always.
+std::vector<Eigen::Index> some_of(std::size_t count, std::size_t most, const char* stream) {
+  std::vector<Eigen::Index> places(count);
+  std::iota(places.begin(), places.end(), Eigen::Index{0});
+  if (count > most) {
+    RandomStream random(0, stream);
+    for (std::size_t i = 0; i < most; ++i) {
+      std::swap(places[i], places[i + random.below(count - i)]);
+    }
+    places.resize(most);
+  }
+  return places;
 }
 
 void check(const SurfaceParameters& p) {
@@ -119,19 +134,17 @@ void ThresholdSurface::list_levels() {
     std::erase_if(levels_, [&](const Level& level) { return !parameters_.allowed(level); });
   }
   checks::require(levels_.size() >= 2, kSurface, "allowed must leave two levels or more");
+  std::vector<Level> presented;
+  for (const Eigen::Index i : some_of(levels_.size(), kPresented, "levels that are presented")) {
+    presented.push_back(std::move(levels_[static_cast<std::size_t>(i)]));
+  }
+  levels_ = std::move(presented);
   rows_.resize(static_cast<Eigen::Index>(levels_.size()), basis_.size());
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     rows_.row(static_cast<Eigen::Index>(i)) = basis_.at(place_of(levels_[i])).transpose();
   }
-  judged_.resize(levels_.size());
-  std::iota(judged_.begin(), judged_.end(), Eigen::Index{0});
-  if (judged_.size() > kJudged) {
-    RandomStream random(0, "levels by which choices are judged");
-    for (std::size_t i = 0; i < kJudged; ++i) {
-      std::swap(judged_[i], judged_[i + random.below(judged_.size() - i)]);
-    }
-    judged_.resize(kJudged);
-  }
+  judged_ = some_of(levels_.size(), kJudged, "levels by which choices are judged");
+  judged_rows_ = rows_(judged_, Eigen::all);
 }
 
 void ThresholdSurface::begin_beliefs() {
@@ -151,7 +164,9 @@ void ThresholdSurface::begin_beliefs() {
           candidate.belief.visit(i, rises_[i], {});
         }
       }
-      foretell(candidate);
+      candidate.mean = rows_ * candidate.belief.mean();
+      candidate.variance =
+          (rows_ * candidate.belief.covariance()).cwiseProduct(rows_).rowwise().sum();
       candidates_.push_back(std::move(candidate));
     }
   }
@@ -177,11 +192,6 @@ ProbitLink ThresholdSurface::link_of(bool answer) const noexcept {
   const double share = 1.0 - parameters_.guess - parameters_.lapse;
   return answer ? ProbitLink{parameters_.guess, share, 1.0}
                 : ProbitLink{parameters_.lapse, share, -1.0};
-}
-
-void ThresholdSurface::foretell(Candidate& candidate) const {
-  candidate.mean = rows_ * candidate.belief.mean();
-  candidate.variance = (rows_ * candidate.belief.covariance()).cwiseProduct(rows_).rowwise().sum();
 }
 
 void ThresholdSurface::weigh() {
@@ -211,16 +221,15 @@ void ThresholdSurface::report(double answer, const Level& applied) {
   answers_.push_back(yes);
   const std::size_t fact = rises_.size() + shown_.size() - 1;
   for (Candidate& each : candidates_) {
-    each.evidence += std::log(each.belief.visit(fact, shown_.back(), link_of(yes)));
+    const auto visit = each.belief.visit(fact, shown_.back(), link_of(yes));
+    each.evidence += std::log(visit.probability);
+    const Eigen::VectorXd reach = each.belief.covariance() * shown_.back();
+    each.mean = rows_ * each.belief.mean();
+    each.variance -= visit.lost * (rows_ * reach).cwiseAbs2();
   }
   ++trials_;
   weigh();
   if (!finished()) {
-    for (Candidate& each : candidates_) {
-      if (each.weight >= kUnlikely) {
-        foretell(each);
-      }
-    }
     choose();
   }
 }
@@ -250,45 +259,38 @@ std::vector<Eigen::Index> ThresholdSurface::doubtful() const {
   return some;
 }
 
-/// Expected doubt at the judged levels after an answer to `level`.
-/// @param reach  a matrix (judged x terms) each belief: rows times its covariance
-double ThresholdSurface::doubt_after(Eigen::Index level,
-                                     const std::vector<Eigen::MatrixXd>& reach) const {
+/// Expected doubt at the judged levels after an answer to `level`, by one belief.
+/// @param shared  (judged) covariances with f at `level`
+double ThresholdSurface::doubt_after(const Candidate& by, Eigen::Index level,
+                                     const Eigen::ArrayXd& shared) const {
+  const Eigen::ArrayXd mean = by.mean(judged_), variance = by.variance(judged_);
   double sum = 0.0;
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    const Candidate& each = candidates_[c];
-    if (each.weight < kUnlikely) {
-      continue;
-    }
-    const Eigen::ArrayXd shared = reach[c] * rows_.row(level).transpose();
-    const Eigen::ArrayXd mean = each.mean(judged_), variance = each.variance(judged_);
-    for (const bool answer : {false, true}) {
-      const ProbitChange change =
-          change_by(link_of(answer), each.mean[level], each.variance[level]);
-      sum +=
-          each.weight * change.probability *
-          unsure(mean + shared * change.pull, variance - shared.square() * change.bend, at_target_)
-              .sum();
-    }
+  for (const bool answer : {false, true}) {
+    const ProbitChange change = change_by(link_of(answer), by.mean[level], by.variance[level]);
+    sum += change.probability *
+           unsure(mean + shared * change.pull, variance - shared.square() * change.bend, at_target_)
+               .sum();
   }
   return sum;
 }
 
 void ThresholdSurface::choose() {
-  std::vector<Eigen::MatrixXd> reach(candidates_.size());
-  for (std::size_t c = 0; c < candidates_.size(); ++c) {
-    if (candidates_[c].weight >= kUnlikely) {
-      reach[c] = rows_(judged_, Eigen::all) * candidates_[c].belief.covariance();
+  const std::vector<Eigen::Index> compared = doubtful();
+  const Eigen::MatrixXd rows = rows_(compared, Eigen::all);
+  Eigen::VectorXd doubts = Eigen::VectorXd::Zero(rows.rows());
+  for (const Candidate& each : candidates_) {
+    if (each.weight < kUnlikely) {
+      continue;
+    }
+    const Eigen::MatrixXd shared = judged_rows_ * (each.belief.covariance() * rows.transpose());
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      doubts[i] += each.weight *
+                   doubt_after(each, compared[static_cast<std::size_t>(i)], shared.col(i).array());
     }
   }
-  double least = std::numeric_limits<double>::infinity();
-  for (const Eigen::Index level : doubtful()) {
-    const double doubt = doubt_after(level, reach);
-    if (doubt < least) {
-      least = doubt;
-      next_ = levels_[static_cast<std::size_t>(level)];
-    }
-  }
+  Eigen::Index least = 0;
+  doubts.minCoeff(&least);
+  next_ = levels_[static_cast<std::size_t>(compared[static_cast<std::size_t>(least)])];
 }
 
 /// The likely beliefs with every fact visited again, so that their order no longer matters.

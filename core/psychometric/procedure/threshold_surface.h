@@ -71,13 +71,12 @@ class ThresholdSurface final : public Procedure {
   ProbitLink link_of(bool answer) const noexcept;
   void list_levels();
   void begin_beliefs();
-  void foretell(Candidate& candidate) const;
   void weigh();
   void choose();
   /// How unsure each level's side of the threshold is, 0 to 1/4.
   Eigen::VectorXd doubt() const;
   std::vector<Eigen::Index> doubtful() const;
-  double doubt_after(Eigen::Index level, const std::vector<Eigen::MatrixXd>& reach) const;
+  double doubt_after(const Candidate& by, Eigen::Index level, const Eigen::ArrayXd& shared) const;
   std::vector<Candidate> refined() const;
   std::vector<Level> told_at() const;
   Eigen::MatrixXd drawn_thresholds(const std::vector<Level>& others) const;
@@ -86,10 +85,11 @@ class ThresholdSurface final : public Procedure {
 
   SurfaceParameters parameters_;
   SmoothBasis basis_;
-  double at_target_;                    // f
-  std::vector<Level> levels_;           // that may be presented
-  Eigen::MatrixXd rows_;                // (levels x terms)
-  std::vector<Eigen::Index> judged_;    // levels by which a choice is judged
+  double at_target_;                  // f
+  std::vector<Level> levels_;         // that may be presented
+  Eigen::MatrixXd rows_;              // (levels x terms)
+  std::vector<Eigen::Index> judged_;  // levels by which a choice is judged
+  Eigen::MatrixXd judged_rows_;
   std::vector<Eigen::VectorXd> rises_;  // rows of slopes that are above 0
   std::vector<Eigen::VectorXd> shown_;  // rows of the trials
   std::vector<bool> answers_;

@@ -71,7 +71,7 @@ TEST(SmoothBeliefTest, IsThePosteriorAsASumOverAGridHasIt) {
 TEST(SmoothBeliefTest, OneFactIsExact) {
   SmoothBelief belief(Eigen::Vector2d(1.0, 2.0));
   const Fact fact{{0.7, 0.4}, {0.1, 0.85, 1.0}};
-  const double probability = belief.visit(0, fact.row, fact.link);
+  const double probability = belief.visit(0, fact.row, fact.link).probability;
   EXPECT_NEAR(probability, 0.1 + 0.85 * 0.5, 1e-12) << "nothing is known before";
   const Moments truth = summed({1.0, 2.0}, {fact});
   EXPECT_LT((belief.mean() - truth.mean).norm(), 1e-4);
