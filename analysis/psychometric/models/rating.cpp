@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "analysis/psychometric/models/fisher_scoring.h"
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 
@@ -37,13 +38,7 @@ struct Below {
   double density;
 };
 
-/// The likelihood of the parameters a, b, criteria, its slope and Fisher's information.
-struct Point {
-  double value{0.0};
-  VectorXd slope;
-  MatrixXd information;
-};
-
+/// The likelihood of the parameters a, b, criteria.
 class Likelihood {
  public:
   explicit Likelihood(const RatingCounts& counts) : counts_(counts) {}
@@ -51,8 +46,8 @@ class Likelihood {
   Index size() const { return std::ssize(counts_.noise) + 1; }
 
   /// Nothing where the criteria are out of order or b is not above 0.
-  std::optional<Point> at(const VectorXd& p) const {
-    Point point{0.0, VectorXd::Zero(size()), MatrixXd::Zero(size(), size())};
+  std::optional<ScoringPoint> at(const VectorXd& p) const {
+    ScoringPoint point{0.0, VectorXd::Zero(size()), MatrixXd::Zero(size(), size())};
     if (!(p[1] > 0.0) || !add(p, counts_.noise, false, point) ||
         !add(p, counts_.signal, true, point)) {
       return std::nullopt;
@@ -61,7 +56,8 @@ class Likelihood {
   }
 
  private:
-  bool add(const VectorXd& p, const std::vector<int>& counts, bool signal, Point& point) const {
+  bool add(const VectorXd& p, const std::vector<int>& counts, bool signal,
+           ScoringPoint& point) const {
     const Index ratings = std::ssize(counts);
     const double trials = std::accumulate(counts.begin(), counts.end(), 0.0);
     Below last{0.0, 0.0};
@@ -112,42 +108,6 @@ VectorXd first_guess(const RatingCounts& counts) {
   return p;
 }
 
-struct Fitted {
-  VectorXd at;
-  Point point;
-};
-
-/// Fisher's scoring with halved steps.
-std::optional<Fitted> fitted(const Likelihood& likelihood, const VectorXd& start) {
-  constexpr int kMost = 500, kHalvings = 40;
-  VectorXd p = start;
-  auto point = likelihood.at(p);
-  for (int step = 0; point && step < kMost; ++step) {
-    const auto change = solve_positive(point->information, point->slope);
-    if (!change) {
-      return std::nullopt;
-    }
-    const double promise = 0.5 * change->col(0).dot(point->slope);
-    if (promise < 1e-18 * (1.0 + std::abs(point->value))) {
-      return Fitted{p, *point};
-    }
-    double part = 1.0;
-    for (int i = 0; i < kHalvings; ++i, part *= 0.5) {
-      const VectorXd next = p + part * change->col(0);
-      const auto there = likelihood.at(next);
-      if (there && there->value >= point->value - 1e-13 * std::abs(point->value)) {
-        p = next;
-        point = there;
-        break;
-      }
-    }
-    if (p.cwiseAbs().maxCoeff() > 50.0) {
-      return std::nullopt;  // rises without end
-    }
-  }
-  return std::nullopt;
-}
-
 double saturated(const std::vector<int>& counts) {
   const double trials = std::accumulate(counts.begin(), counts.end(), 0.0);
   double sum = 0.0;
@@ -168,7 +128,7 @@ RatingCounts without_unused(const RatingCounts& counts) {
   return used;
 }
 
-BinormalRoc described(const RatingCounts& used, const Fitted& fit, double level) {
+BinormalRoc described(const RatingCounts& used, const ScoringMaximum& fit, double level) {
   BinormalRoc roc;
   roc.a = fit.at[0];
   roc.b = fit.at[1];
@@ -214,7 +174,9 @@ Defined<BinormalRoc> binormal_roc(const RatingCounts& counts, double level) {
       std::accumulate(used.signal.begin(), used.signal.end(), 0) == 0) {
     return Undefined{"there are answers of one kind only"};
   }
-  const auto fit = fitted(Likelihood(used), first_guess(used));
+  const Likelihood likelihood(used);
+  const auto fit =
+      fisher_scoring([&](const VectorXd& p) { return likelihood.at(p); }, first_guess(used));
   if (!fit) {
     return Undefined{
         "the likelihood has no maximum: the ratings separate signal from noise in part"};
