@@ -56,15 +56,15 @@ double standard_density(double t, double start) noexcept {
 }
 
 /// A candidate of the search: drift, logarithm of the boundary, non-decision time.
-using Place = std::array<double, 3>;
+using DiffusionPlace = std::array<double, 3>;
 
 Diffusion model_at(std::span<const double> place, double start) {
   return {place[0], std::exp(place[1]), place[2], start};
 }
 
-class Likelihood {
+class DiffusionLikelihood {
  public:
-  Likelihood(std::span<const TimedChoice> choices, const DiffusionOptions& options)
+  DiffusionLikelihood(std::span<const TimedChoice> choices, const DiffusionOptions& options)
       : choices_(choices), options_(options) {
     longest_ = std::ranges::max(choices, {}, &TimedChoice::time).time;
   }
@@ -92,7 +92,7 @@ class Likelihood {
 
 /// Closed-form estimates from mean, variance and share. Source: Wagenmakers et al. 2007,
 /// Psychonomic Bulletin & Review 14.
-Place first_guess(std::span<const TimedChoice> choices, std::size_t uppers) {
+DiffusionPlace closed_form(std::span<const TimedChoice> choices, std::size_t uppers) {
   const auto n = static_cast<double>(choices.size());
   double mean = 0.0, squares = 0.0;
   for (const TimedChoice& each : choices) {
@@ -115,10 +115,11 @@ Place first_guess(std::span<const TimedChoice> choices, std::size_t uppers) {
 
 /// Covariance of the estimates: the inverse of the likelihood's curvature; nothing if it is not
 /// positive.
-std::optional<Eigen::MatrixXd> covariance_at(const Likelihood& likelihood, const Place& place) {
-  constexpr Place kSteps{1e-3, 5e-4, 1e-4};
+std::optional<Eigen::MatrixXd> diffusion_covariance(const DiffusionLikelihood& likelihood,
+                                                    const DiffusionPlace& place) {
+  constexpr DiffusionPlace kSteps{1e-3, 5e-4, 1e-4};
   const auto value = [&](std::size_t i, double di, std::size_t k, double dk) {
-    Place moved = place;
+    DiffusionPlace moved = place;
     moved[i] += di * kSteps[i];
     moved[k] += dk * kSteps[k];
     return likelihood(moved);
@@ -136,9 +137,9 @@ std::optional<Eigen::MatrixXd> covariance_at(const Likelihood& likelihood, const
 }
 
 /// The fit with the covariance that says how far to look for the ends of intervals.
-struct Fitted {
-  const Likelihood& likelihood;
-  Place place;
+struct FittedDiffusion {
+  const DiffusionLikelihood& likelihood;
+  DiffusionPlace place;
   double value;  // minus the logarithm of the likelihood
   Eigen::MatrixXd covariance;
 
@@ -149,7 +150,7 @@ struct Fitted {
 };
 
 /// Minus the logarithm of the likelihood with one parameter held and the others fitted anew.
-double profile(const Fitted& fitted, std::size_t held, double value) {
+double diffusion_profile(const FittedDiffusion& fitted, std::size_t held, double value) {
   const std::array<std::size_t, 2> free{held == 0 ? 1U : 0U, held == 2 ? 1U : 2U};
   std::array<double, 2> start, steps;
   for (std::size_t k = 0; k < 2; ++k) {
@@ -159,7 +160,7 @@ double profile(const Fitted& fitted, std::size_t held, double value) {
     steps[k] = 0.2 * fitted.error(free[k]);
   }
   const auto of_free = [&](std::span<const double> others) {
-    Place place;
+    DiffusionPlace place;
     place[held] = value;
     place[free[0]] = others[0];
     place[free[1]] = others[1];
@@ -170,7 +171,7 @@ double profile(const Fitted& fitted, std::size_t held, double value) {
 
 /// An end of the interval by profile likelihood. The root of twice the loss of likelihood grows
 /// nearly in proportion to the distance from the fit.
-double interval_end(const Fitted& fitted, std::size_t held, double side) {
+double interval_end(const FittedDiffusion& fitted, std::size_t held, double side) {
   constexpr int kSteps = 12;
   const double wide = normal_quantile(0.975), middle = fitted.place[held];
   double distance = side * wide * fitted.error(held);
@@ -178,7 +179,7 @@ double interval_end(const Fitted& fitted, std::size_t held, double side) {
     if (held == 2 && middle + distance < 0.0) {
       distance = -middle;
     }
-    const double loss = profile(fitted, held, middle + distance) - fitted.value;
+    const double loss = diffusion_profile(fitted, held, middle + distance) - fitted.value;
     const double root = std::sqrt(2.0 * std::max(loss, 1e-6));
     if (std::abs(root - wide) < 0.01 || (root < wide && held == 2 && distance == -middle)) {
       break;
@@ -188,11 +189,11 @@ double interval_end(const Fitted& fitted, std::size_t held, double side) {
   return middle + distance;
 }
 
-DiffusionEstimate estimate(const Fitted& fitted, std::size_t i) {
+DiffusionEstimate estimate_of(const FittedDiffusion& fitted, std::size_t i) {
   return {fitted.place[i], interval_end(fitted, i, -1.0), interval_end(fitted, i, 1.0)};
 }
 
-/// Fitted probability of an answer at or before each time of a grid.
+/// FittedDiffusion probability of an answer at or before each time of a grid.
 std::vector<double> distribution(const Diffusion& model, bool upper, double step,
                                  std::size_t count) {
   std::vector<double> sums(count + 1, 0.0);
@@ -237,7 +238,7 @@ double distance_between(std::span<const TimedChoice> choices, const Diffusion& m
 }
 
 /// Why the answers do not allow a fit; empty: they do.
-std::string problem_with(std::span<const TimedChoice> choices, std::size_t rarer) {
+std::string problem_with_choices(std::span<const TimedChoice> choices, std::size_t rarer) {
   if (choices.size() < kFewestTimedChoices) {
     return fmt::format("there are {} answers with a time, fewer than {}", choices.size(),
                        kFewestTimedChoices);
@@ -277,26 +278,26 @@ Defined<DiffusionFit> fit_diffusion(std::span<const TimedChoice> choices,
   }
   const auto uppers = static_cast<std::size_t>(std::ranges::count_if(choices, &TimedChoice::upper));
   const std::size_t rarer = std::min(uppers, choices.size() - uppers);
-  if (const std::string problem = problem_with(choices, rarer); !problem.empty()) {
+  if (const std::string problem = problem_with_choices(choices, rarer); !problem.empty()) {
     return Undefined{problem};
   }
-  const Likelihood likelihood(choices, options);
-  const Place guess = first_guess(choices, uppers);
-  const Place steps{0.2, 0.1, -0.1 * guess[2]};
+  const DiffusionLikelihood likelihood(choices, options);
+  const DiffusionPlace guess = closed_form(choices, uppers);
+  const DiffusionPlace steps{0.2, 0.1, -0.1 * guess[2]};
   const Minimum best = find_minimum(std::cref(likelihood), guess, steps, 1e-5);
-  const Place place{best.at[0], best.at[1], best.at[2]};
-  const auto covariance = covariance_at(likelihood, place);
+  const DiffusionPlace place{best.at[0], best.at[1], best.at[2]};
+  const auto covariance = diffusion_covariance(likelihood, place);
   constexpr double kMostError = 0.5;  // of the boundary's logarithm: a factor of 2.7 on each side
   if (!covariance || !((*covariance)(1, 1) < kMostError * kMostError)) {
     return Undefined{"answers and times do not determine the parameters"};
   }
-  const Fitted fitted{likelihood, place, best.value, *covariance};
-  const DiffusionEstimate log_boundary = estimate(fitted, 1);
+  const FittedDiffusion fitted{likelihood, place, best.value, *covariance};
+  const DiffusionEstimate log_boundary = estimate_of(fitted, 1);
   DiffusionFit fit;
-  fit.drift = estimate(fitted, 0);
+  fit.drift = estimate_of(fitted, 0);
   fit.boundary = {std::exp(log_boundary.value), std::exp(log_boundary.low),
                   std::exp(log_boundary.high)};
-  fit.non_decision = estimate(fitted, 2);
+  fit.non_decision = estimate_of(fitted, 2);
   fit.log_likelihood = -best.value;
   fit.trials = choices.size();
   fit.rarer = rarer;

@@ -21,12 +21,12 @@ using Eigen::VectorXd;
 constexpr double kFar = 40.0;  // a criterion beyond which no evidence lies
 
 /// Ratings of one answer: those that were given, from the lowest evidence to the highest.
-struct Side {
+struct AnswerSide {
   std::vector<int> noise, signal;
 };
 
-Side side_of(const RatingCounts& counts, std::size_t first, std::size_t last) {
-  Side side;
+AnswerSide answer_side(const RatingCounts& counts, std::size_t first, std::size_t last) {
+  AnswerSide side;
   for (std::size_t k = first; k < last; ++k) {
     if (counts.noise[k] + counts.signal[k] > 0) {
       side.noise.push_back(counts.noise[k]);
@@ -36,23 +36,25 @@ Side side_of(const RatingCounts& counts, std::size_t first, std::size_t last) {
   return side;
 }
 
-Index criteria_of(const Side& side) { return std::max<Index>(std::ssize(side.noise) - 1, 0); }
+Index criteria_of_side(const AnswerSide& side) {
+  return std::max<Index>(std::ssize(side.noise) - 1, 0);
+}
 
-double below(double z) { return normal_upper_tail(-z); }
+double share_below(double z) { return normal_upper_tail(-z); }
 
 /// Shares of the ratings given stimulus and answer, by meta-d', then the criteria of both sides.
-class Likelihood {
+class ConfidenceLikelihood {
  public:
-  Likelihood(Side low, Side high, double slant)
+  ConfidenceLikelihood(AnswerSide low, AnswerSide high, double slant)
       : low_(std::move(low)), high_(std::move(high)), slant_(slant) {}
 
-  Index size() const { return 1 + criteria_of(low_) + criteria_of(high_); }
+  Index size() const { return 1 + criteria_of_side(low_) + criteria_of_side(high_); }
 
   std::optional<ScoringPoint> operator()(const VectorXd& p) const {
     ScoringPoint point{0.0, VectorXd::Zero(size()), MatrixXd::Zero(size(), size())};
     for (const bool upper : {false, true}) {
-      const Side& side = upper ? high_ : low_;
-      if (criteria_of(side) == 0) {
+      const AnswerSide& side = upper ? high_ : low_;
+      if (criteria_of_side(side) == 0) {
         continue;  // one rating says nothing
       }
       if (!add(p, upper, false, side.noise, point) || !add(p, upper, true, side.signal, point)) {
@@ -66,11 +68,11 @@ class Likelihood {
   VectorXd first_guess(double meta_d) const {
     VectorXd p(size());
     p[0] = meta_d;
-    const Index lows = criteria_of(low_);
+    const Index lows = criteria_of_side(low_);
     for (Index k = 0; k < lows; ++k) {
       p[1 + k] = slant_ * meta_d - 0.5 * static_cast<double>(lows - k);
     }
-    for (Index k = 0; k < criteria_of(high_); ++k) {
+    for (Index k = 0; k < criteria_of_side(high_); ++k) {
       p[1 + lows + k] = slant_ * meta_d + 0.5 * static_cast<double>(k + 1);
     }
     return p;
@@ -79,8 +81,8 @@ class Likelihood {
  private:
   /// Borders of the ratings of a side, from the lowest.
   VectorXd borders(const VectorXd& p, bool upper) const {
-    const Index lows = criteria_of(low_);
-    VectorXd all(upper ? criteria_of(high_) + 2 : lows + 2);
+    const Index lows = criteria_of_side(low_);
+    VectorXd all(upper ? criteria_of_side(high_) + 2 : lows + 2);
     all[0] = upper ? slant_ * p[0] : -kFar;
     all.segment(1, all.size() - 2) = p.segment(upper ? 1 + lows : 1, all.size() - 2);
     all[all.size() - 1] = upper ? kFar : slant_ * p[0];
@@ -97,7 +99,8 @@ class Likelihood {
         return {};
       }
       const double from = all[k] - mean, to = all[k + 1] - mean;  // in the tail that keeps digits
-      share[k] = from > 0.0 ? below(-from) - below(-to) : below(to) - below(from);
+      share[k] =
+          from > 0.0 ? share_below(-from) - share_below(-to) : share_below(to) - share_below(from);
     }
     share /= share.sum();
     return share.minCoeff() > 1e-300 ? share : VectorXd{};
@@ -131,7 +134,7 @@ class Likelihood {
     return true;
   }
 
-  Side low_, high_;
+  AnswerSide low_, high_;
   double slant_;  // criterion of the answers / d'
 };
 
@@ -144,7 +147,7 @@ DetectionCounts answers_of(const RatingCounts& counts, std::size_t noise_ratings
   return sums;
 }
 
-MetaD described(const ScoringMaximum& fit, const Detection& answers) {
+MetaD meta_of(const ScoringMaximum& fit, const Detection& answers) {
   const double wide = normal_quantile(0.975);
   const VectorXd first = VectorXd::Unit(fit.at.size(), 0);
   const auto solved = solve_positive(fit.point.information, first);
@@ -177,9 +180,9 @@ Defined<MetaD> meta_d_prime(const RatingCounts& counts, std::size_t noise_rating
   if (!(answers->low > 0.0)) {
     return Undefined{"the answers' d' is not clearly above 0"};
   }
-  const Likelihood likelihood(side_of(counts, 0, noise_ratings),
-                              side_of(counts, noise_ratings, counts.noise.size()),
-                              answers->criterion / answers->d_prime);
+  const ConfidenceLikelihood likelihood(answer_side(counts, 0, noise_ratings),
+                                        answer_side(counts, noise_ratings, counts.noise.size()),
+                                        answers->criterion / answers->d_prime);
   if (likelihood.size() == 1) {
     return Undefined{"each answer has one rating only"};
   }
@@ -187,7 +190,7 @@ Defined<MetaD> meta_d_prime(const RatingCounts& counts, std::size_t noise_rating
   if (!fit) {
     return Undefined{"the likelihood of the ratings has no maximum"};
   }
-  return described(*fit, *answers);
+  return meta_of(*fit, *answers);
 }
 
 }  // namespace haptrial::analysis

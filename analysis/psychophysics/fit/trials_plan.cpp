@@ -88,6 +88,41 @@ void check_times(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   }
 }
 
+void check_diffusion(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan) {
+  if (plan.diffusion && plan.question.empty() && plan.yes.empty() && defaults.choices.size() != 2) {
+    table.reject("diffusion", "true", "false where the response does not have two choices");
+  }
+}
+
+/// The keys of a diffusion model of the choices.
+const Schema<DiffusionOptions>& diffusion_schema() {
+  using D = DiffusionOptions;
+  static const auto schema =
+      Schema<D>()
+          .number("start_point", &D::start, {0.05, 0.95}, "1",
+                  "Where the diffusion begins, as a share of the way from the boundary of wrong "
+                  "answers to that of right ones")
+          .number("contaminants", &D::contaminants, {0.0, 0.2}, "1",
+                  "Share of answers that are guesses at any time, which the diffusion model allows "
+                  "for");
+  return schema;
+}
+
+/// PAGE.SCORE, of a page of the definition.
+void read_covariate(Table& table, const std::string& key, const PlanDefaults& defaults,
+                    TrialsPlan& plan) {
+  const std::string name = table.text(key);
+  const std::string page = name.substr(0, name.find('.'));
+  if (page == name || !has_name(defaults.pages, page)) {
+    table.reject(
+        key, fmt::format("\"{}\"", name),
+        fmt::format("PAGE.SCORE with a page of questions: {}",
+                    defaults.pages.empty() ? "there is none"
+                                           : fmt::format("{}", fmt::join(defaults.pages, ", "))));
+  }
+  plan.plan.covariate.name = name;
+}
+
 std::string short_number(const std::string& side) {
   double number = 0.0;
   const char* end = side.data() + side.size();
@@ -365,12 +400,34 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
               "was, which of three differs, whether the third is as the first or the second, "
               "whether two are the same")
       .only_if(identifies)
+      .flag("metacognition", &P::metacognition,
+            "Whether ratings of confidence give meta-d' and its ratio to d' (M-ratio), of two "
+            "stimuli")
+      .only_if(may_rate)
+      .check([&](Table& table, P& plan) {
+        if (plan.metacognition && plan.rating.empty()) {
+          table.reject("metacognition", "true", "false where no question asks for confidence");
+        } else if (plan.metacognition && identifies(plan) && plan.choices.size() != 2) {
+          table.reject("metacognition", "true",
+                       "false where the response does not have two choices");
+        }
+      })
       .text("stage", &P::stage, "Stage whose duration is the time")
       .otherwise("times are reaction times of the answers")
       .only_if(is_timed)
       .check([&](Table& table, P& plan) {
         if (is_timed(plan)) {
           check_times(table, defaults, plan);
+        }
+      })
+      .flag("diffusion", &P::diffusion,
+            "Whether a diffusion model of two choices is fitted to each participant's answers and "
+            "times: drift, boundary and non-decision time")
+      .only_if(is_timed)
+      .check([&](Table& table, P& plan) {
+        if (is_timed(plan)) {
+          check_diffusion(table, defaults, plan);
+          diffusion_schema().read(table, plan.diffusion_options);
         }
       });
 }
@@ -418,7 +475,14 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
           "of the factors in `by`",
           [&](Table& table, const std::string&, P& plan) { read_tests(table, defaults, plan); })
       .otherwise("none")
-      .keys_of(&P::plan, tests_beside_schema());
+      .keys_of(&P::plan, tests_beside_schema())
+      .custom("covariate",
+              "Score of a page of questions, as PAGE.SCORE, whose influence planned tests and the "
+              "effect of a factor are adjusted for",
+              [&](Table& table, const std::string& key, P& plan) {
+                read_covariate(table, key, defaults, plan);
+              })
+      .otherwise("none");
   add_answers(schema, defaults);
   schema.check([&](Table& table, P& plan) {
     plan.functions = plan.kind == AnalysisKind::kPsychometric ||

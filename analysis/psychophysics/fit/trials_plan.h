@@ -8,6 +8,7 @@
 
 #include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/likelihood_fit.h"
+#include "analysis/psychometric/models/diffusion.h"
 #include "analysis/psychometric/models/discrimination_task.h"
 #include "analysis/psychophysics/fit/cue_plan.h"
 #include "analysis/psychophysics/fit/paired_plan.h"
@@ -60,6 +61,7 @@ struct PlanDefaults {
   PursuitNames pursuit;                     // that the analysis of pursuits may name
   ProducedNames produced;                   // that the analysis of what is produced may name
   CueNames cues;                            // that the comparison of cues may name
+  std::vector<std::string> pages;           // whose scores may be the covariate
   StatedLevels levels;  // of names of `by`, where the definition states all of them
 };
 
@@ -83,7 +85,10 @@ struct TrialsPlan {
   std::string stimulus;         // factor that says what was presented, of an identification
   std::vector<std::string> choices;  // of the question, likewise
   DiscriminationTask discrimination{DiscriminationTask::kForcedChoice};  // likewise
+  bool metacognition{false};  // whether ratings give meta-d' and the M-ratio
   std::string stage;      // whose duration is the time, of times; empty: the answer's reaction time
+  bool diffusion{false};  // whether the diffusion model is fitted to choices and times
+  DiffusionOptions diffusion_options;
   bool functions{false};  // whether functions are fitted
   std::string function_name{"norm"};
   psychometric::PsychometricParameters function{.guess = 0.5};

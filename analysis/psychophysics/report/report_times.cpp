@@ -56,6 +56,31 @@ void add_share(FindingRow& row, const TimedCondition& one) {
                  .form = JsonForm::kEstimate});
 }
 
+void add_parameter(FindingRow& row, const char* name, const char* title, const char* unit,
+                   const DiffusionEstimate& e) {
+  row.push_back({.name = name,
+                 .title = title,
+                 .value = e.value,
+                 .low = e.low,
+                 .high = e.high,
+                 .unit = unit,
+                 .csv = name,
+                 .form = JsonForm::kEstimate});
+}
+
+void add_diffusion(FindingRow& row, const Defined<DiffusionFit>& fit) {
+  if (!fit) {
+    row.push_back({.name = "diffusion", .title = "drift rate", .why_not = fit.because()});
+    return;
+  }
+  add_parameter(row, "drift", "drift rate", "", fit->drift);
+  add_parameter(row, "boundary", "boundary separation", "", fit->boundary);
+  add_parameter(row, "non_decision_time", "non-decision time (s)", "s", fit->non_decision);
+  add_count(row, "rarer_answers", "answers of the rarer kind", fit->rarer);
+  row.push_back(
+      {.name = "distance", .title = "distance", .value = fit->distance, .form = JsonForm::kPlain});
+}
+
 FindingRow time_row(const TrialsPlan& plan, const TimedCondition& one) {
   FindingRow row;
   add_time_word(row, "participant", "participant", one.participant, JsonForm::kPlain);
@@ -71,6 +96,9 @@ FindingRow time_row(const TrialsPlan& plan, const TimedCondition& one) {
   }
   add_number(row, "mean_time", "mean time (s)", one.mean);
   add_number(row, "median_time", "median time (s)", one.median);
+  if (plan.diffusion) {
+    add_diffusion(row, one.diffusion);
+  }
   if (!plan.level.empty()) {
     add_coefficient(row, "slope", "slope (s)", one.line, 1);
     add_coefficient(row, "intercept", "intercept (s)", one.line, 0);
@@ -101,6 +129,20 @@ void add_time_methods(Document& document, const TrialsPlan& plan) {
           : fmt::format(" Slope and intercept are those of the least-squares line of a "
                         "participant's times on {}.",
                         plan.level)));
+  if (plan.diffusion) {
+    document.paragraph(fmt::format(
+        "Drift rate, boundary separation and non-decision time are those of a diffusion model "
+        "(standard deviation 1 per √s) of all answers with a time, by maximum likelihood with the "
+        "first-passage density of Navarro and Fuss (2009); the start lies at {:g} of the way to "
+        "the upper boundary, that of {}; a share of {:g} of the answers counts as guesses at any "
+        "time up to the longest. Intervals are of profile likelihood. The distance is the largest "
+        "one between the observed and the fitted distribution of times, those of the other answer "
+        "counted negative: above 1.36 / √trials the model does not describe the times, and its "
+        "parameters mean nothing; a smaller one does not prove it.",
+        plan.diffusion_options.start,
+        plan.yes.empty() ? std::string("right answers") : fmt::format("“{}”", plan.yes),
+        plan.diffusion_options.contaminants));
+  }
 }
 
 }  // namespace haptrial::analysis::trials

@@ -94,6 +94,22 @@ void add_roc(FindingRow& row, const std::string& name, const std::string& title,
   add_json(row, name + "/interval", {{"low_95", i->low}, {"high_95", i->high}});
 }
 
+void add_meta(FindingRow& row, const TrialsResult& result, const Defined<MetaD>& meta) {
+  if (!result.plan.metacognition) {
+    return;
+  }
+  if (!meta) {
+    add_missing(row, "meta", "M-ratio", meta.because());
+    return;
+  }
+  add(row, "meta/meta_d", "meta-d'", {meta->meta_d, meta->low, meta->high}, JsonForm::kEstimate,
+      "meta_d");
+  add(row, "meta/m_ratio", "M-ratio", {meta->ratio, meta->ratio_low, meta->ratio_high},
+      JsonForm::kEstimate, "m_ratio");
+  add(row, "meta/d_prime", "", meta->d_prime);
+  add(row, "meta/log_likelihood", "", meta->log_likelihood);
+}
+
 std::string title_if(bool shown, const char* title) { return shown ? title : ""; }
 
 /// Adds the readings of one way of fitting. @param shown  in the report
@@ -303,6 +319,7 @@ FindingTable detection_findings(const TrialsResult& result) {
     } else {
       add_missing(row, "binormal_roc", "", b.because());
     }
+    add_meta(row, result, one.meta);
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -326,6 +343,7 @@ FindingTable identification_findings(const TrialsResult& result) {
     add_defined(row, "mean_rating_right", "rating where right", one.sure_right);
     add_defined(row, "mean_rating_wrong", "rating where wrong", one.sure_wrong);
     add_roc(row, "roc_of_ratings", "ROC area of ratings", one.sureness, "rating_area", false);
+    add_meta(row, result, one.meta);
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -468,9 +486,9 @@ std::string estimates_csv(const TrialsResult& result) {
       tables.push_back(cue_findings(result, level));
     }
   }
-  for (const auto table : {track_findings, detection_findings, identification_findings,
-                           exponent_findings, time_findings, hierarchical_group_findings,
-                           hierarchical_people_findings}) {
+  for (const auto table :
+       {track_findings, detection_findings, identification_findings, exponent_findings,
+        time_findings, hierarchical_group_findings, hierarchical_people_findings}) {
     tables.push_back(table(result));
   }
   return findings_csv(tables, labels);

@@ -177,6 +177,14 @@ void add_methods(Document& document, const TrialsResult& result) {
   if (plan.kind == AnalysisKind::kTimes) {
     add_time_methods(document, plan);
   }
+  if (plan.metacognition) {
+    document.paragraph(
+        "meta-d' is the d' at which an observer of equal variances would tell right from wrong "
+        "answers by confidence as well as the participant, by maximum likelihood of the ratings "
+        "given stimulus and answer (Maniscalco and Lau 2012); the M-ratio is meta-d' / d', with "
+        "d' of the answers after the log-linear correction. It has no number if the 95 % interval "
+        "of that d' reaches 0. Intervals are of Fisher's information and the delta method.");
+  }
   if (plan.kind == AnalysisKind::kReaching) {
     add_reaching_methods(document, plan.reaching);
     if (!result.quantities.empty()) {

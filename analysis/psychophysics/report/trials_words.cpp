@@ -40,9 +40,39 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
   }
 }
 
+using NamesByReason = std::map<std::string, std::vector<std::string>>;
+
+void say_undefined(const NamesByReason& undefined, std::size_t all, const char* what,
+                   std::vector<std::string>& lines) {
+  for (const auto& [because, names] : undefined) {
+    lines.push_back(fmt::format("{} of {} could not be determined, because {} ({})", names.size(),
+                                counted(all, what), because, fmt::join(names, "; ")));
+  }
+}
+
+/// Whose models are not defined. @param model  the member of a condition
+template <class Condition, class Model>
+void say_undefined(const std::vector<Condition>& all, Defined<Model> Condition::*model,
+                   const char* what, std::vector<std::string>& lines) {
+  NamesByReason undefined;
+  for (const Condition& one : all) {
+    if (!(one.*model)) {
+      undefined[(one.*model).because()].push_back(series_name(one.participant, one.condition));
+    }
+  }
+  say_undefined(undefined, all.size(), what, lines);
+}
+
 /// Why single estimates are missing or without an interval.
 void say_gaps(const TrialsResult& result, std::vector<std::string>& lines) {
-  std::map<std::string, std::vector<std::string>> undefined, without;
+  if (result.plan.diffusion) {
+    say_undefined(result.timed, &TimedCondition::diffusion, "diffusion model", lines);
+  }
+  if (result.plan.metacognition) {
+    say_undefined(result.detected, &DetectedCondition::meta, "meta-d'", lines);
+    say_undefined(result.identified, &IdentifiedCondition::meta, "meta-d'", lines);
+  }
+  NamesByReason undefined, without;
   for (const FunctionFit& fit : result.fits) {
     const std::string name = series_name(fit.participant, fit.condition);
     if (!fit.stated) {
@@ -51,11 +81,7 @@ void say_gaps(const TrialsResult& result, std::vector<std::string>& lines) {
       without[fit.no_interval].push_back(name);
     }
   }
-  for (const auto& [because, names] : undefined) {
-    lines.push_back(fmt::format("{} of {} could not be determined, because {} ({})", names.size(),
-                                counted(result.fits.size(), "function"), because,
-                                fmt::join(names, "; ")));
-  }
+  say_undefined(undefined, result.fits.size(), "function", lines);
   for (const auto& [because, names] : without) {
     lines.push_back(fmt::format("{} of {} without an interval, because {} ({})", names.size(),
                                 counted(result.fits.size(), "function"), because,

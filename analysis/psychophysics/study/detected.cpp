@@ -18,9 +18,34 @@ namespace {
 
 using Key = std::pair<std::string, std::vector<std::string>>;
 
+/// Ratings by answer and how sure it was, the surest "no" first.
+struct AnswerRatings {
+  std::map<std::pair<int, double>, std::pair<int, int>> given;  // -> of noise, of signal
+
+  void add(int signal, int outcome, double sureness) {
+    auto& both = given[{outcome, outcome == 1 ? sureness : -sureness}];
+    (signal == 1 ? both.second : both.first) += 1;
+  }
+
+  Defined<MetaD> meta() const {
+    if (given.empty()) {
+      return Undefined{"there are no ratings"};
+    }
+    RatingCounts counts;
+    std::size_t no = 0;
+    for (const auto& [answer, both] : given) {
+      counts.noise.push_back(both.first);
+      counts.signal.push_back(both.second);
+      no += answer.first == 0 ? 1U : 0U;
+    }
+    return meta_d_prime(counts, no);
+  }
+};
+
 struct Collected {
   DetectionCounts counts;
   std::map<double, std::pair<int, int>> ratings;  // value -> noise, signal
+  AnswerRatings by_answer;
 };
 
 /// How sure, above 0 for "yes"; NaN: not rated.
@@ -40,6 +65,7 @@ void add(Collected& collected, int signal, int outcome, double rating) {
   if (std::isfinite(rating)) {
     auto& both = collected.ratings[rating];
     (signal == 1 ? both.second : both.first) += 1;
+    collected.by_answer.add(signal, outcome, outcome == 1 ? rating : -rating);
   }
 }
 
@@ -75,6 +101,9 @@ std::vector<DetectedCondition> detected(const TrialsData& data, const TrialsPlan
       one.roc = rating_roc(one.ratings);
       one.binormal = binormal_roc(one.ratings);
     }
+    if (plan.metacognition) {
+      one.meta = collected.by_answer.meta();
+    }
     result.push_back(std::move(one));
   }
   return result;
@@ -88,6 +117,7 @@ constexpr double kNormal95 = 1.959963984540054;  // two-sided
 struct Tally {
   std::map<std::string, std::vector<int>> answers;  // stimulus -> of each choice
   std::map<double, std::pair<int, int>> ratings;    // value -> of wrong and of right answers
+  AnswerRatings by_answer;                          // of two choices
   int trials{0}, right{0};
 };
 
@@ -103,6 +133,10 @@ void count_answer(Tally& tally, const StudyTrial& trial, const GivenAnswer& answ
   if (rating != nullptr && std::isfinite(rating->value)) {
     auto& [wrong, right] = tally.ratings[rating->value];
     ++(answer.correct == 1 ? right : wrong);
+    const int signal = stimulus == plan.choices.back() ? 1 : 0;
+    if (plan.metacognition && (signal == 1 || stimulus == plan.choices.front())) {
+      tally.by_answer.add(signal, answer.text == plan.choices.back() ? 1 : 0, rating->value);
+    }
   }
 }
 
@@ -208,6 +242,9 @@ std::vector<IdentifiedCondition> identified(const TrialsData& data, const Trials
     one.high = interval.high;
     add_d_prime(one, plan);
     add_ratings(tally, one);
+    if (plan.metacognition) {
+      one.meta = tally.by_answer.meta();
+    }
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/psychometric/models/detection.h"
+#include "analysis/psychometric/models/meta_d.h"
 #include "analysis/psychometric/models/rating.h"
 #include "analysis/psychophysics/data/trials_data.h"
 #include "analysis/psychophysics/fit/trials_plan.h"
@@ -21,6 +22,7 @@ struct DetectedCondition {
   RatingCounts ratings;                                            // empty: none were asked for
   Defined<Roc> roc{Undefined{"there are no ratings"}};
   Defined<BinormalRoc> binormal{Undefined{"there are no ratings"}};
+  Defined<MetaD> meta{Undefined{"there are no ratings"}};
 };
 
 /// Yes/no detection. Signal is every trial in which "yes" is right. If the definition does not say
@@ -50,6 +52,7 @@ struct IdentifiedCondition {
   Defined<double> sure_right{Undefined{"there are no ratings"}};  // mean rating of right answers
   Defined<double> sure_wrong{Undefined{"there are no ratings"}};
   Defined<Roc> sureness{Undefined{"there are no ratings"}};  // of ratings: right against wrong
+  Defined<MetaD> meta{Undefined{"there are no ratings"}};    // the second choice is the signal
 };
 
 /// Which of several things was presented. The factor `stimulus` of the plan says what it was, the

@@ -36,6 +36,10 @@ void add_trial(TimedCondition& one, const TrialsData& data, const StudyTrial& tr
   one.judged += correct >= 0 ? 1 : 0;
   one.wrong += correct == 0 ? 1 : 0;
   const double time = time_of(data, trial, answer, plan);
+  const int outcome = outcome_of(trial, plan);
+  if (plan.diffusion && outcome >= 0 && std::isfinite(time)) {
+    one.choices.push_back({outcome == 1, time});
+  }
   if (correct != 0 && std::isfinite(time)) {
     one.times.push_back(time);
     one.times_at.push_back(plan.level.empty() ? kNotKnown : level_of(trial, plan));
@@ -72,6 +76,9 @@ std::vector<TimedCondition> timed(const TrialsData& data, const TrialsPlan& plan
       one.mean = std::accumulate(one.times.begin(), one.times.end(), 0.0) /
                  static_cast<double>(one.times.size());
       one.median = quantile(one.times, 0.5);
+    }
+    if (plan.diffusion) {
+      one.diffusion = fit_diffusion(one.choices, plan.diffusion_options);
     }
     if (!plan.level.empty()) {
       one.line = line_of(one);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/psychometric/models/diffusion.h"
 #include "analysis/psychophysics/data/trials_data.h"
 #include "analysis/psychophysics/fit/trials_plan.h"
 #include "analysis/statistics/base/defined.h"
@@ -22,6 +23,8 @@ struct TimedCondition {
   std::vector<double> times_at;                             // (times) level of each; NaN: none
   Defined<double> mean{Undefined{"no time was measured"}};  // of `times` [s]
   Defined<double> median{Undefined{"no time was measured"}};
+  std::vector<TimedChoice> choices;  // answers 1 at the upper boundary, with their times
+  Defined<DiffusionFit> diffusion{Undefined{"it was not asked for"}};
   Defined<Regression> line{Undefined{"no level was named"}};  // of `times` on their levels
 
   /// NaN: no answer is right or wrong.
@@ -32,7 +35,8 @@ struct TimedCondition {
 
 /// By participant, then condition. A time is the reaction time of the answer, or how long
 /// TrialsPlan::stage lasted in the trial's last interval, if its end was reached. The time of a
-/// wrong answer counts nowhere. Lines are fitted if the definition names a level.
+/// wrong answer counts in the diffusion model alone, which the plan asks for. Lines are fitted if
+/// the definition names a level.
 std::vector<TimedCondition> timed(const TrialsData& data, const TrialsPlan& plan);
 
 }  // namespace haptrial::analysis::trials

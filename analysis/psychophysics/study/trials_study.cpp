@@ -168,6 +168,24 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
   }
 }
 
+/// @param all  with the answers and ratings of two stimuli
+template <class Conditions>
+void add_metacognition(TrialsResult& result, const Conditions& all) {
+  if (!result.plan.metacognition) {
+    return;
+  }
+  std::vector<QuantityValue> meta, ratio;
+  for (const auto& one : all) {
+    if (one.meta) {
+      meta.push_back({one.participant, one.levels, one.meta->meta_d});
+      ratio.push_back({one.participant, one.levels, one.meta->ratio});
+    }
+  }
+  result.quantities.push_back(quantity("meta_d", "meta-d'", "", meta, result.plan));
+  result.quantities.push_back(
+      quantity("m_ratio", "M-ratio (meta-d' / d')", "", ratio, result.plan));
+}
+
 void add_detection(TrialsResult& result) {
   result.detected = detected(result.data, result.plan);
   std::vector<QuantityValue> d_prime, criterion, area;
@@ -192,6 +210,7 @@ void add_detection(TrialsResult& result) {
   if (!area.empty()) {
     add("roc_area", "area under the ROC curve of ratings", area, ValueRange::kShare);
   }
+  add_metacognition(result, result.detected);
   for (std::size_t i = first; i < result.quantities.size(); ++i) {
     result.quantities[i].headline = !chosen;  // another grid of levels would change them
   }
@@ -217,6 +236,7 @@ void add_identification(TrialsResult& result) {
                                          "area under the ROC curve of ratings, right against wrong",
                                          "", area, result.plan, ValueRange::kShare));
   }
+  add_metacognition(result, result.identified);
 }
 
 void add_magnitudes(TrialsResult& result) {
@@ -255,6 +275,22 @@ void add_lines(TrialsResult& result, const std::string& what) {
                                        "s", coefficient(0), plan));
 }
 
+void add_diffusion(TrialsResult& result) {
+  const auto values = [&](DiffusionEstimate DiffusionFit::*parameter) {
+    return timed_values(result.timed, [parameter](const TimedCondition& one) {
+      return one.diffusion ? ((*one.diffusion).*parameter).value : kNotKnown;
+    });
+  };
+  result.quantities.push_back(
+      quantity("drift", "drift rate", "", values(&DiffusionFit::drift), result.plan));
+  result.quantities.push_back(quantity("boundary", "boundary separation", "",
+                                       values(&DiffusionFit::boundary), result.plan,
+                                       ValueRange::kPositive));
+  result.quantities.push_back(quantity("non_decision_time", "non-decision time", "s",
+                                       values(&DiffusionFit::non_decision), result.plan,
+                                       ValueRange::kPositive));
+}
+
 void add_times(TrialsResult& result) {
   const TrialsPlan& plan = result.plan;
   result.timed = timed(result.data, plan);
@@ -273,6 +309,9 @@ void add_times(TrialsResult& result) {
         "share_wrong", "share of wrong answers", "",
         timed_values(result.timed, [](const TimedCondition& one) { return one.share_wrong(); }),
         plan, ValueRange::kShare));
+  }
+  if (plan.diffusion) {
+    add_diffusion(result);
   }
 }
 

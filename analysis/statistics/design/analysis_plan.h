@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,11 +31,18 @@ struct TestsBeside {
   double trimmed{0.0};      // share of each tail that Yuen's test leaves out; 0: it is not made
 };
 
+/// A number of each participant for which planned tests are adjusted.
+struct Covariate {
+  std::string name;  // empty: there is none
+  std::map<std::string, double> values{};
+};
+
 /// The experimenter's decisions before the data. Source: Morris 2006, §4.4, for the shipped study.
 struct AnalysisPlan {
   std::vector<PlannedTest> tests;
   std::string reference;  // the condition that the others are compared with; empty: the first
   TestsBeside beside{};
+  Covariate covariate{};
   std::optional<SequentialPlan> sequential{};  // none: everybody comes before the first test
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/statistics/design/covariate_tests.h"
 #include "analysis/statistics/tests/bayes_factor.h"
 #include "analysis/statistics/tests/trimmed_tests.h"
 
@@ -98,7 +99,8 @@ void resample(SideTest& test, const Sides& values, Resampling resampling) {
 std::string name_of_test(const SideTest& test) { return test.paired ? "paired t" : "Welch's t"; }
 
 SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
-                  const Resampling& resampling, const TestsBeside& beside) {
+                  const Resampling& resampling, const TestsBeside& beside,
+                  const Covariate& covariate) {
   const Sides values = values_of(table, a, b);
   SideTest test;
   test.sides = std::move(sides);
@@ -107,6 +109,10 @@ SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, c
   test.count_b = values.b.size();
   const Tail tail = test.sides.tail;
   test.beside = beside;
+  if (!covariate.name.empty()) {
+    test.covariate = covariate.name;
+    test.adjusted = adjusted_test(table, values, covariate, tail);
+  }
   if (beside.bayes_factors) {
     test.bayes_factor = bayes_factor_of(values, tail);
   }

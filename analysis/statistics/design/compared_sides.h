@@ -35,6 +35,9 @@ struct SideTest {
   Defined<double> equivalence_holm{Undefined{kNotAskedFor}};
   Defined<TTest> trimmed{Undefined{kNotAskedFor}};  // Yuen's
   Defined<double> trimmed_holm{Undefined{kNotAskedFor}};
+  std::string covariate{};  // for which `adjusted` is; empty: none
+  Defined<TTest> adjusted{Undefined{kNotAskedFor}};
+  Defined<double> adjusted_holm{Undefined{kNotAskedFor}};
 };
 
 /// "paired t" or "Welch's t".
@@ -43,7 +46,8 @@ std::string name_of_test(const SideTest& test);
 /// The test of two sides, each with cells.
 /// @param resampling  of the permutation test and the bootstrap interval; none with a count of 0.
 SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
-                  const Resampling& resampling, const TestsBeside& beside = {});
+                  const Resampling& resampling, const TestsBeside& beside = {},
+                  const Covariate& covariate = {});
 
 /// A test that is not defined. @param missing  the side without trials.
 SideTest without_trials(const PlannedTest& sides, const std::string& missing);

@@ -75,6 +75,11 @@ Json to_json(const SideTest& t) {
     json["yuen"] = defined(t.trimmed);
     json["yuen_p_holm"] = defined(t.trimmed_holm);
   }
+  if (!t.covariate.empty()) {
+    json["covariate"] = t.covariate;
+    json["adjusted"] = defined(t.adjusted);
+    json["adjusted_p_holm"] = defined(t.adjusted_holm);
+  }
   return json;
 }
 

@@ -25,15 +25,17 @@ std::optional<double> side_of(const DesignTable& table, std::size_t subject, con
   return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
 }
 
-void add(Sides& sides, const std::vector<std::size_t>& stratum, std::optional<double> first,
-         std::optional<double> second) {
+void add(Sides& sides, std::size_t subject, const std::vector<std::size_t>& stratum,
+         std::optional<double> first, std::optional<double> second) {
   auto& [in_a, in_b] = sides.strata[stratum];
   if (first) {
     sides.a.push_back(*first);
+    sides.subjects_a.push_back(subject);
     in_a.push_back(*first);
   }
   if (second) {
     sides.b.push_back(*second);
+    sides.subjects_b.push_back(subject);
     in_b.push_back(*second);
   }
 }
@@ -129,9 +131,9 @@ Sides values_of(const DesignTable& table, const Cells& a, const Cells& b) {
     const auto second = side_of(table, subject, b);
     const auto stratum = stratum_of(table, subject, across);
     if (first && second) {
-      add(paired, stratum, first, second);
+      add(paired, subject, stratum, first, second);
     }
-    add(apart, stratum, first, second);
+    add(apart, subject, stratum, first, second);
   }
   return paired.a.empty() ? apart : paired;
 }

@@ -28,6 +28,7 @@ struct Sides {
   std::vector<double> a, b;
   /// The same, where other factors between participants lie across both sides.
   std::map<std::vector<std::size_t>, std::pair<std::vector<double>, std::vector<double>>> strata;
+  std::vector<std::size_t> subjects_a, subjects_b;  // (a), (b) in DesignTable::subjects
   bool paired{false};
 };
 

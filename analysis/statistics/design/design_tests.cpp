@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/statistics/base/p_adjust.h"
+#include "analysis/statistics/design/covariate_tests.h"
 #include "analysis/statistics/design/design_sides.h"
 #include "core/base/error.h"
 
@@ -32,6 +33,7 @@ void adjust(TestFamily& family) {
   adjust(family.tests, &SideTest::permutation, &SideTest::permutation_holm);
   adjust(family.tests, &SideTest::equivalence, &SideTest::equivalence_holm);
   adjust(family.tests, &SideTest::trimmed, &SideTest::trimmed_holm);
+  adjust(family.tests, &SideTest::adjusted, &SideTest::adjusted_holm);
 }
 
 TestFamily planned_tests(const DesignTable& table, const AnalysisPlan& plan,
@@ -43,7 +45,7 @@ TestFamily planned_tests(const DesignTable& table, const AnalysisPlan& plan,
     if (a.empty() || b.empty()) {
       family.tests.push_back(without_trials(test, a.empty() ? test.a : test.b));
     } else {
-      family.tests.push_back(compared(table, test, a, b, resampling, plan.beside));
+      family.tests.push_back(compared(table, test, a, b, resampling, plan.beside, plan.covariate));
     }
   }
   adjust(family);
@@ -133,6 +135,7 @@ std::vector<NamedTest> named_tests(const TestFamily& family, const std::string& 
     note("permutation", test.permutation, test.permutation_holm);
     note("equivalence", test.equivalence, test.equivalence_holm);
     note("trimmed means", test.trimmed, test.trimmed_holm);
+    note("adjusted for " + test.covariate, test.adjusted, test.adjusted_holm);
   }
   return named;
 }
@@ -171,6 +174,9 @@ DesignTests design_tests(const DesignTable& table, const AnalysisPlan& plan,
     }
   }
   tests.effects = design_effects(table);
+  if (!plan.covariate.name.empty()) {
+    tests.effects.push_back(adjusted_effect(table, plan.covariate));
+  }
   tests.ranks = design_ranks(table);
   tests.planned = planned_tests(table, plan, resampling);
   for (std::size_t f = 0; f < table.factors.size(); ++f) {

@@ -58,6 +58,8 @@ struct DesignTests {
 /// | two between | two-way analysis of variance, marginal squares (type III) |
 /// | three or four | each factor and combination, marginal squares (type III) |
 /// | more, or combinations that nobody had | none: cells are compared two by two |
+///
+/// With a covariate, one factor also has its analysis of covariance (covariate_tests.h).
 DesignTests design_tests(const DesignTable& table, const AnalysisPlan& plan,
                          const Resampling& resampling);
 

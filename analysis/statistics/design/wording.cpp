@@ -110,6 +110,16 @@ std::string trimmed_result(const SideTest& test) {
                      number(t.difference), degrees(t.df), t.t, p_result(test.trimmed_holm));
 }
 
+std::string adjusted_result(const SideTest& test) {
+  if (!test.adjusted) {
+    return not_defined(test.adjusted.because());
+  }
+  const TTest& t = *test.adjusted;
+  return fmt::format("difference {}, 95 % CI {} to {}, t({}) = {:.2f}, {} after Holm's adjustment",
+                     number(t.difference), number(t.low), number(t.high), degrees(t.df), t.t,
+                     p_result(test.adjusted_holm));
+}
+
 /// The tests that were asked for beside the t-test.
 std::string tests_beside(const SideTest& test) {
   std::string text;
@@ -123,6 +133,9 @@ std::string tests_beside(const SideTest& test) {
   if (test.beside.trimmed > 0.0) {
     text += fmt::format("; means trimmed by {:.3g} %: {}", 100.0 * test.beside.trimmed,
                         trimmed_result(test));
+  }
+  if (!test.covariate.empty()) {
+    text += fmt::format("; adjusted for {}: {}", test.covariate, adjusted_result(test));
   }
   return text;
 }

@@ -13,6 +13,7 @@
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/psychophysics/report/write_trials.h"
+#include "analysis/psychophysics/study/covariate.h"
 #include "analysis/psychophysics/study/paired_quantities.h"
 #include "analysis/psychophysics/study/produced_quantities.h"
 #include "analysis/psychophysics/study/pursuit_quantities.h"
@@ -237,6 +238,9 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   add_missing(request, definition, data, remarks);
   add_other_levels(data, plan, remarks);
   std::ranges::move(trials::unlike_meshes(data.sessions), std::back_inserter(remarks));
+  std::vector<trials::PageScore> scores =
+      trials::page_scores(request.files.files, definition.pages, group_of);
+  trials::add_covariate(scores, plan.plan.covariate);
   trials::TrialsResult result =
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
   if (plan.kind == trials::AnalysisKind::kReaching) {
@@ -261,7 +265,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   }
   check_planned(result);
   add_sequential(request, definition, result);
-  result.page_scores = trials::page_scores(request.files.files, definition.pages, group_of);
+  result.page_scores = std::move(scores);
   result.title = definition.name;
   result.remarks = std::move(remarks);
   result.definition = first.definition;
