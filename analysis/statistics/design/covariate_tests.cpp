@@ -79,18 +79,35 @@ double contrast_of(std::size_t cell, std::size_t level, std::size_t last) {
   return cell == level ? 1.0 : cell == last ? -1.0 : 0.0;
 }
 
-/// Contrasts of the levels, the covariate, and within participants their products.
-MatrixXd predictors_of(const std::vector<Row>& rows, std::size_t levels, bool within) {
+/// Contrasts of the levels, then the covariate.
+MatrixXd between_predictors(const std::vector<Row>& rows, std::size_t levels) {
   const auto contrasts = static_cast<Index>(levels - 1);
-  MatrixXd x(std::ssize(rows), within ? 2 * contrasts + 1 : contrasts + 1);
+  MatrixXd x(std::ssize(rows), contrasts + 1);
   for (Index i = 0; i < x.rows(); ++i) {
     const Row& row = rows[static_cast<std::size_t>(i)];
-    x(i, contrasts) = row.covariate;
     for (Index k = 0; k < contrasts; ++k) {
       x(i, k) = contrast_of(row.cell, static_cast<std::size_t>(k), levels - 1);
-      if (within) {
-        x(i, contrasts + 1 + k) = x(i, k) * row.covariate;
-      }
+    }
+    x(i, contrasts) = row.covariate;
+  }
+  return x;
+}
+
+/// Contrasts of the levels, their products with the covariate, and participants but the first: the
+/// covariate itself lies in what they differ by.
+MatrixXd within_predictors(const std::vector<Row>& rows, std::size_t levels) {
+  const auto contrasts = static_cast<Index>(levels - 1);
+  const Index people = std::ssize(rows) / static_cast<Index>(levels);
+  MatrixXd x = MatrixXd::Zero(std::ssize(rows), 2 * contrasts + people - 1);
+  for (Index i = 0; i < x.rows(); ++i) {
+    const Row& row = rows[static_cast<std::size_t>(i)];
+    for (Index k = 0; k < contrasts; ++k) {
+      x(i, k) = contrast_of(row.cell, static_cast<std::size_t>(k), levels - 1);
+      x(i, contrasts + k) = x(i, k) * row.covariate;
+    }
+    const Index person = i / static_cast<Index>(levels);
+    if (person > 0) {
+      x(i, 2 * contrasts + person - 1) = 1.0;
     }
   }
   return x;
@@ -130,15 +147,12 @@ Defined<EffectTest> adjusted_effect(const DesignTable& table, const Covariate& c
   }
   const Factor& factor = table.factors.front();
   const std::vector<Row> rows = rows_of(table, covariate);
-  std::vector<std::vector<std::size_t>> terms;
-  if (factor.within) {
-    terms.emplace_back();
-    for (const Row& row : rows) {
-      terms.back().push_back(row.subject);
-    }
+  if (rows.empty()) {
+    return Undefined{"nobody has a value of the covariate"};
   }
-  const MatrixXd x = predictors_of(rows, levels, factor.within);
-  const auto model = mixed_model(values_of_rows(rows), x, terms);
+  const MatrixXd x =
+      factor.within ? within_predictors(rows, levels) : between_predictors(rows, levels);
+  const auto model = mixed_model(values_of_rows(rows), x, {});
   if (!model) {
     return Undefined{model.because()};
   }

@@ -250,5 +250,43 @@ TEST(TrialsPlanTest, KeysOfMovementsAreLeftToTheirAnalysis) {
             AnalysisKind::kReaching);
 }
 
+TEST(TrialsPlanTest, DiffusionIsForTwoChoices) {
+  PlanDefaults d = defaults();
+  d.choices = {"left", "right"};
+  const std::string text =
+      "[analysis]\nkind = \"times\"\ndiffusion = true\nstart_point = 0.4\n"
+      "contaminants = 0.05\n";
+  const TrialsPlan plan = read(text, d);
+  EXPECT_TRUE(plan.diffusion);
+  EXPECT_EQ(plan.diffusion_options.start, 0.4);
+  EXPECT_EQ(plan.diffusion_options.contaminants, 0.05);
+  d.choices.emplace_back("neither");
+  EXPECT_THAT(problems_of(text, d), HasSubstr("two choices"));
+  EXPECT_THAT(problems_of("[analysis]\nkind = \"none\"\ndiffusion = true\n"),
+              HasSubstr("diffusion"));
+}
+
+TEST(TrialsPlanTest, MetacognitionNeedsAQuestionOfConfidenceAndTwoStimuli) {
+  PlanDefaults d = defaults();
+  d.choices = {"left", "right"};
+  const std::string detection = "[analysis]\nkind = \"detection\"\nmetacognition = true\n";
+  const std::string identification =
+      "[analysis]\nkind = \"identification\"\nmetacognition = true\n";
+  EXPECT_THAT(problems_of(detection, d), HasSubstr("confidence"));
+  d.rating = "sure";
+  EXPECT_TRUE(read(detection, d).metacognition);
+  EXPECT_TRUE(read(identification, d).metacognition);
+  d.choices.emplace_back("neither");
+  EXPECT_THAT(problems_of(identification, d), HasSubstr("two choices"));
+}
+
+TEST(TrialsPlanTest, ACovariateIsAScoreOfAPage) {
+  PlanDefaults d = defaults();
+  d.pages = {"hands"};
+  EXPECT_EQ(read("[analysis]\ncovariate = \"hands.age\"\n", d).plan.covariate.name, "hands.age");
+  EXPECT_THAT(problems_of("[analysis]\ncovariate = \"feet.age\"\n", d), HasSubstr("hands"));
+  EXPECT_THAT(problems_of("[analysis]\ncovariate = \"hands\"\n", d), HasSubstr("PAGE.SCORE"));
+}
+
 }  // namespace
 }  // namespace haptrial::analysis::trials

@@ -53,6 +53,8 @@ class WriteTrials : public testing::TestWithParam<SimulatedTask> {
     plan.resamples = 99;
     plan.permutations = 999;
     plan.bayesian = GetParam() == SimulatedTask::kConstant;  // it takes long
+    plan.metacognition = GetParam() == SimulatedTask::kDetection;
+    plan.diffusion = GetParam() == SimulatedTask::kTimes;
     plan.plan = parse_analysis_plan({"off < on"}, "", "tests");
     TrialsResult result = analyze(read_trials(files, {}, 2), plan, {}, 2);
     result.title = "A study made by hand";

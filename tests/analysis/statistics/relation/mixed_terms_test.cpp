@@ -200,5 +200,27 @@ TEST(MixedContrast, OfOneRowTheJointTestIsTheSquareOfT) {
   EXPECT_THROW(joint_test(*m, MatrixXd::Zero(2, 4)), std::invalid_argument);
 }
 
+// lme4's y ~ c + (1 | s) + (0 + c | s) with c = -1/2 and 1/2, by lmerTest 3.1-3.
+TEST(MixedTerms, ATermOfParticipantAndConditionIsARandomSlope) {
+  const Values y{0.69, 0.82, 1.49, 1.08, 0.52, 0.37, 2.58, 2,    1.91, 1.81, 2.88,
+                 2.82, 0.82, 0.4,  1.21, 1.19, 2.32, 2.33, 2.22, 2.64, 2,    1.49,
+                 2.19, 2.9,  1.89, 1.45, 3.28, 2.28, 2.93, 1.88, 3.38, 3.9};
+  MatrixXd condition(32, 1);
+  std::vector<std::vector<std::size_t>> terms(2);
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    condition(static_cast<Eigen::Index>(i), 0) = i / 2 % 2 == 0 ? -0.5 : 0.5;
+    terms[0].push_back(i / 4);
+    terms[1].push_back(i / 2);
+  }
+  const auto model = mixed_model(y, condition, terms);
+  ASSERT_TRUE(model) << model.because();
+  EXPECT_NEAR(model->coefficients[1].estimate, 0.900625, 1e-9);
+  EXPECT_NEAR(model->coefficients[1].error, 0.185764246, 1e-6);
+  EXPECT_NEAR(model->coefficients[1].df, 7.0, 1e-3);
+  EXPECT_NEAR(model->coefficients[1].p, 0.0018601, 1e-6);
+  EXPECT_NEAR(2.0 * model->variances[1], 0.143519789, 1e-5);  // variance of the slopes
+  EXPECT_NEAR(model->variances[0] + 0.5 * model->variances[1], 0.524399189, 1e-4);
+}
+
 }  // namespace
 }  // namespace haptrial::analysis

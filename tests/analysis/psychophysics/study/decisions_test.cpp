@@ -1,0 +1,142 @@
+// Diffusion models, meta-d' and covariates as numbers of a study.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/psychophysics/report/trials_findings.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/psychophysics/study/covariate.h"
+#include "analysis/psychophysics/study/trials_study.h"
+#include "core/base/error.h"
+#include "tests/analysis/psychometric/models/simulated_choices.h"
+#include "tests/analysis/psychophysics/simulated_trials.h"
+#include "tests/support/message_of.h"
+
+namespace haptrial::analysis::trials::decisions_test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+const Quantity& quantity_of(const TrialsResult& result, const std::string& name) {
+  const auto found = std::ranges::find(result.quantities, name, &Quantity::name);
+  EXPECT_NE(found, result.quantities.end()) << name;
+  return *found;
+}
+
+/// Six people whose drift falls from "easy" to "hard"; one of them is never wrong.
+TrialsData choices_of_people() {
+  TrialsData data;
+  for (std::size_t person = 0; person < 7; ++person) {
+    const std::string name = "P0" + std::to_string(person + 1);
+    data.sessions.push_back({name + ".h5", name, "", "simulated", true, false, 1});
+    RandomStream random(2, name);
+    for (const bool easy : {true, false}) {
+      const Diffusion model{easy ? 2.0 : 0.8, 1.2, 0.3, 0.5};
+      for (const TimedChoice& choice : test::simulated_choices(model, 150, random)) {
+        StudyTrial& trial = data.trials.emplace_back();
+        trial.session = person;
+        const bool right = choice.upper || person == 6;
+        trial.answers.push_back(
+            {"which", 1.0, right ? "left" : "right", right ? 1 : 0, choice.time});
+        trial.variables.push_back({"task", 0, kNotKnown, easy ? "easy" : "hard"});
+      }
+    }
+  }
+  return data;
+}
+
+TrialsPlan plan_of_choices() {
+  TrialsPlan plan;
+  plan.kind = AnalysisKind::kTimes;
+  plan.by = {"task"};
+  plan.permutations = 0;
+  plan.diffusion = true;
+  plan.plan = parse_analysis_plan({"hard < easy"}, "", "tests");
+  return plan;
+}
+
+TEST(Decisions, ParametersOfTheDiffusionModelAreTested) {
+  const TrialsResult result = analyze(choices_of_people(), plan_of_choices(), {}, 1);
+  const Quantity& drift = quantity_of(result, "drift");
+  ASSERT_TRUE(drift.means[0] && drift.means[1]);
+  EXPECT_NEAR(drift.means[0]->mean, 2.0, 0.3);
+  EXPECT_NEAR(drift.means[1]->mean, 0.8, 0.3);
+  EXPECT_EQ(drift.table.participants(0), 6U);
+  EXPECT_LT(drift.tests.planned.tests.front().t->p, 0.001);
+  EXPECT_NEAR(quantity_of(result, "boundary").means[0]->mean, 1.2, 0.1);
+  EXPECT_NEAR(quantity_of(result, "non_decision_time").means[0]->mean, 0.3, 0.02);
+  EXPECT_THAT(summary_lines(result),
+              Contains(HasSubstr("2 of 14 diffusion models could not be determined, because all "
+                                 "answers are of one kind (P07, easy; P07, hard)")));
+  EXPECT_THAT(estimates_csv(result), HasSubstr("non_decision_time"));
+}
+
+TEST(Decisions, AStatedAnswerIsTheUpperBoundary) {
+  TrialsPlan plan = plan_of_choices();
+  plan.yes = "right";
+  const TrialsResult result = analyze(choices_of_people(), plan, {}, 1);
+  EXPECT_NEAR(quantity_of(result, "drift").means[0]->mean, -2.0, 0.3);
+}
+
+TEST(Decisions, ConfidenceOfAnIdealObserverHasAnMRatioOfOne) {
+  test::SimulatedTrials study;
+  study.task = test::SimulatedTask::kDetection;
+  study.trials = 400;
+  TrialsPlan plan = test::plan_of(study);
+  EXPECT_TRUE(std::ranges::none_of(analyze(test::simulated_trials(study), plan, {}, 1).quantities,
+                                   [](const Quantity& q) { return q.name == "m_ratio"; }));
+  plan.metacognition = true;
+  const TrialsResult result = analyze(test::simulated_trials(study), plan, {}, 1);
+  const Quantity& ratio = quantity_of(result, "m_ratio");
+  for (const auto& mean : ratio.means) {
+    ASSERT_TRUE(mean) << mean.because();
+    EXPECT_LE(mean->low, 1.0);
+    EXPECT_GE(mean->high, 1.0);
+    EXPECT_LT(mean->high - mean->low, 0.5);
+  }
+  EXPECT_THAT(estimates_csv(result), HasSubstr("m_ratio"));
+}
+
+TEST(Decisions, TwoStimuliThatAreIdentifiedHaveAnMRatio) {
+  TrialsData data;
+  data.sessions.push_back({"P01.h5", "P01", "", "simulated", true, false, 1});
+  RandomStream random(1, "identified");
+  for (int i = 0; i < 2000; ++i) {
+    const bool second = i % 2 == 1;
+    const double evidence = random.normal() + (second ? 0.8 : -0.8);
+    StudyTrial& trial = data.trials.emplace_back();
+    const bool said = evidence > 0.0;
+    trial.answers.push_back({"which", 1.0, said ? "cube" : "ball", said == second ? 1 : 0, 0.5});
+    trial.answers.push_back({"sure", std::min(4.0, std::ceil(2.0 * std::abs(evidence))), "", -1});
+    trial.variables.push_back({"shape", 0, kNotKnown, second ? "cube" : "ball"});
+  }
+  TrialsPlan plan;
+  plan.kind = AnalysisKind::kIdentification;
+  plan.stimulus = "shape";
+  plan.choices = {"ball", "cube"};
+  plan.rating = "sure";
+  plan.metacognition = true;
+  plan.permutations = 0;
+  const TrialsResult result = analyze(std::move(data), plan, {}, 1);
+  ASSERT_TRUE(result.identified.front().meta) << result.identified.front().meta.because();
+  EXPECT_NEAR(result.identified.front().meta->d_prime, 1.6, 0.15);
+  EXPECT_NEAR(result.identified.front().meta->ratio, 1.0, 0.15);
+}
+
+TEST(Decisions, ACovariateIsEachParticipantsFirstScore) {
+  const std::vector<PageScore> scores{{"P01", "", "hands", "before", "age", 20.0},
+                                      {"P01", "", "hands", "after", "age", 21.0},
+                                      {"P02", "", "hands", "before", "age", 30.0}};
+  Covariate covariate{"hands.age"};
+  add_covariate(scores, covariate);
+  EXPECT_EQ(covariate.values, (std::map<std::string, double>{{"P01", 20.0}, {"P02", 30.0}}));
+  Covariate other{"hands.size"};
+  EXPECT_THAT(test::message_of<InputError>([&] { add_covariate(scores, other); }),
+              HasSubstr("there are: hands.age"));
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials::decisions_test
