@@ -75,7 +75,7 @@ void add_diffusion(FindingRow& row, const Defined<DiffusionFit>& fit) {
   }
   add_parameter(row, "drift", "drift rate", "", fit->drift);
   add_parameter(row, "boundary", "boundary separation", "", fit->boundary);
-  add_parameter(row, "non_decision_time", "non-decision time (s)", "s", fit->non_decision);
+  add_parameter(row, "non_decision_time", "non-decision time", "s", fit->non_decision);
   add_count(row, "rarer_answers", "answers of the rarer kind", fit->rarer);
   row.push_back(
       {.name = "distance", .title = "distance", .value = fit->distance, .form = JsonForm::kPlain});
@@ -135,7 +135,8 @@ void add_time_methods(Document& document, const TrialsPlan& plan) {
         "(standard deviation 1 per √s) of all answers with a time, by maximum likelihood with the "
         "first-passage density of Navarro and Fuss (2009); the start lies at {:g} of the way to "
         "the upper boundary, that of {}; a share of {:g} of the answers counts as guesses at any "
-        "time up to the longest. Intervals are of profile likelihood. The distance is the largest "
+        "time up to the longest. Intervals are of profile likelihood; planned tests of the "
+        "parameters are two-tailed. The distance is the largest "
         "one between the observed and the fitted distribution of times, those of the other answer "
         "counted negative: above 1.36 / √trials the model does not describe the times, and its "
         "parameters mean nothing; a smaller one does not prove it.",

@@ -275,19 +275,24 @@ void add_lines(TrialsResult& result, const std::string& what) {
                                        "s", coefficient(0), plan));
 }
 
+/// A planned direction is that of times; the parameters of a model are tested on both sides.
 void add_diffusion(TrialsResult& result) {
+  TrialsPlan plan = result.plan;
+  for (PlannedTest& test : plan.plan.tests) {
+    test.tail = Tail::kTwoSided;
+  }
   const auto values = [&](DiffusionEstimate DiffusionFit::*parameter) {
     return timed_values(result.timed, [parameter](const TimedCondition& one) {
       return one.diffusion ? ((*one.diffusion).*parameter).value : kNotKnown;
     });
   };
   result.quantities.push_back(
-      quantity("drift", "drift rate", "", values(&DiffusionFit::drift), result.plan));
+      quantity("drift", "drift rate", "", values(&DiffusionFit::drift), plan));
   result.quantities.push_back(quantity("boundary", "boundary separation", "",
-                                       values(&DiffusionFit::boundary), result.plan,
+                                       values(&DiffusionFit::boundary), plan,
                                        ValueRange::kPositive));
   result.quantities.push_back(quantity("non_decision_time", "non-decision time", "s",
-                                       values(&DiffusionFit::non_decision), result.plan,
+                                       values(&DiffusionFit::non_decision), plan,
                                        ValueRange::kPositive));
 }
 

@@ -17,6 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double kLevel = 0.95;
+constexpr const char* kNobody = "nobody has a value of the covariate";
 
 /// A value of a participant who has the covariate.
 struct Row {
@@ -128,6 +129,9 @@ Defined<TTest> adjusted_test(const DesignTable& table, const Sides& sides,
   for (std::size_t i = 0; !sides.paired && i < sides.b.size(); ++i) {
     add_row(table, covariate, sides.subjects_b[i], 0, sides.b[i], rows);
   }
+  if (rows.empty()) {
+    return Undefined{kNobody};
+  }
   centre(rows);
   MatrixXd x(std::ssize(rows), sides.paired ? 1 : 2);
   for (Index i = 0; i < x.rows(); ++i) {
@@ -148,7 +152,7 @@ Defined<EffectTest> adjusted_effect(const DesignTable& table, const Covariate& c
   const Factor& factor = table.factors.front();
   const std::vector<Row> rows = rows_of(table, covariate);
   if (rows.empty()) {
-    return Undefined{"nobody has a value of the covariate"};
+    return Undefined{kNobody};
   }
   const MatrixXd x =
       factor.within ? within_predictors(rows, levels) : between_predictors(rows, levels);
@@ -163,14 +167,12 @@ Defined<EffectTest> adjusted_effect(const DesignTable& table, const Covariate& c
   if (!joint) {
     return Undefined{joint.because()};
   }
-  EffectTest effect{factor.name,
-                    fmt::format("analysis of covariance, {} held", covariate.name),
-                    joint->f,
-                    joint->df_numerator,
-                    joint->df_denominator,
-                    joint->p,
+  const auto df_error = static_cast<double>(x.rows() - x.cols() - 1);
+  EffectTest effect{factor.name, fmt::format("analysis of covariance, {} held", covariate.name),
+                    joint->f,    joint->df_numerator,
+                    df_error,    joint->p,
                     std::nullopt};
-  effect.size = partial_eta_squared(joint->f, joint->df_numerator, joint->df_denominator);
+  effect.size = partial_eta_squared(joint->f, joint->df_numerator, df_error);
   return effect;
 }
 

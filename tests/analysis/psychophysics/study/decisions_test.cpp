@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_words.h"
@@ -26,7 +29,7 @@ const Quantity& quantity_of(const TrialsResult& result, const std::string& name)
   return *found;
 }
 
-/// Six people whose drift falls from "easy" to "hard"; one of them is never wrong.
+/// Six people whose drift falls from "easy" to "hard", and one who is never wrong.
 TrialsData choices_of_people() {
   TrialsData data;
   for (std::size_t person = 0; person < 7; ++person) {
@@ -54,7 +57,7 @@ TrialsPlan plan_of_choices() {
   plan.by = {"task"};
   plan.permutations = 0;
   plan.diffusion = true;
-  plan.plan = parse_analysis_plan({"hard < easy"}, "", "tests");
+  plan.plan = parse_analysis_plan({"easy < hard"}, "", "tests");
   return plan;
 }
 
@@ -66,6 +69,7 @@ TEST(Decisions, ParametersOfTheDiffusionModelAreTested) {
   EXPECT_NEAR(drift.means[1]->mean, 0.8, 0.3);
   EXPECT_EQ(drift.table.participants(0), 6U);
   EXPECT_LT(drift.tests.planned.tests.front().t->p, 0.001);
+  EXPECT_EQ(drift.tests.planned.tests.front().sides.tail, Tail::kTwoSided);
   EXPECT_NEAR(quantity_of(result, "boundary").means[0]->mean, 1.2, 0.1);
   EXPECT_NEAR(quantity_of(result, "non_decision_time").means[0]->mean, 0.3, 0.02);
   EXPECT_THAT(summary_lines(result),

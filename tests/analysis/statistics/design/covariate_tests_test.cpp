@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include "analysis/statistics/design/design_tests.h"
@@ -123,6 +124,8 @@ TEST(CovariateTests, KeepTheirLevelInNullStudies) {
   });
   const auto band = test::binomial_band(2000, 0.999);
   for (const auto& level : levels) {
+    std::printf("%s: %zu of 2000\n", level.test.c_str(),
+                level.found);  // docs/algorithms/statistics.md
     EXPECT_GE(level.found, band.low) << level.test;
     EXPECT_LE(level.found, band.high) << level.test;
   }
@@ -136,6 +139,18 @@ TEST(CovariateTests, SeveralFactorsHaveNoEffect) {
   Covariate age{"age", {{"P00", 1.0}, {"P01", 2.0}}};
   EXPECT_THAT(adjusted_effect(design_table(all, {"one", "two"}), age).because(),
               testing::HasSubstr("for one factor"));
+}
+
+TEST(CovariateTests, WithoutValuesNothingIsAdjusted) {
+  AnalysisPlan plan = parse_analysis_plan({"a != b"}, "", "tests");
+  plan.covariate.name = "age";
+  const DesignTable table = design_table(
+      std::vector<Observation>{
+          {"P00", {"a"}, 1.0}, {"P00", {"b"}, 2.0}, {"P01", {"a"}, 1.5}, {"P01", {"b"}, 2.7}},
+      {"one"});
+  const DesignTests tests = design_tests(table, plan, {1, "", 0, 1});
+  EXPECT_THAT(tests.planned.tests.front().adjusted.because(), testing::HasSubstr("nobody"));
+  EXPECT_THAT(tests.effects.back().because(), testing::HasSubstr("nobody"));
 }
 
 }  // namespace
