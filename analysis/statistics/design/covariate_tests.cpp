@@ -62,7 +62,7 @@ Defined<TTest> test_of(const Defined<Regression>& fit, std::size_t which, Tail t
 }
 
 /// Values of whole participants, or of everybody if the factor is between them.
-std::vector<Row> rows_of(const DesignTable& table, const Covariate& covariate) {
+std::vector<Row> complete_rows(const DesignTable& table, const Covariate& covariate) {
   std::vector<Row> rows;
   for (const std::size_t subject : table.complete()) {
     for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
@@ -150,7 +150,7 @@ Defined<EffectTest> adjusted_effect(const DesignTable& table, const Covariate& c
     return Undefined{"an analysis of covariance is for one factor"};
   }
   const Factor& factor = table.factors.front();
-  const std::vector<Row> rows = rows_of(table, covariate);
+  const std::vector<Row> rows = complete_rows(table, covariate);
   if (rows.empty()) {
     return Undefined{kNobody};
   }
