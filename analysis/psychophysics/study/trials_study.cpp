@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <utility>
 
+#include "analysis/psychophysics/study/decision_quantities.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
@@ -168,24 +170,6 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
   }
 }
 
-/// @param all  with the answers and ratings of two stimuli
-template <class Conditions>
-void add_metacognition(TrialsResult& result, const Conditions& all) {
-  if (!result.plan.metacognition) {
-    return;
-  }
-  std::vector<QuantityValue> meta, ratio;
-  for (const auto& one : all) {
-    if (one.meta) {
-      meta.push_back({one.participant, one.levels, one.meta->meta_d});
-      ratio.push_back({one.participant, one.levels, one.meta->ratio});
-    }
-  }
-  result.quantities.push_back(quantity("meta_d", "meta-d'", "", meta, result.plan));
-  result.quantities.push_back(
-      quantity("m_ratio", "M-ratio (meta-d' / d')", "", ratio, result.plan));
-}
-
 void add_detection(TrialsResult& result) {
   result.detected = detected(result.data, result.plan);
   std::vector<QuantityValue> d_prime, criterion, area;
@@ -210,7 +194,10 @@ void add_detection(TrialsResult& result) {
   if (!area.empty()) {
     add("roc_area", "area under the ROC curve of ratings", area, ValueRange::kShare);
   }
-  add_metacognition(result, result.detected);
+  if (result.plan.metacognition) {
+    std::ranges::move(metacognition_quantities(result.detected, result.plan),
+                      std::back_inserter(result.quantities));
+  }
   for (std::size_t i = first; i < result.quantities.size(); ++i) {
     result.quantities[i].headline = !chosen;  // another grid of levels would change them
   }
@@ -236,7 +223,10 @@ void add_identification(TrialsResult& result) {
                                          "area under the ROC curve of ratings, right against wrong",
                                          "", area, result.plan, ValueRange::kShare));
   }
-  add_metacognition(result, result.identified);
+  if (result.plan.metacognition) {
+    std::ranges::move(metacognition_quantities(result.identified, result.plan),
+                      std::back_inserter(result.quantities));
+  }
 }
 
 void add_magnitudes(TrialsResult& result) {
@@ -275,27 +265,6 @@ void add_lines(TrialsResult& result, const std::string& what) {
                                        "s", coefficient(0), plan));
 }
 
-/// A planned direction is that of times; the parameters of a model are tested on both sides.
-void add_diffusion(TrialsResult& result) {
-  TrialsPlan plan = result.plan;
-  for (PlannedTest& test : plan.plan.tests) {
-    test.tail = Tail::kTwoSided;
-  }
-  const auto values = [&](DiffusionEstimate DiffusionFit::*parameter) {
-    return timed_values(result.timed, [parameter](const TimedCondition& one) {
-      return one.diffusion ? ((*one.diffusion).*parameter).value : kNotKnown;
-    });
-  };
-  result.quantities.push_back(
-      quantity("drift", "drift rate", "", values(&DiffusionFit::drift), plan));
-  result.quantities.push_back(quantity("boundary", "boundary separation", "",
-                                       values(&DiffusionFit::boundary), plan,
-                                       ValueRange::kPositive));
-  result.quantities.push_back(quantity("non_decision_time", "non-decision time", "s",
-                                       values(&DiffusionFit::non_decision), plan,
-                                       ValueRange::kPositive));
-}
-
 void add_times(TrialsResult& result) {
   const TrialsPlan& plan = result.plan;
   result.timed = timed(result.data, plan);
@@ -316,7 +285,8 @@ void add_times(TrialsResult& result) {
         plan, ValueRange::kShare));
   }
   if (plan.diffusion) {
-    add_diffusion(result);
+    std::ranges::move(diffusion_quantities(result.timed, plan),
+                      std::back_inserter(result.quantities));
   }
 }
 

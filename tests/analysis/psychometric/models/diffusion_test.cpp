@@ -158,8 +158,8 @@ TEST(DiffusionTest, CoverageIsThatOfThePage) {
                 100.0 * h.non_decision / h.fits, h.drift_sum / h.fits, h.boundary_sum / h.fits,
                 h.non_decision_sum / h.fits);
     for (const int count : {h.drift, h.boundary, h.non_decision}) {
-      EXPECT_GE(count, 0.90 * h.fits);
-      EXPECT_LE(count, 0.98 * h.fits);
+      EXPECT_GE(count, 0.93 * h.fits);
+      EXPECT_LE(count, 0.97 * h.fits);
     }
   }
 }
