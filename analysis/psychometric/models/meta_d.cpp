@@ -18,7 +18,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kFar = 40.0;  // a criterion beyond which no evidence lies
+constexpr double kMostError = 1.0;  // of meta-d'
+constexpr double kFar = 40.0;       // a criterion beyond which no evidence lies
 
 /// Ratings of one answer: those that were given, from the lowest evidence to the highest.
 struct AnswerSide {
@@ -147,11 +148,14 @@ DetectionCounts answers_of(const RatingCounts& counts, std::size_t noise_ratings
   return sums;
 }
 
-MetaD meta_of(const ScoringMaximum& fit, const Detection& answers) {
+Defined<MetaD> meta_of(const ScoringMaximum& fit, const Detection& answers) {
   const double wide = normal_quantile(0.975);
   const VectorXd first = VectorXd::Unit(fit.at.size(), 0);
   const auto solved = solve_positive(fit.point.information, first);
-  const double error = solved ? std::sqrt((*solved)(0, 0)) : 0.0;
+  const double error = solved ? std::sqrt((*solved)(0, 0)) : kMostError;
+  if (!(error < kMostError)) {
+    return Undefined{"the ratings do not determine it: its standard error is 1 or more"};
+  }
   MetaD meta;
   meta.meta_d = fit.at[0];
   meta.low = meta.meta_d - wide * error;

@@ -26,7 +26,7 @@ struct MetaD {
 /// @param noise_ratings  number of ratings that go with the answer "noise": the first ones.
 /// Ratings that nobody gave are dropped. Undefined without signal or noise trials, with d' whose
 /// 95 % interval reaches 0 (the ratio has no meaning there), with one rating only on both sides,
-/// and if the likelihood has no maximum.
+/// with a standard error of meta-d' of 1 or more, and if the likelihood has no maximum.
 /// @throws std::invalid_argument as rating_roc, and for noise_ratings beyond the ratings.
 /// Source: Maniscalco and Lau 2012, Consciousness and Cognition 21.
 Defined<MetaD> meta_d_prime(const RatingCounts& counts, std::size_t noise_ratings);

@@ -90,6 +90,9 @@ TEST(MetaDTest, RatingsThatDoNotTellAreNotDefined) {
   EXPECT_THAT(meta_d_prime({{50, 20}, {20, 50}}, 1).because(), HasSubstr("one rating only"));
   EXPECT_THAT(meta_d_prime({{20, 20, 20, 20}, {19, 21, 20, 20}}, 2).because(),
               HasSubstr("not clearly above 0"));
+  // Nearly every answer was called certain.
+  EXPECT_THAT(meta_d_prime({{79, 0, 1, 2}, {72, 2, 2, 124}}, 2).because(),
+              HasSubstr("standard error"));
   EXPECT_FALSE(meta_d_prime({{0, 0}, {3, 4}}, 1));
   EXPECT_THROW(meta_d_prime({{1, 2}, {3, 4}}, 3), std::invalid_argument);
 }
