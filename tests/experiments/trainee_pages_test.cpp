@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "analysis/bone_drilling/report/ratings.h"
 #include "tests/experiments/browser.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
@@ -79,6 +80,38 @@ TEST(TraineePagesTest, ADefinitionAsksForThePageAtTheEnd) {
   EXPECT_THAT(html, HasSubstr("After a procedure: S01"));
   EXPECT_THAT(html, HasSubstr("SIMULATED: the participant is a program"));
   EXPECT_THAT(html, HasSubstr("not judged: there are no experts"));
+}
+
+TEST(TraineePagesTest, AScoreOfARatedStudyStandsOnTheNextTraineesPage) {
+  const test::TemporaryFolder folder;
+  const fs::path study = drilled(folder.path(), "5", {{"procedures", "procedures = 1"}}) / "";
+  const std::string score = (folder / "score.json").string();
+  const std::string learn = "haptrial bone score " + study.string() + " --out " + score;
+  const auto unrated = run_command(learn);
+  EXPECT_EQ(unrated.status, 2);
+  EXPECT_THAT(unrated.errors, HasSubstr("holds no ratings.csv, so nothing is rated yet"));
+  std::vector<analysis::drilling::Rating> ratings;
+  for (int n = 1; n <= 5; ++n) {
+    ratings.push_back(
+        {"S0" + std::to_string(n) + ".h5", 1, "A", n % 2 == 0 ? 2.0 : 1.0 + 0.5 * n, "", false});
+  }
+  test::write_text(study / "ratings.csv", analysis::drilling::ratings_csv(ratings));
+  const auto learned = run_command(learn);
+  ASSERT_EQ(learned.status, 0) << learned.errors;
+  EXPECT_THAT(learned.output, HasSubstr("from 5 rated procedures of 5 participants"));
+
+  const std::string page = (folder / "S01.html").string();
+  const auto made = run_command("haptrial bone page " + (study / "S01.h5").string() + " --score " +
+                                score + " --out " + page);
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_THAT(test::read_text(page), HasSubstr("points of 5, 95 % interval"));
+
+  const test::TemporaryFolder other;  // another time limit, and the page at the end of the session
+  const fs::path out = drilled(
+      other.path(), "1", {{"time_limit", "time_limit = 4.0"}, {"procedures", "procedures = 1"}},
+      "\n[feedback]\npage = true\nscore = \"" + score + "\"\n");
+  EXPECT_THAT(test::read_text(out / "S01.html"),
+              HasSubstr("it was learned with another time limit (3 s; here 4 s)"));
 }
 
 }  // namespace

@@ -46,13 +46,14 @@ Experts experts_of(std::span<const ExpertProcedure> procedures, const std::strin
 /// A procedure and what was wrong with it.
 struct Findings {
   ProcedureSummary summary;
-  std::vector<std::string> structures;    // vital ones of its bone; none: unknown
-  std::vector<NearestRemoval> nearest;    // (removals)
-  std::vector<std::uint8_t> faults;       // (removals) bits of Fault
-  std::vector<std::uint8_t> judged;       // (removals) 1: experts say what is safe there
-  std::vector<bone::Voxel> voxels;        // (removals)
-  std::vector<double> times;              // (removals) of the procedure [s]
-  std::vector<std::uint8_t> labels_left;  // of the bone's grid, after all that was taken
+  std::vector<std::string> structures;              // vital ones of its bone; none: unknown
+  std::vector<NearestRemoval> nearest;              // (removals)
+  std::vector<std::uint8_t> faults;                 // (removals) bits of Fault
+  std::vector<std::uint8_t> judged;                 // (removals) 1: experts say what is safe there
+  std::vector<bone::Voxel> voxels;                  // (removals)
+  std::vector<double> times;                        // (removals) of the procedure [s]
+  std::vector<std::uint8_t> labels_left;            // of the bone's grid, after all that was taken
+  std::shared_ptr<const subject::CavityPlan> plan;  // null: the definition has no [cavity]
   std::vector<std::vector<Eigen::Vector3f>> strokes;  // tip in W, every 20 ms [m]
   Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};
 

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "analysis/bone_drilling/feedback/achieved_tables.h"
 #include "analysis/bone_drilling/feedback/page_frame.h"
 #include "analysis/bone_drilling/feedback/procedure_tables.h"
 #include "analysis/document/base64.h"
@@ -82,6 +83,7 @@ std::string procedure_page(const ProcedurePage& page) {
         "all-clear.");
   }
   body += summary_points(f, experts) + view(page) + experts_sentence(experts);
+  body += page.score + achieved_section(f, experts);
   body += heading("Near vital structures");
   body += f.structures.empty()
               ? paragraph("Vital structures of this bone are unknown.")

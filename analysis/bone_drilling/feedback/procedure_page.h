@@ -21,6 +21,7 @@ struct ProcedurePage {
   std::string expert_name;   // for people: whose and which that is
   std::string picture;   // PNG file of the result, for browsers that cannot turn it; may be empty
   std::string started;   // of the session, UTC
+  std::string score;     // score_section(); empty: none is asked for
   std::string overview;  // name of the trainee's page beside this one; empty: none
 };
 

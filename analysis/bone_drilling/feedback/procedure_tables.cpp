@@ -83,6 +83,10 @@ std::optional<SafeRange> experts_range(const Experts& experts, const std::string
       values.push_back(*value);
     }
   }
+  return range_of(std::move(values));
+}
+
+std::optional<SafeRange> range_of(std::vector<double> values) {
   if (values.empty()) {
     return std::nullopt;
   }

@@ -13,6 +13,9 @@ namespace haptrial::analysis::drilling {
 /// The metrics that a page shows: all but those that need novices to compare with.
 std::vector<MetricKind> shown_metrics();
 
+/// Smallest, median and largest of some values; nothing of none.
+std::optional<SafeRange> range_of(std::vector<double> values);
+
 /// Smallest, median and largest value of a metric over the experts' procedures.
 std::optional<SafeRange> experts_range(const Experts& experts, const std::string& metric);
 

@@ -51,6 +51,7 @@ class Scene {
     }
     add_structures(scene);
     add_removals(scene);
+    add_planned(scene);
     add_strokes(scene);
     return scene;
   }
@@ -118,12 +119,43 @@ class Scene {
       }
       order.resize(options_.removals);
     }
-    std::string places, faults;
+    std::string places, faults, parts;
     for (const std::size_t n : order) {
+      if (f_.plan) {
+        const bone::Voxel& v = f_.voxels[n];
+        parts += static_cast<char>(f_.plan->parts[left_.grid.index(v.x(), v.y(), v.z())]);
+      }
       grid_.add(place(f_.voxels[n]), places);
       faults += static_cast<char>(f_.faults[n]);
     }
-    scene["removals"] = {{"p", base64(places)}, {"f", base64(faults)}, {"all", f_.voxels.size()}};
+    scene["removals"] = {{"p", base64(places)},
+                         {"f", base64(faults)},
+                         {"plan", base64(parts)},
+                         {"all", f_.voxels.size()}};
+  }
+
+  /// Planned bone that is left.
+  void add_planned(json& scene) const {
+    if (!f_.plan) {
+      return;
+    }
+    std::vector<bone::Voxel> left;
+    std::size_t at = 0;
+    for (int k = 0; k < left_.grid.size[2]; ++k) {
+      for (int j = 0; j < left_.grid.size[1]; ++j) {
+        for (int i = 0; i < left_.grid.size[0]; ++i, ++at) {
+          if (f_.plan->parts[at] == subject::PlanPart::kPlanned && left_.labels[at] != 0) {
+            left.emplace_back(i, j, k);
+          }
+        }
+      }
+    }
+    const std::size_t shown = std::min(left.size(), options_.planned);
+    std::string places;
+    for (std::size_t n = 0; n < shown; ++n) {
+      grid_.add(place(left[n * left.size() / shown]), places);
+    }
+    scene["planned"] = {{"p", base64(places)}, {"all", left.size()}};
   }
 
   void add_strokes(json& scene) const {

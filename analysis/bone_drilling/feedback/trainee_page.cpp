@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "analysis/bone_drilling/feedback/achieved_tables.h"
 #include "analysis/bone_drilling/feedback/page_frame.h"
 #include "analysis/bone_drilling/feedback/procedure_tables.h"
 #include "analysis/bone_drilling/feedback/range_plot.h"
@@ -24,8 +25,16 @@ struct Line {
   std::optional<SafeRange> experts;
 };
 
-std::vector<Line> lines_of(const Experts& experts) {
+std::vector<Line> lines_of(const std::vector<TraineeProcedure>& procedures,
+                           const Experts& experts) {
   std::vector<Line> lines;
+  for (const AchievedFigure& figure : figures_of(procedures.front().summary.achieved)) {
+    lines.push_back({figure.title, figure.unit,
+                     [column = figure.column](const TraineeProcedure& p) {
+                       return achieved_value(p.summary, column);
+                     },
+                     achieved_range(experts, figure.column)});
+  }
   for (const MetricKind& kind : shown_metrics()) {
     lines.push_back(
         {kind.title, kind.unit,
@@ -117,7 +126,7 @@ std::string trainee_page(const std::string& participant,
                          const std::vector<TraineeProcedure>& procedures, const Experts& experts) {
   const bool simulated = std::any_of(procedures.begin(), procedures.end(),
                                      [](const TraineeProcedure& p) { return p.summary.simulated; });
-  const std::vector<Line> lines = lines_of(experts);
+  const std::vector<Line> lines = lines_of(procedures, experts);
   std::string body = simulated_banner(simulated, experts.simulated);
   body += links(procedures);
   body += heading("Learning");

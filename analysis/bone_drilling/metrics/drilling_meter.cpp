@@ -7,11 +7,12 @@ namespace haptrial::analysis::drilling {
 DrillingMeter::DrillingMeter(std::shared_ptr<const bone::BoneModel> bone,
                              const Eigen::Isometry3d& pose_WB,
                              const std::vector<ProcedureTool>& tools, double rate,
-                             StudyBones& bones)
+                             StudyBones& bones, std::shared_ptr<const subject::CavityPlan> plan)
     : tools_(tools),
       usage_(bone, tools, rate),
       visibility_(bone, pose_WB),
-      injuries_(bone, pose_WB, tools, bones) {}
+      injuries_(bone, pose_WB, tools, bones),
+      achieved_(bone, std::move(plan), rate, bones) {}
 
 BurrOnTick DrillingMeter::burr() const noexcept {
   const bool known = last_.tool >= 0 && std::cmp_less(last_.tool, tools_.size());
@@ -27,6 +28,9 @@ void DrillingMeter::crumb(const Debris& crumb) {
   taken_.clear();
   visibility_.crumble(crumb.voxel, &taken_);
   injuries_.crumble(taken_);
+  for (const bone::Voxel& voxel : taken_) {
+    achieved_.remove(voxel);
+  }
 }
 
 void DrillingMeter::tick(const ToolTick& tick) {
@@ -34,6 +38,7 @@ void DrillingMeter::tick(const ToolTick& tick) {
   any_ = true;
   usage_.tick(tick);
   injuries_.tick(tick, burr(), time());
+  achieved_.tick(tick);
 }
 
 void DrillingMeter::removal(const Removal& removal) {
@@ -41,12 +46,14 @@ void DrillingMeter::removal(const Removal& removal) {
   visibility_.remove(removal.voxel, now ? burr() : burr_of(last_, nullptr));
   usage_.remove(removal);
   injuries_.remove(removal, time());
+  achieved_.remove(removal.voxel);
 }
 
 void DrillingMeter::cut(const Removal& cut) {
   visibility_.cut(cut.voxel);
   usage_.remove(cut);
   injuries_.remove(cut, time());
+  achieved_.remove(cut.voxel);
 }
 
 }  // namespace haptrial::analysis::drilling

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/achieved.h"
 #include "analysis/bone_drilling/metrics/injuries.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/metrics/usage.h"
@@ -14,8 +15,10 @@ namespace haptrial::analysis::drilling {
 /// file and in a session. A visitor of visit_in_order(). One thread, not the servo thread.
 class DrillingMeter {
  public:
+  /// @param plan  of the cavity; null: there is none
   DrillingMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
-                const std::vector<ProcedureTool>& tools, double rate, StudyBones& bones);
+                const std::vector<ProcedureTool>& tools, double rate, StudyBones& bones,
+                std::shared_ptr<const subject::CavityPlan> plan);
 
   void view(const View& view);
   void crumb(const Debris& crumb);
@@ -27,6 +30,7 @@ class DrillingMeter {
   Usage usage() const { return usage_.usage(); }
   const Visibility& visibility() const noexcept { return visibility_.visibility(); }
   const InjuryMeter& injuries() const noexcept { return injuries_; }
+  Achieved achieved() const { return achieved_.achieved(); }
 
  private:
   BurrOnTick burr() const noexcept;  // on the last tick
@@ -35,6 +39,7 @@ class DrillingMeter {
   UsageMeter usage_;
   VisibilityMeter visibility_;
   InjuryMeter injuries_;
+  AchievedMeter achieved_;
   ToolTick last_;
   bool any_{false};
   std::vector<bone::Voxel> taken_;

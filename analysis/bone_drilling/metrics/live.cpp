@@ -1,6 +1,7 @@
 #include "analysis/bone_drilling/metrics/live.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/bone_drilling/metrics/in_order.h"
 
@@ -16,8 +17,9 @@ void drop(std::vector<Row>& rows, std::size_t count) {
 
 LiveMetrics::LiveMetrics(const std::shared_ptr<const bone::BoneModel>& bone,
                          const Eigen::Isometry3d& pose_WB, const std::vector<ProcedureTool>& tools,
-                         double scale, double rate, const Eigen::Vector3d& handle)
-    : meter_(bone, pose_WB, tools, rate, bones_), scale_(scale), handle_(handle) {}
+                         double scale, double rate, const Eigen::Vector3d& handle,
+                         std::shared_ptr<const subject::CavityPlan> plan)
+    : meter_(bone, pose_WB, tools, rate, bones_, std::move(plan)), scale_(scale), handle_(handle) {}
 
 void LiveMetrics::add(std::span<const record::Sample> samples,
                       std::span<const record::ToolRow> tool) {
@@ -86,6 +88,7 @@ LiveFigures LiveMetrics::figures() const {
   figures.injured_voxels = meter_.injuries().voxels();
   figures.injuries = meter_.injuries().injuries();
   figures.mean_force = usage.mean_force;
+  figures.achieved = meter_.achieved();
   return figures;
 }
 

@@ -22,9 +22,11 @@ class LiveMetrics {
  public:
   /// One for each bone; a drilling that was broken off and goes on stays with its object.
   /// @param scale, handle  as ProcedureSetup has them
+  /// @param plan  of the cavity on this bone; null: there is none
   LiveMetrics(const std::shared_ptr<const bone::BoneModel>& bone, const Eigen::Isometry3d& pose_WB,
               const std::vector<ProcedureTool>& tools, double scale, double rate,
-              const Eigen::Vector3d& handle = Eigen::Vector3d::UnitZ());
+              const Eigen::Vector3d& handle = Eigen::Vector3d::UnitZ(),
+              std::shared_ptr<const subject::CavityPlan> plan = nullptr);
 
   /// Rows of the same ticks; those on which no bone was simulated are passed over.
   /// @throws std::invalid_argument where they are not of the same ticks.

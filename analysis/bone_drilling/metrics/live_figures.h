@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/achieved.h"
 #include "analysis/bone_drilling/metrics/injuries.h"
 
 namespace haptrial::analysis::drilling {
@@ -18,6 +19,7 @@ struct LiveFigures {
   std::uint64_t injured_voxels{0};      // of vital structures, emptied
   std::vector<Injury> injuries;         // by vital structure
   std::optional<double> mean_force;     // while drilling [N]
+  Achieved achieved;
 
   bool operator==(const LiveFigures&) const = default;
 };

@@ -195,6 +195,19 @@ std::string column_name(const Definition& definition) {
   return std::string(definition.name) + "_" + unit;
 }
 
+/// Columns of what was achieved: bones of one study may have different structures.
+std::vector<std::string> achieved_columns(std::span<const ProcedureSummary> procedures) {
+  std::vector<std::string> columns;
+  for (const ProcedureSummary& p : procedures) {
+    for (const AchievedFigure& figure : figures_of(p.achieved)) {
+      if (std::find(columns.begin(), columns.end(), figure.column) == columns.end()) {
+        columns.push_back(figure.column);
+      }
+    }
+  }
+  return columns;
+}
+
 /// Nothing where the bones differ: their voxels are not the same places.
 std::optional<std::vector<RemovedRegion>> regions_of(std::span<const ProcedureSummary> procedures,
                                                      std::span<const std::string> expert_groups) {
@@ -236,13 +249,15 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   summary.completed = procedure.completed;
   summary.bone = procedure.bone;
   summary.field = procedure.field;
-  DrillingMeter meter(procedure.bone, procedure.pose_WB, procedure.tools, procedure.rate, bones);
+  DrillingMeter meter(procedure.bone, procedure.pose_WB, procedure.tools, procedure.rate, bones,
+                      procedure.plan);
   visit_in_order(procedure, meter);
   summary.visibility = meter.visibility();
   sort_removed(procedure, summary);
   summary.injuries = meter.injuries().injuries();
   add_tears(procedure, summary.injuries);
   summary.usage = meter.usage();
+  summary.achieved = meter.achieved();
   summary.strokes = stroke_figures(procedure, options.strokes);
   const NearRemovals near = measure_near(procedure, options, bones, summary.near);
   const Parts parts{procedure, summary, near, options.near};
@@ -288,6 +303,10 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
   for (const Definition& definition : kDefinitions) {
     row.add(std::string_view(column_name(definition)));
   }
+  const std::vector<std::string> achieved = achieved_columns(procedures);
+  for (const std::string& column : achieved) {
+    row.add(std::string_view(column));
+  }
   row.end();
   for (const ProcedureSummary& p : procedures) {
     row.add(std::string_view(p.session)).add(std::string_view(p.participant));
@@ -295,6 +314,12 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
     row.add(p.simulated ? 1 : 0).add(p.completed ? 1 : 0);
     for (const std::optional<double>& value : p.values) {
       value ? row.add(*value) : row.add_missing();
+    }
+    const std::vector<AchievedFigure> figures = figures_of(p.achieved);
+    for (const std::string& column : achieved) {
+      const auto at = std::find_if(figures.begin(), figures.end(),
+                                   [&](const auto& each) { return each.column == column; });
+      at != figures.end() && at->value ? row.add(*at->value) : row.add_missing();
     }
     row.end();
   }

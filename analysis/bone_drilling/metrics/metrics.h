@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/achieved.h"
 #include "analysis/bone_drilling/metrics/injuries.h"
 #include "analysis/bone_drilling/metrics/near_structure.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
@@ -21,6 +22,10 @@ namespace haptrial::analysis::drilling {
 
 /// Which way the values of experts are expected to lie; kEither where nothing published says so.
 enum class Expected : std::uint8_t { kHigher, kLower, kEither };
+
+/// Raised whenever a metric, or a figure of what was achieved, gets another value for the same
+/// session: a score that was learned before no longer fits.
+inline constexpr int kMetricsVersion = 1;
 
 /// Name, unit, title and expected direction of a scalar metric.
 struct MetricKind {
@@ -58,6 +63,7 @@ struct ProcedureSummary {
   std::vector<Injury> injuries;
   StrokeFigures strokes;
   Usage usage;
+  Achieved achieved;
   std::optional<record::FieldRow> field;  // heat and blood, where there may be any
   /// Removals by structure of MetricOptions; a structure that this bone does not have has none.
   std::vector<NearRemovals> near;
@@ -91,7 +97,8 @@ std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummar
                                                  const RegionParameters& parameters = {});
 
 /// A tidy table (RFC 4180 with LF): session, participant, group, procedure, simulated, completed,
-/// then a column for each metric, named NAME_UNIT; empty where it is not defined.
+/// then a column for each metric, named NAME_UNIT, and for each of figures_of(); empty where it is
+/// not defined.
 std::string metrics_csv(std::span<const ProcedureSummary> procedures);
 
 }  // namespace haptrial::analysis::drilling

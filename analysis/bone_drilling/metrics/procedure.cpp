@@ -107,6 +107,7 @@ class Loader {
       procedure.pose_WB = setup_.pose_WB(procedure.bone->grid);
     }
     procedure.tools = setup_.tools;
+    procedure.plan = setup_.plan ? setup_.plan(procedure.bone) : nullptr;
     for (const Pass& pass : passes) {
       add(pass.pass, procedure);
     }

@@ -20,6 +20,10 @@ namespace haptrial::record {
 class SessionReader;
 }
 
+namespace haptrial::subject {
+struct CavityPlan;
+}
+
 namespace haptrial::analysis::drilling {
 
 /// A tool as far as metrics need it.
@@ -39,6 +43,10 @@ struct ProcedureSetup {
   /// but 0.
   Eigen::Vector3d handle{Eigen::Vector3d::UnitZ()};
   std::vector<ProcedureTool> tools;  // in the definition's order
+  /// The plan of the cavity on a bone; null where the definition has no [cavity].
+  std::function<std::shared_ptr<const subject::CavityPlan>(
+      const std::shared_ptr<const bone::BoneModel>&)>
+      plan;
 };
 
 /// One tick of a drilling; the tip in the scene's frame W.
@@ -113,6 +121,7 @@ struct Procedure {
   std::vector<Torn> tears;
   /// Heat and blood since the bone was new; none where the definition has neither.
   std::optional<record::FieldRow> field;
+  std::shared_ptr<const subject::CavityPlan> plan;  // null: the definition has no [cavity]
 
   /// Null out of range.
   const ProcedureTool* tool(std::int32_t tool) const noexcept;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/bone_drilling/report/achieved_section.h"
 #include "analysis/bone_drilling/report/field_section.h"
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
@@ -39,6 +40,7 @@ class Report {
     add_design();
     add_nerve_section(document_, result_.nerves, v_.simulated);
     add_hint_section(document_, result_.hints, result_.hint_effects, v_.simulated);
+    add_achieved_section(document_, result_);
     add_ratings();
     add_metrics();
     add_forces();

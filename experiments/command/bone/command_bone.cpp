@@ -19,6 +19,7 @@ void add_bone(CLI::App& app, int& status) {
   add_bone_place(*bone, status);
   add_bone_page(*bone, status);
   add_bone_safe(*bone, status);
+  add_bone_score(*bone, status);
 }
 
 }  // namespace haptrial::experiments

@@ -15,6 +15,7 @@ struct BonePageOptions {
   std::vector<std::string> sessions;
   std::vector<std::string> experts;
   std::string study;
+  std::string score;
   std::string out;
   std::optional<int> trial;
   bool overwrite{false};
@@ -28,6 +29,7 @@ int bone_page(const BonePageOptions& options) {
   request.sessions.assign(options.sessions.begin(), options.sessions.end());
   request.experts.assign(options.experts.begin(), options.experts.end());
   request.study = options.study;
+  request.score = options.score;
   request.out = options.out;
   request.overwrite = options.overwrite;
   if (options.trial) {
@@ -54,6 +56,7 @@ void add_bone_page(CLI::App& bone, int& status) {
   sub->add_option("--expert", o.experts,
                   "Session of an expert (.h5), shown beside on the same bone; may be repeated")
       ->allow_extra_args(false);
+  sub->add_option("--score", o.score, "File of a score (haptrial bone score) to be applied");
   sub->add_option("--trial", o.trial, "Procedure of each session (default: all)");
   sub->add_flag("--overwrite", o.overwrite, "Overwrite existing pages");
 }

@@ -29,12 +29,19 @@ std::string injured(const analysis::drilling::LiveFigures& figures) {
   return list.empty() ? "nothing vital injured" : fmt::format("INJURED:{}", list);
 }
 
+std::string of_the_plan(const analysis::drilling::Achieved& achieved) {
+  const auto share = achieved.plan ? achieved.plan->share() : std::nullopt;
+  return share ? fmt::format("{:.0f} % of the cavity, {:.1f} mm3 beyond it, ", 100.0 * *share,
+                             1e9 * *achieved.beyond())
+               : "";
+}
+
 std::string line_of(const DrilledProcedure& procedure) {
   const analysis::drilling::LiveFigures& f = procedure.figures;
   return fmt::format(
-      "{}: {}, drilling {}, {:.1f} mm3 of bone, {} voxels, {}{}{}",
+      "{}: {}, drilling {}, {:.1f} mm3 of bone, {} voxels, {}{}{}{}",
       procedure.practice ? "practice" : fmt::format("procedure {}", procedure.trial), clock(f.time),
-      clock(f.drilling), 1e9 * f.removed, f.voxels,
+      clock(f.drilling), 1e9 * f.removed, f.voxels, of_the_plan(f.achieved),
       f.visible_share ? fmt::format("{:.0f} % in sight, ", 100.0 * *f.visible_share) : "",
       f.mean_force ? fmt::format("{:.2f} N, ", *f.mean_force) : "", injured(f));
 }
@@ -44,6 +51,14 @@ std::string capital(std::string text) {
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   }
   return text;
+}
+
+void add_figure(const analysis::drilling::AchievedFigure& figure, record::LiveState& state) {
+  const std::string unit = figure.unit == "mm3"     ? "mm\u00b3"
+                           : figure.unit == "mm3/m" ? "mm\u00b3/m"
+                                                    : figure.unit;
+  state.figures.push_back(
+      {capital(figure.title), fmt::format("{:.1f} {}", *figure.value, unit), false});
 }
 
 }  // namespace
@@ -63,6 +78,12 @@ record::LiveState state_of(const DrilledProcedure& procedure) {
   add("Voxels removed (visible)",
       fmt::format("{}{}", f.voxels,
                   f.visible_share ? fmt::format(" ({:.0f} %)", 100.0 * *f.visible_share) : ""));
+  for (const analysis::drilling::AchievedFigure& figure :
+       analysis::drilling::figures_of(f.achieved)) {
+    if (figure.value) {
+      add_figure(figure, state);
+    }
+  }
   add("Mean force while drilling",
       f.mean_force ? fmt::format("{:.2f} N", *f.mean_force) : "\u2013");
   std::vector<record::LiveState::Figure> injuries;

@@ -32,7 +32,8 @@ struct LiveDrilling::Bone {
   Bone(const record::PassRow& row, const std::shared_ptr<const bone::BoneModel>& model,
        const drilling::ProcedureSetup& setup, double rate)
       : pass(row),
-        metrics(model, setup.pose_WB(model->grid), setup.tools, setup.scale, rate, setup.handle) {}
+        metrics(model, setup.pose_WB(model->grid), setup.tools, setup.scale, rate, setup.handle,
+                setup.plan ? setup.plan(model) : nullptr) {}
 
   record::PassRow pass;
   drilling::LiveMetrics metrics;

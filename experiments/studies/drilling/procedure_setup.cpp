@@ -1,10 +1,39 @@
 #include "experiments/studies/drilling/procedure_setup.h"
 
+#include <map>
+#include <mutex>
+
 #include "core/record/read/session_reader.h"
+#include "core/subject/drilling/cavity_plan.h"
+#include "protocols/bone_drilling/display/stage_stills.h"
 
 namespace haptrial::experiments {
 
 namespace drilling = analysis::drilling;
+
+namespace {
+
+/// Plans of a session's bones, each made once. Any thread.
+class KeptPlans {
+ public:
+  template <class Make>
+  std::shared_ptr<const subject::CavityPlan> of(const std::shared_ptr<const bone::BoneModel>& bone,
+                                                const Make& make) {
+    const std::lock_guard lock(mutex_);
+    auto& plan = plans_[bone];
+    if (!plan) {
+      plan = std::make_shared<const subject::CavityPlan>(make());
+    }
+    return plan;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::shared_ptr<const bone::BoneModel>, std::shared_ptr<const subject::CavityPlan>>
+      plans_;
+};
+
+}  // namespace
 
 drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
                                          const std::vector<protocols::StudyGroup>& groups) {
@@ -22,6 +51,15 @@ drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& defini
   setup.pose_WB = [placement = definition.placement](const geometry::VoxelGrid& grid) {
     return pose_of(placement, grid);
   };
+  if (definition.cavity) {
+    setup.plan = [kept = std::make_shared<KeptPlans>(), placement = definition.placement,
+                  cavity = *definition.cavity, burr = protocols::smallest_burr(definition)](
+                     const std::shared_ptr<const bone::BoneModel>& bone) {
+      return kept->of(bone, [&] {
+        return subject::plan_cavity(*bone, pose_of(placement, bone->grid), cavity, burr);
+      });
+    };
+  }
   for (const bone::ToolSpec& tool : definition.simulator.tools) {
     const auto* burr = tool.as<bone::BurrTool>();
     auto& made = setup.tools.emplace_back();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/bone_drilling/metrics/achieved.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -27,21 +28,6 @@ namespace drilling = analysis::drilling;
 using subject::DrillingChart;
 
 constexpr double kOpened = 2e-3;  // of bone gone in a column of the cavity [m]
-
-/// Whether a planned voxel is one of the 26 around, or the voxel itself.
-bool near_plan(const geometry::VoxelGrid& grid, const std::vector<float>& planned, int i, int j,
-               int k) {
-  for (int z = std::max(0, k - 1); z <= std::min(grid.size[2] - 1, k + 1); ++z) {
-    for (int y = std::max(0, j - 1); y <= std::min(grid.size[1] - 1, j + 1); ++y) {
-      for (int x = std::max(0, i - 1); x <= std::min(grid.size[0] - 1, i + 1); ++x) {
-        if (planned[grid.index(x, y, z)] >= 0.0F) {
-          return true;
-        }
-      }
-    }
-  }
-  return false;
-}
 
 /// The first bone of every column now.
 struct Floor {
@@ -146,7 +132,7 @@ struct RatedBone {
   bone::BoneModel model;
   Eigen::Isometry3d X_WB;
   DrillingChart chart;
-  std::vector<float> planned;
+  subject::CavityPlan plan;
 };
 
 std::vector<RatedBone> bones_of(const record::SessionReader& session) {
@@ -164,10 +150,7 @@ std::vector<RatedBone> bones_of(const record::SessionReader& session) {
     bone.model = bone::bone_of(record);
     bone.X_WB = pose_of(d.placement, bone.model.grid);
     bone.chart = subject::make_chart(bone.model, bone.X_WB, *d.cavity);
-    // Nobody can be blamed for corners that no burr gets into.
-    const subject::BurrReach reach = subject::burr_reach(
-        bone.chart, subject::cavity_floor(bone.chart), protocols::smallest_burr(d));
-    bone.planned = subject::cavity_depths(bone.model, bone.X_WB, bone.chart, reach.floor);
+    bone.plan = subject::plan_cavity(bone.model, bone.X_WB, *d.cavity, protocols::smallest_burr(d));
     bones.push_back(std::move(bone));
   }
   return bones;
@@ -193,7 +176,7 @@ std::vector<drilling::Rating> rate_session(const fs::path& file,
   for (const auto& [trial, passes] : trials) {
     const RatedBone& bone = bones[static_cast<std::size_t>(trial - 1) % bones.size()];
     const Outcome outcome = outcome_of(bone.model, standing_after(session, bone.model, trial),
-                                       bone.planned, bone.X_WB, bone.chart);
+                                       bone.plan, bone.X_WB, bone.chart);
     const double rubric = rubric_score(outcome);
     const std::string name = file.filename().string();
     for (const RaterManner& rater : simulated_raters()) {
@@ -208,34 +191,20 @@ std::vector<drilling::Rating> rate_session(const fs::path& file,
 }  // namespace
 
 Outcome outcome_of(const bone::BoneModel& model, const std::vector<std::uint8_t>& standing,
-                   const std::vector<float>& planned, const Eigen::Isometry3d& X_WB,
+                   const subject::CavityPlan& plan, const Eigen::Isometry3d& X_WB,
                    const DrillingChart& chart) {
   const double voxel = std::pow(model.grid.spacing, 3);
-  std::size_t asked = 0;
-  std::size_t done = 0;
-  std::size_t beyond = 0;
-  std::size_t injured = 0;
-  std::size_t at = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        const bool gone = model.labels[at] != 0 && standing[at] == 0;
-        if (planned[at] >= 0.0F) {
-          ++asked;
-          done += gone ? 1 : 0;
-        } else if (gone && model.structures[model.labels[at]].vital) {
-          ++injured;
-        } else if (gone && !near_plan(model.grid, planned, i, j, k)) {
-          ++beyond;
-        }
-      }
+  drilling::PlanCount count{.planned = plan.planned};
+  for (std::size_t at = 0; at < model.labels.size(); ++at) {
+    if (model.labels[at] != 0 && standing[at] == 0) {
+      count.add(plan.parts[at]);
     }
   }
   Outcome outcome;
-  outcome.planned = voxel * static_cast<double>(asked);
-  outcome.complete = asked > 0 ? static_cast<double>(done) / static_cast<double>(asked) : 0.0;
-  outcome.beyond = voxel * static_cast<double>(beyond);
-  outcome.injured = voxel * static_cast<double>(injured);
+  outcome.planned = voxel * static_cast<double>(count.planned);
+  outcome.complete = count.share().value_or(0.0);
+  outcome.beyond = voxel * static_cast<double>(count.beyond);
+  outcome.injured = voxel * static_cast<double>(count.injured);
   const Roughness rough = roughness_of(chart, floor_of(model, standing, X_WB.inverse(), chart));
   outcome.roughness = rough.all;
   outcome.carved = rough.carved;

@@ -7,7 +7,7 @@
 
 #include "analysis/bone_drilling/report/ratings.h"
 #include "core/bone/model/bone_model.h"
-#include "core/subject/drilling/drilling_chart.h"
+#include "core/subject/drilling/cavity_plan.h"
 
 namespace haptrial::experiments {
 
@@ -22,9 +22,8 @@ struct Outcome {
 };
 
 /// @param standing  (grid.count()) 1: the voxel is still there
-/// @param planned   of cavity_depths()
 Outcome outcome_of(const bone::BoneModel& model, const std::vector<std::uint8_t>& standing,
-                   const std::vector<float>& planned, const Eigen::Isometry3d& X_WB,
+                   const subject::CavityPlan& plan, const Eigen::Isometry3d& X_WB,
                    const subject::DrillingChart& chart);
 
 /// The rubric of the rating sheet in numbers: 5 less

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/feedback/procedure_page.h"
+#include "analysis/bone_drilling/feedback/score.h"
 #include "analysis/bone_drilling/feedback/trainee_page.h"
 #include "analysis/bone_drilling/report/visibility_picture.h"
 #include "core/base/error.h"
@@ -15,6 +16,7 @@
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/expert_sessions.h"
+#include "experiments/studies/drilling/learn_score.h"
 #include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_run.h"
 
@@ -45,6 +47,9 @@ class Pages {
   std::vector<fs::path> written() {
     load_sessions();
     load_experts();
+    if (!request_.score.empty()) {
+      score_ = drilling::read_score_model(request_.score);
+    }
     std::vector<std::pair<const Session*, int>> procedures = chosen();
     require_room(procedures.size());
     experts_ = drilling::experts_of(summaries_, participant_, options_);
@@ -82,6 +87,7 @@ class Pages {
   ExpertSessions expert_sessions_{options_, bones_};
   std::vector<drilling::ExpertProcedure> summaries_;  // (of them)
   drilling::Experts experts_;
+  std::optional<drilling::ScoreModel> score_;
   std::vector<drilling::TraineeProcedure> done_;
   std::vector<fs::path> files_;
 };
@@ -222,6 +228,10 @@ void Pages::write_procedure(const Session& session, int trial, std::size_t proce
     page.expert_name = fmt::format("Expert {}, procedure {}{}", name, expert->trial,
                                    theirs.summary.simulated ? " (simulated)" : "");
   }
+  if (score_) {
+    page.score = drilling::score_section(
+        *score_, score_of(*score_, f.summary, score_rules(session.definition)));
+  }
   const fs::path file = several ? numbered(done_.size() + 1) : request_.out;
   write(file, drilling::procedure_page(page));
   drilling::TraineeProcedure done;
@@ -261,6 +271,9 @@ std::vector<std::string> page_after_session(const protocols::BoneDefinition& def
   request.overwrite = true;
   if (!definition.experts_study.empty()) {
     request.study = folder / definition.experts_study;
+  }
+  if (!definition.score_file.empty()) {
+    request.score = folder / definition.score_file;
   }
   try {
     return {"page: " + write_trainee_pages(request).front().string()};

@@ -17,6 +17,7 @@ struct TraineeRequest {
   std::optional<int> trial;                     // of each; default: all
   std::vector<std::filesystem::path> experts;   // sessions; the best seen procedure is shown beside
   std::filesystem::path study;  // folder of sessions: those of its expert groups; empty: none
+  std::filesystem::path score;  // file of a score; empty: none
   std::filesystem::path out;    // new page (.html)
   bool overwrite{false};
 };

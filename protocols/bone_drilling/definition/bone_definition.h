@@ -70,6 +70,7 @@ struct BoneDefinition : Definition {
   std::optional<hint::HintSetup> hints;     // to who drills
   bool trainee_page{false};                 // written after a session, beside its file
   std::string experts_study;                // folder that the page compares with; empty: nobody
+  std::string score_file;                   // of a score that the page applies; empty: none
   /// Bones by source; procedures take them in turn. There are none if only a text was parsed: a
   /// session file has its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;

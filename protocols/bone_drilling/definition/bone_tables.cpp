@@ -189,6 +189,10 @@ const Schema<D>& feedback_schema() {
           .text("study", &D::experts_study,
                 "Folder of a study, relative to the definition, with whose experts the page "
                 "compares the participant")
+          .otherwise("none")
+          .text("score", &D::score_file,
+                "File of a score, relative to the definition, as haptrial bone score writes it, "
+                "by which the page scores the participant")
           .otherwise("none");
   return schema;
 }

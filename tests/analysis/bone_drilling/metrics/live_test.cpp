@@ -16,6 +16,13 @@ namespace {
 
 const std::vector<ProcedureTool> kTools{{"large", 2e-3}, {"small", 1e-3}};
 
+/// A plan that asks for the upper half of a block.
+subject::CavityPlan upper_half_plan(const bone::BoneModel& bone) {
+  std::vector<float> depths(bone.labels.size(), -1.0F);
+  std::fill(depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end(), 0.0F);
+  return subject::plan_of(bone, depths);
+}
+
 template <class Row>
 std::span<const Row> from(const std::vector<Row>& rows, std::uint64_t first, std::uint64_t end) {
   const auto before = [](const Row& row, std::uint64_t n) { return row.sequence < n; };
@@ -46,7 +53,10 @@ TEST(LiveMetricsTest, EqualsTheAnalysisOfTheFile) {
   setup.pose_WB = [](const geometry::VoxelGrid&) {
     return Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 1e-4));
   };
-  LiveMetrics live(bone, setup.pose_WB(bone->grid), kTools, setup.scale, 1000.0);
+  const auto plan = std::make_shared<const subject::CavityPlan>(upper_half_plan(*bone));
+  setup.plan = [plan](const auto&) { return plan; };
+  LiveMetrics live(bone, setup.pose_WB(bone->grid), kTools, setup.scale, 1000.0, setup.handle,
+                   plan);
   {
     record::SessionWriter writer(file, test::drilling_info(), record::drilling_tables(),
                                  record::rows_of(bones));
@@ -81,12 +91,16 @@ TEST(LiveMetricsTest, EqualsTheAnalysisOfTheFile) {
   EXPECT_EQ(now.visible_share, after.value("visible_share"));
   EXPECT_EQ(static_cast<double>(now.injured_voxels), after.value("injured_voxels"));
   EXPECT_EQ(now.injuries, after.injuries);
+  EXPECT_EQ(now.achieved, after.achieved);
   // The equal figures say something.
   EXPECT_NEAR(now.time, 5.0, 1e-9);
   EXPECT_GT(now.voxels, 100u);
   EXPECT_GT(*now.visible_share, 0.02);
   EXPECT_LT(*now.visible_share, 0.98);
   EXPECT_GT(now.injured_voxels, 0u);
+  EXPECT_GT(now.achieved.plan->removed, 50u);
+  EXPECT_GT(now.achieved.plan->beyond, 0u);
+  EXPECT_GT(now.achieved.path, 0.0);
 }
 
 TEST(LiveMetricsTest, TheSingleMetricsAgreeWithTheWhole) {

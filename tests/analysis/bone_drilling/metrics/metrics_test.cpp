@@ -110,7 +110,7 @@ TEST_F(MetricsTest, TheTableReadsBack) {
   const std::vector<ProcedureSummary> all{summary("A,1", "x", 28), summary("B", "y", 12)};
   const CsvTable table = CsvTable::parse(metrics_csv(all), "metrics.csv");
   ASSERT_EQ(table.rows(), 2u);
-  ASSERT_EQ(table.columns().size(), 6 + metric_kinds().size());
+  ASSERT_EQ(table.columns().size(), 6 + metric_kinds().size() + figures_of(all[0].achieved).size());
   EXPECT_EQ(table.text(0, table.column("participant")), "A,1");
   EXPECT_EQ(table.text(1, table.column("group")), "y");
   EXPECT_EQ(table.numbers(table.column("time_s"))[0], *all[0].value("time"));

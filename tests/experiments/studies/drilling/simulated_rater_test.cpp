@@ -35,7 +35,9 @@ class SimulatedRaterTest : public testing::Test {
     planned = subject::cavity_depths(model, pose, chart, subject::cavity_floor(chart));
     standing.assign(model.labels.size(), 1);
   }
-  Outcome outcome() const { return outcome_of(model, standing, planned, pose, chart); }
+  Outcome outcome() const {
+    return outcome_of(model, standing, subject::plan_of(model, planned), pose, chart);
+  }
   void remove_plan() {
     for (std::size_t at = 0; at < planned.size(); ++at) {
       standing[at] = planned[at] >= 0.0F ? 0 : standing[at];

@@ -1,0 +1,143 @@
+#include "analysis/bone_drilling/metrics/achieved.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "analysis/bone_drilling/metrics/study_bones.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+using subject::PlanPart;
+
+constexpr double kLeftReach = 10e-3;  // thicker bone is not measured [m]
+constexpr double kStep = 0.01;        // of a path: noise of single ticks is no way [s]
+constexpr double kCubicMillimetres = 1e9;
+
+std::optional<double> in_unit(const std::optional<double>& value, double factor) {
+  return value ? std::optional(*value * factor) : std::nullopt;
+}
+
+std::string column_of(const std::string& structure) {
+  std::string column = "bone_left_" + structure + "_mm";
+  std::replace_if(
+      column.begin(), column.end(), [](char c) { return c == ' ' || c == ',' || c == '"'; }, '_');
+  return column;
+}
+
+}  // namespace
+
+std::optional<double> PlanCount::share() const {
+  return planned > 0 ? std::optional(static_cast<double>(removed) / static_cast<double>(planned))
+                     : std::nullopt;
+}
+
+void PlanCount::add(PlanPart part) {
+  removed += part == PlanPart::kPlanned ? 1 : 0;
+  beyond += part == PlanPart::kBeyond ? 1 : 0;
+  injured += part == PlanPart::kVital ? 1 : 0;
+}
+
+std::optional<double> Achieved::removed() const {
+  return plan ? std::optional(voxel * static_cast<double>(plan->removed)) : std::nullopt;
+}
+
+std::optional<double> Achieved::beyond() const {
+  return plan ? std::optional(voxel * static_cast<double>(plan->beyond)) : std::nullopt;
+}
+
+std::optional<double> Achieved::economy() const {
+  return path > 0.0 ? in_unit(removed(), 1.0 / path) : std::nullopt;
+}
+
+std::vector<AchievedFigure> figures_of(const Achieved& a) {
+  std::vector<AchievedFigure> figures{
+      {"cavity_removed_percent", "planned cavity removed", "%",
+       a.plan ? in_unit(a.plan->share(), 100.0) : std::nullopt},
+      {"beyond_plan_mm3", "bone removed beyond the plan", "mm3",
+       in_unit(a.beyond(), kCubicMillimetres)},
+      {"tool_path_mm", "path of the tool", "mm", 1e3 * a.path},
+      {"economy_mm3_per_m", "planned bone removed per metre of path", "mm3/m",
+       in_unit(a.economy(), kCubicMillimetres)}};
+  for (const BoneLeft& left : a.left) {
+    figures.push_back({column_of(left.structure), "bone left over the " + left.structure, "mm",
+                       in_unit(left.thickness, 1e3)});
+  }
+  return figures;
+}
+
+AchievedMeter::AchievedMeter(std::shared_ptr<const bone::BoneModel> bone,
+                             std::shared_ptr<const subject::CavityPlan> plan, double rate,
+                             StudyBones& bones)
+    : bone_(std::move(bone)),
+      plan_(std::move(plan)),
+      gone_(bone_->labels.size(), false),
+      step_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(kStep * rate)))) {
+  achieved_.voxel = std::pow(bone_->grid.spacing, 3);
+  if (plan_) {
+    achieved_.plan.emplace().planned = plan_->planned;
+  }
+  std::array<bool, 256> there{};
+  for (const std::uint8_t label : bone_->labels) {
+    there[label] = true;
+  }
+  for (std::size_t label = 1; label < bone_->structures.size(); ++label) {
+    if (bone_->structures[label].vital && there[label]) {
+      const auto own = static_cast<std::uint8_t>(label);
+      achieved_.left.push_back({bone_->structures[label].name, own, std::nullopt});
+      fields_.push_back(bones.field(bone_, own, std::min(kLeftReach, 250.0 * bone_->grid.spacing)));
+    }
+  }
+  nearest_.resize(fields_.size());
+}
+
+void AchievedMeter::tick(const ToolTick& tick) {
+  const auto length = [this] { return (last_.position - from_.position).norm(); };
+  const bool driven = tick.drives_tool && tick.position.allFinite();
+  const bool goes_on = on_path_ && driven && tick.sequence <= last_.sequence + step_;
+  if (on_path_ && (!goes_on || last_.sequence >= from_.sequence + step_)) {
+    achieved_.path += length();
+    from_ = last_;
+  }
+  if (driven) {
+    from_ = goes_on ? from_ : tick;
+    last_ = tick;
+  }
+  on_path_ = driven;
+}
+
+void AchievedMeter::remove(const bone::Voxel& voxel) {
+  const geometry::VoxelGrid& grid = bone_->grid;
+  if ((voxel.array() < 0).any() || voxel.x() >= grid.size[0] || voxel.y() >= grid.size[1] ||
+      voxel.z() >= grid.size[2]) {
+    return;
+  }
+  const std::size_t at = grid.index(voxel.x(), voxel.y(), voxel.z());
+  if (gone_[at] || bone_->labels[at] == 0) {
+    return;
+  }
+  gone_[at] = true;
+  if (plan_) {
+    achieved_.plan->add(plan_->parts[at]);
+  }
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    if (const auto distance = fields_[i]->at(voxel)) {
+      nearest_[i] = std::min(nearest_[i].value_or(*distance), *distance);
+    }
+  }
+}
+
+/// Between centres of neighbours lies no bone, so that a voxel's edge is taken off a distance.
+Achieved AchievedMeter::achieved() const {
+  Achieved achieved = achieved_;
+  for (std::size_t i = 0; i < nearest_.size(); ++i) {
+    if (nearest_[i]) {
+      achieved.left[i].thickness = std::max(0.0, *nearest_[i] - bone_->grid.spacing);
+    }
+  }
+  achieved.path += on_path_ ? (last_.position - from_.position).norm() : 0.0;
+  return achieved;
+}
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,47 @@
+#include "analysis/bone_drilling/report/achieved_section.h"
+
+#include <fmt/format.h>
+
+#include "analysis/bone_drilling/report/validity_table.h"
+#include "analysis/bone_drilling/report/validity_words.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+ValueTable values_of(const ValidityResult& result, const std::string& column) {
+  ValueTable table = table_of(result.validity, result.procedures);
+  for (std::size_t i = 0; i < result.procedures.size(); ++i) {
+    for (const AchievedFigure& figure : figures_of(result.procedures[i].achieved)) {
+      if (figure.column == column) {
+        table.rows[i].value = figure.value;
+      }
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+void add_achieved_section(Document& document, const ValidityResult& result) {
+  const std::vector<std::string>& groups = result.validity.plan.groups;
+  std::vector<std::string> heading{"mean of participants' means [95 % CI]"};
+  heading.insert(heading.end(), groups.begin(), groups.end());
+  std::vector<std::vector<std::string>> rows;
+  for (const AchievedFigure& figure : figures_of(result.procedures.front().achieved)) {
+    std::vector<std::string> row{fmt::format("{} [{}]", figure.title, figure.unit)};
+    const auto means = group_values(values_of(result, figure.column), result.validity.plan);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      row.push_back(interval_word(means[g].participant_means));
+    }
+    rows.push_back(std::move(row));
+  }
+  document.heading(result.validity.simulated ? "What was achieved (simulated)"
+                                             : "What was achieved");
+  document.paragraph(
+      "The plan is the cavity of the definition as far as the smallest burr reaches; a voxel "
+      "beside it is neither planned nor beyond it. Bone left over a structure is the least "
+      "distance from it to a removed voxel, up to 10 mm. Groups are not compared here.");
+  document.table(heading, rows);
+}
+
+}  // namespace haptrial::analysis::drilling

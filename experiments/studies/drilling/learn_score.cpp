@@ -1,0 +1,132 @@
+#include "experiments/studies/drilling/learn_score.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "analysis/bone_drilling/report/ratings.h"
+#include "core/base/error.h"
+#include "core/record/read/marked_trials.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/drilling_study.h"
+#include "experiments/studies/drilling/expert_sessions.h"
+#include "experiments/study/study_files.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
+
+namespace haptrial::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+namespace drilling = analysis::drilling;
+
+std::string words_of(const subject::CavityParameters& c) {
+  std::string words = fmt::format(
+      "beside {}, offset ({:g}, {:g}, {:g}) mm, inward ({:g}, {:g}, "
+      "{:g}), radius {:g} mm, slope {:g}, margin {:g} mm",
+      c.beside, 1e3 * c.offset_B.x(), 1e3 * c.offset_B.y(), 1e3 * c.offset_B.z(), c.inward.x(),
+      c.inward.y(), c.inward.z(), 1e3 * c.radius, c.slope, 1e3 * c.margin);
+  for (std::size_t s = 0; s < c.structures.size(); ++s) {
+    words += fmt::format(", {} {:g} mm", c.structures[s], 1e3 * c.margins[s]);
+  }
+  return words;
+}
+
+std::string words_of(const bone::ToolSpec& tool) {
+  const auto* burr = tool.as<bone::BurrTool>();
+  return burr == nullptr
+             ? tool.name
+             : fmt::format("{} ({} burr of {:g} mm, rate {:g})", tool.name,
+                           burr->burr.kind == bone::BurrKind::kCutting ? "cutting" : "diamond",
+                           1e3 * burr->burr.diameter, burr->burr.removal_rate);
+}
+
+/// Mean of a procedure's ratings; nothing if nobody rated it.
+std::optional<double> mean_rating(const std::vector<drilling::Rating>& ratings,
+                                  const drilling::ProcedureSummary& summary) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const drilling::Rating& rating : ratings) {
+    if (rating.session == summary.session && rating.procedure == summary.number) {
+      sum += rating.score;
+      count += 1.0;
+    }
+  }
+  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+}
+
+/// Rated procedures of a session.
+void add_session(const fs::path& file, const std::vector<drilling::Rating>& ratings,
+                 ExpertSessions& sessions, std::vector<drilling::RatedSummary>& rated) {
+  const std::set<int> left_out = record::trials_left_out(record::SessionReader(file));
+  const std::size_t before = sessions.procedures().size();
+  sessions.add(file);
+  for (std::size_t n = before; n < sessions.procedures().size(); ++n) {
+    const drilling::ProcedureSummary& summary = sessions.procedures()[n].procedure.summary;
+    const auto rating = mean_rating(ratings, summary);
+    if (rating && !left_out.contains(summary.number)) {
+      rated.push_back({summary, *rating});
+    }
+  }
+}
+
+void add_case(const fs::path& session, drilling::ScoreModel& model,
+              const std::vector<drilling::RatedSummary>& rated) {
+  const record::SessionInfo info = record::SessionReader(session).info();
+  const auto definition = protocols::parse_bone_definition(info.definition, info.definition_name);
+  model.study = definition.name;
+  model.rules = score_rules(definition);
+  std::set<const bone::BoneModel*> bones;
+  for (const drilling::RatedSummary& each : rated) {
+    if (bones.insert(each.summary.bone.get()).second) {
+      model.bones.push_back(drilling::bone_digest(*each.summary.bone));
+    }
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::string> score_rules(const protocols::BoneDefinition& d) {
+  std::string tools;
+  for (const bone::ToolSpec& tool : d.simulator.tools) {
+    tools += (tools.empty() ? "" : ", ") + words_of(tool);
+  }
+  return {{"cavity", d.cavity ? words_of(*d.cavity) : "none"},
+          {"set of tools", tools},
+          {"time limit", fmt::format("{:g} s", d.drilling.time_limit)},
+          {"scale", fmt::format("{:g}", d.drilling.scale)}};
+}
+
+drilling::ScoreModel learn_study_score(const fs::path& folder) {
+  const fs::path table = folder / kRatingsFile;
+  if (!fs::exists(table)) {
+    throw InputError(fmt::format(
+        "{}: holds no {}, so nothing is rated yet; haptrial rate import reads the raters' sheets",
+        folder.string(), kRatingsFile));
+  }
+  const std::vector<drilling::Rating> ratings = drilling::load_ratings(table);
+  const std::vector<fs::path> files = files_of(folder, Pilots::kLeftOut);
+  const drilling::SafeOptions options;
+  drilling::StudyBones bones;
+  ExpertSessions sessions(options, bones);
+  std::vector<drilling::RatedSummary> rated;
+  for (const fs::path& file : files) {
+    require_drilling(file);
+    add_session(file, ratings, sessions, rated);
+  }
+  const analysis::Defined<drilling::ScoreModel> learned = drilling::learn_score(rated);
+  if (!learned) {
+    throw InputError(fmt::format("{}: gives no score: {}", folder.string(), learned.because()));
+  }
+  drilling::ScoreModel model = *learned;
+  std::set<std::string> raters;
+  for (const drilling::Rating& rating : ratings) {
+    raters.insert(rating.rater);
+    model.simulated = model.simulated || rating.simulated;
+  }
+  model.raters = raters.size();
+  add_case(files.front(), model, rated);
+  return model;
+}
+
+}  // namespace haptrial::experiments

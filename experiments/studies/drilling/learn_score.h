@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "analysis/bone_drilling/feedback/score.h"
+
+namespace haptrial::protocols {
+struct BoneDefinition;
+}
+
+namespace haptrial::experiments {
+
+/// What makes a case besides its bone, in words that people can compare: cavity, tools, time limit
+/// and scale of a definition (ScoreModel::rules).
+std::map<std::string, std::string> score_rules(const protocols::BoneDefinition& definition);
+
+/// The score of a rated study, from its sessions and ratings; pilots and marked trials are left
+/// out.
+/// @throws InputError where nothing is rated or too few participants are, or a file is damaged.
+analysis::drilling::ScoreModel learn_study_score(const std::filesystem::path& folder);
+
+}  // namespace haptrial::experiments
