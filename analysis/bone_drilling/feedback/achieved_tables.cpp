@@ -29,6 +29,9 @@ std::string achieved_section(const Findings& f, const Experts& experts) {
   std::vector<std::vector<std::string>> rows;
   for (const AchievedFigure& figure : figures_of(f.summary.achieved)) {
     const auto range = achieved_range(experts, figure.column);
+    if (!figure.value && !range) {
+      continue;  // nobody came near this structure
+    }
     rows.push_back({figure.title, figure.unit, number_text(figure.value),
                     range ? number_text(range->median) : "-",
                     range ? number_text(range->low) + " to " + number_text(range->high) : "-"});

@@ -8,7 +8,7 @@
 namespace haptrial::analysis::drilling {
 namespace {
 
-ValueTable values_of(const ValidityResult& result, const std::string& column) {
+ValueTable column_values(const ValidityResult& result, const std::string& column) {
   ValueTable table = table_of(result.validity, result.procedures);
   for (std::size_t i = 0; i < result.procedures.size(); ++i) {
     for (const AchievedFigure& figure : figures_of(result.procedures[i].achieved)) {
@@ -29,11 +29,15 @@ void add_achieved_section(Document& document, const ValidityResult& result) {
   std::vector<std::vector<std::string>> rows;
   for (const AchievedFigure& figure : figures_of(result.procedures.front().achieved)) {
     std::vector<std::string> row{fmt::format("{} [{}]", figure.title, figure.unit)};
-    const auto means = group_values(values_of(result, figure.column), result.validity.plan);
+    const auto means = group_values(column_values(result, figure.column), result.validity.plan);
+    bool any = false;
     for (std::size_t g = 0; g < groups.size(); ++g) {
+      any = any || means[g].procedures > 0;
       row.push_back(interval_word(means[g].participant_means));
     }
-    rows.push_back(std::move(row));
+    if (any) {  // else nobody came near this structure
+      rows.push_back(std::move(row));
+    }
   }
   document.heading(result.validity.simulated ? "What was achieved (simulated)"
                                              : "What was achieved");

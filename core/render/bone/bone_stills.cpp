@@ -56,6 +56,11 @@ BoneStills::~BoneStills() {
   gl_.delete_program(program_);
 }
 
+void BoneStills::replace(std::shared_ptr<const std::vector<Image>> stills) {
+  stills_ = std::move(stills);
+  uploaded_ = static_cast<std::size_t>(-1);
+}
+
 Eigen::Vector4d BoneStills::place_of(const Image& still, int width, int height) {
   const double margin = kMargin * width;
   const double wide =

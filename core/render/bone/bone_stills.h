@@ -22,9 +22,15 @@ class BoneStills {
   BoneStills(const BoneStills&) = delete;
   BoneStills& operator=(const BoneStills&) = delete;
 
+  /// Other pictures in the place of all.
+  void replace(std::shared_ptr<const std::vector<Image>> stills);
   std::size_t count() const noexcept { return stills_->size(); }
   /// Place of a still in a picture: left, top, width, height [px].
   static Eigen::Vector4d place_of(const Image& still, int width, int height);
+  /// The same of the first.
+  Eigen::Vector4d place(int width, int height) const {
+    return place_of(stills_->front(), width, height);
+  }
   /// Draws one over what is there. @param number  from 0, below count()
   /// @param left  of the part of the framebuffer that holds the picture [px]
   /// @param width, height  of that part

@@ -72,9 +72,15 @@ class BoneDrawing final : public Drawing {
     display_.set_quality(chosen_.value_or(by_time));
     display_.draw(seen_);
   }
-  /// V: all that can be drawn, with less and with least, and then by time again.
+  /// V: all that can be drawn, with less and with least, and then by time again. P: the plan.
   void pressed(int key) override {
-    if (key != 'V' || definition_.quality || definition_.bits_of({key}) != 0) {
+    if (definition_.bits_of({key}) != 0) {
+      return;
+    }
+    if (key == 'P') {
+      display_.toggle_plan();
+    }
+    if (key != 'V' || definition_.quality) {
       return;
     }
     if (!chosen_) {
@@ -142,7 +148,8 @@ BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
       labels_(gl, width, height),
       hints_(definition.hints),
       vital_(definition.hints ? bone::vital_structures(*stage_->model)
-                              : std::vector<std::string>{}) {
+                              : std::vector<std::string>{}),
+      definition_(definition) {
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
   }
@@ -242,6 +249,7 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
     label(seen);
   }
   draw_still(seen.stills_asked);
+  draw_plan(seen);
 }
 
 void BoneDisplay::label(const bone::DrillingView& seen) {
@@ -294,6 +302,38 @@ void BoneDisplay::draw_still(std::int32_t asked) {
   const int eyes = frame_.stereo ? 2 : 1;
   for (int eye = 0; eye < eyes; ++eye) {
     stills_->draw(number - 1, eye * (width_ / eyes), width_ / eyes, height_);
+  }
+}
+
+void BoneDisplay::toggle_plan() {
+  if (!plan_ && definition_.cavity) {
+    plan_ = std::make_unique<PlanSection>(definition_, stage_->model);
+  }
+  plan_shown_ = plan_ && !plan_shown_;
+}
+
+void BoneDisplay::draw_plan(const bone::DrillingView& seen) {
+  constexpr int kFrames = 10;  // between two sections
+  if (!plan_shown_) {
+    return;
+  }
+  if (!plan_picture_ || ++plan_age_ >= kFrames) {
+    const auto& volume = std::as_const(*stage_->simulator).world().volume(0);
+    if (const auto section = plan_->at(volume, seen.shown ? seen.tip : stage_->start_view.target)) {
+      plan_age_ = 0;
+      if (!plan_picture_) {
+        plan_picture_ = std::make_unique<render::BoneStills>(gl_, section);
+      } else {
+        plan_picture_->replace(section);
+      }
+    }
+  }
+  if (plan_picture_) {
+    const Eigen::Vector4d place = plan_picture_->place(width(), height_);
+    for (int left = 0; left < width_; left += width()) {
+      plan_picture_->draw(0, left, width(), height_);
+      labels_.legend(kPlanSectionLegend, place.y() + place.w(), {left, width()});
+    }
   }
 }
 

@@ -13,6 +13,7 @@
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 #include "protocols/bone_drilling/display/picture_labels.h"
+#include "protocols/bone_drilling/display/plan_section.h"
 #include "protocols/interface/drawing.h"
 
 namespace haptrial::protocols {
@@ -37,6 +38,8 @@ class BoneDisplay {
   /// Sets the pictures that can be called up from now on; at first those of the stage. Null:
   /// nothing.
   void set_stills(std::shared_ptr<const std::vector<render::Image>> stills);
+  /// Shows the section by the plan of the cavity, or hides it; without [cavity] there is none.
+  void toggle_plan();
   /// The camera of the last picture, or of one of its two.
   const Camera& camera() const { return frame_.camera; }
   int width() const { return frame_.stereo ? width_ / 2 : width_; }
@@ -49,6 +52,7 @@ class BoneDisplay {
   void show_injury(const bone::DrillingView& seen);
   std::vector<std::string> hints_in(const bone::DrillingView& seen) const;
   void draw_still(std::int32_t asked);
+  void draw_plan(const bone::DrillingView& seen);
 
   render::Gl gl_;
 
@@ -66,6 +70,11 @@ class BoneDisplay {
   std::uint64_t dust_version_{~std::uint64_t{0}};
   std::uint64_t blood_version_{~std::uint64_t{0}};
   std::unique_ptr<render::BoneStills> stills_;  // null where there are none
+  const BoneDefinition& definition_;
+  std::unique_ptr<PlanSection> plan_;  // null until it is asked for
+  std::unique_ptr<render::BoneStills> plan_picture_;
+  bool plan_shown_{false};
+  int plan_age_{0};  // of its picture [frames]
 };
 
 /// The surface of a stage's bone as it is now, on all processors: what a first picture waits for.

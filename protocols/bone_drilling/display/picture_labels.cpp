@@ -60,6 +60,14 @@ void PictureLabels::tool(const std::string& words, const EyePicture& eye) {
   line(words, {eye.left + 0.6 * em, height_ - 2.4 * em}, {style, kDark});
 }
 
+void PictureLabels::legend(const std::string& words, double low, const EyePicture& eye) {
+  constexpr double kLines = 48.0;
+  const render::TextStyle style{std::max(10, static_cast<int>(height_ / kLines)), false, kPale};
+  const double em = style.size;
+  const double left = eye.left + eye.width - text_.width_of(words, style) - 1.6 * em;
+  line(words, {left, low + 0.4 * em}, {style, kDark});
+}
+
 void PictureLabels::hints(std::span<const std::string> lines, const EyePicture& eye) {
   constexpr double kLines = 26.0;
   const render::TextStyle style{std::max(12, static_cast<int>(height_ / kLines)), true, kBlack};

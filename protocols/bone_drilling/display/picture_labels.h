@@ -33,6 +33,8 @@ class PictureLabels {
   PictureLabels(const render::Gl& gl, int width, int height);
   /// @param words  words_of() the tool
   void tool(const std::string& words, const EyePicture& eye);
+  /// A small line that ends at the right edge of the picture. @param low  its upper edge [px]
+  void legend(const std::string& words, double low, const EyePicture& eye);
   /// One line below the other.
   void hints(std::span<const std::string> lines, const EyePicture& eye);
   /// @param words  of an injury, over the middle of the lower edge

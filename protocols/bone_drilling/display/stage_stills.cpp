@@ -9,18 +9,10 @@
 #include "core/bone/model/bone_volume.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/gl/offscreen.h"
+#include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 
 namespace haptrial::protocols {
-
-double smallest_burr(const BoneDefinition& d) {
-  double radius = 1.0;
-  for (const bone::ToolSpec& tool : d.simulator.tools) {
-    const auto* burr = tool.as<bone::BurrTool>();
-    radius = burr != nullptr ? std::min(radius, burr->radius()) : radius;
-  }
-  return radius;
-}
 
 namespace {
 

@@ -27,7 +27,4 @@ std::vector<StageStill> stage_stills(const BoneDefinition& definition, int stage
 std::shared_ptr<const std::vector<render::Image>> screen_stills(const BoneDefinition& definition,
                                                                 const bone::BoneModel& model);
 
-/// The radius of the smallest burr of a definition; 1 m without any. [m]
-double smallest_burr(const BoneDefinition& definition);
-
 }  // namespace haptrial::protocols
