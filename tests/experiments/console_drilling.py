@@ -20,6 +20,7 @@ ROWS = [
     ["Time (drilling)", "2:05 (0:48)"],
     ["Bone removed", "1234.5 mm\u00b3"],
     ["Voxels removed (visible)", "51973 (88 %)"],
+    ["Path of the tool", "0.0 mm"],
     ["Mean force while drilling", "2.35 N"],
     ["Vital structures", "2 injured"],
     ["Facial nerve", "12 voxels"],

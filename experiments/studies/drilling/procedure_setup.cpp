@@ -5,7 +5,7 @@
 
 #include "core/record/read/session_reader.h"
 #include "core/subject/drilling/cavity_plan.h"
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "protocols/bone_drilling/definition/smallest_burr.h"
 
 namespace haptrial::experiments {
 

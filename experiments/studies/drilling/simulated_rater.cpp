@@ -18,7 +18,7 @@
 #include "core/subject/drilling/cavity_chart.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "protocols/bone_drilling/definition/smallest_burr.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -2,21 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/base/definition/schema.h"
-#include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::protocols {
-
-double smallest_burr(const BoneDefinition& d) {
-  double radius = 1.0;
-  for (const bone::ToolSpec& tool : d.simulator.tools) {
-    const auto* burr = tool.as<bone::BurrTool>();
-    radius = burr != nullptr ? std::min(radius, burr->radius()) : radius;
-  }
-  return radius;
-}
 
 static std::vector<double> read_margins(Table& table) {
   return table.numbers("margins", {0.0, 0.01}, "m");

@@ -8,7 +8,7 @@
 #include "core/render/bone/bone_scene.h"
 #include "core/render/flat/picture_quad.h"
 #include "core/render/gl/offscreen.h"
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "protocols/bone_drilling/definition/smallest_burr.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/stage_stills.h"

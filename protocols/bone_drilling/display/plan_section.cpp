@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "protocols/bone_drilling/definition/smallest_burr.h"
 
 namespace haptrial::protocols {
 namespace {

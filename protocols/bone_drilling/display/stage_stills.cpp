@@ -9,7 +9,7 @@
 #include "core/bone/model/bone_volume.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/gl/offscreen.h"
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "protocols/bone_drilling/definition/smallest_burr.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 
 namespace haptrial::protocols {

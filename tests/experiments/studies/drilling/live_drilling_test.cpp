@@ -44,6 +44,7 @@ drilling::LiveFigures figures_of(const drilling::Procedure& procedure) {
   f.injured_voxels = static_cast<std::uint64_t>(s.value("injured_voxels").value_or(0.0));
   f.injuries = s.injuries;
   f.mean_force = s.usage.mean_force;
+  f.achieved = s.achieved;
   return f;
 }
 
@@ -278,9 +279,9 @@ TEST(LiveDrillingTest, TheConsoleGetsTheFigures) {
   EXPECT_EQ(json["trial"], 2);
   EXPECT_EQ(json["title"], "Procedure 2");
   EXPECT_EQ(json["figures"][2]["value"], "40") << "not a share of 0";
-  EXPECT_EQ(json["figures"][6]["name"], "Nerve");
-  EXPECT_EQ(json["figures"][6]["value"], "12 voxels");
-  EXPECT_EQ(json["figures"][6]["alarm"], true);
+  EXPECT_EQ(json["figures"][7]["name"], "Nerve");
+  EXPECT_EQ(json["figures"][7]["value"], "12 voxels");
+  EXPECT_EQ(json["figures"][7]["alarm"], true);
 
   EXPECT_EQ(state_of(procedure).line,
             "procedure 2: 1:05, drilling 0:09, 12.3 mm3 of bone, 40 voxels, INJURED: "

@@ -5,7 +5,7 @@
 #include <map>
 #include <thread>
 
-#include "protocols/bone_drilling/definition/cavity.h"
+#include "protocols/bone_drilling/definition/smallest_burr.h"
 #include "tests/support/wait.h"
 
 namespace haptrial::protocols::plan_section_test {
