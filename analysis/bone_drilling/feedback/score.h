@@ -23,6 +23,7 @@ struct ScoreMetric {
 };
 
 /// Raters' scores as predicted from metrics, for procedures on the case that they were learned on.
+/// Source: Morris 2006, §8.3.3.3.
 struct ScoreModel {
   std::string study;  // name of the definition
   std::size_t participants{0}, procedures{0}, raters{0};
