@@ -150,18 +150,22 @@ std::string headings(const Figure& figure) {
 /// Draws the figure once more for a paper, which has the title in its caption; what marks simulated
 /// results stays.
 std::string paper_plot(const Figure& figure, const std::string& plot, int width) {
-  constexpr double kMillimetres = 10.0;  // in a centimetre
+  constexpr double kMillimetres = 10.0;    // in a centimetre
+  constexpr double kPixels = 96.0 / 25.4;  // in a millimetre, as SVG has it; 8 pt are 10.67
   const double wide = width / kMillimetres;
   return fmt::format(
       "unset label 1\n{}set tmargin {}\n"
       "set terminal pdfcairo size {:.2f}cm,{:.2f}cm noenhanced font 'sans,8' fontscale 1 linewidth "
-      "0.5 pointscale 0.5 background rgb 'white'\nset output '{}.pdf'\n{}\nset output\n",
+      "0.5 pointscale 0.5 background rgb 'white'\nset output '{}.pdf'\n{}\nset output\n"
+      "set terminal svg size {:.0f},{:.0f} noenhanced font 'Helvetica,Arial,sans-serif,10.67' "
+      "linewidth 0.5 background rgb 'white'\nset output '{}-paper.svg'\n{}\nset output\n",
       figure.simulated
           ? fmt::format("set label 2 {} at graph 1, graph 1 offset 0,0.7 right font ',7' textcolor "
                         "rgb '#b00020' noenhanced\n",
                         quoted("SIMULATED " + figure.who))
           : "",
-      figure.simulated ? 2 : 1, wide, figure.height * wide, figure.name, plot);
+      figure.simulated ? 2 : 1, wide, figure.height * wide, figure.name, plot, kPixels * width,
+      kPixels * figure.height * width, figure.name, plot);
 }
 
 constexpr const char* kStyle = R"(reset
@@ -300,6 +304,7 @@ void draw_figures(const std::vector<Figure>& figures, const fs::path& folder, in
   std::vector<std::pair<const char*, const char*>> kinds{{".svg", "</svg>"}, {".png", "IEND"}};
   if (paper > 0) {
     kinds.emplace_back(".pdf", "%%EOF");
+    kinds.emplace_back("-paper.svg", "</svg>");
   }
   for (const auto& figure : figures) {
     for (const auto& [extension, ending] : kinds) {
