@@ -105,6 +105,9 @@ Document judging_report(const Judging& judging, bool simulated) {
                   "CI {:.3f} to "
                   "{:.3f} over participants; p = {:.3f} by 999 shuffles of the judgements.",
                   skill.curves, skill.people, skill.r_squared, skill.low, skill.high, skill.p));
+  if (!skill.predicts) {
+    return page;
+  }
   std::vector<std::vector<std::string>> shares;
   for (std::size_t j = 0; j < kScoreParts.size(); ++j) {
     const JudgedShare& share = skill.shares[j];

@@ -25,9 +25,11 @@ Look condition_look(std::size_t index) {
   return looks[index % looks.size()];
 }
 
+constexpr double kBeside = 0.015;  // points of participants are beside the bar of their mean
+
 /// Points of single participants behind means of this look.
 Series points_behind(const Look& look) {
-  return {"", Mark::kPoints, {look.color, kSolid, 6, 1.0, 0.5}};
+  return {"", Mark::kPoints, {look.color, kSolid, 6, 1.0, 0.6}};
 }
 
 /// Adds the mean of each participant over the scores of which `wanted` holds.
@@ -129,7 +131,7 @@ Figure interaction(const StudyResult& study) {
       series.high.push_back(interval->high);
       highest = std::max(highest, interval->high);
       add_people(
-          study, series.x.back(),
+          study, series.x.back() + kBeside,
           [&](const TrialScore& s) { return s.condition == table.names[cell]; }, people, highest);
       figure.alt += fmt::format(" {} {};", table.names[cell], number(interval->mean));
     }
@@ -174,7 +176,7 @@ Figure learning(const StudyResult& study) {
       last = std::max(last, point.repetition);
       highest = std::max(highest, series.high.back());
       add_people(
-          study, series.x.back(),
+          study, series.x.back() + kBeside,
           [&](const TrialScore& s) {
             return s.condition == point.condition && s.repetition == point.repetition;
           },
@@ -221,8 +223,8 @@ Figure learning_over_blocks(const StudyResult& study) {
     series.high.push_back(point.interval ? point.interval->high : *point.mean);
     highest = std::max(highest, series.high.back());
     add_people(
-        study, point.block, [&](const TrialScore& s) { return s.block == point.block; }, people,
-        highest);
+        study, point.block + 0.25, [&](const TrialScore& s) { return s.block == point.block; },
+        people, highest);
     figure.alt += fmt::format(" {} {};", point.block, number(*point.mean));
   }
   figure.series.push_back(std::move(people));

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kJudgingKey = "judging.key.csv";
+constexpr const char* kShares = "judged-shares.toml";
 
 struct JudgePrepareOptions {
   std::string folder;
@@ -149,14 +150,16 @@ int judge_fit(const JudgeFitOptions& options) {
   staging.write("judging.md", analysis::to_markdown(report));
   const bool predicts = judging.skill && judging.skill->predicts;
   if (predicts) {
-    staging.write("judged-shares.toml", analysis::judged_weights(*judging.skill));
+    staging.write(kShares, analysis::judged_weights(*judging.skill));
+  } else {
+    fs::remove(study / kShares);  // those of other tables
   }
   staging.publish();
   fmt::print("{}\n", judging.skill ? judging.skill->verdict
                                    : fmt::format("The shares are not defined, because {}.",
                                                  judging.skill.because()));
   if (predicts) {
-    fmt::print("shares: {}\n", (study / "judged-shares.toml").string());
+    fmt::print("shares: {}\n", (study / kShares).string());
   }
   fmt::print("report: {}\n", (study / "judging.html").string());
   return 0;

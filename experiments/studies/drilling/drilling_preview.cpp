@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/render/gl/image.h"
 #include "experiments/preview/certified_part.h"
@@ -139,8 +140,8 @@ void add_drilling_methods(const BoneDefinition& d, std::uint64_t seed,
                      d.practice)
                : "";
   words += d.design.break_after > 0
-               ? fmt::format(" Breaks of {:g} s came after every {} procedures.",
-                             d.design.break_duration, d.design.break_after)
+               ? fmt::format(" Breaks of {:g} s came after every {}.", d.design.break_duration,
+                             counted(d.design.break_after, "procedure", "procedures"))
                : "";
   words += d.nerves ? " A nerve monitor watched, as the conditions say." : "";
   words += d.hints ? " Hints were given, as the conditions say." : "";
