@@ -126,11 +126,16 @@ std::string axes(const Figure& figure) {
   return text;
 }
 
+bool has_key(const Figure& figure) {
+  return std::any_of(figure.series.begin(), figure.series.end(),
+                     [](const Series& s) { return !s.label.empty(); });
+}
+
+const char* no_key(const Figure& figure) { return has_key(figure) ? "" : "unset key\n"; }
+
 // Room for the key, where there is one.
 std::string layout(const Figure& figure) {
-  const bool key = std::any_of(figure.series.begin(), figure.series.end(),
-                               [](const Series& s) { return !s.label.empty(); });
-  return fmt::format("{}set bmargin {}\n{}", key ? "" : "unset key\n", key ? 6 : 4,
+  return fmt::format("{}set bmargin {}\n{}", no_key(figure), has_key(figure) ? 6 : 4,
                      figure.equal_scale ? "set size ratio -1\n" : "");
 }
 
@@ -147,21 +152,44 @@ std::string headings(const Figure& figure) {
   return text;
 }
 
+/// Room for the key of a figure for a paper, beyond the height of the figure on a screen [mm].
+double key_room(const Figure& figure) {
+  constexpr double kRoom = 10.0;
+  return has_key(figure) ? kRoom : 0.0;
+}
+
 /// Draws the figure once more for a paper, which has the title in its caption; what marks simulated
-/// results stays.
+/// results stays. An SVG has points of a fixed size, so that it is drawn twice as large.
 std::string paper_plot(const Figure& figure, const std::string& plot, int width) {
-  constexpr double kMillimetres = 10.0;  // in a centimetre
-  const double wide = width / kMillimetres;
+  constexpr double kMillimetres = 10.0;          // in a centimetre
+  constexpr double kPixels = 2.0 * 96.0 / 25.4;  // in a millimetre; 8 pt are 21.3
+  const double high = figure.height * width + key_room(figure);
+  const std::string mark = figure.simulated ? "SIMULATED " + figure.who : std::string();
   return fmt::format(
-      "unset label 1\n{}set tmargin {}\n"
+      "unset label 1\nset label 2 {} at graph 1, graph 1 offset 0,0.7 right font ',7' textcolor "
+      "rgb "
+      "'#b00020' noenhanced\nset tmargin {}\nset bmargin {}\nset rmargin 1\n"
+      "set key samplen 1.2 width 0 font ',7'\n{}"
       "set terminal pdfcairo size {:.2f}cm,{:.2f}cm noenhanced font 'sans,8' fontscale 1 linewidth "
-      "0.5 pointscale 0.5 background rgb 'white'\nset output '{}.pdf'\n{}\nset output\n",
-      figure.simulated
-          ? fmt::format("set label 2 {} at graph 1, graph 1 offset 0,0.7 right font ',7' textcolor "
-                        "rgb '#b00020' noenhanced\n",
-                        quoted("SIMULATED " + figure.who))
-          : "",
-      figure.simulated ? 2 : 1, wide, figure.height * wide, figure.name, plot);
+      "0.5 pointscale 0.5 background rgb 'white'\nset output '{}.pdf'\n{}\nset output\n"
+      "set label 2 font ',18.7'\nset key font ',18.7'\n{}"
+      "set terminal svg size {:.0f},{:.0f} dynamic noenhanced font "
+      "'Helvetica,Arial,sans-serif,21.3' background rgb 'white'\nset output '{}-paper.svg'\n{}\n"
+      "set output\n",
+      quoted(mark), figure.simulated ? 2 : 1, has_key(figure) ? 5.5 : 3.5, no_key(figure),
+      width / kMillimetres, high / kMillimetres, figure.name, plot, no_key(figure), kPixels * width,
+      kPixels * high, figure.name, plot);
+}
+
+/// Says in an SVG how large it is on paper.
+void state_size(const fs::path& svg, const Figure& figure, int width) {
+  std::string text = file_text(svg);
+  const auto at = text.find("viewBox=");
+  if (at != std::string::npos) {
+    text.insert(at, fmt::format("width=\"{}mm\" height=\"{:.1f}mm\" ", width,
+                                figure.height * width + key_room(figure)));
+    write_text(svg, text);
+  }
 }
 
 constexpr const char* kStyle = R"(reset
@@ -300,6 +328,7 @@ void draw_figures(const std::vector<Figure>& figures, const fs::path& folder, in
   std::vector<std::pair<const char*, const char*>> kinds{{".svg", "</svg>"}, {".png", "IEND"}};
   if (paper > 0) {
     kinds.emplace_back(".pdf", "%%EOF");
+    kinds.emplace_back("-paper.svg", "</svg>");
   }
   for (const auto& figure : figures) {
     for (const auto& [extension, ending] : kinds) {
@@ -307,6 +336,11 @@ void draw_figures(const std::vector<Figure>& figures, const fs::path& folder, in
       if (!ends_with(file, ending)) {
         fail_unfinished(file);
       }
+    }
+  }
+  if (paper > 0) {
+    for (const auto& figure : figures) {
+      state_size(folder / (figure.name + "-paper.svg"), figure, paper);
     }
   }
   fs::remove(folder / kScriptName);

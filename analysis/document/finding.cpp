@@ -145,6 +145,7 @@ static void add_list(Document& part, const FindingList& list,
     part.subheading(table.title);
     add_table(part, table, false);
   }
+  part.blocks.insert(part.blocks.end(), list.blocks.begin(), list.blocks.end());
   for (const Figure& figure : list.figures) {
     const auto named = [&](const Drawing& d) { return d.figure.name == figure.name; };
     part.picture(*std::ranges::find_if(drawings, named));
@@ -218,7 +219,7 @@ void write_findings(const std::vector<FindingList>& lists, const Staging& stagin
     std::ranges::for_each(list.tables, add);
     figures.insert(figures.end(), list.figures.begin(), list.figures.end());
   }
-  if (!lists.empty()) {
+  if (std::ranges::any_of(lists, &FindingList::has_values)) {
     staging.write("own_findings.csv", findings_csv(tables, labels));
   }
 }

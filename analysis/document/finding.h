@@ -69,14 +69,18 @@ struct FindingTable {
   std::vector<FindingRow> rows{};
 };
 
-/// Findings under a heading: a line each, then tables and figures.
+/// Findings under a heading: a line each, then tables, blocks and figures.
 struct FindingList {
   std::string name;  // its key in JSON
   std::string heading;
   FindingRow findings{};
   std::vector<FindingTable> tables{};
   std::vector<Figure> figures{};
-  bool opens{false};  // stands before everything else in the report
+  std::vector<Document::Block> blocks{};  // below the tables, in the report alone
+  bool opens{false};                      // stands before everything else in the report
+
+  /// Whether more than its blocks is there; own_findings.h puts the list's name first.
+  bool has_values() const { return findings.size() > 1 || !tables.empty() || !figures.empty(); }
 };
 
 /// "Way of the hand: 0.3120 [0.2900, 0.3340] m (n = 12)".

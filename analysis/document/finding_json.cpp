@@ -77,6 +77,9 @@ nlohmann::ordered_json json_of(const std::vector<FindingRow>& rows) {
 nlohmann::ordered_json json_of(const std::vector<FindingList>& lists) {
   Json all = Json::object();
   for (const FindingList& list : lists) {
+    if (!list.has_values()) {
+      continue;
+    }
     Json& made = all[list.name];
     made = {{"heading", list.heading}, {"findings", json_of(list.findings)}};
     for (const FindingTable& table : list.tables) {

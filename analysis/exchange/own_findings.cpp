@@ -35,11 +35,6 @@ void complete(const std::string& list, FindingRow& row) {
   row.insert(row.begin(), Finding{.name = "findings", .value = list, .form = JsonForm::kAbsent});
 }
 
-/// The first of its own findings is its name.
-bool has_something(const FindingList& list) {
-  return list.findings.size() > 1 || !list.tables.empty() || !list.figures.empty();
-}
-
 FindingList found_by(const FindingSource& source,
                      const std::vector<std::filesystem::path>& sessions, bool simulated) {
   FindingList list = source.find(sessions);
@@ -88,7 +83,7 @@ std::vector<FindingList> own_findings(const std::vector<std::filesystem::path>& 
   });
   for (const FindingSource& source : sources()) {
     FindingList list = found_by(source, sessions, simulated);
-    if (has_something(list)) {
+    if (list.has_values() || !list.blocks.empty()) {
       lists.push_back(std::move(list));
     }
   }

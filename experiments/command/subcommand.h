@@ -79,6 +79,7 @@ void add_evaluate(CLI::App& app, int& status);
 void add_statistics(CLI::App& app, int& status);
 void add_align(CLI::App& app, int& status);
 void add_compare(CLI::App& app, int& status);
+void add_judge(CLI::App& app, int& status);
 void add_power(CLI::App& app, int& status);
 void add_power_simulate(CLI::App& power, int& status);
 void add_power_merge(CLI::App& power, int& status);

@@ -26,7 +26,7 @@ void add_to(Count& count, int trials) {
 
 void add_fixed_plan(const protocols::Definition& definition,
                     const std::function<std::vector<protocols::PlannedTrial>(int)>& trials_of,
-                    Preview& preview) {
+                    analysis::Document& document) {
   constexpr int kMostParticipants = 200;
   const int participants = std::min(definition.design.participants, kMostParticipants);
   std::map<std::string, Count> counts;
@@ -46,11 +46,11 @@ void add_fixed_plan(const protocols::Definition& definition,
                                                : fmt::format("{} to {}", count.fewest, count.most),
                     fmt::format("{}", count.all)});
   }
-  preview.document.heading("Trials of the study");
-  preview.document.paragraph(
+  document.heading("Trials of the study");
+  document.paragraph(
       fmt::format("Counted in the first session of {}, by the code that plans sessions.",
                   counted(static_cast<std::size_t>(participants), "participant", "participants")));
-  preview.document.table({"condition", "participants", "trials of each", "trials in all"}, rows);
+  document.table({"condition", "participants", "trials of each", "trials in all"}, rows);
 }
 
 }  // namespace haptrial::experiments

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "experiments/preview/preview_page.h"
+#include "analysis/document/document.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::experiments {
@@ -13,6 +13,6 @@ namespace haptrial::experiments {
 /// @param trials_of  the trials of the first session of a participant, from 0
 void add_fixed_plan(const protocols::Definition& definition,
                     const std::function<std::vector<protocols::PlannedTrial>(int)>& trials_of,
-                    Preview& preview);
+                    analysis::Document& document);
 
 }  // namespace haptrial::experiments

@@ -54,7 +54,9 @@ std::vector<TimelineBar> bars_of(const PreviewedTrial& trial) {
   return bars;
 }
 
-void add_stage_table(const PreviewedTrial& trial, Preview& preview) {
+}  // namespace
+
+void add_stage_table(const PreviewedTrial& trial, analysis::Document& document) {
   const bool marked = std::ranges::any_of(trial.intervals.front().stages,
                                           [](const auto& stage) { return stage.marker > 0; });
   std::vector<std::string> heading{"stage", "lasts [s]", "ends", "fields", "shows", "sound"};
@@ -79,8 +81,10 @@ void add_stage_table(const PreviewedTrial& trial, Preview& preview) {
       }
     }
   }
-  preview.document.table(heading, rows);
+  document.table(heading, rows);
 }
+
+namespace {
 
 std::string answers_of(const protocols::TrialQuestion& question) {
   std::vector<std::string> answers;
@@ -147,14 +151,15 @@ std::string number_or_range(int low, int high) {
 }
 
 void add_orders(const std::string& what, const std::vector<protocols::PlannedOrder>& orders,
-                const char* counted_things, const std::string& folded, Preview& preview) {
+                const char* counted_things, const std::string& folded,
+                analysis::Document& document) {
   constexpr std::size_t kFew = 8;
   std::vector<std::vector<std::string>> rows;
   for (const protocols::PlannedOrder& order : orders) {
     rows.push_back({order.order, fmt::format("{}", order.count)});
   }
   if (!rows.empty()) {
-    preview.document.table({what, counted_things}, rows, rows.size() > kFew ? folded : "");
+    document.table({what, counted_things}, rows, rows.size() > kFew ? folded : "");
   }
 }
 
@@ -169,7 +174,7 @@ std::string content_of(const PreviewedTrial& trial, const protocols::SeenStage& 
 }
 
 /// The conditions of a block together.
-void add_planned_blocks(const protocols::PlannedTrials& planned, Preview& preview) {
+void add_planned_blocks(const protocols::PlannedTrials& planned, analysis::Document& document) {
   std::vector<std::pair<std::string, int>> blocks;
   for (const protocols::PlannedCount& count : planned.counts) {
     const std::string name = count.block + (count.probe.empty() ? "" : ", probe " + count.probe);
@@ -184,7 +189,7 @@ void add_planned_blocks(const protocols::PlannedTrials& planned, Preview& previe
   for (const auto& [name, all] : blocks) {
     rows.push_back({name, fmt::format("{}", all)});
   }
-  preview.document.table({"block", "trials in all"}, rows);
+  document.table({"block", "trials in all"}, rows);
 }
 
 }  // namespace
@@ -195,7 +200,7 @@ void add_timeline(const TrialsDefinition& d, const PreviewedTrial& trial, Previe
   preview.document.paragraph(sentence_about(trial));
   const std::vector<TimelineBar> bars = bars_of(trial);
   preview.add(timeline_figure(bars.size()), timeline_svg(bars));
-  add_stage_table(trial, preview);
+  add_stage_table(trial, preview.document);
   add_questions(trial, preview);
   add_values(trial, preview);
 }
@@ -221,13 +226,13 @@ void add_seen(const PreviewedTrial& trial, const std::vector<protocols::SeenStag
 }
 
 void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& planned,
-                 Preview& preview) {
-  preview.document.heading("Trials of the study");
-  preview.document.paragraph(fmt::format(
-      "Counted over {}{}, by the code that plans sessions.",
-      counted(planned.participants, "participant", "participants"),
-      planned.participants < d.design.participants ? fmt::format(" of {}", d.design.participants)
-                                                   : ""));
+                 analysis::Document& document) {
+  document.heading("Trials of the study");
+  document.paragraph(fmt::format("Counted over {}{}, by the code that plans sessions.",
+                                 counted(planned.participants, "participant", "participants"),
+                                 planned.participants < d.design.participants
+                                     ? fmt::format(" of {}", d.design.participants)
+                                     : ""));
   const bool sessions = d.order.sessions > 1;
   std::vector<std::string> heading{"block",        "condition",      "probe",
                                    "participants", "trials of each", "trials in all"};
@@ -254,13 +259,13 @@ void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& plan
   }
   constexpr std::size_t kMany = 24;
   if (rows.size() > kMany) {
-    add_planned_blocks(planned, preview);
+    add_planned_blocks(planned, document);
   }
-  preview.document.table(heading, rows, rows.size() > kMany ? "Trials of each condition" : "");
-  add_orders("group", planned.groups, "participants", "", preview);
-  add_orders("order of blocks", planned.block_orders, "sessions", "Orders of blocks", preview);
+  document.table(heading, rows, rows.size() > kMany ? "Trials of each condition" : "");
+  add_orders("group", planned.groups, "participants", "", document);
+  add_orders("order of blocks", planned.block_orders, "sessions", "Orders of blocks", document);
   add_orders("order of intervals", planned.interval_orders, "trials", "Orders of intervals",
-             preview);
+             document);
 }
 
 void add_objects(Preview& preview) {
@@ -292,7 +297,7 @@ void add_trials_parts(const protocols::StudiedDefinition& definition, const Prev
   add_objects(preview);
   add_felt(definition, trial, protocols::felt_stages(definition, trial, request.look), preview);
   add_planned(definition, protocols::planned_trials(definition, request.seed, kMostParticipants),
-              preview);
+              preview.document);
 }
 
 }  // namespace haptrial::experiments

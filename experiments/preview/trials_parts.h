@@ -22,7 +22,9 @@ void add_seen(const protocols::PreviewedTrial& trial, const std::vector<protocol
 void add_felt(const protocols::TrialsDefinition& definition, const protocols::PreviewedTrial& trial,
               const std::vector<protocols::FeltStage>& stages, Preview& preview);
 void add_planned(const protocols::TrialsDefinition& definition,
-                 const protocols::PlannedTrials& planned, Preview& preview);
+                 const protocols::PlannedTrials& planned, analysis::Document& document);
+/// The stages of a trial with what ends, moves and shows them, as a table.
+void add_stage_table(const protocols::PreviewedTrial& trial, analysis::Document& document);
 
 /// The objects as a view to turn; nothing if the trial has none.
 void add_objects(Preview& preview);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "analysis/document/document.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/channel/channel_row.h"
@@ -30,6 +31,13 @@ std::unique_ptr<StudySimulation> Study::study_simulation(const protocols::Defini
       "{}: power by simulation does not know the report of protocol '{}'; see haptrial power t, "
       "anova and repeated",
       definition.file_name, protocol().name()));
+}
+
+void Study::add_methods(const protocols::Definition& definition, std::uint64_t seed,
+                        analysis::Document& document) const {
+  static_cast<void>(seed);
+  document.heading("Procedure");
+  document.points(definition.description());
 }
 
 const std::vector<const Study*>& studies() { return all(); }
@@ -63,8 +71,8 @@ void add_study(const Study& study) {
 }
 
 record::TableList known_tables() {
-  record::TableList tables = record::with_tables(
-      record::common_tables(), {&record::table_of<channel::IncidentRow>()});
+  record::TableList tables =
+      record::with_tables(record::common_tables(), {&record::table_of<channel::IncidentRow>()});
   for (const Study* study : all()) {
     tables = record::with_tables(std::move(tables), study->protocol().tables());
   }

@@ -14,6 +14,10 @@
 #include "experiments/study/study_files.h"
 #include "protocols/interface/protocol.h"
 
+namespace haptrial::analysis {
+struct Document;
+}
+
 namespace haptrial::experiments {
 
 class Preview;
@@ -82,6 +86,11 @@ class Study {
     static_cast<void>(request);
     return nullptr;
   }
+  /// Adds stimuli, procedure, and the trials as planned to a methods section; by default the lines
+  /// of `haptrial validate`. @param definition  from a session file, without what is loaded beside
+  /// it  @param seed  of the study
+  virtual void add_methods(const protocols::Definition& definition, std::uint64_t seed,
+                           analysis::Document& document) const;
   /// Computes, and writes report, tables and figures. @returns lines for the terminal
   virtual std::vector<std::string> analyze(const AnalysisRequest& request) const = 0;
   /// How a study stands that may end before its last participant; nothing if it may not.

@@ -15,16 +15,6 @@ constexpr const char* kMixedModel =
     "A linear mixed model took every trial (restricted maximum likelihood, Satterthwaite's degrees "
     "of freedom).";
 
-/// "repeated-measures analysis of variance with Greenhouse and Geisser's correction"
-std::string tests_of(const DesignTests& tests) {
-  for (const auto& effect : tests.effects) {
-    if (effect) {
-      return effect->test + (effect->epsilon ? " with Greenhouse and Geisser's correction" : "");
-    }
-  }
-  return "the tests of the tables";
-}
-
 /// A paragraph that can go into a paper's methods section.
 std::string methods(const StudyResult& study) {
   std::vector<std::string> parameters;
@@ -37,13 +27,12 @@ std::string methods(const StudyResult& study) {
       "programming over the differences of force and slope, and the score taken as the weighted "
       "mean of the alignment cost and of the root-mean-square differences of force and slope after "
       "warping ({}). Participants were the unit of analysis: each gave one mean for each "
-      "condition. Conditions were compared by {}, two conditions by paired t-tests if the same "
-      "participants had both and by Welch's t-test otherwise, p values adjusted by Holm's method "
-      "within each family of tests; beside them stand tests on ranks, permutation tests and "
-      "bias-corrected and accelerated bootstrap intervals (9,999 random arrangements or resamples, "
-      "or all arrangements if there are at most 1,000,000). {} Intervals have a coverage of 95 %; "
+      "condition. {} Beside them stand tests on ranks, permutation tests and bias-corrected and "
+      "accelerated bootstrap intervals (9,999 random arrangements or resamples, or all "
+      "arrangements "
+      "if there are at most 1,000,000). {} Intervals have a coverage of 95 %; "
       "those of shares of variance have 90 % and invert the noncentral F distribution.{}",
-      joined(parameters), tests_of(study.statistics.tests), kMixedModel,
+      joined(parameters), comparison_words(study.statistics.tests), kMixedModel,
       study.simulated() ? " All participants were simulated." : "");
 }
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "analysis/document/palette.h"
 #include "analysis/force_training/study/order_balance.h"
+#include "analysis/force_training/study/study_values.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
@@ -21,6 +23,25 @@ Look condition_look(std::size_t index) {
       Look{kOrange, kLong, 5, 2.0, 1.1}, Look{kBlue, kMixed, 7, 2.0, 1.1},
       Look{kGreen, kSolid, 9, 2.0, 1.3}, Look{kPurple, kShort, 13, 2.0, 1.3}};
   return looks[index % looks.size()];
+}
+
+constexpr double kBeside = 0.015;  // points of participants are beside the bar of their mean
+
+/// Points of single participants behind means of this look.
+Series points_behind(const Look& look) {
+  return {"", Mark::kPoints, {look.color, kSolid, 6, 1.0, 0.6}};
+}
+
+/// Adds the mean of each participant over the scores of which `wanted` holds.
+template <class Predicate>
+void add_people(const StudyResult& study, double place, Predicate&& wanted, Series& points,
+                double& highest) {
+  for (const auto& [subject, values] : by_subject_where(study.scores, wanted)) {
+    points.x.push_back(place);
+    points.y.push_back(std::accumulate(values.begin(), values.end(), 0.0) /
+                       static_cast<double>(values.size()));
+    highest = std::max(highest, points.y.back());
+  }
 }
 
 Figure recall_error(const StudyResult& study) {
@@ -97,6 +118,7 @@ Figure interaction(const StudyResult& study) {
   const auto lines = static_cast<double>(table.factors[0].levels.size());
   for (std::size_t a = 0; a < table.factors[0].levels.size(); ++a) {
     Series series{capitalized(table.factors[0].levels[a]), Mark::kLinkedBars, condition_look(a)};
+    Series people = points_behind(series.look);
     const double aside = 0.04 * (static_cast<double>(a) - 0.5 * (lines - 1.0));
     for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
       const auto& interval = statistics.summaries[cell].participants;
@@ -108,8 +130,12 @@ Figure interaction(const StudyResult& study) {
       series.low.push_back(interval->low);
       series.high.push_back(interval->high);
       highest = std::max(highest, interval->high);
+      add_people(
+          study, series.x.back() + kBeside,
+          [&](const TrialScore& s) { return s.condition == table.names[cell]; }, people, highest);
       figure.alt += fmt::format(" {} {};", table.names[cell], number(interval->mean));
     }
+    figure.series.push_back(std::move(people));
     figure.series.push_back(std::move(series));
   }
   const auto& levels = table.factors[1].levels;
@@ -119,7 +145,8 @@ Figure interaction(const StudyResult& study) {
   figure.x_range = Range{0.6, static_cast<double>(levels.size()) + 0.4};
   figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
   figure.caption =
-      "Means of the participants' means with 95 % confidence intervals over participants. The test "
+      "Means of the participants' means with 95 % confidence intervals over participants; small "
+      "circles are participants. The test "
       "of the interaction asks whether the lines are parallel.";
   return figure;
 }
@@ -135,6 +162,7 @@ Figure learning(const StudyResult& study) {
   double highest = 0.0;
   for (std::size_t c = 0; c < statistics.conditions.size(); ++c) {
     Series series{capitalized(statistics.conditions[c]), Mark::kLinkedBars, condition_look(c)};
+    Series people = points_behind(series.look);
     const double aside = 0.04 * (static_cast<double>(c) -
                                  0.5 * static_cast<double>(statistics.conditions.size() - 1));
     for (const auto& point : statistics.learning) {
@@ -147,7 +175,14 @@ Figure learning(const StudyResult& study) {
       series.high.push_back(point.interval ? point.interval->high : *point.mean);
       last = std::max(last, point.repetition);
       highest = std::max(highest, series.high.back());
+      add_people(
+          study, series.x.back() + kBeside,
+          [&](const TrialScore& s) {
+            return s.condition == point.condition && s.repetition == point.repetition;
+          },
+          people, highest);
     }
+    figure.series.push_back(std::move(people));
     figure.series.push_back(std::move(series));
   }
   for (std::int32_t r = 1; r <= last; ++r) {
@@ -157,7 +192,8 @@ Figure learning(const StudyResult& study) {
   figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
   figure.caption =
       "Recall error at each repetition of the same trajectory and force pattern: means of the "
-      "participants' means with 95 % confidence intervals over participants.";
+      "participants' means with 95 % confidence intervals over participants; small circles are "
+      "participants.";
   figure.alt = "Mean recall error over repetitions:";
   for (const auto& point : statistics.learning) {
     if (point.mean) {
@@ -175,6 +211,7 @@ Figure learning_over_blocks(const StudyResult& study) {
   figure.x_label = "Block";
   figure.y_label = "Recall error (0 is perfect)";
   Series series{"", Mark::kLinkedBars, {kBlue, kSolid, 7, 2.0, 1.1}};
+  Series people = points_behind(series.look);
   double highest = 0.0;
   for (const auto& point : study.statistics.blocks) {
     if (!point.mean) {
@@ -185,14 +222,18 @@ Figure learning_over_blocks(const StudyResult& study) {
     series.low.push_back(point.interval ? point.interval->low : *point.mean);
     series.high.push_back(point.interval ? point.interval->high : *point.mean);
     highest = std::max(highest, series.high.back());
+    add_people(
+        study, point.block + 0.25, [&](const TrialScore& s) { return s.block == point.block; },
+        people, highest);
     figure.alt += fmt::format(" {} {};", point.block, number(*point.mean));
   }
+  figure.series.push_back(std::move(people));
   figure.series.push_back(std::move(series));
   figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
   figure.caption =
       std::string() +
       "Recall error in each block of the session: means of the participants' means with 95 % "
-      "confidence intervals over participants. " +
+      "confidence intervals over participants; small circles are participants. " +
       sentence_of(order_balance(study.scores, study.statistics.conditions));
   figure.alt = "Mean recall error by block:" + figure.alt;
   return figure;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_figures.h"
@@ -131,6 +132,17 @@ std::string interval_words(const TrialsResult& result) {
   return words;
 }
 
+/// Sentences on the tests of quantities that are compared, each once.
+std::string compared_words(const TrialsResult& result) {
+  std::set<std::string> all;
+  for (const Quantity& quantity : result.quantities) {
+    if (quantity.compared && quantity.table.cells.size() > 1) {
+      all.insert(" " + comparison_words(quantity.tests));
+    }
+  }
+  return all.empty() ? " No conditions were compared." : fmt::format("{}", fmt::join(all, ""));
+}
+
 void add_methods(Document& document, const TrialsResult& result) {
   document.heading("Methods");
   const TrialsPlan& plan = result.plan;
@@ -191,10 +203,11 @@ void add_methods(Document& document, const TrialsResult& result) {
       document.paragraph(fmt::format(
           "Conditions are compared in one value of each participant under each condition, the mean "
           "over its reaches without a probe in {} of each block; force compensation is that of "
-          "reaches in a channel. p values of a family are adjusted together by Holm's method.",
+          "reaches in a channel.{}",
           plan.reaching.cycles == ReachCycles::kAll     ? "all cycles"
           : plan.reaching.cycles == ReachCycles::kFirst ? "the first cycle"
-                                                        : "the last cycle"));
+                                                        : "the last cycle",
+          compared_words(result)));
     }
     document.heading("Definition");
     document.source(result.definition_name, result.definition);
@@ -202,8 +215,8 @@ void add_methods(Document& document, const TrialsResult& result) {
   }
   document.paragraph(
       "Tests between conditions take one value of each participant for each condition; trials are "
-      "never counted as independent over participants. p values of a family are adjusted together "
-      "by Holm's method.");
+      "never counted as independent over participants." +
+      compared_words(result));
   document.heading("Definition");
   document.source(result.definition_name, result.definition);
 }

@@ -73,6 +73,20 @@ std::string ranks_p(const SideTest& test) {
   return p_result(test.ranks_holm) + (test.ranks && !test.ranks->exact ? kApproximate : "");
 }
 
+std::string comparison_words(const DesignTests& tests) {
+  const auto effect = std::ranges::find_if(tests.effects, [](const auto& e) { return bool(e); });
+  return fmt::format(
+      "Conditions were compared by {}, two conditions by paired t-tests if the same participants "
+      "had "
+      "both and by Welch's t-test otherwise, p values adjusted by Holm's method within each family "
+      "of tests.",
+      effect == tests.effects.end()
+          ? std::string("the tests of the tables")
+          : (*effect)->test + ((*effect)->epsilon ? " with Greenhouse and Geisser's "
+                                                    "correction"
+                                                  : ""));
+}
+
 std::string effect_result(const EffectTest& effect) {
   return fmt::format(
       "F({}, {}) = {}, {} ({}{}){}", degrees(effect.df_effect), degrees(effect.df_error),

@@ -34,6 +34,9 @@ std::string ranks_p(const SideTest& test);
 /// "F(2, 22) = 12.3, p = 0.013 (repeated-measures analysis of variance, Greenhouse–Geisser ε =
 /// 0.64), partial η² = 0.40".
 std::string effect_result(const EffectTest& effect);
+/// A sentence for a methods section on how conditions were compared: "Conditions were compared by
+/// repeated-measures analysis of variance with Greenhouse and Geisser's correction, …".
+std::string comparison_words(const DesignTests& tests);
 /// "difference -0.19, 95 % CI -0.50 to 0.11 (two-sided, not adjusted), paired t(11) = -1.39,
 /// p = 0.096 after Holm's adjustment, one-tailed".
 std::string side_result(const SideTest& test);

@@ -133,6 +133,10 @@ Defined<Intraclass> intraclass_correlation(const Eigen::MatrixXd& ratings, doubl
                                    : kNoError.because};
     return c;
   }
+  if (!(c.mean_square_targets > 0.0)) {  // its degrees of freedom may be 0 / 0
+    c.random_raters = c.random_raters_mean = Undefined{"all targets have the same mean"};
+    return c;
+  }
   const IntraclassForm random = random_form(c, level);
   c.random_raters = random;
   IntraclassForm mean = random;

@@ -1,5 +1,7 @@
 #include "core/psychometric/definition/read_adjustment.h"
 
+#include <fmt/format.h>
+
 #include <vector>
 
 #include "core/psychometric/definition/grid.h"
@@ -53,6 +55,14 @@ void read_adjustment(const TrackKeys& keys, Track& track) {
   adjusting_schema().read(keys.track, keys.procedure, p);
   track.most_trials =
       static_cast<int>(p.starts.levels.size()) * p.starts.repetitions * p.most_presentations;
+  track.rule = fmt::format(
+      "Adjustments began at {}, {} from each start, in steps of {}, finer after each turn. The "
+      "setting is the level at which the participant left it, and the estimate the mean of the "
+      "settings; after {} presentations an adjustment ended without one.",
+      words_of(p.starts.levels),
+      p.starts.repetitions == 1 ? std::string("once")
+                                : fmt::format("{} times", p.starts.repetitions),
+      words_of(p.steps), p.most_presentations);
   track.begin = [p](std::uint64_t seed, const std::string& name) {
     return std::make_unique<Adjusting>(p, seed, name);
   };

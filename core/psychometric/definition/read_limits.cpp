@@ -45,6 +45,11 @@ void read_limits(const TrackKeys& keys, Track& track) {
   }
   track.finds_level = true;
   track.falls = false;
+  track.rule = fmt::format(
+      "It had {} series, descending and ascending in turn, the first one {}, in steps of {:g}; a "
+      "series began up to {} steps from its end of the range and ended at the first change of the "
+      "answer. The estimate is the mean of the middles between the last two levels of each series.",
+      p.series, p.descending_first ? "descending" : "ascending", p.step, p.start_steps);
   track.most_trials = p.series * Limits::longest_series(p);
   track.begin = [p](std::uint64_t seed, const std::string& name) {
     return std::make_unique<Limits>(p, seed, name);

@@ -1,5 +1,7 @@
 #include "core/psychometric/definition/read_listed.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -21,6 +23,10 @@ ListParameters read_listed(const TrackKeys& keys, Track& track) {
   track.high = list.levels.empty() ? 0.0 : *most;
   track.most_trials = static_cast<int>(list.levels.size()) * list.repetitions;
   track.listed = true;
+  track.rule = fmt::format(
+      "Levels were {}, each presented {}{}.", words_of(list.levels),
+      list.repetitions == 1 ? std::string("once") : fmt::format("{} times", list.repetitions),
+      list.in_rounds ? ", each once before any came again" : ", shuffled");
   return list;
 }
 
@@ -59,6 +65,8 @@ void read_magnitude(const TrackKeys& keys, Track& track) {
   const ListParameters list = read_listed(keys, track);
   std::optional<double> modulus;
   modulus_schema().read(keys.track, keys.procedure, modulus);
+  track.rule += modulus ? fmt::format(" The first level was to be called {:g}.", *modulus)
+                        : std::string(" Participants chose their own scale of numbers.");
   track.begin = [list, modulus](std::uint64_t seed, const std::string& name) {
     return std::make_unique<MagnitudeEstimation>(list, modulus, seed, name);
   };

@@ -1,5 +1,7 @@
 #include "core/psychometric/definition/read_pest.h"
 
+#include <fmt/format.h>
+
 #include "core/base/definition/schema.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/definition/track_keys.h"
@@ -44,8 +46,14 @@ void read_pest(const TrackKeys& keys, Track& track) {
   p.high = track.high;
   p.start = read_start(keys, track);
   pest_schema().read(keys.track, keys.procedure, p);
-  p.stop_trials = read_stop(keys, track).trials;
+  const TrackStop stop = read_stop(keys, track);
+  p.stop_trials = stop.trials;
   track.falls = p.right_raises;
+  track.rule = fmt::format(
+      "It sought {:g} % right answers by PEST (Taylor and Creelman 1967) with a deviation of {:g}, "
+      "from {:g} on, in steps of {:g} at first and {:g} at most; a step of {:g} ended it. {}",
+      100.0 * p.target, p.deviation, p.start, p.first_step, p.largest_step, p.smallest_step,
+      words_of(stop));
   track.begin = [p](std::uint64_t, const std::string&) { return std::make_unique<Pest>(p); };
 }
 

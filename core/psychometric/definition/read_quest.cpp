@@ -348,6 +348,22 @@ void begin_with(const TrackKeys& keys, const std::shared_ptr<const QuestTables>&
                             "there",
                             begun.entropy()));
   }
+  std::vector<std::string> parameters;
+  for (const QuestDimension& each : tables->definition().parameters) {
+    parameters.push_back(each.values.size() == 1
+                             ? fmt::format("{} {:g}", each.name, each.values.front())
+                             : fmt::format("{} ({} values from {:g} to {:g}{})", each.name,
+                                           each.values.size(), std::ranges::min(each.values),
+                                           std::ranges::max(each.values),
+                                           each.nuisance ? ", a nuisance" : ""));
+  }
+  track.rule = fmt::format(
+      "Each trial had the level that was expected to tell most, by the entropy of the posterior of "
+      "{}{}. {} The estimate is the mean of the posterior.",
+      fmt::join(parameters, ", "),
+      track.axis.x_unit().empty() || track.kind != "psi" ? ""
+                                                         : " on the axis " + track.axis.x_unit(),
+      words_of(TrackStop{0, stop.trials, stop.entropy}));
   track.begin = [tables, stop](std::uint64_t, const std::string&) {
     return std::make_unique<QuestPlus>(tables, stop);
   };

@@ -124,6 +124,54 @@ void add_steps(const Track& track, const StaircaseParameters& p, std::vector<std
   }
 }
 
+/// "2 right answers in a row".
+std::string answers(int count, const char* which) {
+  return count == 1 ? fmt::format("each {} answer", which)
+                    : fmt::format("{} {} answers in a row", count, which);
+}
+
+std::string step_words(const StaircaseParameters& p) {
+  std::vector<double> down, up;
+  for (const StaircaseStep& step : p.steps) {
+    down.push_back(step.down);
+    up.push_back(step.up);
+  }
+  const std::string sizes = down == up ? words_of(down)
+                                       : fmt::format("{} to a harder task and {} to an easier one",
+                                                     words_of(down), words_of(up));
+  const bool trials = p.schedule == StaircaseParameters::Schedule::kTrials;
+  return fmt::format("Steps were {} [{}]{}.", sizes,
+                     p.axis.x_unit().empty() ? "the level" : p.axis.x_unit(),
+                     p.steps.size() == 1 ? ""
+                     : trials            ? ", the next one after each trial"
+                                         : ", the next one after each reversal");
+}
+
+std::string estimate_words(const StaircaseParameters& p) {
+  using Estimator = StaircaseParameters::Estimator;
+  const bool levels = p.estimator == Estimator::kMeanOfLevels;
+  const std::string of = levels ? "levels" : "reversals";
+  return fmt::format("The estimate is the {} of {}{}{}.",
+                     p.estimator == Estimator::kMedianOfReversals ? "median" : "mean", of,
+                     p.skip > 0 ? fmt::format(" without the first {}", p.skip) : "",
+                     p.last > 0 ? fmt::format(", of the last {} alone", p.last) : "");
+}
+
+std::string rule_words(const Track& track, const StaircaseParameters& p, const TrackStop& stop) {
+  std::string words = fmt::format(
+      "It began at {:g}. After {} the task became harder (the level {}), after {} easier", p.start,
+      answers(p.down, "right"), p.right_raises ? "rose" : "fell", answers(p.up, "wrong"));
+  if (p.first_down > 0 || p.first_up > 0) {
+    words += fmt::format("; before the first reversal after {} and {}",
+                         answers(p.first_down > 0 ? p.first_down : p.down, "right"),
+                         answers(p.first_up > 0 ? p.first_up : p.up, "wrong"));
+  }
+  words += track.balance ? fmt::format(", a rule in balance at {:.1f} % right answers.",
+                                       100.0 * *track.balance)
+                         : ".";
+  return fmt::format("{} {} {} {}", words, step_words(p), words_of(stop), estimate_words(p));
+}
+
 }  // namespace
 
 void read_staircase(const TrackKeys& keys, Track& track) {
@@ -146,6 +194,7 @@ void read_staircase(const TrackKeys& keys, Track& track) {
   if (p.up == 1) {
     track.balance = balance_of(p.down, p.steps.back());
   }
+  track.rule = rule_words(track, p, stop);
   track.begin = [p](std::uint64_t, const std::string&) { return std::make_unique<Staircase>(p); };
   track.predict = [p, share = track.balance.value_or(0.5)](const PsychometricFunction& function) {
     const auto found = predict_staircase(

@@ -118,7 +118,12 @@ void describe(const TrackKeys& keys) {
 
 void read_surface(const TrackKeys& keys, Track& track) {
   SurfaceParameters surface;
-  surface.trials = read_stop(keys, track).trials;
+  const TrackStop stop = read_stop(keys, track);
+  surface.trials = stop.trials;
+  track.rule =
+      "The threshold was sought as a smooth function of the other variables, without a "
+      "formula. " +
+      words_of(stop);
   double levels = 1.0;
   for (QuestDimension& each : read_stimulus(keys, track)) {
     std::ranges::sort(each.values);

@@ -39,6 +39,7 @@ struct Track {
   std::string name;
   std::size_t procedure{0};     // that it belongs to, in the definition's order
   std::string kind;             // word of its kind (procedure_kinds.h)
+  std::string rule;             // its rule, steps, end and estimate, in sentences for reports
   std::string variable;         // that it sets
   std::string unit;             // of the variable, as a text
   std::vector<std::string> by;  // factors: each combination has a track of its own

@@ -1,6 +1,7 @@
 #include "core/psychometric/definition/track_keys.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <vector>
@@ -112,6 +113,23 @@ TrackStop read_stop(const TrackKeys& keys, Track& track) {
   }
   track.most_trials = stop.trials;
   return stop;
+}
+
+std::string words_of(const TrackStop& stop) {
+  std::vector<std::string> ends;
+  if (stop.reversals > 0) {
+    ends.push_back(fmt::format("{} reversals", stop.reversals));
+  }
+  if (stop.entropy > 0.0) {
+    ends.push_back(fmt::format("an entropy below {:g} nat", stop.entropy));
+  }
+  ends.push_back(fmt::format("{} trials", stop.trials));
+  return fmt::format("It ended after {}{}.", fmt::join(ends, " or "),
+                     ends.size() > 1 ? ", whichever came first" : "");
+}
+
+std::string words_of(const std::vector<double>& numbers) {
+  return fmt::format("{:.10g}", fmt::join(numbers, ", "));
 }
 
 }  // namespace haptrial::psychometric

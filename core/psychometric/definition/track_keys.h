@@ -1,6 +1,8 @@
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/definition/table.h"
 #include "core/psychometric/function/axis.h"
@@ -57,5 +59,10 @@ struct TrackStop {
 
 /// Reads `stop`, which sets the most trials of the track.
 TrackStop read_stop(const TrackKeys& keys, Track& track);
+
+/// "It ended after 10 reversals or 60 trials."
+std::string words_of(const TrackStop& stop);
+/// "0.2, 0.1", the shortest decimals.
+std::string words_of(const std::vector<double>& numbers);
 
 }  // namespace haptrial::psychometric

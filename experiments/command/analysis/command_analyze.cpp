@@ -12,6 +12,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/methods/study_methods.h"
 #include "experiments/plan/audit/stated_and_done.h"
 #include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
@@ -149,6 +150,7 @@ void add_analyze(CLI::App& app, int& status) {
       "haptrial analyze out/force_training-001",
       {"scores.csv, statistics.json, figures and report.html in DIR", "guide-analyst.md"});
   add_stated_and_done();
+  add_study_methods();
   auto& o = options_of<AnalyzeOptions>(*sub, status, analyze);
   sub->add_option("DIR", o.folder, "Folder of session files (.h5)");
   sub->add_flag("--pilots", o.pilots,
@@ -175,7 +177,7 @@ void add_analyze(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   sub->add_option("--reference", o.reference, "Reference condition in place of the definition's");
   sub->add_option("--paper", o.paper,
-                  "Width [mm] of figures for a paper, such as 85: PDF in 8 pt, without titles "
+                  "Width [mm] of figures for a paper, such as 85: PDF and SVG in 8 pt, without titles "
                   "(default: none are written)");
   sub->add_option("--jobs", o.jobs, kJobsHelp);
 }

@@ -49,6 +49,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_align(app, status);
   add_evaluate(app, status);
   add_compare(app, status);
+  add_judge(app, status);
   add_statistics(app, status);
   add_info(app, status);
   add_record(app, status);

@@ -106,6 +106,11 @@ class BoneStudy final : public Study {
     add_drilling_preview(dynamic_cast<const protocols::BoneDefinition&>(definition), request,
                          preview);
   }
+  void add_methods(const protocols::Definition& definition, std::uint64_t seed,
+                   analysis::Document& document) const override {
+    add_drilling_methods(dynamic_cast<const protocols::BoneDefinition&>(definition), seed,
+                         document);
+  }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
     return analyze_drillings(request);
   }

@@ -1,10 +1,12 @@
 #include "experiments/studies/drilling/drilling_preview.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/render/gl/image.h"
 #include "experiments/preview/certified_part.h"
@@ -108,7 +110,44 @@ void add_burr_table(const std::vector<BurrForce>& burrs, Preview& preview) {
                          rows);
 }
 
+void add_plan(const BoneDefinition& d, std::uint64_t seed, analysis::Document& document) {
+  add_fixed_plan(
+      d,
+      [&](int participant) {
+        return protocols::procedures_of(d, previewed_session(seed, participant));
+      },
+      document);
+}
+
 }  // namespace
+
+void add_drilling_methods(const BoneDefinition& d, std::uint64_t seed,
+                          analysis::Document& document) {
+  std::vector<std::string> tools;
+  for (const bone::ToolSpec& tool : d.simulator.tools) {
+    tools.push_back(tool.name);
+  }
+  document.heading("Stimuli and procedure");
+  std::string words = fmt::format(
+      "Each participant drilled {} procedures of at most {:g} s, each on a new bone ({}), with {}; "
+      "the force was limited to {:g} N.",
+      d.design.trials, d.drilling.time_limit, fmt::join(d.sources, ", "), fmt::join(tools, ", "),
+      d.drilling.force_limit);
+  words += d.practice > 0.0
+               ? fmt::format(
+                     " People practised for {:g} s before the first one; dry runs leave it "
+                     "out.",
+                     d.practice)
+               : "";
+  words += d.design.break_after > 0
+               ? fmt::format(" Breaks of {:g} s came after every {}.", d.design.break_duration,
+                             counted(d.design.break_after, "procedure", "procedures"))
+               : "";
+  words += d.nerves ? " A nerve monitor watched, as the conditions say." : "";
+  words += d.hints ? " Hints were given, as the conditions say." : "";
+  document.paragraph(words);
+  add_plan(d, seed, document);
+}
 
 void add_drilling_preview(const BoneDefinition& d, const PreviewRequest& request,
                           Preview& preview) {
@@ -128,12 +167,7 @@ void add_drilling_preview(const BoneDefinition& d, const PreviewRequest& request
     demands.push_back({"flat bone under " + burr.tool, burr.stiffness, 0.0});
   }
   add_certified(d, demands, preview);
-  add_fixed_plan(
-      d,
-      [&](int participant) {
-        return protocols::procedures_of(d, previewed_session(request.seed, participant));
-      },
-      preview);
+  add_plan(d, request.seed, preview.document);
 }
 
 }  // namespace haptrial::experiments

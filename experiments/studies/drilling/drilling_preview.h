@@ -10,4 +10,9 @@ namespace haptrial::experiments {
 void add_drilling_preview(const protocols::BoneDefinition& definition,
                           const PreviewRequest& request, Preview& preview);
 
+/// Stimuli, procedure and trials as planned of a study of drillings, for a methods section.
+/// @param definition  its bones need not be loaded
+void add_drilling_methods(const protocols::BoneDefinition& definition, std::uint64_t seed,
+                          analysis::Document& document);
+
 }  // namespace haptrial::experiments

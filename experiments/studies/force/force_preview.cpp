@@ -1,6 +1,7 @@
 #include "experiments/studies/force/force_preview.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -188,7 +189,40 @@ void add_gains(const ForceDefinition& d, Preview& preview) {
                   g.force_limit));
 }
 
+void add_plan(const ForceDefinition& d, std::uint64_t seed, analysis::Document& document) {
+  add_fixed_plan(
+      d,
+      [&](int participant) {
+        return protocols::planned_trials_of(d, previewed_session(seed, participant));
+      },
+      document);
+}
+
 }  // namespace
+
+void add_force_methods(const ForceDefinition& d, std::uint64_t seed, analysis::Document& document) {
+  const protocols::GuidanceParameters& g = d.guidance;
+  document.heading("Stimuli and procedure");
+  document.paragraph(fmt::format(
+      "A trial was a training pass and then a test pass, in which the force was recalled. The plan "
+      "has {} blocks, each with one path and one pattern of force {} times under one condition of "
+      "training ({}). {}{}",
+      d.design.blocks(), d.design.repetitions, fmt::join(d.design.conditions, ", "),
+      d.design.break_after > 0 ? fmt::format("Breaks of {:g} s came after every {} trials. ",
+                                             d.design.break_duration, d.design.break_after)
+                               : std::string(),
+      d.design.practice > 0
+          ? fmt::format("{} practice trials of each condition came first.", d.design.practice)
+          : std::string("There was no practice.")));
+  document.paragraph(fmt::format(
+      "The hand was {} by a spring of {:g} N/m with {:g} N·s/m and held in the plane by {:g} N/m "
+      "with "
+      "{:g} N·s/m; forces were limited to {:g} N.{}",
+      is_self_paced(d) ? "held on the path, at its own pace," : "led along the path in its time",
+      g.trajectory.stiffness, g.trajectory.damping, g.plane.stiffness, g.plane.damping,
+      g.force_limit, g.free_recall ? " Nothing led it in the test." : ""));
+  add_plan(d, seed, document);
+}
 
 void add_force_preview(const ForceDefinition& d, const PreviewRequest& request, Preview& preview) {
   const GuidedTrial trial =
@@ -207,12 +241,7 @@ void add_force_preview(const ForceDefinition& d, const PreviewRequest& request, 
                 {{"spring to the path", g.trajectory.stiffness, g.trajectory.damping},
                  {"spring to the plane", g.plane.stiffness, g.plane.damping}},
                 preview);
-  add_fixed_plan(
-      d,
-      [&](int participant) {
-        return protocols::planned_trials_of(d, previewed_session(request.seed, participant));
-      },
-      preview);
+  add_plan(d, request.seed, preview.document);
 }
 
 }  // namespace haptrial::experiments

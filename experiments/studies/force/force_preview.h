@@ -10,4 +10,8 @@ namespace haptrial::experiments {
 void add_force_preview(const protocols::ForceDefinition& definition, const PreviewRequest& request,
                        Preview& preview);
 
+/// Stimuli, procedure and trials as planned of a force training, for a methods section.
+void add_force_methods(const protocols::ForceDefinition& definition, std::uint64_t seed,
+                       analysis::Document& document);
+
 }  // namespace haptrial::experiments

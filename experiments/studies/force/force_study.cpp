@@ -90,6 +90,10 @@ class ForceStudy final : public Study {
     add_force_preview(dynamic_cast<const protocols::ForceDefinition&>(definition), request,
                       preview);
   }
+  void add_methods(const protocols::Definition& definition, std::uint64_t seed,
+                   analysis::Document& document) const override {
+    add_force_methods(dynamic_cast<const protocols::ForceDefinition&>(definition), seed, document);
+  }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override {
     const analysis::StudyResult study = analyzed(request);
     const auto own = analysis::own_findings(request.files.files);

@@ -26,6 +26,7 @@
 #include "experiments/preview/tried_trial.h"
 #include "experiments/studies/psychophysics/reach_routes.h"
 #include "experiments/studies/psychophysics/trials_analysis.h"
+#include "experiments/studies/psychophysics/trials_methods.h"
 #include "experiments/studies/psychophysics/trials_study_simulation.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
 #include "protocols/psychophysics/trials_protocol.h"
@@ -181,6 +182,11 @@ class TrialsStudy final : public Study {
   std::shared_ptr<TriedTrial> tried_trial(const protocols::Definition& definition,
                                           const PreviewRequest& request) const override {
     return tried_scenes(dynamic_cast<const protocols::StudiedDefinition&>(definition), request);
+  }
+  void add_methods(const protocols::Definition& definition, std::uint64_t seed,
+                   analysis::Document& document) const override {
+    add_trials_methods(dynamic_cast<const protocols::StudiedDefinition&>(definition), seed,
+                       document);
   }
   std::vector<std::string> analyze(const AnalysisRequest& request) const override;
   std::optional<analysis::SequentialResult> sequential(

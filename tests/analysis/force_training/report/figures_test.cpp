@@ -63,7 +63,9 @@ TEST_F(Figures, OfAPaperAreAsWideAsItsColumnAndHaveNoTitle) {
   double width = 0.0, height = 0.0;
   ASSERT_EQ(std::sscanf(pdf.c_str() + box, "/MediaBox [ 0 0 %lf %lf", &width, &height), 2);
   EXPECT_NEAR(width, 85.0 / 25.4 * 72.0, 1.0) << "in points";
-  EXPECT_NEAR(height, 0.6 * width, 1.0);
+  EXPECT_NEAR(height, 0.6 * width + 10.0 / 25.4 * 72.0, 1.0) << "with room for the key";
+  EXPECT_NE(pdf.find("/FontFile"), std::string::npos) << "fonts are inside";
+  EXPECT_THAT(read("simple-paper.svg"), HasSubstr("width=\"85mm\" height=\"61.0mm\""));
   const std::string script = gnuplot_script(figure, 85);
   const std::string paper = script.substr(script.find("unset label 1"));
   EXPECT_THAT(paper, HasSubstr("SIMULATED"));

@@ -67,10 +67,15 @@ TEST(StudyFigures, AMeanWithoutAnIntervalIsStillShown) {
 TEST(StudyFigures, ConditionsDifferInMoreThanColour) {
   const auto figures = study_figures(example_study(true));
   const auto& figure = named(figures, "learning");
-  ASSERT_EQ(figure.series.size(), 3u);
+  ASSERT_EQ(figure.series.size(), 6u);
   std::set<std::string> colors, dashes;
   std::set<int> points;
+  const auto study = example_study(true);
   for (const auto& s : figure.series) {
+    if (s.label.empty()) {  // each participant's mean at each of three repetitions
+      EXPECT_EQ(s.y.size(), 3u * study.statistics.subjects.size());
+      continue;
+    }
     colors.insert(s.look.color);
     dashes.insert(s.look.dash);
     points.insert(s.look.point);

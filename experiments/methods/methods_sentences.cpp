@@ -1,0 +1,226 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "core/base/counted.h"
+#include "experiments/methods/study_methods.h"
+#include "protocols/definition/groups.h"
+
+namespace haptrial::experiments {
+namespace {
+
+using analysis::Document;
+using Counts = std::map<std::string, int>;
+
+/// "3 right, 1 left".
+std::string words_of(const Counts& counts) {
+  std::vector<std::string> words;
+  for (const auto& [word, count] : counts) {
+    words.push_back(fmt::format("{} {}", count, word));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// The first analysed session of each participant, by name.
+std::map<std::string, const MethodsSession*> people_of(
+    const std::vector<MethodsSession>& sessions) {
+  std::map<std::string, const MethodsSession*> people;
+  for (const MethodsSession& session : sessions) {
+    if (session.analysed) {
+      people.emplace(session.facts.info.subject, &session);
+    }
+  }
+  return people;
+}
+
+/// Counts of a word over participants; "not recorded" if nobody has one.
+std::string over_people(const std::map<std::string, const MethodsSession*>& people,
+                        const std::function<std::string(const record::SessionInfo&)>& word_of) {
+  Counts counts;
+  for (const auto& [subject, session] : people) {
+    const std::string word = word_of(session->facts.info);
+    ++counts[word.empty() ? "not recorded" : word];
+  }
+  return counts.size() == 1 && counts.contains("not recorded") ? "not recorded" : words_of(counts);
+}
+
+/// Sessions that are in the folder and not in the analysis, with the reason for each.
+std::vector<std::string> left_out(const std::vector<MethodsSession>& sessions) {
+  std::map<std::string, std::vector<std::string>> reasons;
+  for (const MethodsSession& session : sessions) {
+    if (!session.facts.name.empty() && session.facts.excluded) {
+      reasons = exclusion_reasons(session.facts.file.parent_path().parent_path());
+      break;
+    }
+  }
+  std::vector<std::string> words;
+  for (const MethodsSession& session : sessions) {
+    const SessionFacts& facts = session.facts;
+    if (session.analysed) {
+      continue;
+    }
+    const auto reason = reasons.find(facts.info.subject);
+    words.push_back(facts.name + ": " +
+                    (!facts.unreadable.empty() ? "unreadable"
+                     : facts.declined          ? "the participant did not consent"
+                     : facts.excluded && reason != reasons.end()
+                         ? fmt::format("excluded, {}", fmt::join(reason->second, "; "))
+                     : facts.excluded   ? "excluded, no reason is recorded"
+                     : facts.info.pilot ? "a pilot"
+                                        : "another kind of session than those analysed"));
+  }
+  return words;
+}
+
+template <class Value>
+std::string all_values(const std::vector<MethodsSession>& sessions, Value&& value) {
+  std::set<std::string> words;
+  for (const MethodsSession& session : sessions) {
+    if (session.analysed) {
+      words.insert(value(session));
+    }
+  }
+  return fmt::format("{}", fmt::join(words, "; "));
+}
+
+std::string certificate_words(const protocols::Definition& d) {
+  if (!d.certificate) {
+    return "No certificate of the device is recorded.";
+  }
+  const device::Certificate& c = *d.certificate;
+  std::string words = fmt::format("The device's certificate {} ({}{})", c.file, c.device,
+                                  c.simulated ? ", simulated" : "");
+  const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
+    words += value ? fmt::format("; {} {:.4g}{}", name, *value, unit) : std::string();
+  };
+  add("gain", c.gain, "");
+  add("dead zone", c.dead_zone, " N");
+  add("friction", c.friction, " N");
+  add("force noise", c.force_noise, " N");
+  add("delay", c.delay, " s");
+  add("stiffest passive wall", c.stiffest_wall, " N/m");
+  return words + ".";
+}
+
+std::string loop_words(const std::vector<MethodsSession>& sessions) {
+  std::uint64_t ticks = 0, overruns = 0;
+  for (const MethodsSession& session : sessions) {
+    ticks += session.ticks;
+    overruns += session.overruns;
+  }
+  return ticks == 0 ? std::string("The files do not say how the loop kept time.")
+                    : fmt::format("Of {} ticks of the loop {} began later than a period.", ticks,
+                                  overruns);
+}
+
+}  // namespace
+
+void add_participants(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
+                      Document& document) {
+  const auto people = people_of(sessions);
+  const auto analysed = std::ranges::count_if(sessions, &MethodsSession::analysed);
+  const bool simulated = std::ranges::any_of(
+      people, [](const auto& each) { return each.second->facts.info.simulated; });
+  document.heading("Participants");
+  std::string words = fmt::format(
+      "{}{} in {}; {} planned.", counted(people.size(), "participant is", "participants are"),
+      simulated ? " simulated (programs in the place of people) and analysed" : " analysed",
+      counted(analysed, "session", "sessions"),
+      d.design.participants == 1 ? std::string("1 was")
+                                 : fmt::format("{} were", d.design.participants));
+  const auto groups = protocols::study_groups(d.text, d.file_name);
+  if (groups.size() > 1) {
+    words += fmt::format(" Groups: {}.", over_people(people, [&](const auto& info) {
+                           return protocols::group_of(groups, info.subject);
+                         }));
+  }
+  if (!simulated) {
+    const auto of = [&](std::string record::Participant::*part) {
+      return over_people(people, [&](const auto& info) { return info.participant.*part; });
+    };
+    words += fmt::format(" Handedness: {}. Sex: {}. Age: {}.", of(&record::Participant::handedness),
+                         of(&record::Participant::sex), of(&record::Participant::age_band));
+  }
+  if (d.mirror_left_handed) {
+    words += " Left-handed participants had the mirror image of the task.";
+  }
+  document.paragraph(words);
+  const std::vector<std::string> others = left_out(sessions);
+  document.paragraph(others.empty()
+                         ? "No session in the folder was left out of the analysis."
+                         : fmt::format("Left out of the analysis: {}.", fmt::join(others, "; ")));
+}
+
+void add_apparatus(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
+                   Document& document) {
+  document.heading("Apparatus");
+  document.paragraph(fmt::format(
+      "Device: {}. Clock: {}. Forces were computed and the hand recorded at {} Hz. {} The "
+      "commanded "
+      "force was limited to {:g} N and {:g} N/s, the workspace to a radius of {:g} m and the "
+      "hand's speed to {:g} m/s; a reading beyond them ended the trial. {}",
+      all_values(sessions,
+                 [](const auto& session) {
+                   const record::SessionInfo& info = session.facts.info;
+                   return fmt::format("{} ({:g} N at most, workspace of {:g} m radius)",
+                                      info.device, info.device_max_force,
+                                      info.device_workspace_radius);
+                 }),
+      all_values(sessions, [](const auto& session) { return session.facts.info.clock; }),
+      all_values(sessions,
+                 [](const auto& session) { return fmt::format("{:g}", session.facts.info.rate); }),
+      loop_words(sessions), d.envelope.max_force, d.envelope.max_force_rate,
+      d.envelope.workspace_radius, d.envelope.max_speed, certificate_words(d)));
+  const auto seen = std::ranges::count_if(sessions, &MethodsSession::seen);
+  const auto analysed = std::ranges::count_if(sessions, &MethodsSession::analysed);
+  document.paragraph(fmt::format(
+      "{} Recorded by haptrial {}.",
+      seen > 0 ? fmt::format("Participants saw a window for which pictures of {} by {} pixels were "
+                             "drawn ({} of {} sessions recorded frames).",
+                             d.display.width, d.display.height, seen, analysed)
+               : std::string("No session recorded that a window was shown."),
+      all_values(sessions, [](const auto& session) {
+        const record::SessionInfo& info = session.facts.info;
+        return fmt::format("{} ({})", info.program_version, info.program_commit);
+      })));
+}
+
+void add_done(const std::vector<MethodsSession>& sessions, Document& document) {
+  std::map<std::string, std::array<int, 2>> passes;  // completed, aborted
+  std::vector<std::vector<std::string>> rows;
+  for (const MethodsSession& session : sessions) {
+    if (!session.analysed) {
+      continue;
+    }
+    const record::TrialProgress& p = session.facts.progress;
+    rows.push_back({session.facts.info.subject, fmt::format("{}", session.facts.info.session),
+                    p.planned ? fmt::format("{}", *p.planned) : "not known",
+                    fmt::format("{}", p.done), fmt::format("{}", p.skipped),
+                    fmt::format("{}", p.aborted), p.ended_early.empty() ? "–" : p.ended_early});
+    for (const record::PassRow& pass : session.passes) {
+      auto& counts = passes[fmt::format("{}{}", pass.practice ? "practice: " : "", pass.condition) +
+                            "\n" + name_of(pass.phase)];
+      ++counts[pass.status == record::PassStatus::kCompleted ? 0 : 1];
+    }
+  }
+  document.heading("Trials as done");
+  std::vector<std::vector<std::string>> conditions;
+  for (const auto& [name, counts] : passes) {
+    const auto cut = name.find('\n');
+    conditions.push_back({name.substr(0, cut), name.substr(cut + 1), fmt::format("{}", counts[0]),
+                          fmt::format("{}", counts[1])});
+  }
+  constexpr std::size_t kMany = 24;
+  document.table({"condition", "pass", "completed", "aborted"}, conditions,
+                 conditions.size() > kMany ? "Passes of each condition" : "");
+  document.table({"participant", "session", "trials planned at most", "done", "skipped",
+                  "never completed", "ended early"},
+                 rows, rows.size() > kMany ? "Trials of each session" : "");
+}
+
+}  // namespace haptrial::experiments
