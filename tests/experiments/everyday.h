@@ -108,8 +108,9 @@ struct Walk {
 /// One experiment, rehearsed whole.
 class EverydayTest : public testing::Test {
  protected:
-  void rehearse(const std::string& name, int participants) {
-    const std::string file = "'" + (kFolder / (name + ".toml")).string() + "'";
+  void rehearse(const std::string& name, int participants,
+                const std::filesystem::path& folder = kFolder) {
+    const std::string file = "'" + (folder / (name + ".toml")).string() + "'";
     out_ = folder_ / name;
     const auto valid = test::run_command("haptrial validate " + file);
     ASSERT_EQ(valid.status, 0) << valid.errors;
@@ -143,20 +144,27 @@ class EverydayTest : public testing::Test {
   }
 
   void read_trials() {
-    std::istringstream text(test::read_text(out_ / "trials.csv"));
-    std::string line;
-    std::getline(text, line);
-    const std::vector<std::string> names = fields_of(line);
-    while (std::getline(text, line)) {
-      const std::vector<std::string> fields = fields_of(line);
-      Row row;
-      for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) {
-        row[names[i]] = fields[i];
-      }
+    for (Row row : table_of("trials.csv")) {
       if (row["counted"] == "1") {
         trials_[row["participant"]].push_back(std::move(row));
       }
     }
+  }
+  /// Rows of a table that was written beside the report.
+  std::vector<Row> table_of(const std::string& file) const {
+    std::istringstream text(test::read_text(out_ / file));
+    std::string line;
+    std::getline(text, line);
+    const std::vector<std::string> names = fields_of(line);
+    std::vector<Row> rows;
+    while (std::getline(text, line)) {
+      const std::vector<std::string> fields = fields_of(line);
+      Row& row = rows.emplace_back();
+      for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) {
+        row[names[i]] = fields[i];
+      }
+    }
+    return rows;
   }
 
   const json& quantity(const std::string& name) const {
