@@ -49,7 +49,7 @@ TEST_F(PapersTest, Hardness) {
 }
 
 TEST_F(PapersTest, TactileSuppression) {
-  rehearse_paper("tactile_suppression", 3);
+  rehearse_paper("tactile_suppression", 2);
   EXPECT_NEAR(reported("threshold", "rest"), 0.25, 0.06);
   EXPECT_NEAR(reported("threshold", "active"), 0.45, 0.06);
   EXPECT_NEAR(reported("threshold", "passive"), 0.45, 0.06);
