@@ -211,6 +211,31 @@ TEST_F(ReachingStudyTest, PlacesThatDependOnTheTrialAreThoseOfEachTrial) {
   EXPECT_EQ(results.at("quantities").at(0).at("conditions").size(), 2u) << "left and right";
 }
 
+/// The field of a baseline may be the later one with numbers of zero.
+TEST_F(ReachingStudyTest, AFieldOfZerosIsNotTheOneThatIsLearnt) {
+  std::string text = kPingPong;
+  const auto put = [&text](const std::string& what, const std::string& with) {
+    text.replace(text.find(what), what.size(), with);
+  };
+  put("[regions.start]",
+      "[fields.curl]\ntype = \"matrix_viscous\"\nvelocity_filter = 30.0\n"
+      "matrix = [[0.0, 0.0, \"$b\"], [0.0, 0.0, 0.0], [\"-$b\", 0.0, 0.0]]\n[regions.start]");
+  put("name = \"reach\"\n", "name = \"reach\"\nfields = [\"curl\"]\n");
+  put("name = \"all\"\ntrials = 12\n",
+      "name = \"before\"\ntrials = 6\nb = 0.0\n[[blocks]]\nname = \"in\"\ntrials = 6\nb = 8.0\n"
+      "[[blocks]]\nname = \"opposite\"\ntrials = 6\nb = -8.0\n");
+  test::write_text(folder_ / "study.toml", text);
+  const std::string place = (folder_ / "sessions").string();
+  const auto done = test::run_command("haptrial dry-run " + (folder_ / "study.toml").string() +
+                                      " --out " + place + " && haptrial analyze " + place);
+  ASSERT_EQ(done.status, 0) << done.errors;
+  const json results = json::parse(file_text(report("results.json")));
+  const json& blocks = results.at("reaching").at("blocks");
+  EXPECT_DOUBLE_EQ(blocks.at(0).at("perturbation").get<double>(), 0.0);
+  EXPECT_DOUBLE_EQ(blocks.at(1).at("perturbation").get<double>(), 1.0);
+  EXPECT_DOUBLE_EQ(blocks.at(2).at("perturbation").get<double>(), -1.0);
+}
+
 TEST_F(ReachingStudyTest, WithoutAFieldNothingIsFound) {
   ASSERT_NO_FATAL_FAILURE(run(false));
   for (const json& each : reaching_.at("contrasts")) {

@@ -95,10 +95,12 @@ double share_of(const Eigen::Matrix3d& field, const Eigen::Matrix3d& reference) 
   return square > 0.0 ? field.cwiseProduct(reference).sum() / square : 0.0;
 }
 
-/// The field that a participant learns is the first that acts; if none does, the first stated.
+/// The field that a participant learns is the first that acts, as one of zeros does not; if none
+/// does, the first stated.
 void turn_to_field(std::vector<StudyReach*>& reaches) {
-  const auto active = std::find_if(reaches.begin(), reaches.end(),
-                                   [](const StudyReach* each) { return each->way.active; });
+  const auto active = std::find_if(reaches.begin(), reaches.end(), [](const StudyReach* each) {
+    return each->way.active && !each->way.field.isZero(0.0);
+  });
   const Eigen::Matrix3d field = (active == reaches.end() ? reaches.front() : *active)->way.field;
   for (StudyReach* reach : reaches) {
     const WayFrame frame(reach->way.start, reach->way.target);

@@ -102,6 +102,7 @@ void fit_smooth(SurfaceCondition& one, psychometric::SurfaceParameters parameter
     one.points.push_back(std::move(point));
   }
   std::swap(one.variables[0], one.variables[1]);
+  one.shares_unit = false;
   for (SurfaceTrial& trial : one.trials) {
     std::swap(trial.stimulus[0], trial.stimulus[1]);
   }

@@ -20,6 +20,7 @@ struct SurfaceCondition {
   std::string condition;            // the levels joined by ", "
   std::string track;
   std::vector<std::string> variables;  // of the stimulus
+  bool shares_unit{true};              // both have that of the procedure; else the last one alone
   std::vector<SurfaceTrial> trials;
   Defined<SurfaceFit> fit{Undefined{"nothing was fitted"}};
   double share{0.5};  // of answers 1 at the threshold

@@ -73,7 +73,8 @@ void add_points(Document& document, const std::vector<SurfaceCondition>& surface
     }
     for (const ContourPoint& point : one.points) {
       rows.push_back({condition_name(one),
-                      fmt::format("{} = {:.4g}{}", one.variables[0], point.first, in_unit),
+                      fmt::format("{} = {:.4g}{}", one.variables[0], point.first,
+                                  one.shares_unit ? in_unit : ""),
                       one.variables[1], second_of(point)});
     }
   }

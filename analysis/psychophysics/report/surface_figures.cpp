@@ -72,7 +72,7 @@ Figure figure_of(const TrialsResult& result, const SurfaceCondition& one) {
                              one.condition.empty() ? "" : ", ", one.condition);
   const std::string& unit = result.plan.function.axis.unit;
   const std::string in_unit = unit.empty() ? "" : " (" + unit + ")";
-  figure.x_label = one.variables[0] + in_unit;
+  figure.x_label = one.variables[0] + (one.shares_unit ? in_unit : "");
   figure.y_label = one.variables[1] + in_unit;
   figure.simulated = result.simulated();
   add_answers(figure, one);
@@ -83,9 +83,9 @@ Figure figure_of(const TrialsResult& result, const SurfaceCondition& one) {
   const std::string after = unit.empty() ? "" : " " + unit;
   for (const ContourPoint& point : one.points) {
     if (point.second.size() == 1) {
-      figure.alt +=
-          fmt::format("{}{}{} at {} {:.4g}{}", figure.alt.empty() ? "" : "; ",
-                      number(point.second.front()), after, one.variables[0], point.first, after);
+      figure.alt += fmt::format("{}{}{} at {} {:.4g}{}", figure.alt.empty() ? "" : "; ",
+                                number(point.second.front()), after, one.variables[0], point.first,
+                                one.shares_unit ? after : "");
     }
   }
   figure.caption = fmt::format(

@@ -21,10 +21,7 @@ std::vector<Quantity> quantities_of_ratings(const std::vector<Condition>& all,
 
 std::vector<Quantity> diffusion_quantities(const std::vector<TimedCondition>& all,
                                            const TrialsPlan& plan) {
-  TrialsPlan two_sided = plan;
-  for (PlannedTest& test : two_sided.plan.tests) {
-    test.tail = Tail::kTwoSided;
-  }
+  const TrialsPlan two_sided = without_directions(plan);
   const auto values = [&](DiffusionEstimate DiffusionFit::*parameter) {
     std::vector<QuantityValue> of;
     for (const TimedCondition& one : all) {

@@ -10,6 +10,13 @@
 
 namespace haptrial::analysis::trials {
 
+TrialsPlan without_directions(TrialsPlan plan) {
+  for (PlannedTest& test : plan.plan.tests) {
+    test.tail = Tail::kTwoSided;
+  }
+  return plan;
+}
+
 MeanInterval within_range(MeanInterval mean, ValueRange range) {
   const double half = mean.high - mean.mean;
   if (range == ValueRange::kPositive && mean.mean > 0.0) {

@@ -31,6 +31,10 @@ struct Quantity {
   bool headline{true};   // it stands on top of a report
 };
 
+/// The plan without the directions of its planned tests, which are of the study's first quantity:
+/// for quantities of another kind, such as widths beside thresholds.
+TrialsPlan without_directions(TrialsPlan plan);
+
 /// The range that holds every value of a quantity.
 enum class ValueRange { kAny, kPositive, kShare };
 

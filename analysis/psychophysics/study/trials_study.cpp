@@ -142,7 +142,7 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
   result.quantities.push_back(quantity(
       "log_width", "logarithm of the width", "",
       values_of(result.fits, [](const FunctionReadings& r) { return std::log(r.width.value); }),
-      plan));
+      without_directions(plan)));
   if (!(plan.function.guess > 0.0) && plan.function.axis.scale == psychometric::Scale::kLinear) {
     add_difference_limens(result);
   }

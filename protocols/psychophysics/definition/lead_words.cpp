@@ -55,7 +55,11 @@ std::string unled_words(const std::string& stage, const scene::Region& region) {
 
 }  // namespace
 
-LeadReport::LeadReport(const TrialsDefinition& definition) {
+LeadReport::LeadReport(const TrialsDefinition& definition)
+    : workspace_(definition.envelope.workspace_radius) {
+  for (const TrialDevice& each : definition.hands) {
+    tips_.push_back(each.is_tip());
+  }
   Table root = definition.root();
   Table observer = root.table("observer");
   simulated_ = observer.has("actions");
@@ -95,7 +99,30 @@ void LeadReport::add(const Presented& presented) {
         beside_.try_emplace(named.name, unled_words(named.name, region));
       }
     }
+    add_way_out(presented, named.name, stage.fields);
     before |= stage.fields;
+  }
+}
+
+void LeadReport::add_way_out(const Presented& presented, const std::string& stage,
+                             std::uint64_t fields) {
+  for (std::size_t f = 0; f < presented.fields.size(); ++f) {
+    const scene::FieldTraits traits = scene::traits_of(presented.fields[f]);
+    bool at_tip = tips_.empty();
+    for (std::size_t d = 0; d < tips_.size() && d < presented.felt.size(); ++d) {
+      at_tip = at_tip || (tips_[d] && has(presented.felt[d], f));
+    }
+    if (!has(fields, f) || !at_tip || !traits.leads_to) {
+      continue;
+    }
+    const Eigen::Vector3d& end = *traits.leads_to;
+    if (end.norm() > workspace_) {
+      beside_.try_emplace(
+          stage,
+          fmt::format("stage {}: fields.{} leads the hand to ({:.3g}, {:.3g}, {:.3g}) m, beyond "
+                      "the workspace of {:g} m; a reading there ends the trial",
+                      stage, presented.fields[f].name, end.x(), end.y(), end.z(), workspace_));
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -10,9 +11,9 @@ namespace haptrial::protocols {
 struct Presented;
 struct TrialsDefinition;
 
-/// Gathers stages that wait until the hand is in a region to which it is not led, so that a hand
-/// that lets itself be led never arrives, and the trial is aborted for ever: a field leads it to a
-/// place beside the region, or nothing leads the hand of a virtual participant.
+/// Gathers stages whose trial is aborted for ever, if a hand lets itself be led: they wait until it
+/// is in a region, and a field leads it to a place beside that, or nothing leads the hand of a
+/// virtual participant; or a field leads it out of the workspace.
 class LeadReport {
  public:
   explicit LeadReport(const TrialsDefinition& definition);
@@ -22,6 +23,10 @@ class LeadReport {
   std::vector<std::string> warnings() const;
 
  private:
+  void add_way_out(const Presented& presented, const std::string& stage, std::uint64_t fields);
+
+  double workspace_{0.0};                      // radius about the origin, of tips [m]
+  std::vector<bool> tips_;                     // (devices) whose tip it is
   bool simulated_{false};                      // the definition says what virtual hands do
   std::set<std::string> moving_;               // stages in which they move by themselves
   std::map<std::string, std::string> beside_;  // by stage: the sentence

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "core/base/counted.h"
@@ -83,6 +84,10 @@ int TrialsDefinition::most_trials(int session) const {
     int of_tracks = 0;
     for (const Track* track : tracks_in(block)) {
       of_tracks += track->most_trials * combinations(*track, block);
+    }
+    if (block.probe && block.trials == 0) {  // beside those of its procedures, on average
+      of_tracks +=
+          static_cast<int>(std::ceil(of_tracks * block.probe->share / (1.0 - block.probe->share)));
     }
     return block.practice ? 0 : block.trials > 0 ? block.trials : of_tracks;
   });

@@ -289,6 +289,22 @@ TEST(TrialMistakesTest, AHandThatIsLedBesideTheRegionGetsAWarning) {
                                  "m beside it; a hand that is led never arrives")));
 }
 
+TEST(TrialMistakesTest, AHandThatIsLedOutOfTheWorkspaceGetsAWarning) {
+  const auto warnings_if_led_to = [](const std::string& to) {
+    const std::string more = "[fields.guide]\ntype = \"minimum_jerk\"\nto = " + to +
+                             "\nduration = 0.5\nstiffness = 150.0\ndamping = 8.0\n";
+    TrialsDefinition d;
+    read_small(with(small_trials(kSmallStaircase, more), "fields = [\"floor\"]",
+                    "fields = [\"floor\", \"guide\"]"),
+               d);
+    return check_every_value(d).warnings;
+  };
+  EXPECT_THAT(warnings_if_led_to("[0.07, 0.0, 0.0]"), IsEmpty());
+  EXPECT_THAT(warnings_if_led_to("[0.08, 0.0, 0.0]"),
+              Contains(HasSubstr("stage press: fields.guide leads the hand to (0.08, 0, 0) m, "
+                                 "beyond the workspace of 0.075 m")));
+}
+
 /// A person may go to a region, a virtual participant that rests stays where hands begin.
 TEST(TrialMistakesTest, ARegionToWhichNothingLeadsGetsAWarning) {
   const auto warnings_with = [](const std::string& centre, const std::string& observer) {

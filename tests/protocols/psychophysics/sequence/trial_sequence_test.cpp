@@ -202,6 +202,15 @@ probe = { name = "catch", share = 0.125, field = "null" }
   }
 }
 
+TEST(TrialSequenceTest, ProbesBesideAProcedureAreCountedAsTheyComeOnAverage) {
+  const auto plain = definition(kSmallStaircase, "[[blocks]]\nname = \"main\"\n");
+  const auto probed = definition(kSmallStaircase,
+                                 "[[blocks]]\nname = \"main\"\nfield = \"curl\"\n"
+                                 "probe = { name = \"catch\", share = 0.2, field = \"null\" }\n");
+  const int trials = plain->most_trials();
+  EXPECT_EQ(probed->most_trials(), trials + (trials + 3) / 4);
+}
+
 TEST(TrialSequenceTest, PracticeComesFirstWithItsLevelAndEndsWithItsCriterion) {
   const auto d =
       definition(kSmallStaircase, "[practice]\ntrials = 10\nright_in_a_row = 3\nlevel = 550.0\n");
@@ -323,7 +332,8 @@ TEST(TrialSequenceTest, ABlockWhoseThresholdWasNotFoundIsLeftOutAndSaid) {
   std::vector<std::string> ended;
   // Always right: the level ends at the bottom of the range without a reversal.
   EXPECT_THAT(thresholds_used(d, 0.0, 450.0, &ended), testing::IsEmpty());
-  EXPECT_THAT(ended, ElementsAre("block use was left out, since titration, left found no threshold"));
+  EXPECT_THAT(ended,
+              ElementsAre("block use was left out, since titration, left found no threshold"));
 }
 
 TEST(TrialSequenceTest, AStatedValueStandsInForAThresholdThatWasNotFound) {
