@@ -58,6 +58,23 @@ TEST_F(PapersTest, TactileSuppression) {
 
 /// Forces are 0.693 apart on the logarithmic scale, the strongest two 0.511; the criteria are in
 /// the middle between neighbours.
+/// Entropy of the answers less that which is left where the stimulus is known, of 25 trials each.
+double transferred(const json& answers) {
+  std::vector<double> of_answer(5, 0.0);
+  double left = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    for (std::size_t j = 0; j < 5; ++j) {
+      const double p = answers[i][j].get<double>() / 25.0;
+      of_answer[j] += p / 5.0;
+      left -= p > 0.0 ? p * std::log2(p) / 5.0 : 0.0;
+    }
+  }
+  for (const double p : of_answer) {
+    all -= p > 0.0 ? p * std::log2(p) : 0.0;
+  }
+  return all - left;
+}
+
 TEST_F(PapersTest, ForceIdentification) {
   rehearse_paper("force_identification", 3);
   const auto beyond = [](double distance) {  // noise of 0.3 passes the middle to the neighbour
@@ -67,7 +84,9 @@ TEST_F(PapersTest, ForceIdentification) {
   const double right =
       ((1.0 - apart) + 2.0 * (1.0 - 2.0 * apart) + (1.0 - apart - last) + (1.0 - last)) / 5.0;
   EXPECT_NEAR(reported("share_right"), right, 0.07);
+  double bits = 0.0;
   for (const json& participant : results_.at("identification")) {
+    bits += transferred(participant["answers"]) / 3.0;
     for (std::size_t i = 0; i < 5; ++i) {
       int trials = 0;
       for (std::size_t j = 0; j < 5; ++j) {
@@ -78,6 +97,8 @@ TEST_F(PapersTest, ForceIdentification) {
       EXPECT_EQ(trials, 25);
     }
   }
+  EXPECT_NEAR(reported("information_transfer"), bits, 1e-9);
+  EXPECT_GT(bits, 1.0);
 }
 
 /// The virtual hand stays where it begins, as often 20 mm to the left of the middle as to the

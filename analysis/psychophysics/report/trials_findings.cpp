@@ -340,6 +340,9 @@ FindingTable identification_findings(const TrialsResult& result) {
     d_prime.high = one.d_high;
     d_prime.form = JsonForm::kBeside;
     d_prime.csv = "d_prime";
+    if (one.information) {
+      add(row, "information_transfer_bit", "information transfer (bit)", *one.information);
+    }
     add_defined(row, "mean_rating_right", "rating where right", one.sure_right);
     add_defined(row, "mean_rating_wrong", "rating where wrong", one.sure_wrong);
     add_roc(row, "roc_of_ratings", "ROC area of ratings", one.sureness, "rating_area", false);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "analysis/psychometric/models/detection.h"
+#include "analysis/psychometric/models/information_transfer.h"
 #include "analysis/psychophysics/fit/series.h"
 
 namespace haptrial::analysis::trials {
@@ -241,6 +242,9 @@ std::vector<IdentifiedCondition> identified(const TrialsData& data, const Trials
     one.low = interval.low;
     one.high = interval.high;
     add_d_prime(one, plan);
+    if (one.confusions.stimuli.size() > 2) {
+      one.information = information_transfer(one.confusions.answers);
+    }
     add_ratings(tally, one);
     if (plan.metacognition) {
       one.meta = tally.by_answer.meta();

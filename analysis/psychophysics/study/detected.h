@@ -49,6 +49,7 @@ struct IdentifiedCondition {
   /// is moved by half an answer (Macmillan and Kaplan 1985). Low and high may be infinite.
   Defined<double> d_prime{Undefined{"nothing was counted"}};
   double d_low{0.0}, d_high{0.0};
+  Defined<double> information{Undefined{"there are fewer than three stimuli"}};  // [bit]
   Defined<double> sure_right{Undefined{"there are no ratings"}};  // mean rating of right answers
   Defined<double> sure_wrong{Undefined{"there are no ratings"}};
   Defined<Roc> sureness{Undefined{"there are no ratings"}};  // of ratings: right against wrong

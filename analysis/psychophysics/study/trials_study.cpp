@@ -205,11 +205,14 @@ void add_detection(TrialsResult& result) {
 
 void add_identification(TrialsResult& result) {
   result.identified = identified(result.data, result.plan);
-  std::vector<QuantityValue> share, d_prime, area;
+  std::vector<QuantityValue> share, d_prime, information, area;
   for (const IdentifiedCondition& one : result.identified) {
     share.push_back({one.participant, one.levels, one.share});
     if (one.d_prime) {
       d_prime.push_back({one.participant, one.levels, *one.d_prime});
+    }
+    if (one.information) {
+      information.push_back({one.participant, one.levels, *one.information});
     }
     if (one.sureness) {
       area.push_back({one.participant, one.levels, one.sureness->area});
@@ -218,6 +221,10 @@ void add_identification(TrialsResult& result) {
   result.quantities.push_back(quantity("share_right", "share of right answers", "", share,
                                        result.plan, ValueRange::kShare));
   result.quantities.push_back(quantity("d_prime", "sensitivity d'", "", d_prime, result.plan));
+  if (!information.empty()) {
+    result.quantities.push_back(
+        quantity("information_transfer", "information transfer", "bit", information, result.plan));
+  }
   if (!area.empty()) {
     result.quantities.push_back(quantity("rating_area",
                                          "area under the ROC curve of ratings, right against wrong",
