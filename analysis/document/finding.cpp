@@ -199,6 +199,12 @@ std::string findings_csv(const std::vector<FindingTable>& tables,
   return text;
 }
 
+bool FindingList::has_values() const {
+  const bool found = std::ranges::any_of(
+      findings, [](const Finding& each) { return each.form != JsonForm::kAbsent; });
+  return found || !tables.empty() || !figures.empty();
+}
+
 void write_findings(const std::vector<FindingList>& lists, const Staging& staging,
                     std::vector<Figure>& figures) {
   std::vector<FindingTable> tables;

@@ -79,8 +79,8 @@ struct FindingList {
   std::vector<Document::Block> blocks{};  // below the tables, in the report alone
   bool opens{false};                      // stands before everything else in the report
 
-  /// Whether more than its blocks is there; own_findings.h puts the list's name first.
-  bool has_values() const { return findings.size() > 1 || !tables.empty() || !figures.empty(); }
+  /// Whether more than its blocks is there.
+  bool has_values() const;
 };
 
 /// "Way of the hand: 0.3120 [0.2900, 0.3340] m (n = 12)".

@@ -99,7 +99,9 @@ void LeadReport::add(const Presented& presented) {
         beside_.try_emplace(named.name, unled_words(named.name, region));
       }
     }
-    add_way_out(presented, named.name, stage.fields);
+    if (stage.until.inside == 0) {  // else a region ends the stage on the way
+      add_way_out(presented, named.name, stage.fields);
+    }
     before |= stage.fields;
   }
 }
