@@ -27,7 +27,7 @@ TEST(InformationTransferTest, ABinaryChannelHasItsCapacity) {
 }
 
 TEST(InformationTransferTest, GuessesSeemToTransmitWhatMillerSays) {
-  constexpr int kStudies = 2000, kTrials = 125;
+  constexpr int kStudies = 2000, kTrials = 500;
   RandomStream random(1, "guesses");
   double sum = 0.0;
   for (int study = 0; study < kStudies; ++study) {
@@ -37,7 +37,7 @@ TEST(InformationTransferTest, GuessesSeemToTransmitWhatMillerSays) {
     }
     sum += *information_transfer(counts);
   }
-  EXPECT_NEAR(sum / kStudies, 16.0 / (2.0 * kTrials * std::log(2.0)), 0.006);
+  EXPECT_NEAR(sum / kStudies, 16.0 / (2.0 * kTrials * std::log(2.0)), 0.002);
 }
 
 }  // namespace
