@@ -36,7 +36,7 @@ struct PlanCount {
   bool operator==(const PlanCount&) const = default;
 };
 
-/// What a procedure achieved, and what it cost. Source: Morris 2006, §3.5.
+/// Achievement of a procedure, and its cost. Source: Morris 2006, §3.5.
 struct Achieved {
   std::optional<PlanCount> plan;  // nothing: the definition has no [cavity]
   double voxel{0.0};              // volume of one [m3]

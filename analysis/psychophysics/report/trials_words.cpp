@@ -50,7 +50,7 @@ void say_undefined(const NamesByReason& undefined, std::size_t all, const char* 
   }
 }
 
-/// Whose models are not defined. @param model  the member of a condition
+/// Names the participants whose models are not defined. @param model  the member of a condition
 template <class Condition, class Model>
 void say_undefined(const std::vector<Condition>& all, Defined<Model> Condition::*model,
                    const char* what, std::vector<std::string>& lines) {

@@ -25,7 +25,7 @@ double squared_frequency(const std::vector<int>& waves) {
   return sum;
 }
 
-/// The slowest sines over so many dimensions.
+/// The slowest sines over `dimensions` variables.
 std::vector<std::vector<int>> slowest(std::size_t dimensions) {
   std::vector<std::vector<int>> all{{}};
   for (std::size_t k = 0; k < dimensions; ++k) {

@@ -6,7 +6,7 @@
 
 namespace haptrial::psychometric {
 
-/// What is expected of f before the first answer.
+/// Expectation about f before the first answer.
 struct Smoothness {
   double slope;   // standard deviation of f's value and slopes
   double bend;    // of the Gaussian process that bends it, over that of the slopes
@@ -50,7 +50,7 @@ struct ProbitChange {
 };
 ProbitChange change_by(const ProbitLink& link, double m, double v) noexcept;
 
-/// What is believed of the coefficients: a normal distribution, and how each fact changed it.
+/// A belief about the coefficients: a normal distribution, and how each fact changed it.
 /// A fact has the probability of its link; the distribution with it is replaced by the normal one
 /// of the same mean and variance along the fact's row (assumed density filtering; expectation
 /// propagation when facts are visited again: Minka 2001).
@@ -58,7 +58,7 @@ class SmoothBelief {
  public:
   explicit SmoothBelief(const Eigen::VectorXd& deviations);
 
-  /// What a visit did: the covariance lost `lost` h h', h the new covariance times the fact's row.
+  /// A visit takes `lost` h h' off the covariance, h the new covariance times the fact's row.
   struct Visit {
     double probability{1.0};  // of the fact, by all others
     double lost{0.0};
@@ -70,7 +70,7 @@ class SmoothBelief {
   const Eigen::MatrixXd& covariance() const noexcept { return covariance_; }
 
  private:
-  /// Its share of the distribution, as if it were the normal of this precision and mean.
+  /// A fact's share of the distribution, as if it were the normal of this precision and mean.
   struct Fact {
     double precision{0.0}, shift{0.0};
   };

@@ -51,7 +51,7 @@ std::vector<std::vector<double>> combined(const std::vector<std::vector<double>>
   return all;
 }
 
-/// At most so many of a list, evenly taken, its ends among them.
+/// At most `most` values of a list, evenly taken, its ends among them.
 std::vector<double> thinned(const std::vector<double>& list, std::size_t most) {
   if (list.size() <= most) {
     return list;

@@ -27,7 +27,7 @@ class BoneStills {
   std::size_t count() const noexcept { return stills_->size(); }
   /// Place of a still in a picture: left, top, width, height [px].
   static Eigen::Vector4d place_of(const Image& still, int width, int height);
-  /// The same of the first.
+  /// Place of the first still, likewise.
   Eigen::Vector4d place(int width, int height) const {
     return place_of(stills_->front(), width, height);
   }

@@ -68,33 +68,29 @@ void read_points(Table& table, std::vector<Eigen::Vector3d>& into) {
   }
 }
 
-constexpr const char* kPoints = "Places that a path or curve goes through";
-constexpr const char* kPointsAbsent = "needed; or a curve";
+/// points, or a curve
+template <class P>
+Schema<P> points_schema() {
+  return Schema<P>()
+      .custom("points", "Places that a path or curve goes through",
+              [](Table& table, const std::string&, P& p) { read_points(table, p.points); })
+      .required()
+      .otherwise("needed; or a curve");
+}
 
 const Schema<PathParameters>& path_schema() {
   using P = PathParameters;
-  static const auto schema =
-      Schema<P>()
-          .custom("points", kPoints,
-                  [](Table& table, const std::string&, P& p) { read_points(table, p.points); })
-          .required()
-          .otherwise(kPointsAbsent)
-          .number("duration", &P::duration, kDurationBounds, "s",
-                  "Duration of a pulse or of a movement")
-          .required()
-          .keys_of(&P::gains, field_gains_schema());
+  static const auto schema = points_schema<P>()
+                                 .number("duration", &P::duration, kDurationBounds, "s",
+                                         "Duration of a pulse or of a movement")
+                                 .required()
+                                 .keys_of(&P::gains, field_gains_schema());
   return schema;
 }
 
 const Schema<CurveParameters>& curve_schema() {
   using P = CurveParameters;
-  static const auto schema =
-      Schema<P>()
-          .custom("points", kPoints,
-                  [](Table& table, const std::string&, P& p) { read_points(table, p.points); })
-          .required()
-          .otherwise(kPointsAbsent)
-          .keys_of(&P::gains, field_gains_schema());
+  static const auto schema = points_schema<P>().keys_of(&P::gains, field_gains_schema());
   return schema;
 }
 

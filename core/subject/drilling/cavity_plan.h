@@ -7,7 +7,7 @@
 
 namespace haptrial::subject {
 
-/// What the plan of a cavity says about a voxel.
+/// Verdict of the plan of a cavity on a voxel.
 enum class PlanPart : std::uint8_t {
   kAir,      // there never was bone
   kPlanned,  // is to be removed, and a burr reaches it

@@ -12,7 +12,7 @@ struct BoneDefinition;
 
 namespace haptrial::experiments {
 
-/// What makes a case besides its bone, in words that people can compare: cavity, tools, time limit
+/// Parts of a case besides its bone, in words that people can compare: cavity, tools, time limit
 /// and scale of a definition (ScoreModel::rules).
 std::map<std::string, std::string> score_rules(const protocols::BoneDefinition& definition);
 

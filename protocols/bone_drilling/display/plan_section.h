@@ -40,7 +40,7 @@ class PlanSection {
   std::optional<subject::CavityPlan> plan_;
 };
 
-/// What the colours of a section mean.
+/// Meanings of the colours of a section.
 inline constexpr const char* kPlanSectionLegend =
     "green: planned, removed   blue: planned, left   orange: beyond the plan   red: vital";
 
