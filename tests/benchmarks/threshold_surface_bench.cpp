@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/psychometric/function/sigmoid.h"
 #include "core/psychometric/procedure/quest_plus.h"
 #include "core/psychometric/procedure/threshold_surface.h"
 
@@ -42,7 +43,7 @@ struct Observer {
   double threshold(double b) const { return shape->base + shape->gain * shape->form(b); }
   double probability(const Level& level) const {
     const double z = (level[0] - threshold(level[1])) / kSpread;
-    return guess + (1.0 - guess - kLapse) * normal_below(z);
+    return guess + (1.0 - guess - kLapse) * sigmoid(Sigmoid::kGaussian, z);
   }
 };
 
@@ -108,7 +109,7 @@ std::shared_ptr<const QuestTables> tables_of(const Observer& observer) {
   const auto form = observer.shape->form;
   d.model = [guess, form](const double* at, const double* p, double* probability) {
     const double z = (at[0] - p[0] - p[1] * form(at[1])) / p[2];
-    probability[1] = guess + (1.0 - guess - kLapse) * normal_below(z);
+    probability[1] = guess + (1.0 - guess - kLapse) * sigmoid(Sigmoid::kGaussian, z);
     probability[0] = 1.0 - probability[1];
   };
   return std::make_shared<const QuestTables>(std::move(d));

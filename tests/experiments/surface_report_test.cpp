@@ -99,7 +99,7 @@ TEST_F(SurfaceReportTest, TheFunctionIsFittedOverBothVariables) {
   EXPECT_THAT(file_text(folder_ / "out/surfaces.csv"), HasSubstr("\nS01,"));
 }
 
-/// The same forces without a formula: the threshold of x over y is a quarter of a circle.
+/// Without a formula, the threshold of x over y is a quarter of a circle.
 TEST_F(SurfaceReportTest, AThresholdWithoutAFormula) {
   std::string text = kPlane;
   const auto from = text.find("kind = \"quest_plus\""), to = text.find("[observer]");

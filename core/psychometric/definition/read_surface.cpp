@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -87,7 +88,10 @@ void read_rising(const TrackKeys& keys, std::vector<SurfaceVariable>& variables)
   for (const std::string& name : table.texts("rising")) {
     const auto found = std::ranges::find(variables, name, &SurfaceVariable::name);
     if (found == variables.end()) {
-      table.reject("rising", fmt::format("\"{}\"", name), "variables of the stimulus");
+      std::vector<std::string> known;
+      std::ranges::transform(variables, std::back_inserter(known), &SurfaceVariable::name);
+      table.reject("rising", fmt::format("\"{}\"", name),
+                   fmt::format("{}", fmt::join(known, ", ")));
     } else {
       found->rises = true;
     }
@@ -99,8 +103,12 @@ void read_present(const TrackKeys& keys, SurfaceParameters& surface) {
     return;
   }
   Table& table = keys.of("present");
-  const auto formula = std::make_shared<Presentable>(table.text("present"), surface.variables);
-  surface.allowed = [formula](const Level& level) { return (*formula)(level); };
+  try {
+    const auto formula = std::make_shared<Presentable>(table.text("present"), surface.variables);
+    surface.allowed = [formula](const Level& level) { return (*formula)(level); };
+  } catch (const std::exception& error) {
+    table.reject("present", fmt::format("cannot be used as stated: {}", sentence_of(error)));
+  }
 }
 
 void describe(const TrackKeys& keys) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/psychometric/function/sigmoid.h"
 #include "core/psychometric/procedure/procedure.h"
 
 namespace haptrial::psychometric {
@@ -47,13 +48,11 @@ std::vector<std::vector<int>> slowest(std::size_t dimensions) {
 
 }  // namespace
 
-double normal_below(double z) noexcept { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
-
 ProbitChange change_by(const ProbitLink& link, double m, double v) noexcept {
   const double spread = std::sqrt(1.0 + v);
   const double z = link.sign * m / spread;
-  const double probability = link.floor + link.share * normal_below(z);
-  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+  const double probability = link.floor + link.share * sigmoid(Sigmoid::kGaussian, z);
+  const double density = sigmoid_density(Sigmoid::kGaussian, z);
   if (!(probability > 0.0)) {
     return {0.0, 0.0, 0.0};
   }

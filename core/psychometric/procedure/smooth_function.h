@@ -79,7 +79,4 @@ class SmoothBelief {
   std::vector<Fact> facts_;
 };
 
-/// Phi, the standard normal distribution function.
-double normal_below(double z) noexcept;
-
 }  // namespace haptrial::psychometric

@@ -1,4 +1,4 @@
-// What was achieved, against counts and lengths that are found in another way.
+// The achievement of a procedure, against counts and lengths that are found in another way.
 
 #include "analysis/bone_drilling/metrics/achieved.h"
 

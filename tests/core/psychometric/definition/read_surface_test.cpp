@@ -48,8 +48,10 @@ TEST(ReadSurfaceTest, MistakesAreNamed) {
   const auto told = [](const std::string& keys) { return test::message_of([&] { read(keys); }); };
   EXPECT_THAT(told("stop = { trials = 30 }\nstimulus.a = [0, 1]\n"), HasSubstr("guess"));
   const std::string keys = kKeys;
-  EXPECT_THAT(told(keys + "rising = [\"weight\"]\n"), HasSubstr("rising is \"weight\""));
-  EXPECT_THAT(told(keys + "present = \"$weight > 1\"\n"), HasSubstr("names weight"));
+  EXPECT_THAT(told(keys + "rising = [\"weight\"]\n"),
+              HasSubstr("rising is \"weight\"; allowed: force, rate"));
+  EXPECT_THAT(told(keys + "present = \"$weight > 1\"\n"),
+              HasSubstr("procedure.present cannot be used as stated: names weight"));
   EXPECT_THAT(told(keys + "target = 0.3\n"), HasSubstr("target must be above guess"));
   EXPECT_THAT(told(keys + "stimulus.mass = [1.0]\n"), HasSubstr("levels of mass"));
   EXPECT_THAT(told(keys + "present = \"$force > 9\"\n"), HasSubstr("allowed must leave"));

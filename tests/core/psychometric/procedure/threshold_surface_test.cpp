@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
+#include "core/psychometric/function/sigmoid.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::psychometric::threshold_surface_test {
@@ -131,7 +132,7 @@ double threshold_at(double b) {
 
 bool answer_at(const Level& level, RandomStream& random) {
   const double z = (level[0] - threshold_at(level[1])) / kSpread;
-  return random.uniform() < 0.98 * normal_below(z);
+  return random.uniform() < 0.98 * sigmoid(Sigmoid::kGaussian, z);
 }
 
 /// The target of 0.5 lies a little above the middle of a function that ends at 0.98.
@@ -233,7 +234,7 @@ TEST(ThresholdSurfaceTest, FourVariablesThatRise) {
   while (!surface.finished()) {
     const Level level = surface.next();
     const double z = (level[0] + 0.3 * (level[1] + level[2] + level[3]) - 0.8) / 0.15;
-    surface.report(random.uniform() < normal_below(z) ? 1.0 : 0.0, level);
+    surface.report(random.uniform() < sigmoid(Sigmoid::kGaussian, z) ? 1.0 : 0.0, level);
   }
   const auto found = surface.thresholds({{0.0, 0.5, 0.5}, {0.5, 0.5, 0.5}, {1.0, 0.5, 0.5}});
   EXPECT_GE(found[0].median, found[1].median);
