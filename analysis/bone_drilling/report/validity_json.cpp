@@ -270,8 +270,8 @@ std::string validity_json(const ValidityResult& result, const std::vector<Findin
   if (!result.hints.empty()) {
     root["hints"] = hints_of(result);
   }
-  if (!own.empty()) {
-    root["own_findings"] = json_of(own);
+  if (Json values = json_of(own); !values.empty()) {
+    root["own_findings"] = std::move(values);
   }
   return text_of(root);
 }

@@ -334,8 +334,8 @@ std::string statistics_json(const StudyResult& study, const std::vector<FindingL
   for (const auto& [name, value] : study.parameters) {
     root["parameters"][name] = value;
   }
-  if (!own.empty()) {
-    root["own_findings"] = json_of(own);
+  if (Json values = json_of(own); !values.empty()) {
+    root["own_findings"] = std::move(values);
   }
   // Bytes that are not UTF-8 came from a file: shown as the replacement character.
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -222,8 +222,8 @@ class ResultsJson {
     if (!result_.page_scores.empty()) {
       add("page_scores", scores_json(result_.page_scores));
     }
-    if (!own_.empty()) {
-      add("own_findings", json_of(own_));
+    if (const Json own = json_of(own_); !own.empty()) {
+      add("own_findings", own);
     }
     add("remarks", result_.remarks);
   }
