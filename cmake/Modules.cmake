@@ -258,8 +258,6 @@ function(haptrial_test_needs)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   find_library(xdf_library xdf REQUIRED)
   target_link_libraries(test_exchange PRIVATE haptrial_force_score ${xdf_library})
-  file(GLOB truth CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/support/contact_truth/*.cpp)
-  target_sources(test_contact_analysis PRIVATE ${truth})
   target_link_libraries(test_contact_analysis PRIVATE haptrial_geometry_files haptrial_geometry_volume)
   target_link_libraries(test_psychophysics PRIVATE haptrial_deformable_elements)  # bodies as they are calibrated
   target_link_libraries(test_subject_perceiver PRIVATE haptrial_scene)

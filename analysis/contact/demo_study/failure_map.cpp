@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "analysis/document/palette.h"
+#include "analysis/files/csv.h"
 #include "core/contact/make_renderer.h"
 
 namespace haptrial::evaluation {
@@ -20,24 +21,33 @@ constexpr double kSphere = 5e-4;  // [m]
 constexpr int kVoxels = 128;      // along the plate: cells of 0.9 mm
 constexpr double kDepths[] = {0.00025, 0.0005, 0.001, 0.0015, 0.002, 0.003, 0.004, 0.006, 0.008};
 
+/// A renderer that keeps the body which it renders.
+class OwnRidge final : public contact::Renderer {
+ public:
+  OwnRidge(RendererKind kind, const Ridge& ridge, const contact::RendererOptions& options)
+      : body_(ridge_mesh(ridge)),
+        renderer_(contact::make_renderer(kind, body_.mesh, body_.surface, options)) {}
+  void start(const Eigen::Vector3d& tool) noexcept override { renderer_->start(tool); }
+  const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override {
+    return renderer_->tick(tool, period);
+  }
+  const contact::Operations& operations() const noexcept override {
+    return renderer_->operations();
+  }
+
+ private:
+  contact::FeltBody body_;
+  std::unique_ptr<contact::Renderer> renderer_;
+};
+
 FailureMap map_of(RendererKind kind, double friction, double radius) {
-  FailureMap map{kind, friction, radius, {}};
   contact::RendererOptions options;
   options.friction = {friction, friction};
   options.radius = radius;
   options.resolution = kVoxels;
-  for (int degrees = 5; degrees <= 85; degrees += 5) {
-    Ridge ridge;
-    ridge.flank = degrees * kDegree;
-    const contact::FeltBody body(ridge_mesh(ridge));
-    const auto renderer = contact::make_renderer(kind, body.mesh, body.surface, options);
-    for (const double depth : kDepths) {
-      const RidgeDrag drag{depth, friction, radius};
-      map.cells.push_back(
-          {ridge.flank, depth, drag_over(ridge, drag, *renderer), ridge_law(ridge, drag)});
-    }
-  }
-  return map;
+  return failure_map(
+      std::string(contact::name_of(kind)), friction, radius,
+      [&](const Ridge& ridge) { return std::make_unique<OwnRidge>(kind, ridge, options); });
 }
 
 analysis::Look look_of(RidgeOutcome outcome) {
@@ -58,6 +68,23 @@ analysis::Look look_of(RidgeOutcome outcome) {
 
 }  // namespace
 
+FailureMap failure_map(
+    const std::string& renderer, double friction, double radius,
+    const std::function<std::unique_ptr<contact::Renderer>(const Ridge&)>& make) {
+  FailureMap map{renderer, friction, radius, {}};
+  for (int degrees = 5; degrees <= 85; degrees += 5) {
+    Ridge ridge;
+    ridge.flank = degrees * kDegree;
+    const auto renderer_of_it = make(ridge);
+    for (const double depth : kDepths) {
+      const RidgeDrag drag{depth, friction, radius};
+      map.cells.push_back(
+          {ridge.flank, depth, drag_over(ridge, drag, *renderer_of_it), ridge_law(ridge, drag)});
+    }
+  }
+  return map;
+}
+
 int FailureMap::count(RidgeOutcome outcome) const {
   return static_cast<int>(std::count_if(cells.begin(), cells.end(), [&](const Cell& cell) {
     return cell.result.outcome == outcome;
@@ -73,10 +100,9 @@ std::vector<FailureMap> failure_maps() {
 }
 
 std::string name_of(const FailureMap& map) {
-  const std::string kind(contact::name_of(map.kind));
-  return map.radius > 0.0                   ? kind + ", sphere"
-         : map.kind == RendererKind::kProxy ? fmt::format("{}, friction {}", kind, map.friction)
-                                            : kind;
+  return map.radius > 0.0          ? map.renderer + ", sphere"
+         : map.renderer == "proxy" ? fmt::format("{}, friction {}", map.renderer, map.friction)
+                                   : map.renderer;
 }
 
 analysis::Figure failure_figure(const FailureMap& map) {
@@ -124,14 +150,30 @@ std::string failure_csv(const std::vector<FailureMap>& maps) {
   };
   for (const FailureMap& map : maps) {
     for (const FailureMap::Cell& cell : map.cells) {
-      fmt::format_to(std::back_inserter(text), "{},{},{},{:.0f},{},{},{},{},{:.3f}\n",
-                     contact::name_of(map.kind), map.friction, 1e3 * map.radius,
-                     cell.flank / kDegree, 1e3 * cell.depth, name_of(cell.result.outcome),
-                     number(cell.result.left_foot), number(cell.law.seen()),
-                     1e3 * cell.result.highest);
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.0f},{},{},{},{},{:.3f}\n", map.renderer,
+                     map.friction, 1e3 * map.radius, cell.flank / kDegree, 1e3 * cell.depth,
+                     name_of(cell.result.outcome), number(cell.result.left_foot),
+                     number(cell.law.seen()), 1e3 * cell.result.highest);
     }
   }
   return text;
+}
+
+FailureMap read_failures(const std::filesystem::path& file) {
+  const auto table = analysis::CsvTable::load(file);
+  const std::vector<double> flanks = table.numbers(table.column("flank_deg"));
+  const std::vector<double> depths = table.numbers(table.column("depth_mm"));
+  const std::size_t renderer = table.column("renderer"), outcome = table.column("outcome");
+  FailureMap map{std::string(table.text(0, renderer)), 0.0, 0.0, {}};
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const auto found = std::ranges::find_if(
+        kRidgeOutcomes, [&](RidgeOutcome one) { return table.text(i, outcome) == name_of(one); });
+    if (found == kRidgeOutcomes.end()) {
+      table.refuse(i, outcome, "an outcome that a map of failures has");
+    }
+    map.cells.push_back({flanks[i] * kDegree, 1e-3 * depths[i], RidgeResult{*found, {}, 0.0}, {}});
+  }
+  return map;
 }
 
 }  // namespace haptrial::evaluation

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,7 +13,7 @@ namespace haptrial::evaluation {
 
 /// One renderer with one friction, over angles of the flanks and depths.
 struct FailureMap {
-  contact::RendererKind kind{contact::RendererKind::kProxy};
+  std::string renderer;  // its word
   double friction{0.0};
   double radius{0.0};  // of the tool [m]
   struct Cell {
@@ -30,11 +32,18 @@ struct FailureMap {
 /// a few seconds. Source: Morris 2006, §7.5 (Figure 65), as a map.
 std::vector<FailureMap> failure_maps();
 
+/// A map of any renderer. @param make  a renderer of the ridge, with this friction and radius
+FailureMap failure_map(const std::string& renderer, double friction, double radius,
+                       const std::function<std::unique_ptr<contact::Renderer>(const Ridge&)>& make);
+
 /// Name of a map, such as "proxy, friction 0.3" or "ruspini, sphere".
 std::string name_of(const FailureMap& map);
 /// Outcomes over angle and depth, each with its colour and shape.
 analysis::Figure failure_figure(const FailureMap& map);
 /// A row for each cell.
 std::string failure_csv(const std::vector<FailureMap>& maps);
+/// The first map of a file that failure_csv() made: its angles, depths and outcomes.
+/// @throws InputError for another table.
+FailureMap read_failures(const std::filesystem::path& file);
 
 }  // namespace haptrial::evaluation

@@ -48,6 +48,7 @@ void declare_subcommands(CLI::App& app, int& status) {
   add_import(app, status);
   add_align(app, status);
   add_evaluate(app, status);
+  add_exam(app, status);
   add_compare(app, status);
   add_judge(app, status);
   add_statistics(app, status);

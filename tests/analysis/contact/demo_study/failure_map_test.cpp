@@ -48,7 +48,7 @@ TEST(RidgeTest, BadRidgesAreRefused) {
 TEST(FailureMapTest, TheProxySticksNowhereThatFrictionDoesNotExplain) {
   int climbed = 0, held = 0;
   for (const FailureMap& map : maps()) {
-    if (map.kind != RendererKind::kProxy) {
+    if (map.renderer != "proxy") {
       continue;
     }
     for (const FailureMap::Cell& cell : map.cells) {
@@ -101,7 +101,7 @@ TEST(FailureMapTest, HeightAndStiffnessChangeNothing) {
 /// high.
 TEST(FailureMapTest, RenderersWithoutAProxyPassUnder) {
   for (const FailureMap& map : maps()) {
-    if (map.kind == RendererKind::kPenalty || map.kind == RendererKind::kDistanceField) {
+    if (map.renderer == "penalty" || map.renderer == "distance field") {
       EXPECT_GT(map.count(RidgeOutcome::kPassesUnder), 20) << name_of(map);
     }
   }

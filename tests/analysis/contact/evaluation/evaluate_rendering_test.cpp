@@ -10,7 +10,7 @@
 #include "core/base/random.h"
 #include "core/contact/renderer_kinds.h"
 #include "core/geometry/mesh/procedural.h"
-#include "tests/support/contact_truth/true_contact.h"
+#include "analysis/contact/truth/true_contact.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::evaluation {

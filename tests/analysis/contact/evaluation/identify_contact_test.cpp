@@ -9,7 +9,7 @@
 #include "core/base/random.h"
 #include "core/contact/contact_surface.h"
 #include "core/contact/proxy.h"
-#include "tests/support/contact_truth/true_contact.h"
+#include "analysis/contact/truth/true_contact.h"
 
 namespace haptrial::evaluation::identify_contact_test {
 namespace {

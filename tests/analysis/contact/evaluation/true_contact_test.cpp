@@ -1,11 +1,11 @@
-#include "tests/support/contact_truth/true_contact.h"
+#include "analysis/contact/truth/true_contact.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <string>
 
-#include "tests/support/contact_truth/truth_cases.h"
+#include "tests/support/truth_cases.h"
 
 namespace haptrial::evaluation::true_contact_test {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "tests/support/contact_truth/rubbed_surface.h"
-#include "tests/support/contact_truth/true_contact.h"
-#include "tests/support/contact_truth/truth_cases.h"
+#include "analysis/contact/truth/rubbed_surface.h"
+#include "analysis/contact/truth/true_contact.h"
+#include "tests/support/truth_cases.h"
 
 namespace haptrial::evaluation::true_friction_test {
 namespace {

@@ -7,75 +7,20 @@
 #include <string>
 #include <utility>
 
+#include "analysis/contact/exam/exam_bodies.h"
+#include "analysis/contact/truth/rubbed_profile.h"
+#include "analysis/contact/truth/true_contact.h"
 #include "core/contact/make_renderer.h"
-#include "core/geometry/mesh/procedural.h"
-#include "tests/support/contact_truth/rubbed_profile.h"
-#include "tests/support/contact_truth/true_contact.h"
-#include "tests/support/contact_truth/truth_cases.h"
+#include "tests/support/truth_cases.h"
 
 namespace haptrial::evaluation::true_rendering_test {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using geometry::Mesh;
 using Points = std::vector<Vector3d>;
 
 constexpr double kRubbed = 0.3;
-
-/// A strip of faces along z through the corners of a profile.
-Mesh extruded(const std::vector<Vector2d>& corners, bool closed) {
-  constexpr double kHalf = 0.1;  // [m]
-  Mesh mesh;
-  const auto count = static_cast<std::int32_t>(corners.size());
-  for (const Vector2d& c : corners) {
-    mesh.vertices.emplace_back(c.x(), c.y(), -kHalf);
-    mesh.vertices.emplace_back(c.x(), c.y(), kHalf);
-  }
-  for (std::int32_t i = 0; i + (closed ? 0 : 1) < count; ++i) {
-    const std::int32_t a = 2 * i, b = 2 * ((i + 1) % count);
-    mesh.triangles.push_back({a, b, b + 1});
-    mesh.triangles.push_back({a, b + 1, a + 1});
-  }
-  return mesh;
-}
-
-/// @param fine  edges of 1 / fine of the coarsest; plane bodies take none
-Mesh mesh_of(const TruePlane&, int) { return extruded({{-0.1, 0.0}, {0.1, 0.0}}, false); }
-Mesh mesh_of(const TrueSphere& b, int fine) { return geometry::make_sphere(b.radius, 10 * fine); }
-Mesh mesh_of(const TrueCylinder& b, int fine) {
-  std::vector<Vector2d> corners;
-  const int count = 60 * fine;
-  for (int i = 0; i < count; ++i) {
-    const double a = 2.0 * std::numbers::pi * i / count;
-    corners.emplace_back(b.radius * std::cos(a), b.radius * std::sin(a));
-  }
-  return extruded(corners, true);
-}
-Mesh mesh_of(const TrueTorus& b, int fine) {
-  return geometry::make_torus(b.radius, b.tube_radius, 80 * fine, 40 * fine);
-}
-Mesh mesh_of(const TrueWedge& b, int) {
-  const double c = 0.1 * std::cos(b.flank), s = 0.1 * std::sin(b.flank);
-  return extruded({{-c, -s}, {0.0, 0.0}, {c, -s}}, false);
-}
-Mesh mesh_of(const TrueConcaveEdge& b, int) {
-  const double c = 0.1 * std::cos(b.flank), s = 0.1 * std::sin(b.flank);
-  return extruded({{-c, s}, {0.0, 0.0}, {c, s}}, false);
-}
-Mesh mesh_of(const TrueWavyPlate& b, int fine) {
-  std::vector<Vector2d> corners;
-  const int count = 120 * fine;
-  for (int i = 0; i <= count; ++i) {
-    const double x = 0.12 * i / count - 0.06;
-    corners.emplace_back(x, b.height * std::sin(2.0 * std::numbers::pi * x / b.length));
-  }
-  return extruded(corners, false);
-}
-Mesh mesh_of(const TrueThinPlate& b, int) {
-  const double x = 0.5 * b.width, y = 0.5 * b.thickness;
-  return extruded({{-x, -y}, {x, -y}, {x, y}, {-x, y}}, true);
-}
 
 bool is_curved(const test::TruthCase& one) {
   return std::holds_alternative<TrueSphere>(one.body) ||
@@ -91,7 +36,7 @@ struct Beside {
 };
 
 Beside beside(const test::TruthCase& one, const Points& tool, int fine, double friction) {
-  const Mesh mesh = std::visit([&](const auto& body) { return mesh_of(body, fine); }, one.body);
+  const geometry::Mesh mesh = mesh_of(one.body, fine);
   const contact::ContactSurface surface(mesh);
   const auto renderer = contact::make_renderer(
       contact::RendererKind::kProxy, mesh, surface,

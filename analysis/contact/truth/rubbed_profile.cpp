@@ -1,4 +1,4 @@
-#include "tests/support/contact_truth/rubbed_profile.h"
+#include "analysis/contact/truth/rubbed_profile.h"
 
 #include <algorithm>
 #include <cmath>

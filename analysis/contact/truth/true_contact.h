@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tests/support/contact_truth/true_bodies.h"
+#include "analysis/contact/truth/true_bodies.h"
 
 namespace haptrial::evaluation {
 

@@ -1,4 +1,4 @@
-#include "tests/support/contact_truth/sliding_profile.h"
+#include "analysis/contact/truth/sliding_profile.h"
 
 #include <algorithm>
 #include <cmath>

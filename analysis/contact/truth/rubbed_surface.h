@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "tests/support/contact_truth/smooth_surface.h"
+#include "analysis/contact/truth/smooth_surface.h"
 
 namespace haptrial::evaluation {
 

@@ -1,4 +1,4 @@
-#include "tests/support/contact_truth/check_truth.h"
+#include "analysis/contact/truth/check_truth.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "tests/support/contact_truth/smooth_surface.h"
+#include "analysis/contact/truth/smooth_surface.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "tests/support/contact_truth/rubbed_surface.h"
+#include "analysis/contact/truth/rubbed_surface.h"
 
 #include <algorithm>
 

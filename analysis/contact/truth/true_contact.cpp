@@ -1,13 +1,13 @@
-#include "tests/support/contact_truth/true_contact.h"
+#include "analysis/contact/truth/true_contact.h"
 
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
-#include "tests/support/contact_truth/check_truth.h"
-#include "tests/support/contact_truth/rubbed_profile.h"
-#include "tests/support/contact_truth/rubbed_surface.h"
-#include "tests/support/contact_truth/sliding_profile.h"
+#include "analysis/contact/truth/check_truth.h"
+#include "analysis/contact/truth/rubbed_profile.h"
+#include "analysis/contact/truth/rubbed_surface.h"
+#include "analysis/contact/truth/sliding_profile.h"
 
 namespace haptrial::evaluation {
 namespace {

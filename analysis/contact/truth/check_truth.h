@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "tests/support/contact_truth/true_bodies.h"
+#include "analysis/contact/truth/true_bodies.h"
 
 namespace haptrial::evaluation {
 

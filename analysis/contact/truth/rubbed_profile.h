@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "tests/support/contact_truth/true_bodies.h"
+#include "analysis/contact/truth/true_bodies.h"
 
 namespace haptrial::evaluation {
 

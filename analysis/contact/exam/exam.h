@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/contact/demo_study/failure_map.h"
+#include "analysis/contact/exam/candidate.h"
+
+namespace haptrial::evaluation {
+
+/// A tool that is led along a body, and the forces that are right.
+struct ExamCase {
+  std::string name;  // "thin-plate-friction"
+  ContactTask task;
+  std::vector<Eigen::Vector3d>
+      tool;  // (n), the first one in the air, the last one at the same place
+  std::vector<Eigen::Vector3d> truth;  // (n) on the tool [N]
+};
+
+/// Writes the exam as plain files: exam.json, README.md, LICENCE, and for each case its body (.obj)
+/// and its path with the true forces (.csv). The bodies are exam_bodies(), each without friction
+/// and with 0.3, at 500 N/m and 1 kHz. Nothing in it is random: every exam is the same.
+/// @throws InputError when `folder` holds anything or cannot be made. Source: Morris 2006, §7.5.
+void write_exam(const std::filesystem::path& folder);
+
+/// @throws InputError for a file that is missing or does not hold what it should.
+std::vector<ExamCase> read_exam(const std::filesystem::path& folder);
+
+/// A renderer's answers to an exam, and what they cost on this computer.
+struct ExamAnswers {
+  std::string renderer;
+  struct Case {
+    std::vector<Eigen::Vector3d> force;        // (n) on the tool [N]
+    double preparation{0.0};                   // of the body [s]
+    double median_tick{0.0}, worst_tick{0.0};  // with the way to a program and back [s]
+  };
+  std::vector<Case> cases;  // as those of the exam
+  bool costs_known{true};
+};
+
+/// Leads the tool along every case. @param renderer  what the candidate is called
+ExamAnswers sit_exam(Candidate& candidate, const std::string& renderer,
+                     const std::vector<ExamCase>& exam);
+
+/// Writes answers.json, CASE.csv with the forces of each case, and failures.csv.
+/// @throws InputError when `folder` holds anything or cannot be made.
+void write_answers(const ExamAnswers& answers, const FailureMap& ridges,
+                   const std::vector<ExamCase>& exam, const std::filesystem::path& folder);
+/// Answers that this or another program wrote. Without answers.json the renderer is called as the
+/// folder, and its costs are not known.
+/// @throws InputError for a case that is missing or has more or fewer forces than its path.
+ExamAnswers read_answers(const std::filesystem::path& folder, const std::vector<ExamCase>& exam);
+
+}  // namespace haptrial::evaluation

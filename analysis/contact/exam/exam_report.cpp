@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "analysis/contact/exam/exam_score.h"
+#include "analysis/document/figure_gnuplot.h"
+#include "analysis/document/finding.h"
+#include "analysis/document/finding_json_internal.h"
+#include "analysis/files/new_folder.h"
+#include "core/base/file_text.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+using analysis::Document;
+using analysis::Finding;
+using analysis::FindingList;
+using analysis::FindingRow;
+using analysis::FindingTable;
+
+/// Answers are written to a millionth: what is below it tells nothing.
+Finding number(const char* name, const char* title, double value, const char* unit) {
+  return {.name = name,
+          .title = title,
+          .value = 1e-6 * std::round(1e6 * value) + 0.0,
+          .unit = unit,
+          .csv = name,
+          .form = analysis::JsonForm::kPlain};
+}
+
+Finding count(const char* name, const char* title, std::size_t value) {
+  return {.name = name,
+          .title = title,
+          .value = value,
+          .csv = name,
+          .form = analysis::JsonForm::kPlain};
+}
+
+FindingRow row_of(const ExamScore& score, std::size_t i, const ExamCase& one) {
+  const CaseScore& s = score.cases[i];
+  FindingRow row{
+      {.name = "renderer", .value = score.answers.renderer, .form = analysis::JsonForm::kAbsent},
+      {.name = "case", .title = "case", .value = one.name, .form = analysis::JsonForm::kPlain},
+      {.name = "verdict",
+       .title = "verdict",
+       .value = name_of(s.verdict),
+       .form = analysis::JsonForm::kPlain},
+      number("error_rms", "error, RMS", s.force.root_mean_square, "N"),
+      number("error_mean", "mean", s.force.mean_norm, "N"),
+      number("error_worst", "worst", s.force.worst, "N"),
+      number("error_below_10_hz", "below 10 Hz", s.bands.slow, "N"),
+      number("error_10_to_100_hz", "10 to 100 Hz", s.bands.middle, "N"),
+      number("error_above_100_hz", "above", s.bands.fast, "N"),
+      number("share_beyond_7_percent", "off by more than 7 %", s.noticeable.beyond_low, ""),
+      number("energy_given", "energy given", s.energy, "J"),
+      number("energy_given_by_truth", "by the truth", s.true_energy, "J"),
+      count("ticks_lost", "ticks lost", s.lost),
+      count("ticks_stuck", "ticks stuck", s.stuck)};
+  return row;
+}
+
+std::string file_name(std::string renderer) {
+  for (char& c : renderer) {
+    c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  }
+  return renderer;
+}
+
+FindingList findings_of(const ExamScore& score, const std::vector<ExamCase>& exam) {
+  FindingList list{.name = file_name(score.answers.renderer), .heading = score.answers.renderer};
+  FindingTable table{"cases", "Cases"};
+  for (std::size_t i = 0; i < exam.size(); ++i) {
+    table.rows.push_back(row_of(score, i, exam[i]));
+  }
+  list.tables.push_back(std::move(table));
+  if (score.ridge) {
+    analysis::Figure figure = failure_figure(*score.ridge);
+    figure.name = "ridge-" + list.name;
+    list.figures.push_back(std::move(figure));
+  }
+  return list;
+}
+
+double root_mean_square(const ExamScore& score) {
+  double sum = 0.0;
+  for (const CaseScore& one : score.cases) {
+    sum += one.force.root_mean_square * one.force.root_mean_square;
+  }
+  return std::sqrt(sum / static_cast<double>(score.cases.size()));
+}
+
+std::string microseconds(const ExamScore& score, double ExamAnswers::Case::*time) {
+  if (!score.answers.costs_known) {
+    return "not known";
+  }
+  const auto& cases = score.answers.cases;
+  const auto most = std::ranges::max_element(cases, {}, time);
+  return fmt::format("{:.1f}", 1e6 * (*most).*time);
+}
+
+void add_summary(Document& document, const std::vector<ExamScore>& scores) {
+  std::vector<std::string> heading{"renderer", "error, RMS (N)"};
+  for (const ExamVerdict verdict : kExamVerdicts) {
+    heading.emplace_back(name_of(verdict));
+  }
+  heading.insert(heading.end(), {"ridges right", "slowest median tick (us)", "worst tick (us)"});
+  std::vector<std::vector<std::string>> rows;
+  for (const ExamScore& score : scores) {
+    rows.push_back({score.answers.renderer, fmt::format("{:.4f}", root_mean_square(score))});
+    for (const ExamVerdict verdict : kExamVerdicts) {
+      rows.back().push_back(fmt::format("{}", score.count(verdict)));
+    }
+    rows.back().push_back(score.ridge
+                              ? fmt::format("{} of {}", score.ridge->count(RidgeOutcome::kRight),
+                                            score.ridge->cells.size())
+                              : "not known");
+    rows.back().push_back(microseconds(score, &ExamAnswers::Case::median_tick));
+    rows.back().push_back(microseconds(score, &ExamAnswers::Case::worst_tick));
+  }
+  document.table(heading, rows);
+}
+
+constexpr const char* kMethod =
+    "A tool, a point, is led along eight bodies, without friction and with 0.3, at 500 N/m and "
+    "1 kHz, there and back. The truth is the god object with Coulomb's friction, exact on plane "
+    "faces, spheres and cylinders. A case pops through if a force of more than 0.2 N is missing or "
+    "points into the body on a tick, sticks if there is a force of more than 0.2 N in the air, "
+    "gives "
+    "energy if the hand gains more than a hundredth of the energy that it stored on the way, and "
+    "is "
+    "noticeable if more than a twentieth of the samples are off by more than 7 % of the force. The "
+    "first of these that holds is the verdict. Ridges are the source's Figure 65 as a map. Times "
+    "of "
+    "ticks are those of the computer that ran the renderer; another program's include its pipe.";
+
+}  // namespace
+
+std::vector<std::string> score_lines(const std::vector<ExamScore>& scores) {
+  std::vector<std::string> lines;
+  for (const ExamScore& score : scores) {
+    lines.push_back(fmt::format("{}: {} of {} cases right, error {:.4f} N (RMS)",
+                                score.answers.renderer, score.count(ExamVerdict::kRight),
+                                score.cases.size(), root_mean_square(score)));
+  }
+  return lines;
+}
+
+void write_scores(const std::vector<ExamScore>& scores, const std::vector<ExamCase>& exam,
+                  const std::filesystem::path& folder) {
+  exchange::NewFolder out(folder);
+  std::vector<FindingList> lists;
+  std::vector<FindingTable> tables;
+  for (const ExamScore& score : scores) {
+    lists.push_back(findings_of(score, exam));
+    tables.push_back(lists.back().tables.front());
+  }
+  out.write("scores.csv",
+            analysis::findings_csv(
+                tables, {{"renderer", "renderer"}, {"case", "case"}, {"verdict", "verdict"}}));
+  out.write("scores.json", analysis::json_of(lists).dump(2) + "\n");
+  const std::filesystem::path place = out.place("report.html").parent_path();
+  std::vector<analysis::Drawing> drawings;
+  for (const FindingList& list : lists) {
+    analysis::draw_figures(list.figures, place);
+    for (const analysis::Figure& figure : list.figures) {
+      drawings.push_back({figure, file_text(place / (figure.name + ".svg"))});
+    }
+  }
+  Document document;
+  document.title = "Exam of renderers";
+  add_summary(document, scores);
+  document.paragraph(kMethod);
+  analysis::add_findings(document, lists, drawings);
+  out.write("report.html", analysis::to_html(document));
+  out.publish();
+}
+
+}  // namespace haptrial::evaluation

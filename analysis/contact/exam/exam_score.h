@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/contact/demo_study/failure_map.h"
+#include "analysis/contact/evaluation/rendering_error.h"
+#include "analysis/contact/exam/exam.h"
+
+namespace haptrial::evaluation {
+
+/// What is wrong with the answers to a case, the worst first.
+enum class ExamVerdict : std::uint8_t {
+  kPopsThrough,  // no force, or one into the body, where there should be one
+  kSticks,       // a force in the air
+  kGivesEnergy,  // the hand gains energy on the way there and back
+  kNoticeable,   // off by more than 7 % of the force on more than a twentieth of the samples
+  kRight
+};
+inline constexpr std::array kExamVerdicts{ExamVerdict::kPopsThrough, ExamVerdict::kSticks,
+                                          ExamVerdict::kGivesEnergy, ExamVerdict::kNoticeable,
+                                          ExamVerdict::kRight};
+const char* name_of(ExamVerdict verdict);
+
+struct CaseScore {
+  ForceError force;
+  BandError bands;
+  NoticeableError noticeable;
+  double energy{0.0};       // that the tool was given on the closed path [J]
+  double true_energy{0.0};  // that it is given by the truth: none, or less with friction [J]
+  std::size_t lost{0};      // ticks without a force, or with one into the body, of contact
+  std::size_t stuck{0};     // ticks with a force in the air
+  ExamVerdict verdict{ExamVerdict::kRight};
+};
+
+/// Compares the answers to a case with the truth. Forces below 0.2 N count as none where popping
+/// through and sticking are judged; energy counts from a hundredth of what the truth takes in.
+/// @param force  (n), as long as the path [N]
+CaseScore score_case(const ExamCase& one, const std::vector<Eigen::Vector3d>& force);
+
+struct ExamScore {
+  ExamAnswers answers;
+  std::vector<CaseScore> cases;     // as those of the exam
+  std::optional<FailureMap> ridge;  // failures.csv beside the answers
+
+  std::size_t count(ExamVerdict verdict) const;
+};
+
+/// @throws InputError as read_answers() and read_failures()
+ExamScore score_answers(const std::filesystem::path& folder, const std::vector<ExamCase>& exam);
+
+/// A line for each renderer.
+std::vector<std::string> score_lines(const std::vector<ExamScore>& scores);
+
+/// Writes scores.csv, scores.json, a map of failures for each renderer that has one, and
+/// report.html. All but the costs is the same on every computer.
+/// @throws InputError when `folder` holds anything or cannot be made; RunError as draw_figures().
+void write_scores(const std::vector<ExamScore>& scores, const std::vector<ExamCase>& exam,
+                  const std::filesystem::path& folder);
+
+}  // namespace haptrial::evaluation

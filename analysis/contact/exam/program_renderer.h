@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/contact/exam/candidate.h"
+#include "core/base/child_process.h"
+
+namespace haptrial::evaluation {
+
+/// Another program that renders contact. It reads lines of its standard input and answers each one
+/// with a line:
+///
+///     body FILE stiffness N/m friction MU rate HZ     ready
+///     start X Y Z                                     ready
+///     tick TIME X Y Z                                 FX FY FZ
+///
+/// with positions in metres in the frame of the mesh and forces on the tool in newtons. A task
+/// begins with "body", a path with "start", whose place is in the air; there may be several paths
+/// in a task and several tasks in a run. The program ends with its input.
+///
+/// Waits for the program: not for a servo thread. Source: Morris 2006, §7.5.
+class ProgramRenderer final : public Candidate {
+ public:
+  /// @param words  the program and its arguments @throws InputError where it cannot be started.
+  explicit ProgramRenderer(const std::vector<std::string>& words);
+
+  /// Begins a task. @throws InputError for an answer other than "ready", or none within a minute.
+  void begin(const ContactTask& task) override;
+  /// Puts the tool to a place in the air. @throws InputError as begin()
+  void start(const Eigen::Vector3d& tool) override;
+  /// One tick. @returns the force on the tool [N]
+  /// @throws InputError for an answer that is no three finite numbers, or none within a minute.
+  Eigen::Vector3d tick(double time, const Eigen::Vector3d& tool) override;
+
+ private:
+  std::string ask(const std::string& line);
+  void expect_ready(const std::string& line);
+  [[noreturn]] void refuse(const std::string& line, const std::string& found) const;
+
+  std::string name_;
+  Pipe to_, from_;
+  std::unique_ptr<ChildProcess> program_;
+  std::string rest_;  // that was read beyond a line
+};
+
+}  // namespace haptrial::evaluation

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/contact/exam/exam.h"
+#include "analysis/contact/exam/exam_map.h"
+#include "analysis/contact/exam/program_renderer.h"
+#include "core/base/error.h"
+#include "experiments/command/subcommand.h"
+
+namespace haptrial::experiments {
+namespace {
+
+struct ExamRunOptions {
+  std::string folder;
+  std::string renderer;
+  std::vector<std::string> program;
+  std::string name;
+  std::string out;
+};
+
+std::unique_ptr<evaluation::Candidate> candidate_of(const ExamRunOptions& options) {
+  if (options.renderer.empty() == options.program.empty()) {
+    throw InputError("exam run needs either RENDERER or --program");
+  }
+  if (options.program.empty()) {
+    return evaluation::own_candidate(options.renderer);
+  }
+  return std::make_unique<evaluation::ProgramRenderer>(options.program);
+}
+
+std::string name_of(const ExamRunOptions& options) {
+  if (!options.name.empty()) {
+    return options.name;
+  }
+  return options.program.empty() ? options.renderer : options.program.back();
+}
+
+int run_exam(const ExamRunOptions& options) {
+  const auto exam = evaluation::read_exam(options.folder);
+  const auto candidate = candidate_of(options);
+  const std::string name = name_of(options);
+  const evaluation::ExamAnswers answers = evaluation::sit_exam(*candidate, name, exam);
+  evaluation::write_answers(answers, evaluation::failure_map_of(*candidate, name), exam,
+                            options.out);
+  fmt::print("wrote {}: {} cases and a map of ridges\n", options.out, exam.size());
+  return 0;
+}
+
+}  // namespace
+
+void add_exam_run(CLI::App& exam, int& status) {
+  CLI::App* sub = subcommand(
+      exam, "run", "Lead a tool along the bodies of an exam under a renderer",
+      "haptrial exam run out/exam proxy --out out/answers-proxy",
+      {"answers.json, a table of forces for each case and failures.csv in the folder of --out",
+       "algorithms/exam.md"});
+  auto& o = options_of<ExamRunOptions>(*sub, status, run_exam);
+  sub->add_option("EXAM", o.folder, "Folder of the exam")->required();
+  sub->add_option("RENDERER", o.renderer,
+                  "Renderer of this program: proxy, penalty, voxel or distance-field");
+  sub->add_option("--program", o.program,
+                  "Another program and its arguments, which answers lines on its standard input "
+                  "(to the end of the line)")
+      ->expected(1, 100);
+  sub->add_option("--name", o.name,
+                  "Name of the renderer (default: RENDERER, or the last argument of the program)");
+  sub->add_option("--out", o.out, "New folder of the answers")->required();
+}
+
+}  // namespace haptrial::experiments

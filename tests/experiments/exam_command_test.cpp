@@ -1,0 +1,91 @@
+// haptrial exam, as it is called from a shell, with another program at the other end of a pipe.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "analysis/files/csv.h"
+#include "tests/experiments/command.h"
+#include "tests/experiments/shipped.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+using testing::HasSubstr;
+
+class ExamCommandTest : public testing::Test {
+ protected:
+  test::CommandResult run(const std::string& line) const {
+    return test::run_command("cd '" + folder_.path().string() + "' && haptrial exam " + line);
+  }
+  const std::string half_space_ =
+      "python3 '" + (test::kSource / "docs/worked/exam/half_space.py").string() + "'";
+  const test::TemporaryFolder folder_;
+};
+
+/// A program that takes every body for a half-space is exact on the plane, and there alone.
+TEST_F(ExamCommandTest, AnotherProgramSitsIt) {
+  ASSERT_EQ(run("make exam").status, 0);
+  const auto sat = run("run exam --out answers --name half-space --program " + half_space_);
+  ASSERT_EQ(sat.status, 0) << sat.errors;
+  const auto scored = run("score exam answers --out scores");
+  ASSERT_EQ(scored.status, 0) << scored.errors;
+  EXPECT_THAT(scored.output, HasSubstr("half-space: 1 of 16 cases right"));
+  const auto table = analysis::CsvTable::load(folder_ / "scores/scores.csv");
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const bool plane = table.text(i, table.column("case")) == "plane";
+    EXPECT_EQ(table.text(i, table.column("verdict")) == "right", plane) << "row " << i;
+  }
+  EXPECT_THAT(test::read_text(folder_ / "scores/report.html"), HasSubstr("ridges right"));
+}
+
+/// The rows of a renderer in a table of scores.
+std::string rows_of(const std::string& renderer, const std::filesystem::path& table) {
+  std::istringstream lines(test::read_text(table));
+  std::string rows;
+  for (std::string line; std::getline(lines, line);) {
+    rows += line.starts_with(renderer + ",") ? line + "\n" : "";
+  }
+  return rows;
+}
+
+TEST_F(ExamCommandTest, TheKeptScoresAreReproduced) {
+  ASSERT_EQ(run("make exam").status, 0);
+  const char* renderers[] = {"proxy", "penalty", "distance-field", "voxel"};
+  std::string folders;
+  for (const std::string renderer : renderers) {
+    ASSERT_EQ(run("run exam " + renderer + " --out " + renderer).status, 0);
+    folders += renderer + " ";
+  }
+  ASSERT_EQ(run("score exam " + folders + "--out scores").status, 0);
+  for (const std::string renderer : renderers) {
+    const std::string rows = rows_of(renderer, test::kSource / "results/exam/scores.csv");
+    EXPECT_FALSE(rows.empty());
+    EXPECT_EQ(rows_of(renderer, folder_ / "scores/scores.csv"), rows);
+  }
+}
+
+TEST_F(ExamCommandTest, BadInputGetsASentence) {
+  ASSERT_EQ(run("make exam").status, 0);
+  const std::pair<const char*, const char*> bad[] = {
+      {"run exam proxi --out a", "RENDERER is 'proxi'; allowed: proxy, penalty, voxel, "},
+      {"run exam --out a", "exam run needs either RENDERER or --program"},
+      {"run exam --out a --program no-such-program", "no-such-program cannot be started"},
+      {"run exam --out a --program cat", "cat answers 'body exam/bodies/plane.obj"},
+      {"run exam --out a --program true", "true gave no line to 'body"},
+      {"run nowhere proxy --out a", "nowhere/exam.json"},
+      {"score exam nowhere", "nowhere/plane.csv"},
+  };
+  for (const auto& [line, sentence] : bad) {
+    const auto result = run(line);
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_THAT(result.errors, HasSubstr(sentence));
+  }
+}
+
+}  // namespace
+}  // namespace haptrial
