@@ -12,10 +12,12 @@
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial {
+namespace haptrial::exam_command_test {
 namespace {
 
 using testing::HasSubstr;
+
+const std::filesystem::path kSource = HAPTRIAL_SOURCE_DIR;
 
 class ExamCommandTest : public testing::Test {
  protected:
@@ -23,7 +25,7 @@ class ExamCommandTest : public testing::Test {
     return test::run_command("cd '" + folder_.path().string() + "' && haptrial exam " + line);
   }
   const std::string half_space_ =
-      "python3 '" + (test::kSource / "docs/worked/exam/half_space.py").string() + "'";
+      "python3 '" + (kSource / "docs/worked/exam/half_space.py").string() + "'";
   const test::TemporaryFolder folder_;
 };
 
@@ -63,7 +65,7 @@ TEST_F(ExamCommandTest, TheKeptScoresAreReproduced) {
   }
   ASSERT_EQ(run("score exam " + folders + "--out scores").status, 0);
   for (const std::string renderer : renderers) {
-    const std::string rows = rows_of(renderer, test::kSource / "results/exam/scores.csv");
+    const std::string rows = rows_of(renderer, kSource / "results/exam/scores.csv");
     EXPECT_FALSE(rows.empty());
     EXPECT_EQ(rows_of(renderer, folder_ / "scores/scores.csv"), rows);
   }
@@ -88,4 +90,4 @@ TEST_F(ExamCommandTest, BadInputGetsASentence) {
 }
 
 }  // namespace
-}  // namespace haptrial
+}  // namespace haptrial::exam_command_test
