@@ -76,10 +76,17 @@ void read_measured_aim(Table& table, const std::string& key, MeasureReading& r) 
   }
 }
 
+/// Numbers or formulas, lowest and highest.
 void read_right_values(Table& table, const std::string& key, MeasureReading& r) {
-  const std::vector<double> range = table.numbers(key, {}, "");
+  constexpr const char* kAllowed = "[lowest, highest], numbers or formulas";
+  std::vector<double> range;
+  const auto rows = table.rows(key, kAllowed);
+  for (std::size_t i = 0; rows.size() == 1 && i < rows[0].size(); ++i) {
+    const NumberOrText& each = rows[0][i];
+    range.push_back(each.number ? *each.number : table.worth(key, each.text, {}, "").value_or(0.0));
+  }
   if (range.size() != 2 || range[1] < range[0]) {
-    table.reject(key, fmt::format("[{}]", fmt::join(range, ", ")), "[lowest, highest]");
+    table.reject(key, fmt::format("[{}]", fmt::join(range, ", ")), kAllowed);
     return;
   }
   r.measure.low = range[0];

