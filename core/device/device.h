@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -41,6 +42,12 @@ struct Wrench {
   double grip{0.0};                                 // that opens the fingers [N]
 };
 
+/// The pointer of the participant's window.
+struct WindowPointer {
+  double x{std::numeric_limits<double>::quiet_NaN()};  // in W; NaN: it was not over the window [m]
+  std::uint32_t buttons{0};                            // bit 0 left, 1 right, 2 middle
+};
+
 /// One reading of a device, in the world frame W (docs/conventions.md).
 struct DeviceReading {
   PointState tool;           // tool tip
@@ -52,7 +59,8 @@ struct DeviceReading {
   Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
   std::uint32_t keys{0};  // bit i: function i of the definition is held by a key of the window
   char32_t typed{0};      // character that was typed in the window since the last reading; 0: none
-  double pedal{0.0};      // how far an analog pedal is down, 0 to 1
+  WindowPointer pointer{};
+  double pedal{0.0};  // how far an analog pedal is down, 0 to 1
   /// Newest values of the session's channels (channel::place_of); NaN: none. Valid for the tick.
   std::span<const double> channels{};
   control::GainShares shares{};  // of the gains of all laws, which the handle carries now

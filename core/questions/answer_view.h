@@ -12,6 +12,7 @@ struct ScaleView {
   int steps{20};  // from end to end, >= 1
   std::string low_end, high_end;
   std::vector<std::string> numbers{};  // at the ticks, one for each; empty: none
+  double length{0.0};  // of the line, of the screen's width; 0: as the text's column
 };
 
 /// A line of a small figure, from one point to another. The figure is a square: x to the right and

@@ -38,6 +38,7 @@ struct QuestionTraits {
   bool types{false};          // listens to typed characters, not to keys
   bool any_character{false};  // of any script; no list of keys says which
   bool in_trials{true};       // may stand in [response]
+  bool marks{false};          // answered by a mark between two ends (move_mark())
 };
 
 /// One kind of question: its word and keys, what keys do to an answer, how it is drawn, what a
@@ -64,6 +65,11 @@ class QuestionKind {
   /// A key but Enter, which gives a complete answer.
   virtual KeyEffect press(const Question& question, const KeyPress& key,
                           AnswerDraft& draft) const noexcept = 0;
+  /// Moves the mark of a kind that marks. @param share  0 at the low end to 1 at the high end
+  /// A kind that does not has no mark.
+  virtual void move_mark(const Question& question, double share, AnswerDraft& draft) const noexcept;
+  /// The share at which the mark of a complete draft is.
+  virtual double share_of_mark(const Question& question, const AnswerDraft& draft) const noexcept;
   /// Whether the draft is an answer that is allowed.
   virtual bool is_complete(const Question& question, const AnswerDraft& draft) const noexcept = 0;
 

@@ -124,6 +124,16 @@ KeyEffect ScaleKind::press(const Question& question, const KeyPress& key,
   return draft.chosen != before ? KeyEffect::kChanged : KeyEffect::kNothing;
 }
 
+void ScaleKind::move_mark(const Question& question, double share,
+                          AnswerDraft& draft) const noexcept {
+  draft.typed.clear();
+  draft.chosen = static_cast<int>(std::lround(share * steps_of(question)));
+}
+
+double ScaleKind::share_of_mark(const Question& question, const AnswerDraft& draft) const noexcept {
+  return static_cast<double>(draft.chosen) / steps_of(question);
+}
+
 bool ScaleKind::is_complete(const Question& question, const AnswerDraft& draft) const noexcept {
   return draft.chosen >= 0 && draft.chosen <= steps_of(question);
 }

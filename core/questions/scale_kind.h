@@ -10,12 +10,15 @@ namespace haptrial::questions {
 class ScaleKind final : public QuestionKind {
  public:
   std::string word() const override { return "scale"; }
-  QuestionTraits traits() const noexcept override { return {}; }
+  QuestionTraits traits() const noexcept override { return {.marks = true}; }
   std::string key() const override { return "scale"; }
   void read(Table& table, Question& question) const override;
   std::vector<HeardKey> heard_keys(const Question& question) const override;
   KeyEffect press(const Question& question, const KeyPress& key,
                   AnswerDraft& draft) const noexcept override;
+  void move_mark(const Question& question, double share,
+                 AnswerDraft& draft) const noexcept override;
+  double share_of_mark(const Question& question, const AnswerDraft& draft) const noexcept override;
   bool is_complete(const Question& question, const AnswerDraft& draft) const noexcept override;
   Answer answer(const Question& question, const AnswerDraft& draft) const override;
   AnswerDraft draft_of(const Question& question, const Answer& answer) const override;

@@ -82,6 +82,8 @@ class Session {
   void note_setting();
   bool has_break_after(const PlannedTrial& trial) const;
   bool goes_back();
+  bool is_hopeless() const;
+  std::string why_given_up() const;
   Outcome present(const PlannedTrial& trial);
   bool run_trial(const PlannedTrial& trial, int attempt);
   bool run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt);
@@ -395,6 +397,9 @@ void Session::run_trials() {
       continue;
     }
     left_ = left_ || (outcome.end == TrialEnd::kAborted && controller_.requests().abort);
+    if (is_hopeless()) {
+      break;
+    }
     const bool stopped = controller_.requests().abort;
     const bool rests = has_break_after(*trial) && !stopped;
     if (stopped) {
@@ -415,7 +420,7 @@ void Session::run_trials() {
       trial = goes_back() ? last_answer_.go_back() : trial;
     }
   }
-  left_ = left_ || next_.ended_at_page();
+  left_ = left_ || next_.ended_at_page() || is_hopeless();
   if (!left_ && !pages_.after()) {
     left_ = true;
   }
@@ -442,6 +447,22 @@ void Session::show_trial() {
     }
     progress_.reset();
   }
+}
+
+/// Whether a virtual participant did not complete any of so many passes that the rest of the
+/// session would go the same way.
+bool Session::is_hopeless() const {
+  constexpr int kTries = 20;
+  return !real_ && summary_.passes >= kTries && summary_.aborted_passes == summary_.passes;
+}
+
+/// The reason that no further trial is presented; empty: none are left, or somebody asked for it.
+std::string Session::why_given_up() const {
+  return is_hopeless() ? fmt::format(
+                             "the session ended with trials left, since each of its {} "
+                             "passes was aborted",
+                             summary_.passes)
+                       : trials_->why_given_up();
 }
 
 /// Whether an answer was taken back, and the session is to go on with its trial.
@@ -596,7 +617,7 @@ void Session::finish() {
     if (left_ && requests.for_good) {
       record_.event(record::kEndedForGood, "by the experimenter, with trials left");
     }
-    if (const std::string why = trials_->why_given_up(); !why.empty()) {
+    if (const std::string why = why_given_up(); !why.empty()) {
       record_.event(record::kGivenUp, why);
       notices_.note(why);
       summary_.given_up = true;

@@ -254,6 +254,15 @@ static SessionMark mark_of(const SessionRequest& request, protocols::Rig& rig) {
   return {pilot + (pilot.empty() || program.empty() ? "" : ", ") + program, request.pilot};
 }
 
+static void move_mouse(device::MouseDevice& mouse, const ScreenPointer& pointer) {
+  mouse.set_buttons(pointer.buttons);
+  if (pointer.hand) {
+    return mouse.reach(*pointer.hand);
+  }
+  mouse.turn_wheel(pointer.wheel, device::is_pressed(pointer.buttons, 0));
+  mouse.move(pointer.x, pointer.z);
+}
+
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     ParticipantInput& input, std::function<std::int64_t()> now) {
   if (!request.window) {
@@ -318,14 +327,12 @@ std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Ri
   if (device::Gamepad* pad = rig.gamepad()) {
     callbacks.pad = [pad] { return pad->state(); };
   }
-  if (device::MouseDevice* mouse = rig.mouse()) {
-    callbacks.pointer = [mouse](const ScreenPointer& pointer) {
-      mouse->set_buttons(pointer.buttons);
-      if (pointer.hand) {
-        return mouse->reach(*pointer.hand);
+  if (rig.mouse() != nullptr || request.definition->hears_pointer()) {
+    callbacks.pointer = [&input, mouse = rig.mouse()](const ScreenPointer& pointer) {
+      input.window.point({pointer.x, pointer.buttons});
+      if (mouse != nullptr) {
+        move_mouse(*mouse, pointer);
       }
-      mouse->turn_wheel(pointer.wheel, device::is_pressed(pointer.buttons, 0));
-      mouse->move(pointer.x, pointer.z);
     };
   }
   callbacks.held = [&input, &request](const std::vector<int>& keys) {

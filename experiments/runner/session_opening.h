@@ -67,9 +67,11 @@ std::unique_ptr<record::LiveFigures> open_live(const SessionRequest& request);
 std::filesystem::path resumed_file(const SessionRequest& request);
 
 /// The participant's screen, where one was asked for; else null. Its Escape stops the session, its
-/// other keys steer it where the definition says so; its pointer moves the mouse device.
-/// @param rig  outlives the screen; only a mouse, or a game controller, takes the pointer
-/// @param input  receives what keys of the window say; outlives the screen
+/// other keys steer it where the definition says so; its pointer moves the mouse device
+/// and answers questions.
+/// @param rig  outlives the screen; of devices only a mouse, or a game controller, takes the
+/// pointer
+/// @param input  receives what keys and pointer of the window say; outlives the screen
 /// @param now    ServoLoop::elapsed_ns(); called on the screen's thread
 std::unique_ptr<Screen> open_screen(const SessionRequest& request, protocols::Rig& rig,
                                     ParticipantInput& input, std::function<std::int64_t()> now);

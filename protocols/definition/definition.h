@@ -56,7 +56,7 @@ struct Definition {
   double rate{1000.0};  // of the servo loop [Hz]
   Design design;
   bool mirror_left_handed{false};  // left-handed participants have the mirror image at x = 0
-  double recovery{3.0};  // without force after an abort [s]
+  double recovery{3.0};            // without force after an abort [s]
   device::EnvelopeLimits envelope;
   device::VirtualDeviceParameters device;
   std::string certificate_file;                      // as [device] names it; empty: none
@@ -114,6 +114,8 @@ struct Definition {
 
   /// Whether there is a force that the participant is to follow or to recall.
   virtual bool has_target() const { return true; }
+  /// Whether the pointer of the participant's window answers something.
+  virtual bool hears_pointer() const { return false; }
   /// Text that the participant reads before the first trial.
   virtual std::string instructions() const { return texts.instructions; }
   /// The functions of the protocol's own that held keys of the participant's window stand for, a

@@ -47,6 +47,10 @@ constexpr std::array kSessionInGerman{
     GermanText{"Move the mark with the arrow keys or type a number, then press Enter",
                "Bewegen Sie die Marke mit den Pfeiltasten oder geben Sie eine Zahl ein, dann die "
                "Eingabetaste"},
+    GermanText{"Move your hand along the line, then press the button or Enter",
+               "Bewegen Sie die Hand entlang der Linie, dann drücken Sie den Knopf oder die "
+               "Eingabetaste"},
+    GermanText{"Click on the line", "Klicken Sie auf die Linie"},
     GermanText{"Type a number, then press Enter", "Geben Sie eine Zahl ein, dann die Eingabetaste"},
     GermanText{"Type your answer, then press Enter",
                "Geben Sie Ihre Antwort ein, dann die Eingabetaste"},

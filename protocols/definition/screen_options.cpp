@@ -79,6 +79,8 @@ const Schema<SessionTexts>& text_schema() {
     add("go_on", &T::go_on, "Small line below a page that is only read");
     add("choose", &T::choose, "Small line below a question with choices");
     add("move_mark", &T::move_mark, "Small line below a scale");
+    add("place_mark", &T::place_mark, "Small line below a scale that the hand answers");
+    add("click_mark", &T::click_mark, "Small line below a scale that the mouse answers");
     add("counts", &T::counts, "Text between practice and the first trial that counts");
     add("take_again", &T::take_again, "Text at the end of a break");
     add("type_number", &T::type_number, "Small line below a question for a number");

@@ -47,6 +47,7 @@ void DeviceSet::read(std::size_t arm, const SessionInputs& inputs) noexcept {
     read_ok = arms_[arm].device->read(reading);
     reading.keys = inputs.keys;
     reading.typed = inputs.typed;
+    reading.pointer = inputs.pointer;
     reading.pedal = inputs.pedal.value_or(reading.pedal);
     reading.channels = inputs.channels;
   } else {

@@ -19,6 +19,7 @@ namespace haptrial::protocols {
 struct SessionInputs {
   std::uint32_t keys{0};               // of the participant's window
   char32_t typed{0};                   // there
+  device::WindowPointer pointer{};     // over it
   std::optional<double> pedal;         // how far it is down; nothing: the session has none
   std::span<const double> channels{};  // newest values (channel::ChannelSet)
 };

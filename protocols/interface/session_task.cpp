@@ -63,6 +63,7 @@ SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
   if (window_ != nullptr) {
     inputs.keys = window_->held();
     inputs.typed = window_->take_typed();
+    inputs.pointer = window_->pointer();
   }
   if (pedal_ != nullptr) {
     inputs.pedal = pedal_->depth();

@@ -38,6 +38,10 @@ std::uint64_t active_fields(const std::vector<scene::Field>& fields) {
   return mask;
 }
 
+bool is_told(Feedback feedback, bool practice) {
+  return feedback == Feedback::kAlways || (feedback == Feedback::kPractice && practice);
+}
+
 bool records_contacts(const TrialsDefinition& d) {
   return std::ranges::any_of(d.objects, &TrialObject::recorded);
 }
@@ -154,7 +158,7 @@ std::span<const record::Phase> DefinedTrials::phases() const {
 
 record::TableList DefinedTrials::tables() const {
   record::TableList tables = record::trial_tables();
-  if (!d_.questions.empty()) {
+  if (!d_.questions.empty() || !d_.measures.empty()) {
     tables.push_back(&record::responses_table());
   }
   if (adapts()) {
@@ -325,6 +329,7 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
   setup.sound_wrong = sound_of_interval(d_.sound_wrong);
   give(*names_, d_, current_.values);
   setup.questions = make_questions();
+  setup.measures = take_measures();
   pass_ = std::make_unique<TrialPass>(std::move(setup));
   return *pass_;
 }
@@ -395,6 +400,10 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
   for (const MovingTarget& target : presented.targets) {
     targets.push_back({target});
   }
+  std::vector<Measurement> measurements;
+  for (const Measure& measure : presented.measures) {
+    measurements.emplace_back(measure, d_.rate);
+  }
   return {
       std::move(scenes),
       StageMachine(std::move(stages), std::move(regions), presented.fields.size(), presented.felt),
@@ -404,7 +413,8 @@ IntervalRun DefinedTrials::make_interval(std::size_t place, RandomStream& random
       recorded_of(d_, presented.fields.size()),
       presented.fields.size() - d_.objects.size(),
       cursor_of(presented, place),
-      std::move(targets)};
+      std::move(targets),
+      std::move(measurements)};
 }
 
 std::optional<Cursor> DefinedTrials::cursor_of(const Presented& presented,
@@ -439,8 +449,7 @@ std::vector<PresentedQuestion> DefinedTrials::make_questions() {
     if (!question.correct.empty()) {
       each.right = right_choice(*names_, question);
     }
-    each.feedback = question.feedback == Feedback::kAlways ||
-                    (question.feedback == Feedback::kPractice && current_.plan.practice);
+    each.feedback = is_told(question.feedback, current_.plan.practice);
     for (std::size_t i = 0; !question.onset.empty() && i < stages_.back().size(); ++i) {
       each.onset = stages_.back()[i].name == question.onset ? static_cast<int>(i) : each.onset;
     }
@@ -450,10 +459,25 @@ std::vector<PresentedQuestion> DefinedTrials::make_questions() {
       each.sight.marks.push_back(mark_to_touch(region.shape, place.device));
     }
     each.sight.hand = !each.places.empty();
+    each.rightwards = d_.display.mirrored ? -1.0 : 1.0;
     right_.push_back(each.right);
     asked.push_back(std::move(each));
   }
   return asked;
+}
+
+/// The interval in which each measure is taken, and whether it is told.
+std::vector<TakenMeasure> DefinedTrials::take_measures() const {
+  std::vector<TakenMeasure> taken;
+  const std::vector<std::size_t>& order = current_.values.intervals;
+  for (const Measure& measure : d_.measures) {
+    const auto at = std::ranges::find_if(
+        order, [&](std::size_t each) { return std::cmp_equal(each, measure.interval); });
+    taken.push_back(
+        {at == order.end() ? order.size() - 1 : static_cast<std::size_t>(at - order.begin()),
+         is_told(measure.feedback, current_.plan.practice)});
+  }
+  return taken;
 }
 
 /// Regions as they are in the last interval.
@@ -490,7 +514,9 @@ void DefinedTrials::note_variables(std::size_t interval,
 }
 
 std::vector<record::ResponseRow> DefinedTrials::responses() {
-  return response_rows(*pass_, d_.questions, right_);
+  std::vector<record::ResponseRow> rows = response_rows(*pass_, d_.questions, right_);
+  std::ranges::move(measure_rows(*pass_), std::back_inserter(rows));
+  return rows;
 }
 
 void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {

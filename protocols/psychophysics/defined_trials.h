@@ -76,6 +76,7 @@ class DefinedTrials final : public Trials {
   IntervalRun make_interval(std::size_t place, RandomStream& random);
   int sound_of_interval(int sound) const;
   std::vector<PresentedQuestion> make_questions();
+  std::vector<TakenMeasure> take_measures() const;
   void note_variables(std::size_t interval, std::vector<record::VariableRow>& rows) const;
   double outcome_of(const std::vector<record::ResponseRow>& responses);
   bool comes_again(const std::vector<record::ResponseRow>& responses) const;

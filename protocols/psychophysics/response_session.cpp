@@ -35,6 +35,9 @@ void check_hands(const StudiedDefinition& d) {
   if (plan.script) {
     refuse_depth(d, "observer.script answers by what a hand felt");
   }
+  if (!d.measures.empty()) {
+    refuse_depth(d, "[measures] are of what a hand does");
+  }
   if (d.questions.empty()) {
     refuse_depth(d, "nothing is asked, so responses alone say nothing");
   }

@@ -9,6 +9,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/questions/question_kind.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/device_row.h"
 #include "core/record/rows/late_window_row.h"
@@ -223,8 +224,21 @@ class TrialReplay {
     if (view.question > 0) {
       const StageSight& sight = trials_.pass().question_sight(view.question - 1U);
       view.show(sight.marks, sight.objects, sight.hand, false, {});
+      show_mark(definition_->questions[view.question - 1U], sample, view);
     }
     return view;
+  }
+
+  /// A mark that the hand moves is where the hand was; nothing says where others were.
+  void show_mark(const TrialQuestion& question, const record::Sample& sample,
+                 TrialView& view) const {
+    if (question.mark.by == MarkedBy::kHand) {
+      const double rightwards = definition_->display.mirrored ? -1.0 : 1.0;
+      questions::AnswerDraft draft;
+      question.kind->move_mark(question, question.mark.share_at(rightwards * sample.position.x()),
+                               draft);
+      view.show(draft);
+    }
   }
 
   template <class Visit>

@@ -109,19 +109,35 @@ TEST_F(EverydayTest, StiffnessMatching) {
   EXPECT_NEAR(reported("setting"), over_participants(setting_of), 1e-6);
 }
 
-double exponent_of(const std::vector<Row>& rows) {
+/// @param said  the response that is a magnitude
+double exponent_of(const std::vector<Row>& rows, const std::string& said) {
   std::vector<double> levels, magnitudes;
   for (const Row& row : rows) {
     levels.push_back(std::log(number_in(row, "level")));
-    magnitudes.push_back(std::log(number_in(row, "roughness")));
+    magnitudes.push_back(std::log(number_in(row, said)));
   }
   return slope_of(levels, magnitudes);
 }
 
 TEST_F(EverydayTest, RoughnessMagnitude) {
   rehearse("roughness_magnitude", 3);
-  EXPECT_NEAR(reported("exponent"), over_participants(exponent_of), 1e-9);
+  const auto exponent = [](const std::vector<Row>& rows) { return exponent_of(rows, "roughness"); };
+  EXPECT_NEAR(reported("exponent"), over_participants(exponent), 1e-9);
   EXPECT_NEAR(reported("exponent"), 0.8, 0.2) << "as the virtual participants have it";
+}
+
+/// The hand rounds to a hundredth of its line, and moves with noise.
+TEST_F(EverydayTest, ViscosityByScale) {
+  rehearse("viscosity_by_scale", 3);
+  const auto exponent = [](const std::vector<Row>& rows) {
+    return exponent_of(rows, "resistance");
+  };
+  EXPECT_NEAR(reported("exponent"), over_participants(exponent), 1e-9);
+  EXPECT_NEAR(reported("exponent"), 0.6, 0.15) << "as the virtual participants have it";
+  for (const Row& row : trials_["S01"]) {
+    EXPECT_EQ(number_in(row, "resistance"), std::round(number_in(row, "resistance")));
+    EXPECT_GT(number_in(row, "resistance.rt"), 1.0) << "a way of the hand and a rest";
+  }
 }
 
 double slope_over(const std::vector<Row>& rows, const std::string& level,

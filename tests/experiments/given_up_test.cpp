@@ -87,6 +87,9 @@ TEST(GivenUpTest, AStudyOfAbortedPassesSaysWhy) {
   EXPECT_EQ(dry.status, 1);
   EXPECT_THAT(dry.errors, HasSubstr("every pass was aborted, the first since trial 1: a stage was "
                                     "not done in time: tap"));
+  EXPECT_THAT(test::run_command("haptrial info " + (folder / "out" / "S01.h5").string()).output,
+              HasSubstr("each of its 20 passes was aborted"))
+      << "the rehearsal does not go on to its end";
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ std::string write_session(const NewFolder& out, const ExportSession& session, st
   const auto recalls = analysis::session_recalls(reader, parameters, 1);
   std::string table;
   RowText row(table, Delimited::kCsv);
-  for (const auto& [score, pass] : recalls.scored) {
+  for (const auto& [score, pass, spectrum] : recalls.scored) {
     const auto run = analysis::run_samples(reader, passes.at(pass));
     const auto name = fmt::format("{:03}/trial-{:03}.csv", place + 1, score.trial);
     const auto places = analysis::path_places(reader, score.block, parameters);

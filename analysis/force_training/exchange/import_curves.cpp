@@ -46,6 +46,7 @@ analysis::StudyResult analyze_curves(const CurveStudy& study,
   const auto found = read_trials(study);
   std::vector<ImportedTrial> trials = found->trials();
   std::vector<TrialLook> looks(trials.size());
+  std::vector<analysis::RecallSpectrum> spectra(trials.size());
   share_out(
       trials.size(), jobs,
       [&](std::size_t i, Counter& counter) {
@@ -53,6 +54,7 @@ analysis::StudyResult analyze_curves(const CurveStudy& study,
         const auto detail = aligned(curves, found->place(i), parameters);
         fill(trials[i].score, detail.score);
         looks[i] = look_at(curves, detail);
+        spectra[i] = analysis::recall_spectrum(curves.target.view(), curves.applied.view());
         counter.add(1);
         counter.check();
       },
@@ -66,6 +68,8 @@ analysis::StudyResult analyze_curves(const CurveStudy& study,
   add_subjects(result, trials);
   result.statistics =
       study_statistics(result.scores, questions_of(result.factors, study.plan, jobs));
+  result.frequencies = analysis::recall_by_frequency(
+      analysis::recalled_spectra(result.scores, spectra), result.statistics.conditions);
   for (const auto& [which, at] : analysis::notable(result.scores)) {
     result.recalls.push_back(recall_picture(
         which, result.scores[at], aligned(found->curves(at), found->place(at), parameters)));

@@ -13,17 +13,18 @@
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {
-namespace {
 
 using namespace palette;
 
-// Look by place among the conditions: circle, square, triangle, diamond, each with its dash.
+/// Circle, square, triangle, diamond, each with its dash.
 Look condition_look(std::size_t index) {
   const std::array<Look, 4> looks{
       Look{kOrange, kLong, 5, 2.0, 1.1}, Look{kBlue, kMixed, 7, 2.0, 1.1},
       Look{kGreen, kSolid, 9, 2.0, 1.3}, Look{kPurple, kShort, 13, 2.0, 1.3}};
   return looks[index % looks.size()];
 }
+
+namespace {
 
 constexpr double kBeside = 0.015;  // points of participants are beside the bar of their mean
 

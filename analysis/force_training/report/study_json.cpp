@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/document/finding_json_internal.h"
+#include "analysis/force_training/report/recall_frequency_findings.h"
 #include "analysis/force_training/study/identity_json_internal.h"
 #include "analysis/force_training/study/quality_summary.h"
 #include "analysis/statistics/design/result_json_internal.h"
@@ -333,6 +334,10 @@ std::string statistics_json(const StudyResult& study, const std::vector<FindingL
   }
   for (const auto& [name, value] : study.parameters) {
     root["parameters"][name] = value;
+  }
+  const FindingList recalled = recall_frequency_findings(study.frequencies, study.simulated());
+  if (const Json values = json_of({recalled}); !values.empty()) {
+    root[recalled.name] = values.at(recalled.name);
   }
   if (Json values = json_of(own); !values.empty()) {
     root["own_findings"] = std::move(values);

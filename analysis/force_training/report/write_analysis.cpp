@@ -4,6 +4,7 @@
 
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/files/staging.h"
+#include "analysis/force_training/report/recall_frequency_findings.h"
 #include "analysis/force_training/report/report.h"
 #include "analysis/force_training/report/study_figures.h"
 #include "analysis/force_training/report/study_json.h"
@@ -21,16 +22,25 @@ void write_analysis(const StudyResult& study, const fs::path& folder, int paper,
                     const std::vector<FindingList>& own) {
   const Staging staging(folder);
   staging.write("scores.csv", scores_csv(study.scores, study.factors));
+  const FindingList by_frequency = recall_frequency_findings(study.frequencies, study.simulated());
+  std::vector<FindingList> lists = own;
   staging.write("statistics.json", statistics_json(study, own));
   auto figures = study_figures(study);
   write_findings(own, staging, figures);
+  if (by_frequency.has_values()) {
+    lists.insert(lists.begin(), by_frequency);
+    figures.insert(figures.end(), by_frequency.figures.begin(), by_frequency.figures.end());
+    staging.write(
+        "recall_by_frequency.csv",
+        findings_csv(by_frequency.tables, {{"frequency", "at"}, {"condition", "condition"}}));
+  }
   draw_figures(figures, staging.path(), paper);
   std::vector<Drawing> drawings;
   for (const auto& figure : figures) {
     drawings.push_back({figure, file_text(staging.path() / (figure.name + ".svg"))});
   }
   Document report = study_report(study, drawings);
-  add_findings(report, own, drawings);
+  add_findings(report, lists, drawings);
   staging.write("report.html", to_html(report));
   staging.write("report.md", to_markdown(report));
   staging.publish();

@@ -325,6 +325,7 @@ class Extraction {
       const auto scores = score_recalls(pairs, parameters_, jobs);
       for (std::size_t k = 0; k < scores.size(); ++k) {
         fill(result_.scored[k].score, scores[k]);
+        result_.scored[k].spectrum = recall_spectrum(curves_[k].target, curves_[k].applied);
       }
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", reader_.path().string(), error.what()));

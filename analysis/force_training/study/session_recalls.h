@@ -7,6 +7,7 @@
 
 #include "analysis/force_training/score/path_places.h"
 #include "analysis/force_training/score/score.h"
+#include "analysis/force_training/study/recall_frequency.h"
 #include "analysis/force_training/study/session_summary.h"
 #include "analysis/statistics/base/defined.h"
 
@@ -20,6 +21,7 @@ namespace haptrial::analysis {
 struct ScoredPass {
   TrialScore score;
   std::size_t pass{0};  // row of /trials
+  RecallSpectrum spectrum{};
 };
 
 /// Recalls of one session file for a study.

@@ -103,10 +103,12 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
 
   StudyResult study;
   std::vector<PassTracking> tracking;
+  std::vector<RecallSpectrum> spectra;  // (scores)
   for (const auto& [file, recalls] : sessions) {
     study.sessions.push_back(recalls.summary);
     for (const auto& pass : recalls.scored) {
       study.scores.push_back(pass.score);
+      spectra.push_back(pass.spectrum);
     }
     study.exclusions.insert(study.exclusions.end(), recalls.exclusions.begin(),
                             recalls.exclusions.end());
@@ -114,6 +116,8 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   }
   study.statistics = study_statistics(study.scores, questions_of(study.factors, plan, jobs));
   study.path = path_statistics(study.scores, questions_of(study.factors, plan, jobs));
+  study.frequencies =
+      recall_by_frequency(recalled_spectra(study.scores, spectra), study.statistics.conditions);
   study.tracking = summarize_tracking("all participants", tracking);
   study.recalls = pictures(sessions, study.scores, parameters);
   study.stimulus = sessions.front().recalls.stimulus;

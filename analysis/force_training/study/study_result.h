@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/force_training/score/trial_score.h"
+#include "analysis/force_training/study/recall_frequency.h"
 #include "analysis/force_training/study/recall_picture.h"
 #include "analysis/force_training/study/session_summary.h"
 #include "analysis/force_training/study/study_statistics.h"
@@ -21,6 +22,7 @@ struct StudyResult {
   StudyStatistics statistics;
   /// The same tests of path_error [mm], where the path was recalled, too.
   std::optional<StudyStatistics> path{};
+  std::vector<RecallBand> frequencies;                          // by rising frequency
   TrackingSummary tracking;                                     // over all participants
   std::vector<RecallPicture> recalls;                           // best, median, worst
   std::vector<record::StimulusRow> stimulus;                    // first block of the first session

@@ -4,98 +4,63 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/base/definition/schema.h"
 
 namespace haptrial::analysis::trials {
 namespace {
 
-/// Notes a name that is not among those known. @returns its place
-std::size_t require_name(Table& table, const char* key, const std::string& name,
-                         const std::vector<std::string>& known) {
-  const auto at = std::ranges::find(known, name);
-  if (at == known.end()) {
-    const bool stated = table.has(key);
-    const std::string found = stated ? fmt::format("\"{}\"", name)
-                                     : fmt::format("\"produced\" of the {} \"{}\"", key, name);
-    const std::string lead = stated ? "" : fmt::format("{} = ", key);
-    table.reject(stated ? key : "kind", found,
-                 known.empty() ? std::string("none: the definition has no such name")
-                               : fmt::format("{}one of: {}", lead, fmt::join(known, ", ")));
-    return 0;
+std::vector<std::string> names_of(const std::vector<MeasureName>& measures) {
+  std::vector<std::string> names;
+  for (const MeasureName& each : measures) {
+    names.push_back(each.name);
   }
-  return static_cast<std::size_t>(at - known.begin());
+  return names;
 }
 
-void check_produced(Table& table, const ProducedNames& names, ProducedPlan& plan) {
-  if (names.stages.empty()) {
-    return;  // the definition could not be read
+/// Takes words and unit of the measure that is named.
+void take_measure(Table& table, const ProducedNames& names, ProducedPlan& plan) {
+  const auto measure = std::ranges::find(names.measures, plan.measure, &MeasureName::name);
+  if (measure != names.measures.end()) {
+    plan.words = measure->words;
+    plan.unit = measure->unit;
+  } else if (names.measures.empty()) {
+    table.reject("kind", "\"produced\" without a measure",
+                 "another kind, or add [measures.NAME], which says what is measured");
+  } else {
+    table.reject("measure", fmt::format("\"{}\"", plan.measure),
+                 fmt::format("one of: {}", fmt::join(names_of(names.measures), ", ")));
   }
-  require_name(table, "stage", plan.stage, names.stages);
-  if (!plan.device_name.empty()) {
-    plan.device = require_name(table, "device", plan.device_name, names.devices);
-  }
-  if (!plan.target.empty()) {
-    require_name(table, "target", plan.target, names.variables);
-  }
-  if (plan.quantity == ProducedQuantity::kPath && plan.statistic != ProducedStatistic::kMean) {
-    table.reject("statistic", "given beside quantity = \"path\", which is one number",
-                 "no statistic of a path");
+}
+
+void check_target(Table& table, const ProducedNames& names, const ProducedPlan& plan) {
+  if (!plan.target.empty() &&
+      std::ranges::find(names.variables, plan.target) == names.variables.end()) {
+    table.reject("target", fmt::format("\"{}\"", plan.target),
+                 names.variables.empty()
+                     ? std::string("none: the definition has no variable")
+                     : fmt::format("one of: {}", fmt::join(names.variables, ", ")));
   }
 }
 
 }  // namespace
 
-const char* unit_of(ProducedQuantity quantity) {
-  return quantity == ProducedQuantity::kForce   ? "N"
-         : quantity == ProducedQuantity::kSpeed ? "m/s"
-                                                : "m";
-}
-
-std::string words_of(const ProducedPlan& plan) {
-  constexpr std::array kQuantities{"force",         "place along x", "place along y",
-                                   "place along z", "speed",         "path"};
-  constexpr std::array kStatistics{"mean", "peak", "last", "deviation of the"};
-  const char* quantity = kQuantities[static_cast<std::size_t>(plan.quantity)];
-  return plan.quantity == ProducedQuantity::kPath
-             ? std::string(quantity)
-             : fmt::format("{} {}", kStatistics[static_cast<std::size_t>(plan.statistic)],
-                           quantity);
-}
-
 ProducedPlan read_produced_plan(Table& table, const ProducedNames& names) {
   using P = ProducedPlan;
-  using Q = ProducedQuantity;
-  using S = ProducedStatistic;
   return Schema<P>()
-      .derive([&](P& plan) { plan.stage = names.stages.empty() ? "" : names.stages.back(); })
-      .text("stage", &P::stage, "Stage in which something is produced")
-      .otherwise("the last")
-      .text("device", &P::device_name, "Device with which it is produced")
-      .otherwise("the first")
-      .choice("quantity", &P::quantity,
-              {{"force", Q::kForce},
-               {"x", Q::kX},
-               {"y", Q::kY},
-               {"z", Q::kZ},
-               {"speed", Q::kSpeed},
-               {"path", Q::kPath}},
-              "What is produced: the size of the force against the device, a place along an axis, "
-              "speed, or the length of the path")
-      .choice(
-          "statistic", &P::statistic,
-          {{"mean", S::kMean}, {"peak", S::kPeak}, {"end", S::kEnd}, {"deviation", S::kDeviation}},
-          "Number that stands for the stage: mean, greatest size, last value or standard "
-          "deviation")
-      .number("last", &P::last, {0.0, 600.0}, "s",
-              "Time at the stage's end that counts, such as the last second of a held force; 0: "
-              "the whole stage")
+      .derive([&](P& plan) {
+        plan.measure = names.measures.empty() ? "" : names.measures.front().name;
+      })
+      .text("measure", &P::measure, "Measure whose values are compared")
+      .otherwise("the first of [measures]")
       .text("target", &P::target,
-            "Variable of the trial that was to be produced, in N, m or m/s; the report then has "
+            "Variable of the trial that the measure was to equal, in its unit; the report then has "
             "errors")
       .otherwise("none: there are no errors")
-      .check([&](Table& t, P& plan) { check_produced(t, names, plan); })
+      .check([&](Table& t, P& plan) {
+        take_measure(t, names, plan);
+        check_target(t, names, plan);
+      })
       .read(table);
 }
 

@@ -30,16 +30,9 @@ void add_paired_methods(Document& document, const PairedPlan& plan) {
 
 void add_produced_methods(Document& document, const ProducedPlan& plan) {
   document.paragraph(fmt::format(
-      "What a trial produced is the {} of {} in {} of the stage {}{}; trials without that stage "
-      "have none, and a participant's trials under a condition are averaged.{}",
-      words_of(plan),
-      plan.device_name.empty() ? std::string("the first device")
-                               : fmt::format("the device {}", plan.device_name),
-      plan.last > 0.0 ? fmt::format("the last {:g} s", plan.last) : std::string("all ticks"),
-      plan.stage,
-      plan.quantity == ProducedQuantity::kForce
-          ? "; it is the force commanded to the device, which the hand presses against"
-          : "",
+      "What a trial produced is its measure {}, the {} of the definition's [measures]; trials "
+      "without it have none, and a participant's trials under a condition are averaged.{}",
+      plan.measure, plan.words,
       plan.target.empty()
           ? std::string()
           : fmt::format(" The constant error is the mean of what was produced less {}, the "

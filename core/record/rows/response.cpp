@@ -12,7 +12,8 @@ EnumText sources() {
   return EnumText({entry(ResponseSource::kNone, "none"), entry(ResponseSource::kKey, "key"),
                    entry(ResponseSource::kButton, "button"), entry(ResponseSource::kPlace, "place"),
                    entry(ResponseSource::kPointer, "pointer"),
-                   entry(ResponseSource::kPedal, "pedal")});
+                   entry(ResponseSource::kPedal, "pedal"),
+                   entry(ResponseSource::kMeasured, "measured")});
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ const Table<ResponseRow>& responses_table() {
        T::text("text", &R::text, kAnswerBytes, "the answer as a word"),
        T::column("correct", &R::correct, "1", "1 right, 0 wrong, -1 not known"),
        T::word("source", &R::source, kSourceBytes, sources(),
-               "what gave the answer: key, button, place, pointer, pedal or none"),
+               "what gave the answer: key, button, place, pointer, pedal, measured or none"),
        T::column("code", &R::code, "1", "which key, button or place; -1: none"),
        T::column("reaction_time", &R::reaction_time, "s",
                  "from the moment on in which an answer was possible; NaN: not measured"),

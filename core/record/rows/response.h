@@ -9,9 +9,18 @@
 namespace haptrial::record {
 
 /// Means by which an answer was given.
-enum class ResponseSource : std::uint8_t { kNone, kKey, kButton, kPlace, kPointer, kPedal };
+enum class ResponseSource : std::uint8_t {
+  kNone,
+  kKey,
+  kButton,
+  kPlace,
+  kPointer,
+  kPedal,
+  kMeasured
+};
 
-/// One answer, a row of /responses; in files whose protocol asks something.
+/// One answer, or a number that a stage produced, a row of /responses; in files whose protocol asks
+/// or measures something.
 struct ResponseRow {
   std::int32_t trial{0};  // as in /trials
   std::int32_t pass{-1};  // row of /trials; -1: none

@@ -76,6 +76,12 @@ static bool draws_numbers(const questions::ScaleView& scale) {
          scale.numbers.front() != scale.low_end;
 }
 
+/// Whether each step of a scale has a tick: those of a line that looks continuous are its ends.
+static bool draws_ticks(const questions::ScaleView& scale) {
+  constexpr int kMost = 50;
+  return scale.steps <= kMost;
+}
+
 double TextScreen::scale_height(const questions::ScaleView& scale, const Sizes& sizes) {
   const double lines = draws_numbers(scale) ? 3.0 : 2.0;
   return lines * text_.line_height(sizes.body) + 2.0 * kTick * std::min(width_, height_);
@@ -203,33 +209,33 @@ double TextScreen::draw_choices(const TextPage& page, const Sizes& sizes, double
   return y;
 }
 
-/// A line with a tick for each step, words below its ends, and the mark.
+/// A line with ticks, words below its ends, and the mark.
 void TextScreen::draw_scale(const TextPage& page, const Sizes& sizes, double y) {
   const double tick = kTick * std::min(width_, height_);
-  const double half = 0.4 * column();
+  const questions::ScaleView& scale = *page.answer.scale;
+  const double half = scale.length > 0.0 ? 0.5 * scale.length * width_ : 0.4 * column();
   const double left = 0.5 * width_ - half;
   const double middle = y + tick;
   painter_.begin_over();
   painter_.line({left, middle}, {left + 2.0 * half, middle}, 2.0, ink_);
-  for (int i = 0; i <= page.answer.scale->steps; ++i) {
-    const double x = left + 2.0 * half * i / page.answer.scale->steps;
+  for (int i = 0; i <= scale.steps; i += draws_ticks(scale) ? 1 : scale.steps) {
+    const double x = left + 2.0 * half * i / scale.steps;
     painter_.line({x, middle - 0.5 * tick}, {x, middle + 0.5 * tick}, 2.0, ink_);
   }
   if (page.answer.chosen >= 0) {
-    painter_.disc({left + 2.0 * half * page.answer.chosen / page.answer.scale->steps, middle},
-                  0.6 * tick, accent_);
+    painter_.disc({left + 2.0 * half * page.answer.chosen / scale.steps, middle}, 0.6 * tick,
+                  accent_);
   }
   painter_.end();
   double below = middle + 1.2 * tick;
-  const bool numbered = draws_numbers(*page.answer.scale);
-  for (std::size_t i = 0; numbered && i < page.answer.scale->numbers.size(); ++i) {
-    const double x = left + 2.0 * half * static_cast<double>(i) / page.answer.scale->steps;
-    text_.paragraphs(page.answer.scale->numbers[i], {x, below}, column(), sizes.body);
+  const bool numbered = draws_numbers(scale);
+  for (std::size_t i = 0; numbered && i < scale.numbers.size(); ++i) {
+    const double x = left + 2.0 * half * static_cast<double>(i) / scale.steps;
+    text_.paragraphs(scale.numbers[i], {x, below}, column(), sizes.body);
   }
   below += numbered ? text_.line_height(sizes.body) : 0.0;
-  text_.paragraphs(page.answer.scale->low_end, {left, below}, half, sizes.body, Align::kCentre);
-  text_.paragraphs(page.answer.scale->high_end, {left + 2.0 * half, below}, half, sizes.body,
-                   Align::kCentre);
+  text_.paragraphs(scale.low_end, {left, below}, half, sizes.body, Align::kCentre);
+  text_.paragraphs(scale.high_end, {left + 2.0 * half, below}, half, sizes.body, Align::kCentre);
 }
 
 /// A square in the middle; its y points up.

@@ -146,13 +146,27 @@ analysis::trials::PursuitNames pursuit_names(const protocols::TrialsDefinition& 
   return names;
 }
 
-/// @param factors  that vary
+/// Measures, and the variables that they may have been to equal: every name that a trial records.
+/// @param known  factors, and what blocks and [variables] give
 analysis::trials::ProducedNames produced_names(const protocols::TrialsDefinition& d,
-                                               const std::vector<std::string>& factors) {
-  analysis::trials::ProducedNames names{d.stages, {}, factors};
-  std::ranges::transform(d.hands, std::back_inserter(names.devices), &protocols::TrialDevice::name);
+                                               const PlanDefaults& known) {
+  analysis::trials::ProducedNames names{{}, known.factors};
+  for (const protocols::Measure& measure : d.measures) {
+    names.measures.push_back({measure.name, protocols::words_of(measure), measure.unit});
+  }
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::find(names.variables, name) == names.variables.end()) {
+      names.variables.push_back(name);
+    }
+  };
   for (const protocols::Track& track : d.tracks) {
-    names.variables.push_back(track.variable);
+    std::ranges::for_each(track.variables(), add);
+  }
+  std::ranges::for_each(known.cues.variables, add);  // of intervals and [variables]
+  for (const protocols::Block& block : d.order.blocks) {
+    for (const protocols::GivenValue& value : block.values) {
+      add(value.name);
+    }
   }
   return names;
 }
@@ -181,8 +195,8 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   add_names(d, defaults);
   defaults.reaching = reaching_names(d);
   defaults.pursuit = pursuit_names(d);
-  defaults.produced = produced_names(d, defaults.factors);
   defaults.cues = cue_names(d);
+  defaults.produced = produced_names(d, defaults);
   defaults.levels = defaults.cues.levels;
   for (const auto& group : d.groups) {
     defaults.levels["group"].push_back(group.name);

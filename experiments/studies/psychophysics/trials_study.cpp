@@ -268,8 +268,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
     result.quantities = trials::paired_quantities(result.data, plan);
   }
   if (plan.kind == trials::AnalysisKind::kProduced) {
-    result.quantities =
-        trials::produced_quantities(result.data, request.files.files, plan, request.threads);
+    result.quantities = trials::produced_quantities(result.data, plan);
   }
   check_planned(result);
   add_sequential(request, definition, result);

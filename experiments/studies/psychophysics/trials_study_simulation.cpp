@@ -9,10 +9,13 @@
 #include <set>
 #include <utility>
 
+#include "analysis/psychophysics/data/page_scores.h"
 #include "analysis/psychophysics/data/read_trials.h"
+#include "analysis/psychophysics/study/covariate.h"
 #include "analysis/psychophysics/study/trials_study.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "experiments/study/study_run.h"
 #include "protocols/psychophysics/response_session.h"
 
@@ -161,17 +164,21 @@ class TrialsStudySimulation final : public StudySimulation {
                       asked_in_));
     }
     trials::TrialsData data;
+    trials::TrialsPlan plan = plan_;
     for (int p = 0; p < d_.design.participants; ++p) {
       for (int session = 1; session <= d_.sessions(); ++session) {
         add_session(p, session, seed, data);
       }
+      draw_covariate(participant_name(p), seed, plan.plan.covariate);
     }
-    return analyzed(std::move(data));
+    return analyzed(std::move(data), plan);
   }
 
   SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
-    return analyzed(trials::read_trials(
-        files, [this](const std::string& subject) { return group_of(subject); }, 1));
+    const auto group = [this](const std::string& subject) { return group_of(subject); };
+    trials::TrialsPlan plan = plan_;
+    trials::add_covariate(trials::page_scores(files, d_.pages, group), plan.plan.covariate);
+    return analyzed(trials::read_trials(files, group, 1), plan);
   }
 
  private:
@@ -189,6 +196,16 @@ class TrialsStudySimulation final : public StudySimulation {
     } catch (const InputError& error) {
       responses.reject("met", fmt::format("is \"{}\": {}", met, error.what()));
       root.check();
+    }
+  }
+
+  /// Answers alone have no pages: the score is drawn, related to nothing, as those of the random
+  /// answers to pages of full sessions.
+  static void draw_covariate(const std::string& subject, std::uint64_t seed,
+                             analysis::Covariate& covariate) {
+    if (!covariate.name.empty()) {
+      RandomStream random(seed, "covariate of " + subject);
+      covariate.values[subject] = random.normal();
     }
   }
 
@@ -217,8 +234,8 @@ class TrialsStudySimulation final : public StudySimulation {
     }
   }
 
-  SimulatedStudy analyzed(trials::TrialsData data) const {
-    SimulatedStudy r = simulated_study_of(trials::analyze(std::move(data), plan_, procedures(), 1));
+  SimulatedStudy analyzed(trials::TrialsData data, const trials::TrialsPlan& plan) const {
+    SimulatedStudy r = simulated_study_of(trials::analyze(std::move(data), plan, procedures(), 1));
     r.hours = static_cast<double>(r.trials) * hours_of_trial_;
     return r;
   }

@@ -158,6 +158,16 @@ void check_balance(Table& root, const Track& track, const TrialQuestion& questio
   }
 }
 
+/// Whether the first measure says which trials are right, for trials in which nothing is asked.
+bool has_judged_measure(Table& root) {
+  if (!root.has("measures")) {
+    return false;
+  }
+  Table measures = root.table("measures");
+  const std::vector<std::string> names = measures.keys_as_written();
+  return !names.empty() && measures.table(names.front()).has("within");
+}
+
 /// Checks the answers that a track learns from, and the best that it could learn.
 void check_learning(Table& root, const TrialsDefinition& d, const Track& track) {
   if (!track.counts.empty()) {
@@ -169,11 +179,13 @@ void check_learning(Table& root, const TrialsDefinition& d, const Track& track) 
                             "`counts`, a formula that is 1, -1 or 0: \"$answer == 1 ? 1 "
                             ": $answer == 2 ? -1 : 0\"",
                             track.name));
+  } else if (d.questions.empty() && has_judged_measure(root)) {
+    return;
   } else if (d.questions.empty() || d.questions.front().correct.empty()) {
     root.reject(table_of_tracks(root),
                 fmt::format("learns from right answers (\"{}\"), and no response says which "
-                            "is right; add `correct` to [response] or `counts` to the "
-                            "procedure",
+                            "is right; add `correct` to [response], `within` to the first of "
+                            "[measures] where nothing is asked, or `counts` to the procedure",
                             track.name));
   } else {
     check_balance(root, track, d.questions.front());
@@ -263,7 +275,26 @@ void check_procedures(Table& root, const TrialsDefinition& d) {
   check_variables(root, d);
 }
 
+/// The name of a measure has its value after the trial alone.
+void check_measure_names(Table& root, const TrialsDefinition& d) {
+  const std::set<std::string> factors = factor_names(d);
+  for (const Measure& measure : d.measures) {
+    const bool asked =
+        std::ranges::find(d.questions, measure.name, &TrialQuestion::name) != d.questions.end();
+    const bool set =
+        std::ranges::any_of(d.tracks, [&](const Track& track) { return track.sets(measure.name); });
+    const bool stated = root.has("variables") && root.table("variables").has(measure.name);
+    if (asked || set || stated || factors.contains(measure.name)) {
+      root.table("measures")
+          .reject(measure.name,
+                  "is the name of a response, a factor, a variable or what a procedure sets, "
+                  "too; give the measure another name");
+    }
+  }
+}
+
 void check_stages(Table& root, const TrialsDefinition& d, const std::vector<NamedStage>& stages) {
+  check_measure_names(root, d);
   check_seen_objects(root, d, stages);
   check_questions(root, d, stages);
   check_masking(root, d);

@@ -145,6 +145,9 @@ void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& 
       names.set(question.name, value);
       answers += fmt::format("{}{} = {:g}", answers.empty() ? "" : ", ", question.name, value);
     }
+    for (const Measure& measure : d.measures) {
+      names.set(measure.name, 1.0);  // what a hand will produce is not known
+    }
     for (const Track& track : d.tracks) {
       if (!track.counts.empty()) {
         check_lesson(d, track, names.value(track.counts), answers);

@@ -116,6 +116,65 @@ std::vector<std::string> sights_of(const Presented& presented, const Names& name
   return sights;
 }
 
+std::vector<std::string> names_of_measures(Table& root) {
+  return root.has("measures") ? root.table("measures").keys_as_written()
+                              : std::vector<std::string>{};
+}
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& named) {
+  std::vector<std::string> names;
+  add_names(named, names);
+  return names;
+}
+
+std::vector<std::string> units_of_values(const TrialsDefinition& d) {
+  std::vector<std::string> units;
+  for (const channel::ChannelOptions& channel : d.channels) {
+    for (const channel::Quantity& quantity : channel.plan.quantities) {
+      units.push_back(quantity.unit);
+    }
+  }
+  return units;
+}
+
+/// A stage can require only what it measures itself.
+void check_required_measures(Table& root, const Presented& presented) {
+  std::vector<Table> stages = root.tables("stages");
+  for (std::size_t k = 0; k < presented.stages.size(); ++k) {
+    const std::optional<Requirement>& require = presented.stages[k].stage.require;
+    const auto measure = static_cast<std::size_t>(require ? require->measure : -1);
+    if (measure < presented.measures.size() && presented.measures[measure].stage != k) {
+      stages[k].table("require").reject(
+          "measure", fmt::format("\"{}\"", presented.measures[measure].name),
+          fmt::format("a measure of this stage, with stage = \"{}\"", presented.stages[k].name));
+    }
+  }
+}
+
+/// Measures, once fields, targets and stages are known.
+void read_all_measures(Table& root, const Names& names, const TrialsDefinition& d,
+                       Presented& presented) {
+  if (!root.has("measures")) {
+    return;
+  }
+  const MeasureSource source{names_of(presented.stages),
+                             names_of(d.intervals),
+                             names_of(presented.fields),
+                             presented.felt,
+                             names_of(presented.targets),
+                             channel::names_of_values(d.channels),
+                             units_of_values(d),
+                             d.hands,
+                             [&names](const std::string& name) {
+                               return names.has_place(name) ? std::optional(names.place(name))
+                                                            : std::nullopt;
+                             }};
+  Table measures = root.table("measures");
+  presented.measures = read_measures(measures, source);
+  check_required_measures(root, presented);
+}
+
 }  // namespace
 
 Presented read_presented(Table& document, const Names& names, const TrialsDefinition& d,
@@ -136,13 +195,10 @@ Presented read_presented(Table& document, const Names& names, const TrialsDefini
     Table table = root.table("looks");
     presented.looks = read_looks(table);
   }
-  std::vector<std::string> fields, regions;
-  add_names(presented.fields, fields);
-  add_names(presented.regions, regions);
   const std::vector<std::string> sights = sights_of(presented, names, d);
   const StageSource source{
-      fields,
-      regions,
+      names_of(presented.fields),
+      names_of(presented.regions),
       [&names](const std::string& text) { return names.word(text); },
       random,
       root.has("sounds") ? sound::cue_names(root.table("sounds")) : std::vector<std::string>{},
@@ -150,8 +206,10 @@ Presented read_presented(Table& document, const Names& names, const TrialsDefini
       [&d](Table& table, const std::string& key) {
         return d.keys.bits_of(read_window_keys(table, key));
       },
-      channel::names_of_values(d.channels)};
+      channel::names_of_values(d.channels),
+      names_of_measures(root)};
   presented.stages = read_stages(root, source);
+  read_all_measures(root, names, d, presented);
   if (root.has("sounds")) {
     Table sounds = root.table("sounds");
     presented.varied_cues = sound::read_varied_cues(sounds, d.cues);

@@ -7,6 +7,7 @@
 #include "core/scene/field.h"
 #include "core/scene/read/read_region.h"
 #include "protocols/psychophysics/definition/cursor_parameters.h"
+#include "protocols/psychophysics/definition/measure.h"
 #include "protocols/psychophysics/definition/moving_target.h"
 #include "protocols/psychophysics/definition/names.h"
 #include "protocols/psychophysics/definition/read_stages.h"
@@ -31,6 +32,7 @@ struct Presented {
   std::vector<NamedStage> stages;
   std::optional<CursorParameters> cursor;
   std::vector<MovingTarget> targets;
+  std::vector<Measure> measures;
   std::vector<sound::Cue> varied_cues;  // those of the definition's that vary, in their order
 };
 

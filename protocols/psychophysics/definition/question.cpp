@@ -162,7 +162,7 @@ void read_digits(Table& table, TrialQuestion& question, KeyBits& keys) {
   if (range.size() != 2 || !digits || range[1] <= range[0]) {
     table.reject("scale", "another list",
                  "[lowest, highest], whole numbers from 0 to 9; on another scale a mark is moved: "
-                 "add step or ends");
+                 "add step, ends or by");
     return;
   }
   question.first = range[0];
@@ -182,10 +182,14 @@ std::vector<const QuestionKind*> kinds_in_trials() {
   return kinds;
 }
 
-/// The keys of a question without choices, and enter, which gives the answer.
+/// The keys of a question without choices, and enter, which gives the answer. A mark that the hand
+/// or the mouse moves hears no other.
 void hear_keys(TrialQuestion& question, KeyBits& keys) {
+  const bool by_keys = question.mark.by == MarkedBy::kKeys;
   for (const questions::HeardKey& key : question.kind->heard_keys(question)) {
-    question.heard.push_back({keys.bit_of(key.code), key.press});
+    if (by_keys) {
+      question.heard.push_back({keys.bit_of(key.code), key.press});
+    }
   }
   question.heard.push_back({keys.bit_of(KeyPress::kEnter), {KeyPress::kEnter}});
   if (question.kind->traits().any_character) {
@@ -201,11 +205,15 @@ void read_answer(Table& table, TrialQuestion& question, Means& means) {
                                          questions::keys_of_kinds(kinds)));
   } else if (kind == &questions::choice_kind()) {
     read_choices(table, question, means);
-  } else if (kind == &questions::scale_kind() && !table.has("step") && !table.has("ends")) {
+  } else if (kind == &questions::scale_kind() && !table.has("step") && !table.has("ends") &&
+             !table.has("by")) {
     read_digits(table, question, means.keys);
   } else {
     question.kind = kind;
     kind->read(table, question);
+    if (kind->traits().marks) {
+      mark_schema().read(table, question.mark);
+    }
     hear_keys(question, means.keys);
   }
 }

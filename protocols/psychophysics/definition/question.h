@@ -7,6 +7,7 @@
 
 #include "core/base/key_press.h"
 #include "core/questions/question.h"
+#include "protocols/psychophysics/definition/mark_means.h"
 
 namespace haptrial {
 class Table;
@@ -65,6 +66,7 @@ struct TrialQuestion : questions::Question {
   std::vector<ChoiceMeans> means;  // (choices)
   double first{1.0};            // what formulas take choice 0 for; each further one counts 1 more
   std::vector<HeardBit> heard;  // without choices, enter last
+  MarkMeans mark;               // of a kind that marks
   std::string correct;          // formula: the number of the right choice, or its word; empty: none
   Feedback feedback{Feedback::kNever};
   double timeout{0.0};    // then the silent choice is given, or the trial aborted; 0: never [s]
@@ -100,7 +102,8 @@ questions::Answer given_answer(const TrialQuestion& question, int choice,
 ///     question     the text
 ///     choices      [{ value, [label], [keys], [buttons], [touch], [pedal], [silent] }, …], or
 ///     scale        [lowest, highest]: whole numbers, by the keys of their digits, or
-///     scale        with step or ends: a mark is moved by the arrow keys, as on a page, or
+///     scale        with step, ends or by: a mark is moved by the arrow keys, as on a page, or
+///                  by the hand or the mouse (mark_means.h)
 ///     number       [lowest, highest]: typed, or
 ///     words        true: any words, typed, or the key of a kind that a program adds
 ///     [correct]    formula of the right choice: its number, from 1, or its value as a word

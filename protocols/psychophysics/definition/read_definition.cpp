@@ -195,7 +195,7 @@ void keep_stages(const std::vector<NamedStage>& stages, TrialsDefinition& d) {
 void read_first_trial(Table& root, TrialsDefinition& d) {
   const std::unique_ptr<Names> names = read_names(root, d);
   names->check(root);
-  std::vector<NamedStage> stages;
+  Presented first;
   if (d.order.blocks.empty()) {
     static_cast<void>(root.misspelled("blocks"));
     root.check();  // of stages and fields nothing was read, so that nothing of them would be known
@@ -205,15 +205,16 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
     try {
       give(*names, d, sample_values(d, 0));
       give_interval(*names, d.intervals[place], place);
-      stages = read_presented(root, *names, d, nullptr).stages;
+      first = read_presented(root, *names, d, nullptr);
     } catch (const InputError& error) {
       root.reject("experiment", fmt::format("cannot begin with the block {}: {}",
                                             d.order.blocks.front().name, error.what()));
       root.check();  // what is not read after this would count as not known
     }
   }
-  keep_stages(stages, d);
-  check_stages(root, d, stages);
+  keep_stages(first.stages, d);
+  d.measures = first.measures;
+  check_stages(root, d, first.stages);
 }
 
 }  // namespace
@@ -221,6 +222,11 @@ void read_first_trial(Table& root, TrialsDefinition& d) {
 std::unique_ptr<Names> read_names(Table& root, const TrialsDefinition& d) {
   auto names = std::make_unique<Names>();
   declare_names(*names, d);
+  if (root.has("measures")) {
+    for (const std::string& measure : root.table("measures").keys_as_written()) {
+      names->declare(measure);
+    }
+  }
   names->read(root);
   return names;
 }
@@ -300,6 +306,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.groups = study_groups(root.source(), file_name);
   read_all_objects(root, d);
   d.questions = read_questions(root, d.keys);
+  check_marks(root, d);
   note_keys_of_stages(root, d.keys);
   d.tracks = psychometric::read_tracks(root);
   d.script = read_level_script(root);

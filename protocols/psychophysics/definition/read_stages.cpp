@@ -220,7 +220,8 @@ void check_timeout(Table& table, Reading& reading) {
 }
 
 const char* unit_of(const Requirement& require) {
-  return require.of == Requirement::Of::kDepth   ? "m"
+  return require.measure >= 0                    ? ""
+         : require.of == Requirement::Of::kDepth ? "m"
          : require.of == Requirement::Of::kForce ? "N"
                                                  : "m/s";
 }
@@ -233,12 +234,19 @@ const Schema<Requirement>& requirement_schema() {
                   {{"depth", R::Of::kDepth}, {"force", R::Of::kForce}, {"speed", R::Of::kSpeed}},
                   "Quantity whose largest value in the stage must be enough; without [require] "
                   "nothing must")
-          .required()
-          .custom("at_least", "Smallest value of the required quantity that is enough",
+          .otherwise("none; needed unless `measure` is stated")
+          .custom("at_least", "Smallest value of the required quantity or measure that is enough",
                   [](Table& table, const std::string& key, R& require) {
-                    require.at_least = table.number(key, kNonNegative, unit_of(require));
+                    require.at_least = table.number(
+                        key, require.measure >= 0 ? kMeasured : kNonNegative, unit_of(require));
                   })
-          .required()
+          .otherwise("needed, unless a measure has `at_most`")
+          .custom("at_most", "Greatest value of the required measure that is still allowed",
+                  [](Table& table, const std::string& key, R& require) {
+                    require.at_most = table.number(key, kMeasured, "");
+                  })
+          .only_if([](const R& require) { return require.measure >= 0; })
+          .otherwise("no limit")
           .choice("else", &R::otherwise, consequences(),
                   "Consequence of a stage in which the required quantity was not enough: the "
                   "trial is aborted and comes again, the interval begins again, or the trial goes "
@@ -247,10 +255,37 @@ const Schema<Requirement>& requirement_schema() {
   return schema;
 }
 
+/// Reads the measure that is required, before its bounds.
+void read_required_measure(Table& table, Reading& reading, Requirement& require) {
+  table.describe({"measure", "Measure of this stage whose value is required", "none", false});
+  if (!table.has("measure")) {
+    return;
+  }
+  require.measure = std::max(0, index_of(table, "measure", table.text("measure"), reading,
+                                         reading.source->measures, "measure"));
+  require.at_least = -std::numeric_limits<double>::infinity();
+}
+
+void check_requirement(Table& table, const Requirement& require) {
+  const bool measure = require.measure >= 0;
+  if (measure == table.has("max_of")) {
+    table.reject("max_of", measure ? "stands beside measure; keep one of the two"
+                                   : "is missing; state it or measure");
+  } else if (!table.has("at_least") && !(measure && table.has("at_most"))) {
+    table.reject("at_least", measure ? "is missing; state it, at_most or both" : "is missing");
+  } else if (require.at_least > require.at_most) {
+    table.reject("at_least", fmt::format("{:g}", require.at_least),
+                 fmt::format("at most at_most, {:g}", require.at_most));
+  }
+}
+
 void read_requirement(Table& table, const std::string& key, Reading& reading) {
   Table inner = table.table(key);
-  Requirement require = requirement_schema().read(inner);
-  if (require.of != Requirement::Of::kSpeed) {
+  Requirement require;
+  read_required_measure(inner, reading, require);
+  requirement_schema().read(inner, require);
+  check_requirement(inner, require);
+  if (inner.has("max_of") && require.of != Requirement::Of::kSpeed) {
     inner.describe({"field", "Field whose depth or force is required", "", true});
     require.field =
         index_of(inner, "field", inner.text("field"), reading, reading.source->fields, "field");

@@ -35,7 +35,8 @@ struct StageSource {
   std::vector<std::string> sights{};  // what can be shown; empty: anything
   /// The bits of a list of keys of the window by their names. Null: no keys are known.
   std::function<std::uint32_t(Table&, const std::string&)> keys{};
-  std::vector<std::string> values{};  // of channels, for which stages may wait
+  std::vector<std::string> values{};    // of channels, for which stages may wait
+  std::vector<std::string> measures{};  // that stages may require, by index
 };
 
 /// Reads the tables [[stages]]. Problems are noted in the table; keys in brackets are optional.
@@ -48,7 +49,8 @@ struct StageSource {
 ///               window, names), channel (a quantity) with above or below; [for] = time for which
 ///               they hold [s], or [shortest, longest]
 ///     [timeout] after [s], then = "abort", "repeat" or "go on"
-///     [require] max_of = "depth", "force" (with field) or "speed", at_least, else = as then
+///     [require] max_of = "depth", "force" (with field) or "speed", at_least, else = as then; or
+///               measure with at_least, at_most or both
 ///     [onset]   speed_above [m/s]
 ///     [sound]   name, or "$name"; begins with the stage
 ///     [marker]  code of its onset, 1 to 255

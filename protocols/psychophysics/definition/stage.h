@@ -33,9 +33,13 @@ enum class Consequence : std::uint8_t {
 struct Requirement {
   enum class Of : std::uint8_t { kDepth, kForce, kSpeed };
   Of of{Of::kDepth};
-  int field{-1};         // whose depth or force; -1 of a speed, which is that of tools
+  int field{-1};    // whose depth or force; -1 of a speed, which is that of tools
+  int measure{-1};  // of the definition, whose value is required; -1: the largest value of `of`
   double at_least{0.0};  // of the largest value in the stage, of any device [m, N or m/s]
+  double at_most{std::numeric_limits<double>::infinity()};  // of a measure
   Consequence otherwise{Consequence::kRepeat};
+
+  bool holds(double value) const noexcept { return value >= at_least && value <= at_most; }
 };
 
 /// One stage of an interval with the numbers of its trial: what can be felt, and until when.

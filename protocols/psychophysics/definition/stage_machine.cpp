@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/scene/scene.h"
+#include "protocols/psychophysics/definition/measurement.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -49,8 +50,8 @@ void check_stage(const Stage& stage, std::size_t number, std::size_t regions, st
              "its times must be 0 or more");
   check_that(stage.timeout > 0.0, number, "its timeout must be above 0");
   if (stage.require) {
-    const bool speed = stage.require->of == Requirement::Of::kSpeed;
-    check_that(speed || (stage.require->field >= 0 && is_index(stage.require->field, fields)),
+    const bool whole = stage.require->of == Requirement::Of::kSpeed || stage.require->measure >= 0;
+    check_that(whole || (stage.require->field >= 0 && is_index(stage.require->field, fields)),
                number, "the field of its requirement is not there");
   }
 }
@@ -186,7 +187,7 @@ void StageMachine::measure(const Stage& stage, double speed, Scenes scenes) noex
   if (times.onset < 0 && speed > stage.onset_speed) {
     times.onset = tick_;
   }
-  if (!stage.require) {
+  if (!stage.require || stage.require->measure >= 0) {
     return;
   }
   if (stage.require->of == Requirement::Of::kSpeed) {
@@ -200,8 +201,21 @@ void StageMachine::measure(const Stage& stage, double speed, Scenes scenes) noex
   }
 }
 
-void StageMachine::tick(Readings readings, Scenes scenes, double dt,
-                        const Eigen::Vector3d& cursor) noexcept {
+/// Whether what the stage requires was done. A measure without a value is not.
+bool StageMachine::is_enough(const Stage& stage,
+                             std::span<const Measurement> measurements) noexcept {
+  if (!stage.require) {
+    return true;
+  }
+  const auto measure = static_cast<std::size_t>(stage.require->measure);
+  if (stage.require->measure >= 0 && measure < measurements.size()) {
+    times_[stage_].most = measurements[measure].value();
+  }
+  return stage.require->holds(times_[stage_].most);
+}
+
+void StageMachine::tick(Readings readings, Scenes scenes, double dt, const Eigen::Vector3d& cursor,
+                        std::span<const Measurement> measurements) noexcept {
   if (state_ != State::kRunning) {
     return;
   }
@@ -216,7 +230,7 @@ void StageMachine::tick(Readings readings, Scenes scenes, double dt,
   const bool reached =
       now && held_ >= stage.until.hold - kRounding && in_stage_ >= stage.until.time - kRounding;
   if (reached) {
-    const bool enough = !stage.require || times_[stage_].most >= stage.require->at_least;
+    const bool enough = is_enough(stage, measurements);
     leave(enough ? StageEnd::kReached : StageEnd::kTooLittle,
           enough ? Consequence::kGoOn : stage.require->otherwise, scenes);
   } else if (in_stage_ >= stage.timeout - kRounding) {

@@ -15,6 +15,8 @@ class Scene;
 
 namespace haptrial::protocols {
 
+class Measurement;
+
 /// How a stage ended.
 enum class StageEnd : std::uint8_t { kUnderWay, kReached, kLate, kTooLittle };
 
@@ -24,7 +26,7 @@ struct StageTimes {
   std::int64_t onset{-1};  // the first tick on which the tool was faster than onset_speed; -1: none
   std::int64_t end{-1};    // the tick on which its end was seen
   StageEnd how{StageEnd::kUnderWay};
-  double most{0.0};  // of what is required: the largest value [m, N or m/s]
+  double most{0.0};  // of what is required: the largest value [m, N or m/s], or the measure's
 };
 
 /// A part of space that stages ask about, and the device whose tool is to be in it, from 0.
@@ -59,8 +61,10 @@ class StageMachine {
   void begin(Scenes scenes, int most_repeats) noexcept;
   /// @param dt  since the tick before [s]
   /// @param cursor  its place in W [m], for regions that wait for it
+  /// @param measurements  of the definition, with this tick, for stages that require one
   void tick(Readings readings, Scenes scenes, double dt,
-            const Eigen::Vector3d& cursor = Eigen::Vector3d::Zero()) noexcept;
+            const Eigen::Vector3d& cursor = Eigen::Vector3d::Zero(),
+            std::span<const Measurement> measurements = {}) noexcept;
   /// Enters a stage, whatever came before: for a replay, which knows when it began.
   void enter(std::size_t stage, Scenes scenes) noexcept;
 
@@ -86,6 +90,7 @@ class StageMachine {
   Outside first_outside(std::uint64_t regions, Readings readings) const noexcept;
   bool all_touch(std::uint64_t fields, Scenes scenes) const noexcept;
   void measure(const Stage& stage, double speed, Scenes scenes) noexcept;
+  bool is_enough(const Stage& stage, std::span<const Measurement> measurements) noexcept;
   void press(Readings readings) noexcept;
 
   std::vector<Stage> stages_;

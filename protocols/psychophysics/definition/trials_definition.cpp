@@ -224,12 +224,20 @@ std::vector<ButtonUse> TrialsDefinition::button_uses() const {
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const std::string place =
         several ? fmt::format("responses[{}]", i + 1) : std::string("response");
+    if (questions[i].mark.by == MarkedBy::kHand) {
+      uses.push_back({place + ".buttons", questions[i].mark.buttons, place});
+    }
     for (std::size_t c = 0; c < questions[i].means.size(); ++c) {
       uses.push_back({fmt::format("{}.choices[{}].buttons", place, c + 1),
                       questions[i].means[c].buttons, place});
     }
   }
   return uses;
+}
+
+bool TrialsDefinition::hears_pointer() const {
+  return std::ranges::any_of(
+      questions, [](const TrialQuestion& each) { return each.mark.by == MarkedBy::kMouse; });
 }
 
 int TrialsDefinition::force_delay(std::size_t arm) const {

@@ -10,6 +10,7 @@
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/psychophysics/definition/block.h"
+#include "protocols/psychophysics/definition/measure.h"
 #include "protocols/psychophysics/definition/question.h"
 #include "protocols/psychophysics/definition/script_plan.h"
 #include "protocols/psychophysics/definition/trial_devices.h"
@@ -44,6 +45,7 @@ struct TrialsDefinition : Definition {
   std::vector<Interval> intervals;  // at least one
   bool random_intervals{false};     // their order, within each trial
   std::vector<TrialQuestion> questions;
+  std::vector<Measure> measures;  // as the first trial has them
   KeyBits keys;
   std::vector<Track> tracks;
   std::optional<ScriptPlan> script;          // may choose the levels of the tracks
@@ -69,6 +71,7 @@ struct TrialsDefinition : Definition {
   std::vector<ButtonUse> button_uses() const override;
   std::vector<DeviceArm> arms() const override { return arms_of(hands, envelope); }
   bool has_target() const override { return false; }
+  bool hears_pointer() const override;
   std::vector<std::string> description() const override;
   std::vector<std::string> warnings() const override;
   double longest(int trials) const override;

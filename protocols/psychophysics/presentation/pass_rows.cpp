@@ -1,6 +1,8 @@
 #include "protocols/psychophysics/presentation/pass_rows.h"
 
+#include <cmath>
 #include <limits>
+#include <utility>
 
 namespace haptrial::protocols {
 namespace {
@@ -37,6 +39,28 @@ std::vector<record::ResponseRow> response_rows(const TrialPass& pass,
     row.code = answer.code;
     row.reaction_time = answer.reaction_time;
     row.sequence = answer.sequence;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::vector<record::ResponseRow> measure_rows(const TrialPass& pass) {
+  std::vector<record::ResponseRow> rows;
+  for (std::size_t i = 0; i < pass.measures().size(); ++i) {
+    const std::size_t interval = pass.measures()[i].interval;
+    const Measurement& taken = pass.measurement(i);
+    const Measure& measure = taken.measure();
+    const StageTimes& stage = pass.machine(interval).times()[measure.stage];
+    if (interval >= pass.intervals_begun() || stage.end < 0 || !std::isfinite(taken.value())) {
+      continue;
+    }
+    record::ResponseRow row;
+    row.question = measure.name;
+    row.interval = static_cast<std::int32_t>(interval + 1);
+    row.value = taken.value();
+    row.correct = !measure.judged ? -1 : measure.is_right(row.value) ? 1 : 0;
+    row.source = record::ResponseSource::kMeasured;
+    row.sequence = pass.first_tick(interval) + static_cast<std::uint64_t>(stage.end);
     rows.push_back(std::move(row));
   }
   return rows;

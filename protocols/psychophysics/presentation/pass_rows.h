@@ -18,6 +18,9 @@ std::vector<record::ResponseRow> response_rows(const TrialPass& pass,
                                                const std::vector<TrialQuestion>& questions,
                                                const std::vector<int>& right);
 
+/// What was measured in stages that have ended, an answer each. Measures without a value have none.
+std::vector<record::ResponseRow> measure_rows(const TrialPass& pass);
+
 /// The answers that came too early or too late.
 std::vector<record::OutOfTimeRow> out_of_time_rows(const TrialPass& pass,
                                                    const std::vector<TrialQuestion>& questions,

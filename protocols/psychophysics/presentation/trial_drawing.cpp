@@ -49,7 +49,9 @@ class TrialDrawing final : public Drawing, public TextSource {
 
   void draw(const stimulus::Shown& shown) override {
     const TrialView* view = shown.as<TrialView>();
-    if (view != nullptr && view->question > 0) {
+    if (view != nullptr && view->results) {
+      page_.draw(text_of(d_, *view).page);
+    } else if (view != nullptr && view->question > 0) {
       draw_question(*view);
     } else if (view != nullptr) {
       draw_interval(*view);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -93,6 +94,8 @@ void TrialPass::look_at_hands(const Readings& readings) noexcept {
   const std::uint32_t keys = readings[0].keys;  // of the window: all devices are given the same
   pressed_buttons_ = hands_known_ ? buttons & ~buttons_ : 0;
   pressed_keys_ = hands_known_ ? keys & ~keys_ : 0;
+  clicked_ = hands_known_ ? readings[0].pointer.buttons & ~clicks_ : 0;
+  clicks_ = readings[0].pointer.buttons;
   buttons_ = buttons;
   keys_ = keys;
   hands_known_ = true;
@@ -244,7 +247,8 @@ void TrialPass::present(const Readings& readings, double dt, PassOutput& out) no
   show_pressed(run, sight, devices);
   move_targets(run, dt);
   const Eigen::Vector3d cursor = move_cursor(run, sight, readings);
-  run.machine.tick(readings.all().first(devices), run.scenes, dt, cursor);
+  take_measures(run, readings, dt);
+  run.machine.tick(readings.all().first(devices), run.scenes, dt, cursor, run.measurements);
   if (run.machine.state() == StageMachine::State::kAborted) {
     const StageEnd how = run.machine.times()[run.machine.stage()].how;
     abort(how == StageEnd::kLate ? "a stage was not done in time"
@@ -252,6 +256,88 @@ void TrialPass::present(const Readings& readings, double dt, PassOutput& out) no
   } else if (run.machine.state() == StageMachine::State::kDone) {
     end_interval();
   }
+}
+
+double TrialPass::distance_of(const Measure& measure, const IntervalRun& run,
+                              const Eigen::Vector3d& place, double dt) const noexcept {
+  if (measure.target < 0) {
+    return (place - measure.place).norm();
+  }
+  const ShownTarget& shown = run.targets[static_cast<std::size_t>(measure.target)];
+  const auto ticks = static_cast<double>(std::max<std::int64_t>(shown.ticks, 0));
+  return (place - shown.target.at(ticks * dt)).norm();
+}
+
+/// One tick of a measure. Forces are those of the fields on this tick.
+void TrialPass::take_measure(const IntervalRun& run, const Readings& readings, double dt,
+                             Measurement& measurement) const noexcept {
+  using Q = MeasuredQuantity;
+  const Measure& m = measurement.measure();
+  const PointState& tool = readings[m.device].tool;
+  const auto felt = [&]() -> const scene::FieldState& {
+    return run.scenes[m.device].state(static_cast<std::size_t>(m.field));
+  };
+  switch (m.quantity) {
+    case Q::kForce:
+      return measurement.add(m.field < 0 ? drives_[m.device].force.norm() : felt().force.norm());
+    case Q::kDepth:
+      return measurement.add(felt().depth);
+    case Q::kX:
+    case Q::kY:
+    case Q::kZ:
+      return measurement.add(tool.position[static_cast<int>(m.quantity) - static_cast<int>(Q::kX)]);
+    case Q::kSpeed:
+      return measurement.add(tool.velocity.norm());
+    case Q::kDistance:
+      return measurement.add(distance_of(m, run, tool.position, dt));
+    case Q::kPath:
+      return measurement.add_place(tool.position);
+    case Q::kTime:
+      return measurement.add(dt);
+    case Q::kChannel:
+      return measurement.add(m.channel < readings[0].channels.size()
+                                 ? readings[0].channels[m.channel]
+                                 : std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+void TrialPass::take_measures(IntervalRun& run, const Readings& readings, double dt) noexcept {
+  const std::size_t stage = run.machine.stage();
+  const bool first = run.machine.time_in_stage() == 0.0;
+  for (Measurement& each : run.measurements) {
+    if (each.measure().stage != stage || each.measure().device >= device_count_) {
+      continue;
+    }
+    if (first) {
+      each.begin();
+    }
+    take_measure(run, readings, dt, each);
+  }
+}
+
+/// Tells the participant what was measured; the trial ends after it, or at once if nothing is told.
+void TrialPass::tell_measures() noexcept {
+  bool told = false;
+  view_.verdict = Verdict::kNone;
+  for (std::size_t i = 0; i < setup_.measures.size(); ++i) {
+    const double value = measurement(i).value();
+    const bool tells = setup_.measures[i].told && std::isfinite(value);
+    view_.measured[i] = static_cast<float>(tells ? value : std::nan(""));
+    const Measure& measure = measurement(i).measure();
+    if (tells && measure.judged && view_.verdict != Verdict::kWrong) {
+      view_.verdict = measure.is_right(value) ? Verdict::kRight : Verdict::kWrong;
+    }
+    told = told || tells;
+  }
+  if (!told || setup_.feedback_time <= 0.0) {
+    state_ = PassState::kCompleted;
+    return;
+  }
+  part_ = Part::kResults;
+  view_.question = 0;
+  view_.pace = Pace::kInTime;
+  view_.results = true;
+  time_ = 0.0;
 }
 
 void TrialPass::end_interval() noexcept {
@@ -275,7 +361,7 @@ void TrialPass::end_interval() noexcept {
 
 void TrialPass::ask() noexcept {
   if (question_ == setup_.questions.size()) {
-    state_ = PassState::kCompleted;
+    tell_measures();
     return;
   }
   part_ = Part::kQuestions;
@@ -287,6 +373,8 @@ void TrialPass::ask() noexcept {
   dwells_ = {};
   pedal_up_ = pedal_;
   draft_ = {};
+  mark_from_.reset();
+  mark_moved_ = false;
   repeating_ = 0;
   view_.show(draft_);
   view_.refused = false;
@@ -317,12 +405,20 @@ void TrialPass::listen(const Readings& readings, double dt, PassOutput& out) noe
     }
     return;
   }
+  if (part_ == Part::kResults) {
+    if (time_ >= setup_.feedback_time) {
+      state_ = PassState::kCompleted;
+    }
+    return;
+  }
   const TrialQuestion& question = *setup_.questions[question_].question;
   Answer answer;
   if (setup_.said != nullptr && setup_.said->given) {
     answer.given = true;
     answer.choice = setup_.said->choice;
     answer.draft = setup_.said->draft;
+  } else if (question.mark.by != MarkedBy::kKeys) {
+    listen_to_mark(question, readings, answer);
   } else if (!question.has_choices()) {
     listen_to_keys(question, readings[0].typed, answer);
   } else {
@@ -441,6 +537,37 @@ void TrialPass::listen_to_keys(const TrialQuestion& question, char32_t typed,
       answer.code = lowest_bit(each.bit);
       break;
     }
+  }
+  view_.show(draft_);
+}
+
+/// The mark follows the hand or the pointer once that has moved; a click on the line has placed it.
+void TrialPass::listen_to_mark(const TrialQuestion& question, const Readings& readings,
+                               Answer& answer) noexcept {
+  const questions::QuestionKind& kind = *question.kind;
+  const MarkMeans& mark = question.mark;
+  const bool hand = mark.by == MarkedBy::kHand;
+  const std::uint32_t press = hand ? mark.buttons & pressed_buttons_ : clicked_ & 1U;
+  const std::uint32_t enter = question.heard.back().bit & pressed_keys_;
+  const double x = hand ? readings[0].tool.position.x() : readings[0].pointer.x;
+  if (std::isfinite(x)) {
+    mark_from_ = mark_from_.value_or(x);
+    mark_moved_ =
+        mark_moved_ || std::abs(x - *mark_from_) > mark.least_movement() || (!hand && press != 0);
+  }
+  if (mark_moved_) {
+    const double rightwards = setup_.questions[question_].rightwards;
+    kind.move_mark(question, mark.share_at(rightwards * x), draft_);
+    view_.refused = false;
+  }
+  if (press != 0 || enter != 0) {
+    answer.given = mark_moved_;
+    view_.refused = !mark_moved_;
+    answer.draft = draft_;
+    answer.source = press == 0 ? record::ResponseSource::kKey
+                    : hand     ? record::ResponseSource::kButton
+                               : record::ResponseSource::kPointer;
+    answer.code = lowest_bit(press != 0 ? press : enter);
   }
   view_.show(draft_);
 }

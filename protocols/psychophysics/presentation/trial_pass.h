@@ -15,6 +15,7 @@
 #include "core/scene/scene.h"
 #include "core/scene/shape.h"
 #include "protocols/interface/pass.h"
+#include "protocols/psychophysics/definition/measurement.h"
 #include "protocols/psychophysics/definition/moving_target.h"
 #include "protocols/psychophysics/definition/question.h"
 #include "protocols/psychophysics/definition/stage_machine.h"
@@ -67,6 +68,14 @@ struct IntervalRun {
   std::size_t first_object{0};  // the field that is the definition's first object
   std::optional<Cursor> cursor{};
   std::vector<ShownTarget> targets{};
+  std::vector<Measurement> measurements{};  // of the definition's measures
+};
+
+/// A measure of a trial: the interval in which it is taken, in the order of their presentation, and
+/// whether the participant is told.
+struct TakenMeasure {
+  std::size_t interval{0};
+  bool told{false};
 };
 
 /// A place that gives a choice when the tip of the tool is moved into it.
@@ -86,6 +95,7 @@ struct PresentedQuestion {
   int marker{0};  // index of the first answer's marker; those of the others follow
   std::vector<TouchedPlace> places{};  // in the order of the choices that they give
   StageSight sight{};                  // these places, and the hand
+  double rightwards{1.0};              // x of W on the screen; -1: to the left
 };
 
 /// An answer.
@@ -109,7 +119,8 @@ class TrialPass final : public Pass {
     std::int32_t trial{0};
     std::vector<IntervalRun> intervals;
     std::vector<PresentedQuestion> questions;
-    double feedback_time{0.0};  // [s]
+    std::vector<TakenMeasure> measures{};  // as those of every interval
+    double feedback_time{0.0};             // [s]
     int most_repeats{5};
     /// The sum of a device's fields is scaled to at most this (devices) [N].
     std::array<double, kMostDevices> max_force{8.0, 8.0, 8.0, 8.0};
@@ -160,11 +171,16 @@ class TrialPass final : public Pass {
   const StageSight& question_sight(std::size_t question) const {
     return setup_.questions[question].sight;
   }
+  /// A measure of the definition in the interval in which it is taken.
+  const Measurement& measurement(std::size_t measure) const {
+    return setup_.intervals[setup_.measures[measure].interval].measurements[measure];
+  }
+  const std::vector<TakenMeasure>& measures() const { return setup_.measures; }
   /// Reason in words; empty if the pass was not aborted by itself.
   const char* why_aborted() const noexcept { return why_; }
 
  private:
-  enum class Part : std::uint8_t { kIntervals, kQuestions, kFeedback };
+  enum class Part : std::uint8_t { kIntervals, kQuestions, kFeedback, kResults };
 
   void begin_interval() noexcept;
   void go_on_feeling() noexcept;
@@ -178,6 +194,12 @@ class TrialPass final : public Pass {
                               const Readings& readings) noexcept;
   void log_contacts(const IntervalRun& run, std::size_t device) noexcept;
   Drive drive(const IntervalRun& run, std::size_t device, const Eigen::Vector3d& force) noexcept;
+  void take_measures(IntervalRun& run, const Readings& readings, double dt) noexcept;
+  void take_measure(const IntervalRun& run, const Readings& readings, double dt,
+                    Measurement& measurement) const noexcept;
+  double distance_of(const Measure& measure, const IntervalRun& run, const Eigen::Vector3d& place,
+                     double dt) const noexcept;
+  void tell_measures() noexcept;
   void end_interval() noexcept;
   void ask() noexcept;
   void listen(const Readings& readings, double dt, PassOutput& out) noexcept;
@@ -185,6 +207,8 @@ class TrialPass final : public Pass {
   void listen_to_pedal(const TrialQuestion& question, Answer& answer) noexcept;
   void watch_places(const Readings& readings, Answer& answer) noexcept;
   void listen_to_keys(const TrialQuestion& question, char32_t typed, Answer& answer) noexcept;
+  void listen_to_mark(const TrialQuestion& question, const Readings& readings,
+                      Answer& answer) noexcept;
   std::uint32_t repeated_keys(const TrialQuestion& question) noexcept;
   void take(const Answer& answer, PassOutput& out) noexcept;
   void go_on() noexcept;
@@ -212,6 +236,7 @@ class TrialPass final : public Pass {
   double tick_time_{0.0};                               // [s]
   std::uint32_t buttons_{0}, keys_{0};                  // held
   std::uint32_t pressed_buttons_{0}, pressed_keys_{0};  // went down on this tick
+  std::uint32_t clicks_{0}, clicked_{0};                // of the pointer, likewise
   double pedal_{0.0};                                   // how far it is down, 0 to 1
   double pedal_up_{0.0};                                // the least since the question
   /// The tip in a place that can be touched: it counts when it comes from outside.
@@ -222,9 +247,11 @@ class TrialPass final : public Pass {
   };
   std::array<Dwell, kMostTouched> dwells_{};  // (places of the question)
   bool hands_known_{false};
-  questions::AnswerDraft draft_;  // of a question without choices
-  std::uint32_t repeating_{0};    // key that is held down, of those in pressed_keys_
-  double held_for_{0.0};          // until it repeats itself [s]
+  questions::AnswerDraft draft_;     // of a question without choices
+  std::optional<double> mark_from_;  // where the hand or pointer was when the question came [m]
+  bool mark_moved_{false};           // from there
+  std::uint32_t repeating_{0};       // key that is held down, of those in pressed_keys_
+  double held_for_{0.0};             // until it repeats itself [s]
   const char* why_{""};
 };
 

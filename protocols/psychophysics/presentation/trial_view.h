@@ -10,6 +10,7 @@
 
 #include "core/record/rows/response.h"
 #include "protocols/interface/pass.h"
+#include "protocols/psychophysics/definition/measure.h"
 #include "protocols/psychophysics/definition/question.h"
 #include "protocols/psychophysics/objects/look.h"
 #include "protocols/psychophysics/objects/seen_bodies.h"
@@ -51,6 +52,7 @@ struct TrialView {
   SeenForces pressed;                                  // on them
   std::array<char, kTyped> typed{};                    // of an answer, ended by 0
   std::int32_t chosen{-1};                             // likewise: its step; -1: none yet
+  std::array<float, kMostMeasures> measured{};         // in their units; NaN: not told
   std::int32_t trial{0};  // of the presentation: changes from trial to trial
   std::uint8_t other_count{0};
   std::uint8_t mark_count{0};
@@ -63,8 +65,9 @@ struct TrialView {
   bool cursor_shown{false};
   bool number_shown{false};  // of the interval
   bool refused{false};       // enter was pressed, and the answer is none that is allowed
+  bool results{false};       // what was measured is told
 
-  bool engaged() const noexcept { return interval > 0 || question > 0; }
+  bool engaged() const noexcept { return interval > 0 || question > 0 || results; }
   bool told() const noexcept { return verdict != Verdict::kNone || pace != Pace::kInTime; }
   /// Shows the answer so far. Servo thread: no allocation or throw.
   void show(const questions::AnswerDraft& draft) noexcept {

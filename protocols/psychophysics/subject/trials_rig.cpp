@@ -9,6 +9,7 @@
 
 #include "core/base/random.h"
 #include "core/device/motor_faults.h"
+#include "core/questions/question_kind.h"
 #include "core/subject/hand.h"
 #include "core/subject/motor_noise.h"
 #include "core/subject/perceiver/grip.h"
@@ -20,6 +21,7 @@
 #include "protocols/psychophysics/definition/trials_definition.h"
 #include "protocols/psychophysics/subject/answer_by_hand.h"
 #include "protocols/psychophysics/subject/decider.h"
+#include "protocols/psychophysics/subject/mark_by_hand.h"
 #include "protocols/psychophysics/subject/reach_adaptation.h"
 
 namespace haptrial::protocols {
@@ -71,6 +73,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
         left_(left),
         seed_(derived_seed(session_seed, "subject")),
         step_(1.0 / briefing.definition->rate),
+        rightwards_(briefing.definition->display.mirrored ? -1.0 : 1.0),
         motors_(motors_of(*briefing.definition)),
         senses_(plan_.people->draw_senses(derived_seed(person_seed, "subject"))),
         sense_(senses_, plan_.senses),
@@ -350,6 +353,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
       SimulatedHand& hand = hands_[by_hand_.device()];
       by_hand_.tick(hand.prober, hand.state, dt);
     }
+    if (mark_.under_way()) {
+      SimulatedHand& hand = hands_.front();
+      hold(mark_.tick(hand.prober, hand.state, dt) ? mark_button_ : 0, 0.0);
+    }
     if (wait_ > 0.0 || thinks_ || decided_ || view.told()) {
       return;
     }
@@ -397,6 +404,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (said_.choice >= 0 && said_.choice == question.silent_choice()) {
       return;  // nothing is to be done for it
     }
+    if (question.mark.by == MarkedBy::kHand) {
+      move_mark(question);
+      return;
+    }
     const int place = AnswerByHand::place_of(question, said_.choice);
     if (place >= 0 && place < view.mark_count) {
       const auto mark = static_cast<std::size_t>(place);
@@ -405,23 +416,35 @@ class TrialsRig::Participant final : public stimulus::Observer {
       by_hand_.begin(view, mark, hand.prober, hand.state);
     } else if (said_.choice >= 0 &&
                question.means[static_cast<std::size_t>(said_.choice)].pedal > 0.0) {
-      hold_pedal(1.0);
+      hold(0, 1.0);
     } else {
       said_.given = true;
     }
   }
 
-  void hold_pedal(double depth) noexcept {
+  void move_mark(const TrialQuestion& question) noexcept {
+    const MarkMeans& mark = question.mark;
+    const double share = question.kind->share_of_mark(question, said_.draft);
+    SimulatedHand& hand = hands_.front();
+    mark_button_ = mark.buttons & (~mark.buttons + 1U);  // the first of them
+    mark_.begin(mark, rightwards_ * mark.place_of(share), hand.prober, hand.state);
+  }
+
+  /// Holds buttons and the pedal of the first device down.
+  void hold(std::uint32_t buttons, double depth) noexcept {
+    const bool changed = buttons != buttons_ || depth != pedal_;
+    buttons_ = buttons;
     pedal_ = depth;
-    hands_.front().device->hold(0, depth, Eigen::Quaterniond::Identity());
+    if (changed) {
+      hands_.front().device->hold(buttons, depth, Eigen::Quaterniond::Identity());
+    }
   }
 
   void end_answer() noexcept {
     decided_ = false;
     by_hand_.end();
-    if (pedal_ > 0.0) {
-      hold_pedal(0.0);
-    }
+    mark_.end();
+    hold(0, 0.0);
   }
 
   const ObserverPlan& plan_;
@@ -433,6 +456,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   bool thinks_{false};         // until the decision that was left is there
   std::uint64_t seed_;
   double step_;                                 // [s]
+  double rightwards_;                           // x of W on the screen; -1: to the left
   std::optional<device::FaultyMotors> motors_;  // of the device that is felt
   subject::SenseParameters senses_;
   subject::Sense sense_;
@@ -457,7 +481,10 @@ class TrialsRig::Participant final : public stimulus::Observer {
   double wait_{0.0};  // [s]
   bool decided_{false};
   AnswerByHand by_hand_;
-  double pedal_{0.0};  // how far it is held down
+  MarkByHand mark_;
+  std::uint32_t mark_button_{0};  // bit of the button that gives the answer
+  std::uint32_t buttons_{0};      // held down
+  double pedal_{0.0};             // how far it is held down
   std::array<double, kMostIntervals> percepts_{};
 };
 

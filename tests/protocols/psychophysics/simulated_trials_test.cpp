@@ -2,6 +2,7 @@
 // pedal, answers out of time come again, QUEST+ of two dimensions finds what is felt, contacts with
 // an object are recorded.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,6 +19,7 @@
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/psychophysics/defined_trials.h"
+#include "protocols/psychophysics/presentation/trial_page.h"
 #include "protocols/psychophysics/trials_protocol.h"
 #include "tests/support/felt_or_not.h"
 
@@ -55,6 +57,21 @@ class Presses final : public stimulus::Observer {
     all.push_back(press);
   }
   std::vector<Press> all;
+};
+
+/// The last view that tells what was measured.
+class Told final : public stimulus::Observer {
+ public:
+  explicit Told(TrialView& last) : last_(last) {}
+  void observe(const stimulus::Shown& shown, const stimulus::Forces&, double) noexcept override {
+    const auto* view = shown.as<TrialView>();
+    if (view != nullptr && view->results) {
+      last_ = *view;
+    }
+  }
+
+ private:
+  TrialView& last_;
 };
 
 /// Keeps rows in memory.
@@ -105,7 +122,7 @@ class SimulatedTrialsTest : public testing::Test {
     SessionTask::Log log(64, 64);  // nobody reads it
     SessionTask task({.devices = {{&rig->device(), definition_->envelope}},
                       .log = log,
-                      .observers = {rig->subject(), &tips_, &presses_}},
+                      .observers = {rig->subject(), &tips_, &presses_, &told_by_}},
                      SessionTask::Leave::kNever);
     std::uint64_t index = 0;
     for (auto trial = trials.next(nullptr); trial; trial = trials.next(&outcomes_.back())) {
@@ -141,6 +158,8 @@ class SimulatedTrialsTest : public testing::Test {
   std::unique_ptr<Definition> definition_;
   Tips tips_;
   Presses presses_;
+  TrialView told_;  // in the last trial
+  Told told_by_{told_};
   std::vector<std::string> notices_;
   Rows rows_;
   std::vector<Outcome> outcomes_;
@@ -199,6 +218,157 @@ TEST_F(SimulatedTrialsTest, AVirtualParticipantPressesThePedal) {
     EXPECT_GT(row.reaction_time, 0.1);
   }
   EXPECT_EQ(pedal, 6);
+}
+
+/// Where the hand was on the tick of the answer says the number.
+TEST_F(SimulatedTrialsTest, AVirtualHandAnswersOnALine) {
+  std::string text = test::felt_or_not(
+      "scale = [0, 2]\nstep = 0.05\nby = \"hand\"\nlength = 0.08\nbuttons = [2]\n");
+  const std::string counts = "$answer == 1";
+  text.replace(text.find(counts), counts.size(), "$answer > 0.5");
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(text));
+  ASSERT_EQ(responses_.size(), 12u);
+  int strong = 0;
+  for (const record::ResponseRow& row : responses_) {
+    EXPECT_EQ(row.source, ResponseSource::kButton);
+    EXPECT_EQ(row.code, 2);
+    const double x = tips_.at.at(row.sequence).x();
+    EXPECT_NEAR(row.value, 1.0 + x / 0.04, 0.0251) << "the nearest step";
+    EXPECT_GT(row.reaction_time, 0.9) << "a way of the hand and a rest";
+    strong += row.value > 0.5 ? 1 : 0;
+  }
+  EXPECT_EQ(strong, 6) << "the strong pulls are called stronger";
+}
+
+/// A wall that is pressed, with measures of the press and nothing asked.
+std::string pressing(const std::string& procedure, const std::string& measures) {
+  return R"([experiment]
+protocol = "trials"
+name = "pressing"
+[design]
+participants = 1
+[variables]
+target = 1.5
+[fields.floor]
+type = "wall"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 1.0, 0.0]
+stiffness = 1000.0
+damping = 2.0
+[[stages]]
+name = "rest"
+fields = ["floor"]
+until = { time = 0.3 }
+[[stages]]
+name = "press"
+fields = ["floor"]
+until = { time = 1.5 }
+[observer]
+[observer.actions]
+press = { do = "press", force = 1.3, rise = 0.4 }
+)" + procedure +
+         measures;
+}
+
+const char* const kFourTrials = "[[blocks]]\nname = \"all\"\ntrials = 4\n";
+
+TEST_F(SimulatedTrialsTest, WhatIsProducedIsAnAnswerOfItsTrial) {
+  ASSERT_NO_FATAL_FAILURE(
+      simulate_trials(pressing(kFourTrials,
+                               "[measures.pressed]\nfield = \"floor\"\nlast = 0.5\n"
+                               "within = [\"$target - 0.4\", \"$target\"]\n"
+                               "[measures.took]\nquantity = \"time\"\n"
+                               "[measures.hard]\nfield = \"floor\"\nwithin = [2.0, 3.0]\n")));
+  ASSERT_EQ(responses_.size(), 12u) << "three of each trial";
+  for (const record::ResponseRow& row : responses_) {
+    EXPECT_EQ(row.source, ResponseSource::kMeasured);
+    EXPECT_TRUE(std::isnan(row.reaction_time));
+    if (row.question == "took") {
+      EXPECT_NEAR(row.value, 1.5, 0.0011);
+      EXPECT_EQ(row.correct, -1);
+    } else if (row.question == "pressed") {
+      EXPECT_NEAR(row.value, 1.3, 0.1) << "the hand presses with 1.3 N";
+      EXPECT_EQ(row.correct, 1);
+    } else {
+      EXPECT_EQ(row.question, "hard");
+      EXPECT_EQ(row.correct, 0);
+    }
+  }
+}
+
+/// 1.3 N are within the tolerance while the target is less than 1.6 N.
+TEST_F(SimulatedTrialsTest, AProcedureLearnsFromAMeasure) {
+  const std::string staircase =
+      "[procedure]\nkind = \"staircase\"\nvariable = \"target\"\nrange = [0.5, 3.0]\n"
+      "start = 1.3\nsteps = [0.1]\ndown = 1\nright_raises = true\n"
+      "stop = { reversals = 4, trials = 30 }\n";
+  ASSERT_NO_FATAL_FAILURE(
+      simulate_trials(pressing(staircase,
+                               "[measures.pressed]\nfield = \"floor\"\nlast = 0.5\n"
+                               "within = [\"$target - 0.3\", 9.0]\n")));
+  ASSERT_EQ(responses_.size(), rows_.levels.size());
+  double highest = 0.0;
+  for (std::size_t i = 0; i < responses_.size(); ++i) {
+    const record::LevelRow& level = rows_.levels[i];
+    EXPECT_EQ(level.outcome, responses_[i].value >= level.applied - 0.3 ? 1.0 : 0.0);
+    highest = std::max(highest, level.applied);
+  }
+  EXPECT_NEAR(highest, 1.65, 0.16) << "the highest target whose tolerance holds 1.3 N, and a step";
+}
+
+/// A formula may take the value itself, and a session that goes on learns the same again.
+TEST_F(SimulatedTrialsTest, AResumedSessionLearnsFromRecordedMeasures) {
+  const std::string staircase =
+      "[procedure]\nkind = \"staircase\"\nvariable = \"target\"\nrange = [0.5, 3.0]\n"
+      "start = 1.0\nsteps = [0.1]\ndown = 1\nright_raises = true\n"
+      "counts = \"$pressed > $target\"\nstop = { reversals = 4, trials = 30 }\n";
+  ASSERT_NO_FATAL_FAILURE(
+      simulate_trials(pressing(staircase, "[measures.pressed]\nfield = \"floor\"\n")));
+  DefinedTrials again(studied(), place());
+  std::size_t done = 0;
+  for (auto trial = again.next(nullptr); trial; trial = again.next(&outcomes_[done - 1])) {
+    again.make_pass(*trial, again.phases().front());
+    Rows rows;
+    again.close_pass(rows, 0);
+    ASSERT_LT(done, rows_.levels.size());
+    EXPECT_EQ(rows.levels.at(0).applied, rows_.levels[done].applied);
+    ++done;
+  }
+  EXPECT_EQ(done, outcomes_.size());
+}
+
+/// What the stage requires of a measure is its value, which /stages has, too.
+TEST_F(SimulatedTrialsTest, AStageRequiresAMeasureWithinBounds) {
+  std::string text = pressing(kFourTrials, "[measures.pressed]\nfield = \"floor\"\n");
+  const std::string until = "until = { time = 1.5 }";
+  text.replace(text.find(until), until.size(),
+               until +
+                   "\nrequire = { measure = \"pressed\", at_least = 0.5, at_most = 1.2, "
+                   "else = \"go on\" }");
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(text));
+  int presses = 0;
+  for (const record::StageRow& row : rows_.stages) {
+    if (row.stage == "press") {
+      const bool holds = row.most >= 0.5 && row.most <= 1.2;
+      EXPECT_EQ(row.ending,
+                holds ? record::StageEnding::kReached : record::StageEnding::kTooLittle);
+      EXPECT_NEAR(row.most, responses_.at(static_cast<std::size_t>(row.pass)).value, 1e-12);
+      ++presses;
+    }
+  }
+  EXPECT_EQ(presses, 4);
+}
+
+TEST_F(SimulatedTrialsTest, AMeasureIsToldWithItsUnit) {
+  ASSERT_NO_FATAL_FAILURE(
+      simulate_trials(pressing(kFourTrials,
+                               "[measures.pressed]\nfield = \"floor\"\nwithin = [1.0, 2.0]\n"
+                               "feedback = \"always\"\ntext = \"You pressed with {}.\"\n")));
+  ASSERT_TRUE(told_.results);
+  const render::TextPage page = text_of(studied(), told_).page;
+  EXPECT_EQ(page.title, studied().feedback_right);
+  const double last = responses_.back().value;
+  EXPECT_EQ(page.body, fmt::format("You pressed with {:.3g} N.", static_cast<float>(last)));
 }
 
 const char* const kTwoKeys =
