@@ -61,7 +61,7 @@ Finding value_finding(const Shown& shown, const RecallAtFrequency& at) {
 }
 
 /// The frequency stands as a word, too: tables of CSV tell rows apart by words.
-FindingRow row_of(const RecallBand& band, const RecallAtFrequency& at) {
+FindingRow frequency_row(const RecallBand& band, const RecallAtFrequency& at) {
   Finding label{"at", "", fmt::format("{:.4g} Hz", band.frequency)};
   label.form = JsonForm::kAbsent;
   FindingRow row{label, frequency_of(band), plain("condition", "condition", at.condition),
@@ -122,7 +122,7 @@ Series series_of(const std::vector<RecallBand>& bands, std::size_t condition, co
   return series;
 }
 
-Figure figure_of(const std::vector<RecallBand>& bands, const Shown& shown, bool simulated) {
+Figure frequency_figure(const std::vector<RecallBand>& bands, const Shown& shown, bool simulated) {
   Figure figure;
   figure.name = fmt::format("recall-{}", shown.name);
   figure.title = fmt::format("{} of the recalled force by frequency", capitalized(shown.title));
@@ -154,7 +154,7 @@ FindingList recall_frequency_findings(const std::vector<RecallBand>& bands, bool
   FindingTable tests{"tests", "Tests by condition"};
   for (const RecallBand& band : bands) {
     for (const RecallAtFrequency& at : band.conditions) {
-      values.rows.push_back(row_of(band, at));
+      values.rows.push_back(frequency_row(band, at));
     }
     tests.rows.push_back(tests_of(band));
   }
@@ -163,7 +163,7 @@ FindingList recall_frequency_findings(const std::vector<RecallBand>& bands, bool
     list.tables.push_back(tests);
   }
   for (const Shown& shown : kShown) {
-    list.figures.push_back(figure_of(bands, shown, simulated));
+    list.figures.push_back(frequency_figure(bands, shown, simulated));
   }
   Document notes;
   notes.paragraph(

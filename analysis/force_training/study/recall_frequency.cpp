@@ -114,8 +114,8 @@ RecallAtFrequency at_frequency(const std::string& condition, const std::vector<B
 
 /// A number of each participant who has it under every condition (participants x conditions).
 template <class Value>
-std::vector<std::vector<double>> table_of(const std::vector<std::vector<BandValue>>& by_condition,
-                                          Value value) {
+std::vector<std::vector<double>> complete_table(
+    const std::vector<std::vector<BandValue>>& by_condition, Value value) {
   std::map<std::string, std::vector<double>> rows;
   for (std::size_t c = 0; c < by_condition.size(); ++c) {
     for (const BandValue& each : by_condition[c]) {
@@ -135,21 +135,21 @@ std::vector<std::vector<double>> table_of(const std::vector<std::vector<BandValu
 }
 
 void test_band(const std::vector<std::vector<BandValue>>& by_condition, RecallBand& band) {
-  band.gain.anova = repeated_measures_anova(table_of(
+  band.gain.anova = repeated_measures_anova(complete_table(
       by_condition, [](const RecallResponse& r) { return std::log(std::abs(r.response)); }));
   band.coherence.anova = repeated_measures_anova(
-      table_of(by_condition, [](const RecallResponse& r) { return fisher_z(r.coherence); }));
+      complete_table(by_condition, [](const RecallResponse& r) { return fisher_z(r.coherence); }));
   std::vector<BandValue> all;
   for (const auto& values : by_condition) {
     all.insert(all.end(), values.begin(), values.end());
   }
   const auto middle = direction_of(all);
   band.phase.anova =
-      middle ? repeated_measures_anova(table_of(by_condition,
-                                                [&](const RecallResponse& r) {
-                                                  return wrapped(std::arg(r.response) - *middle);
-                                                }))
-             : Undefined{"participants' phases have no common direction"};
+      middle
+          ? repeated_measures_anova(complete_table(
+                by_condition,
+                [&](const RecallResponse& r) { return wrapped(std::arg(r.response) - *middle); }))
+          : Undefined{"participants' phases have no common direction"};
 }
 
 /// Holm's p over the bands, of one number.

@@ -10,7 +10,7 @@
 namespace haptrial::analysis::trials {
 namespace {
 
-std::vector<std::string> names_of(const std::vector<MeasureName>& measures) {
+std::vector<std::string> names_of_measures(const std::vector<MeasureName>& measures) {
   std::vector<std::string> names;
   for (const MeasureName& each : measures) {
     names.push_back(each.name);
@@ -29,7 +29,7 @@ void take_measure(Table& table, const ProducedNames& names, ProducedPlan& plan) 
                  "another kind, or add [measures.NAME], which says what is measured");
   } else {
     table.reject("measure", fmt::format("\"{}\"", plan.measure),
-                 fmt::format("one of: {}", fmt::join(names_of(names.measures), ", ")));
+                 fmt::format("one of: {}", fmt::join(names_of_measures(names.measures), ", ")));
   }
 }
 

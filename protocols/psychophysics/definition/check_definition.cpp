@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "core/base/definition/table.h"
 
@@ -250,6 +251,27 @@ void check_questions(Table& root, const TrialsDefinition& d,
   }
 }
 
+void check_mark(Table& table, const TrialsDefinition& d, const MarkMeans& mark) {
+  constexpr double kMostOfScreen = 0.8;  // beside it stand the words of the ends
+  const double fits = kMostOfScreen * d.view.width;
+  const double reached = 2.0 * d.envelope.workspace_radius;
+  const char* key = table.has("length") ? "length" : "by";
+  if (mark.length > fits) {
+    table.reject(key, fmt::format("a line of {:g} m", mark.length),
+                 fmt::format("at most {:g} m, {:g} of display.extent; state a shorter length", fits,
+                             kMostOfScreen));
+  } else if (mark.by == MarkedBy::kHand && mark.length > reached) {
+    table.reject(key, fmt::format("a line of {:g} m", mark.length),
+                 fmt::format("at most {:g} m, which the hand reaches within "
+                             "envelope.workspace_radius; state a shorter length",
+                             reached));
+  }
+  if (mark.by == MarkedBy::kMouse && d.view.stereo) {
+    table.reject("by", "\"mouse\" with display.stereo, where no pointer is on the line",
+                 "\"hand\" or \"keys\"");
+  }
+}
+
 /// Masking noise in stages that are not there would never be heard.
 void check_masking(Table& root, const TrialsDefinition& d) {
   if (!d.cues.masking) {
@@ -298,6 +320,20 @@ void check_stages(Table& root, const TrialsDefinition& d, const std::vector<Name
   check_seen_objects(root, d, stages);
   check_questions(root, d, stages);
   check_masking(root, d);
+}
+
+void check_marks(Table& root, const TrialsDefinition& d) {
+  std::vector<Table> tables;
+  if (root.has("response")) {
+    tables.push_back(root.table("response"));
+  } else if (root.has("responses")) {
+    tables = root.tables("responses");
+  }
+  for (std::size_t i = 0; i < std::min(tables.size(), d.questions.size()); ++i) {
+    if (d.questions[i].mark.by != MarkedBy::kKeys) {
+      check_mark(tables[i], d, d.questions[i].mark);
+    }
+  }
 }
 
 void check_object_names(Table& root) {

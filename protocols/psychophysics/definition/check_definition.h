@@ -16,6 +16,9 @@ namespace haptrial::protocols {
 /// Checks the values that procedures set, and the answers that they learn from.
 void check_procedures(Table& root, const TrialsDefinition& definition);
 
+/// Checks that the screen and the workspace have room for lines on which marks move.
+void check_marks(Table& root, const TrialsDefinition& definition);
+
 /// A stage names fields, regions, looks and objects: each name stands for one thing.
 void check_object_names(Table& root);
 

@@ -1,11 +1,8 @@
 #include "protocols/psychophysics/definition/mark_means.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/base/definition/schema.h"
-#include "protocols/psychophysics/definition/trials_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -18,27 +15,6 @@ void check_means(Table& table, MarkMeans& mark) {
     table.reject("buttons", "stands alone; add by = \"hand\", whose answer a button gives");
   } else if (mark.buttons == 0) {
     table.reject("buttons", "an empty list", "at least one button");
-  }
-}
-
-void check_mark(Table& table, const TrialsDefinition& d, const MarkMeans& mark) {
-  constexpr double kMostOfScreen = 0.8;  // beside it stand the words of the ends
-  const double fits = kMostOfScreen * d.view.width;
-  const double reached = 2.0 * d.envelope.workspace_radius;
-  const char* key = table.has("length") ? "length" : "by";
-  if (mark.length > fits) {
-    table.reject(key, fmt::format("a line of {:g} m", mark.length),
-                 fmt::format("at most {:g} m, {:g} of display.extent; state a shorter length", fits,
-                             kMostOfScreen));
-  } else if (mark.by == MarkedBy::kHand && mark.length > reached) {
-    table.reject(key, fmt::format("a line of {:g} m", mark.length),
-                 fmt::format("at most {:g} m, which the hand reaches within "
-                             "envelope.workspace_radius; state a shorter length",
-                             reached));
-  }
-  if (mark.by == MarkedBy::kMouse && d.view.stereo) {
-    table.reject("by", "\"mouse\" with display.stereo, where no pointer is on the line",
-                 "\"hand\" or \"keys\"");
   }
 }
 
@@ -65,20 +41,6 @@ const Schema<MarkMeans>& mark_schema() {
           .otherwise("[0]")
           .check(check_means);
   return schema;
-}
-
-void check_marks(Table& root, const TrialsDefinition& d) {
-  std::vector<Table> tables;
-  if (root.has("response")) {
-    tables.push_back(root.table("response"));
-  } else if (root.has("responses")) {
-    tables = root.tables("responses");
-  }
-  for (std::size_t i = 0; i < std::min(tables.size(), d.questions.size()); ++i) {
-    if (d.questions[i].mark.by != MarkedBy::kKeys) {
-      check_mark(tables[i], d, d.questions[i].mark);
-    }
-  }
 }
 
 }  // namespace haptrial::protocols

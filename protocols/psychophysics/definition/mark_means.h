@@ -1,18 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 namespace haptrial {
-class Table;
 template <class T>
 class Schema;
 }  // namespace haptrial
 
 namespace haptrial::protocols {
-
-struct TrialsDefinition;
 
 /// What moves the mark of a scale in a trial.
 enum class MarkedBy : std::uint8_t { kKeys, kHand, kMouse };
@@ -37,8 +32,5 @@ struct MarkMeans {
 /// The keys of a question with a mark: by, length and buttons. Mistakes of one key without another
 /// are noted.
 const Schema<MarkMeans>& mark_schema();
-
-/// Notes lines that the screen or the workspace has no room for.
-void check_marks(Table& root, const TrialsDefinition& definition);
 
 }  // namespace haptrial::protocols

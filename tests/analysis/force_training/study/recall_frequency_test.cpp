@@ -16,11 +16,11 @@
 #include "tests/support/null_levels.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::analysis {
+namespace haptrial::analysis::recall_frequency_test {
 namespace {
 
-using test::RecalledWaves;
-using test::WaveSystem;
+using recalled_waves::RecalledWaves;
+using recalled_waves::WaveSystem;
 
 /// One participant under one condition, with this system for everything.
 RecallResponse response_of(const WaveSystem& system, std::size_t cycle, int trials = 24) {
@@ -83,7 +83,7 @@ std::vector<double> by_scipy(const std::filesystem::path& folder) {
 }
 
 TEST(RecallFrequencyTest, ScipyComputesTheSame) {
-  const haptrial::test::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   constexpr int kTrials = 7;
   const RecalledWaves waves({{"only", {.gain = 0.8, .delay = 0.3, .noise = 0.5}}}, 1, kTrials, 5);
   {
@@ -144,8 +144,8 @@ TEST(RecallFrequencyTest, OneTrialOfAParticipantIsLeftOut) {
 }
 
 TEST(RecallFrequencyTest, TestsKeepTheirLevelAndIntervalsTheirCoverage) {
-  const test::RecallNullCounts counts = test::null_recalls(50, 1);
-  const auto band = haptrial::test::binomial_band(50, 1.0 - 1e-6);
+  const recalled_waves::RecallNullCounts counts = recalled_waves::null_recalls(50, 1);
+  const auto band = test::binomial_band(50, 1.0 - 1e-6);
   for (const int found :
        {counts.gain, counts.phase, counts.coherence, counts.gain_missed, counts.phase_missed}) {
     EXPECT_LE(static_cast<std::size_t>(found), band.high);
@@ -153,4 +153,4 @@ TEST(RecallFrequencyTest, TestsKeepTheirLevelAndIntervalsTheirCoverage) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis
+}  // namespace haptrial::analysis::recall_frequency_test

@@ -13,7 +13,7 @@
 #include "analysis/force_training/study/recall_frequency.h"
 #include "core/base/random.h"
 
-namespace haptrial::analysis::test {
+namespace haptrial::analysis::recalled_waves {
 
 /// How forces come back: y(t) = gain x(t - delay) + noise, the noise of the same spectrum as x.
 struct WaveSystem {
@@ -140,4 +140,4 @@ inline RecallNullCounts null_recalls(int studies, std::uint64_t seed) {
   return counts;
 }
 
-}  // namespace haptrial::analysis::test
+}  // namespace haptrial::analysis::recalled_waves
