@@ -19,7 +19,7 @@ namespace haptrial::analysis::drilling {
 inline constexpr double kHoldingPurchase = 2e-3;
 
 /// Outcome of an osteotomy against its plan. The error of the fragment's pose is taken at the
-/// middle of the planned cut.
+/// middle of the planned cut. Source: Morris 2006, §3.1.2 (what such operations are for) and §3.5.
 struct FragmentFit {
   bool came_off{false};  // a piece did; without one nothing below is defined but the cut
   double gap{0.0};       // of the error, along the cut's normal; above 0: the slot stands open [m]

@@ -30,7 +30,7 @@ class HeldBone {
  public:
   static constexpr std::size_t kMostSamples = 2048;
   static constexpr double kHandStiffness = 1000.0;     // k_h [N/m]
-  static constexpr double kHandTurning = 3.0;          // k_t [N·m/rad]
+  static constexpr double kHandTurning = 0.3;          // k_t [N·m/rad]
   static constexpr double kContactStiffness = 2000.0;  // k of one sample [N/m]
   static constexpr double kFriction = 0.3;             // μ, assumed for bone on bone
 

@@ -7,8 +7,9 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr double kTeeth = 1.5e-3;        // length of the cutting end [m]
-constexpr double kSet = 0.6;             // thickness of the sheet, as a share of the kerf
+constexpr double kTeeth = 1.0e-3;        // length of the cutting end [m]
+constexpr double kSet = 0.4;             // thickness of the sheet, as a share of the kerf
+constexpr double kNarrow = 0.85;         // width of the sheet, as a share of the teeth's
 constexpr double kTeethFriction = 0.5;   // assumed: rubbing over pressing force
 constexpr double kTeethRadius = 0.4e-3;  // of a burr at 1000 turns a second: 2.5 m/s, as teeth that
                                          // swing by 2 mm 300 times a second [m]
@@ -38,8 +39,8 @@ const Schema<SawParameters>& saw_schema() {
           })
           .number("length", &P::length, {1e-3, 0.1}, "m",
                   "Length of the blade behind its teeth, which bone guides")
-          .number("removal_rate", &P::removal_rate, {0.0, 1e6}, "1/(N·s)",
-                  "Share of the bone within the teeth that goes in a second at a force of 1 N")
+          .number("removal_rate", &P::removal_rate, {0.0, 1000.0}, "1/s",
+                  "Share of the bone within a saw's teeth that goes in a second")
           .number("stiffness", &P::stiffness, {100.0, 1e5}, "N/m",
                   "Stiffness of bone under the largest side of the teeth, and of the blade")
           .number("wear_volume", &P::wear_volume, {0.0, 1.0, true}, "m3",
@@ -59,7 +60,7 @@ BurrTool saw_tool(const SawParameters& saw) {
   tool.feel = feel_of(saw.stiffness, saw.width * kTeeth);
   ShaftParameters sheet;
   sheet.form = BurrForm::kBlade;
-  sheet.radius = 0.5 * saw.width;
+  sheet.radius = 0.5 * kNarrow * saw.width;
   sheet.thickness = kSet * saw.kerf;
   sheet.length = saw.length;
   sheet.feel = feel_of(saw.stiffness, saw.width * saw.length);
@@ -67,13 +68,15 @@ BurrTool saw_tool(const SawParameters& saw) {
   return tool;
 }
 
-double cutting_force(const BurrTool& tool, const Eigen::Vector3d& force,
+double removal_force(const BurrTool& tool, const Eigen::Vector3d& force,
                      const Eigen::Vector3d& axis) noexcept {
-  return is_saw(tool) ? std::max(0.0, force.dot(axis)) : force.norm();
+  const double all = force.norm();
+  return is_saw(tool) && all > 0.0 ? std::max(0.0, force.dot(axis)) / all : all;
 }
 
-Rubbing rubbing_of(const BurrTool& tool, const Eigen::Vector3d& drag, double cutting) noexcept {
-  return is_saw(tool) ? Rubbing{kTeethFriction * cutting, kTeethRadius}
+Rubbing rubbing_of(const BurrTool& tool, const Eigen::Vector3d& force, const Eigen::Vector3d& drag,
+                   const Eigen::Vector3d& axis) noexcept {
+  return is_saw(tool) ? Rubbing{kTeethFriction * std::max(0.0, force.dot(axis)), kTeethRadius}
                       : Rubbing{drag.norm(), tool.radius()};
 }
 

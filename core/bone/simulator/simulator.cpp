@@ -313,7 +313,7 @@ void Simulator::warm_up(const SimulatorInput& input) noexcept {
   const bool turns = burr != nullptr && output_.mode == HandMode::kTool;
   const bool rinsed = second_ && second_->rinses(input.tube, input.tool.tip.position);
   const Rubbing rubbing =
-      turns ? rubbing_of(*burr, output_.drag, output_.cutting) : Rubbing{0.0, 0.0};
+      turns ? rubbing_of(*burr, output_.force, output_.drag, input.tool.axis()) : Rubbing{0.0, 0.0};
   heat_->tick(rubbing.force, rubbing.radius, turns ? input.power : 0.0, rinsed, input.dt);
 }
 

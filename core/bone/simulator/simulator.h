@@ -76,7 +76,6 @@ enum class HandMode : std::uint8_t { kTool, kCameraMove, kCameraTurn, kCarry };
 struct SimulatorOutput {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the bone on the tool [N]
   Eigen::Vector3d drag{Eigen::Vector3d::Zero()};   // the part of it that the turning teeth give [N]
-  double cutting{0.0};  // the part that drives teeth into bone: all of it but a saw's sideways [N]
   Eigen::Vector3d shaft{
       Eigen::Vector3d::Zero()};  // of bone on the burr's shaft, beside `force` [N]
   Eigen::Vector3d pushed{

@@ -112,8 +112,8 @@ void Simulator::drill(const BurrTool& tool, const SimulatorInput& input) noexcep
   const double turning = handpiece_.turning(input.power);
   output_.force = bone_force(all, tool.feel, tool.burr, turning);
   output_.drag = drag_force(all, tool.burr, turning);
-  output_.cutting = cutting_force(tool, output_.force, input.tool.axis());
-  const double force = kForceStep * std::round(output_.cutting / kForceStep);
+  const double driving = removal_force(tool, output_.force, input.tool.axis());
+  const double force = kForceStep * std::round(driving / kForceStep);
   const double sharp_power = input.power * handpiece_.sharpness(output_.tool);
   double volume_taken = 0.0;
   for (int piece = 0; piece < pieces; ++piece) {

@@ -20,9 +20,10 @@ constexpr double kArrived = 1e-3;    // is there [m]
 constexpr double kThrough = 4e-3;    // beyond the wanted depth, where the arm draws to [m]
 constexpr double kTurning = 1.5;     // [rad/s]
 constexpr double kCarrying = 0.008;  // speed of a fragment [m/s]
+constexpr double kFeed = 0.012;      // at most, of the saw into bone [m/s]
 constexpr double kWithSaw = 0.02;    // [m/s]
 
-SubjectParameters person_of(const OsteotomyHandParameters& p) {
+SubjectParameters noisy_person(const OsteotomyHandParameters& p) {
   SubjectParameters person;
   person.tremor = p.tremor;
   return person;
@@ -149,7 +150,7 @@ OsteotomyHand::OsteotomyHand(const OsteotomyHandParameters& parameters, const Fr
       hand_(hand),
       device_(device),
       frame_(frame),
-      noise_(person_of(parameters), step, RandomStream(seed, "osteotomy hand")) {
+      noise_(noisy_person(parameters), step, RandomStream(seed, "osteotomy hand")) {
   plan_cuts(plan, tools);
   plan_move(plan, tools);
   plan_plate(tools);
@@ -173,7 +174,7 @@ void OsteotomyHand::plan_cuts(const FragmentPlan& plan, const OsteotomyTools& to
     const Isometry3d out = shifted(over, -kOver * p.inward);
     Act reach{.tool = tools.saw};
     add(reach, out);
-    Act saw{.tool = tools.saw, .speed = 10.0, .strength = p.press, .most = 10.0, .power = true};
+    Act saw{.tool = tools.saw, .speed = kFeed, .strength = p.press, .most = 10.0, .power = true};
     saw.depth = (p.depth + over.translation().dot(p.inward));
     add(saw, shifted(over, (p.depth + kThrough) * p.inward));
     Act back{.tool = tools.saw, .speed = kWithSaw, .power = true};

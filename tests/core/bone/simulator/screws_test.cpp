@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/core/bone/model/pieces_support.h"
 #include "tests/support/allocation_guard.h"
 
@@ -22,7 +24,8 @@ BoneModel layered() {
   model.density.assign(model.grid.count(), 1.0F);
   test::for_each_voxel(model.grid, [&](const Voxel& v) {
     const bool marrow = v.z() < 32 - 6;
-    model.density[model.grid.index(v.x(), v.y(), v.z())] = marrow ? float{kMarrow} : 1.0F;
+    model.density[model.grid.index(v.x(), v.y(), v.z())] =
+        marrow ? static_cast<float>(kMarrow) : 1.0F;
   });
   return model;
 }
