@@ -12,7 +12,7 @@ cd "$work"
 "$haptrial" dry-run "$definition" --out jaw
 "$haptrial" replay jaw/S01.h5 --frames frames --fps 1
 i=0
-for second in @SECONDS@; do
+for second in 00008 00031 00034 00059; do
   cp "frames/frame-$second.png" "$((++i)).png"
 done
 ffmpeg -v error -y -i %d.png -frames:v 1 \

@@ -44,9 +44,9 @@ std::vector<AchievedFigure> of_fragment(const FragmentFit& f, double path) {
            if_off(kDegrees * f.turn)},
           {"bite_mean_mm", "teeth off the planned bite, mean", "mm", in_unit(f.bite_mean, 1e3)},
           {"bite_most_mm", "teeth off the planned bite, at most", "mm", in_unit(f.bite_most, 1e3)},
-          {"screws_fragment", "screws that hold in the fragment", "1",
+          {"screws_fragment", "holding in the fragment", "screws",
            static_cast<double>(f.screws - f.screws_in_bone)},
-          {"screws_bone", "screws that hold in the bone itself", "1",
+          {"screws_bone", "holding in the bone itself", "screws",
            static_cast<double>(f.screws_in_bone)},
           {"screw_purchase_mm", "solid bone in the threads of all screws", "mm", 1e3 * f.purchase},
           {"tool_path_mm", "path of the tool", "mm", 1e3 * path}};
