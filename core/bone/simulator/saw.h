@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/bone/simulator/simulator_tools.h"
+#include "core/bone/simulator/burr_tool.h"
 
 namespace haptrial {
 template <class T>

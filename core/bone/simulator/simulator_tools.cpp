@@ -140,14 +140,6 @@ const Schema<ToolSpec>& tool_schema() {
 
 }  // namespace
 
-ShaftParameters default_shaft(double radius, double length) {
-  ShaftParameters shaft;
-  shaft.radius = radius;
-  shaft.length = length;
-  shaft.feel = default_feel(BurrShape(shaft.dimensions()).ball_radius());
-  return shaft;
-}
-
 std::vector<ToolSpec> read_tools(Table& table) {
   std::vector<ToolSpec> tools;
   table.describe({"in_hand", "Names of tools, in the order in which a button selects them", ""});
