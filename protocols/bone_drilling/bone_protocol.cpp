@@ -12,6 +12,7 @@
 #include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/fragment_rows.h"
 #include "core/bone/record/tear_row.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
@@ -136,7 +137,7 @@ class BoneDrilling final : public Protocol {
  public:
   std::string_view name() const override { return kBoneDrilling; }
   std::vector<std::string> virtual_tables() const override {
-    return {"drilling_hand", "virtual_surgeons"};
+    return {"drilling_hand", "osteotomy_hand", "virtual_surgeons"};
   }
   std::unique_ptr<Definition> read(Table& root, std::string_view file_name,
                                    const std::filesystem::path* folder) const override {
@@ -160,6 +161,8 @@ class BoneDrilling final : public Protocol {
     tables.push_back(&record::table_of<record::HandpieceRow>());
     tables.push_back(&record::table_of<record::OpeningRow>());
     tables.push_back(&record::table_of<record::FieldRow>());
+    tables.push_back(&record::table_of<record::PieceRow>());
+    tables.push_back(&record::table_of<record::ScrewRow>());
     return tables;
   }
   AuxiliaryPages auxiliary_pages(const Definition& definition) const override {

@@ -123,6 +123,29 @@ std::string difference(std::uint64_t sequence, std::span<const record::TearRow> 
                    sequence, recorded.size(), torn.size());
 }
 
+/// Empty where the pieces of a tick's rows lie as in the record, to the bit.
+std::string difference(std::uint64_t sequence, std::span<const record::PieceRow> recorded,
+                       const bone::Simulator& simulator) {
+  for (const record::PieceRow& row : recorded) {
+    const bool known = row.piece >= 0 && row.piece < simulator.world().pieces();
+    const record::PieceRow now =
+        known ? piece_row(simulator, sequence, row.piece, 0) : record::PieceRow{};
+    if (!known || now.shift != row.shift || now.turn != row.turn) {
+      return fmt::format("on tick {} piece {} does not lie as in the record", sequence, row.piece);
+    }
+  }
+  return "";
+}
+
+/// Likewise of a screw whose driving ended in the record. @param ended  null: none did
+std::string difference(std::uint64_t sequence, std::span<const record::ScrewRow> recorded,
+                       const bone::Screw* ended) {
+  const bool same = recorded.empty() || (ended != nullptr && recorded.size() == 1 &&
+                                         recorded.front().hole == ended->place.hole &&
+                                         recorded.front().purchase == ended->purchase);
+  return same ? "" : fmt::format("on tick {} the screws are not those of the record", sequence);
+}
+
 }  // namespace
 
 BoneReplay::BoneReplay(const std::filesystem::path& session)
@@ -135,6 +158,8 @@ BoneReplay::BoneReplay(const std::filesystem::path& session)
       tears_(reader_.rows<record::TearRow>()),
       second_(reader_.rows<record::DeviceRow>()),
       field_(reader_.rows<record::FieldRow>()),
+      pieces_(reader_.rows<record::PieceRow>()),
+      screws_(reader_.rows<record::ScrewRow>()),
       led_(reader_.rows<record::LedRow>()) {
   for (const record::BoneRecord& bone : record::recorded_bones(reader_)) {
     bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
@@ -247,6 +272,8 @@ struct BoneReplay::Work {
   Cursor<record::RemovalRow> removals;
   Cursor<record::SplitRow> splits;
   Cursor<record::TearRow> tears;
+  Cursor<record::PieceRow> pieces;
+  Cursor<record::ScrewRow> screws;
   std::vector<bone::EmptiedIn> emptied;  // on one tick of the session
   std::vector<bone::Tear> torn;
 
@@ -271,6 +298,13 @@ struct BoneReplay::Work {
     verdict.difference = difference(sequence, removals.take(sequence), emptied);
     if (verdict.difference.empty()) {
       verdict.difference = difference(sequence, tears.take(sequence), torn);
+    }
+    if (verdict.difference.empty()) {
+      verdict.difference = difference(sequence, pieces.take(sequence), *stage->simulator);
+    }
+    if (verdict.difference.empty()) {
+      verdict.difference =
+          difference(sequence, screws.take(sequence), stage->simulator->screws().ended());
     }
     verdict.emptied += emptied.size();
     verdict.tears += torn.size();
@@ -298,6 +332,8 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
             Cursor<record::RemovalRow>(removals_, pass.first_sample),
             Cursor<record::SplitRow>(splits_, pass.first_sample),
             Cursor<record::TearRow>(tears_, pass.first_sample),
+            Cursor<record::PieceRow>(pieces_, pass.first_sample),
+            Cursor<record::ScrewRow>(screws_, pass.first_sample),
             {},
             {}};
   if (led_.empty()) {

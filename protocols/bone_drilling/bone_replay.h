@@ -10,6 +10,7 @@
 
 #include "core/bone/record/drilling_types.h"
 #include "core/bone/record/field_row.h"
+#include "core/bone/record/fragment_rows.h"
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
@@ -94,6 +95,8 @@ class BoneReplay {
   std::vector<record::TearRow> tears_;
   std::vector<record::DeviceRow> second_;  // of the second device; none where there is one
   std::vector<record::FieldRow> field_;
+  std::vector<record::PieceRow> pieces_;
+  std::vector<record::ScrewRow> screws_;
   std::vector<record::LedRow> led_;  // none where the bone was the session's own
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;
 };

@@ -72,6 +72,9 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   if (d_.has_handpiece()) {
     logs_.watch_handpiece();
   }
+  if (d_.osteotomy) {
+    logs_.watch_pieces();
+  }
   burrs_ = burr_rows(d_.simulator.tools);
   if (d_.nerves) {
     nerves_ = std::make_unique<TrialNerves>(d_, place, voice_);
@@ -185,6 +188,10 @@ record::TableList BoneTrials::tables() const {
   if (d_.has_field()) {
     tables.push_back(&record::table_of<record::FieldRow>());
   }
+  if (d_.osteotomy) {
+    tables.push_back(&record::table_of<record::PieceRow>());
+    tables.push_back(&record::table_of<record::ScrewRow>());
+  }
   return tables;
 }
 
@@ -213,6 +220,10 @@ void BoneTrials::empty_logs(SessionFile& file) {
   logs_.removals.flush([&](std::span<const record::RemovalRow> rows) { add_removals(file, rows); });
   empty(logs_.camera);
   empty(logs_.splits);
+  if (d_.osteotomy) {
+    empty(logs_.pieces);
+    empty(logs_.screws);
+  }
   if (is_led()) {
     empty(logs_.led);
   }

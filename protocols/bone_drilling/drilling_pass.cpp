@@ -148,6 +148,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   }
   rows_.log(sequence_, input.tool.tip.velocity.norm());
   rows_.log_camera(sequence_, done.camera_changed);
+  rows_.log_pieces(sequence_);
   if (hints_ != nullptr) {
     tell_hints(*hints_, sequence_, simulator_, input);
   }

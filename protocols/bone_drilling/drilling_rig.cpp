@@ -21,6 +21,9 @@ Eigen::Vector3d start_of(const BoneDefinition& d) {
         surface == subject::DrillingChart::kNone ? 0.0 : static_cast<double>(surface) - kAway;
     return d.drilling.scale * chart.world({chart.end.x(), chart.end.y(), depth});
   }
+  if (d.osteotomy_hand) {
+    return d.drilling.scale * subject::start_of(*d.osteotomy_hand);
+  }
   return d.hand_plan.start - 2.0 * d.hand_plan.hover * d.hand_plan.inward;
 }
 
@@ -72,6 +75,11 @@ DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, in
     }
     subject_ = std::make_unique<subject::DrillingSurgeon>(person, charts_of(d), hand_, device_,
                                                           d.drilling.scale, seed, 1.0 / d.rate);
+  } else if (d.osteotomy_hand && d.osteotomy) {
+    const subject::OsteotomyTools tools = subject::osteotomy_tools(d.simulator.tools);
+    subject_ = std::make_unique<subject::OsteotomyHand>(
+        *d.osteotomy_hand, *d.osteotomy, tools, hand_, device_,
+        subject::HandFrame{d.drilling.scale, d.drilling.handle}, seed, 1.0 / d.rate);
   } else {
     subject_ = std::make_unique<subject::DrillingHand>(d.hand_plan, hand_, device_,
                                                        d.drilling.scale, seed, 1.0 / d.rate);

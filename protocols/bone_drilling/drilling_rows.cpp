@@ -14,7 +14,24 @@ std::array<std::int32_t, 3> indices(const bone::Voxel& voxel) noexcept {
   return {voxel.x(), voxel.y(), voxel.z()};
 }
 
+constexpr int kBetweenPieceRows = 100;  // ticks, while a hand carries a piece
+
 }  // namespace
+
+/// The bone itself lies as it did at the beginning.
+record::PieceRow piece_row(const bone::Simulator& simulator, std::uint64_t sequence, int piece,
+                           std::int64_t voxels) noexcept {
+  const bone::BoneWorld& world = simulator.world();
+  const Eigen::Isometry3d motion = world.pose(piece) * world.pose(0).inverse(Eigen::Isometry);
+  const Eigen::AngleAxisd turn(motion.linear());
+  record::PieceRow row;
+  row.sequence = sequence;
+  row.piece = piece;
+  row.voxels = voxels;
+  row.shift = motion.translation();
+  row.turn = turn.angle() * turn.axis();
+  return row;
+}
 
 void DrillingLogs::record(std::uint64_t sequence, const Readings& readings,
                           device::Fault /*fault*/) noexcept {
@@ -99,6 +116,30 @@ void DrillingRows::log_camera(std::uint64_t sequence, bool changed) noexcept {
   logs_.camera.push(row);
   camera_logged_ = sequence;
   camera_due_ = false;
+}
+
+void DrillingRows::log_pieces(std::uint64_t sequence) noexcept {
+  if (!logs_.watches_pieces()) {
+    return;
+  }
+  const bone::SimulatorOutput& out = simulator_.output();
+  for (const bone::WorldEvent& event : simulator_.separations()) {
+    if (event.kind == bone::WorldEvent::Kind::kBorn) {
+      logs_.pieces.push(piece_row(simulator_, sequence, event.piece, event.voxels));
+    }
+  }
+  const bool due = out.let_go || (out.moved != 0 && carried_for_++ % kBetweenPieceRows == 0);
+  carried_for_ = out.let_go || out.moved == 0 ? 0 : carried_for_;
+  for (int piece = 0; due && piece < simulator_.world().pieces(); ++piece) {
+    if (((out.moved >> piece) & 1U) != 0 && simulator_.world().is_born(piece)) {
+      logs_.pieces.push(piece_row(simulator_, sequence, piece, 0));
+    }
+  }
+  if (const bone::Screw* screw = simulator_.screws().ended()) {
+    const bone::ScrewPlace& at = screw->place;
+    logs_.screws.push({sequence, at.tool, at.plate, at.hole, screw->piece, screw->depth,
+                       screw->purchase, screw->torque});
+  }
 }
 
 void DrillingRows::log_tool(double removed, const Eigen::Vector3d& contact) noexcept {

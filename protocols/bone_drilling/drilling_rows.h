@@ -8,6 +8,7 @@
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/bone/record/field_row.h"
+#include "core/bone/record/fragment_rows.h"
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
@@ -32,6 +33,8 @@ class DrillingLogs final : public TickLog {
   realtime::BlockLog<record::OpeningRow> openings{64, 16};
   realtime::BlockLog<record::HandpieceRow> handpiece;
   realtime::BlockLog<record::ToolContactRow> tool_contact;
+  realtime::BlockLog<record::PieceRow> pieces{256, 64};
+  realtime::BlockLog<record::ScrewRow> screws{64, 16};
 
   /// A row of /second_hand for every tick from now on, also between passes. Before the first tick.
   void watch_second() noexcept { two_hands_ = true; }
@@ -46,6 +49,10 @@ class DrillingLogs final : public TickLog {
   void watch_tool_contact() noexcept { watches_tool_contact_ = true; }
   /// @param pushed  force on the first hand's tool, in W [N]
   void set_tool_contact(const Eigen::Vector3d& pushed) noexcept { tool_contact_.force = pushed; }
+
+  /// Rows of pieces and screws from now on. Before the first tick.
+  void watch_pieces() noexcept { watches_pieces_ = true; }
+  bool watches_pieces() const noexcept { return watches_pieces_; }
 
   /// Sets the present tick's row of the tool in hand; taken by record(). Servo thread.
   void set_tool(const record::ToolRow& row) noexcept { row_ = row; }
@@ -62,7 +69,7 @@ class DrillingLogs final : public TickLog {
   std::uint64_t dropped() const noexcept {
     return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
            tears.dropped() + led.dropped() + second.dropped() + openings.dropped() +
-           handpiece.dropped() + tool_contact.dropped();
+           handpiece.dropped() + tool_contact.dropped() + pieces.dropped() + screws.dropped();
   }
 
  private:
@@ -73,9 +80,15 @@ class DrillingLogs final : public TickLog {
   bool watches_handpiece_{false};
   record::ToolContactRow tool_contact_;
   bool watches_tool_contact_{false};
+  bool watches_pieces_{false};
   nerve::NerveTick nerves_;
   nerve::NerveBeside* beside_{nullptr};
 };
+
+/// The pose of a piece after the simulator's last tick. Servo thread.
+/// @param voxels  of a piece that was just born; else 0
+record::PieceRow piece_row(const bone::Simulator& simulator, std::uint64_t sequence, int piece,
+                           std::int64_t voxels) noexcept;
 
 /// Log entries of a pass's ticks. Servo thread.
 class DrillingRows {
@@ -89,6 +102,8 @@ class DrillingRows {
   /// A moving view is logged a hundred times a second at most, and where it comes to rest. Each
   /// tick of the pass.
   void log_camera(std::uint64_t sequence, bool changed) noexcept;
+  /// Pieces that were born, or that a hand moves, and screws. Each tick of the pass.
+  void log_pieces(std::uint64_t sequence) noexcept;
   /// The tool in hand after it. @param removed  in this tick [voxels]
   void log_tool(double removed, const Eigen::Vector3d& contact) noexcept;
   /// Shafts, wear and reverse after it. @param shaft  force on the burr's shaft [N]
@@ -103,6 +118,7 @@ class DrillingRows {
   bool first_{true};
   bool camera_due_{true};           // a change is not logged yet
   std::uint64_t camera_logged_{0};  // sequence number of the last row
+  int carried_for_{0};              // ticks
 };
 
 /// Tells hints the changes by the simulator's last tick.

@@ -175,7 +175,7 @@ Findings findings_of(const Procedure& procedure, const Experts& experts, StudyBo
   f.labels_left = labels_left(procedure);
   f.strokes = paths_of(procedure);
   f.pose_WB = procedure.pose_WB;
-  f.plan = procedure.plan;
+  f.plan = procedure.plans.cavity;
   return f;
 }
 

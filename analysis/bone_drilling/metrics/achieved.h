@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/fragment.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/bone/model/distance_field.h"
 #include "core/subject/drilling/cavity_plan.h"
@@ -38,10 +39,11 @@ struct PlanCount {
 
 /// Achievement of a procedure, and its cost. Source: Morris 2006, §3.5.
 struct Achieved {
-  std::optional<PlanCount> plan;  // nothing: the definition has no [cavity]
-  double voxel{0.0};              // volume of one [m3]
-  std::vector<BoneLeft> left;     // by vital structure, in the order of labels
-  double path{0.0};               // of the tip while the hand drives a tool [m]
+  std::optional<PlanCount> plan;          // nothing: the definition has no [cavity]
+  double voxel{0.0};                      // volume of one [m3]
+  std::vector<BoneLeft> left;             // by vital structure, in the order of labels
+  double path{0.0};                       // of the tip while the hand drives a tool [m]
+  std::optional<FragmentFit> fragment{};  // nothing: the definition has no [osteotomy]
 
   std::optional<double> removed() const;  // of the plan [m3]
   std::optional<double> beyond() const;   // [m3]
@@ -58,27 +60,29 @@ struct AchievedFigure {
   std::optional<double> value;  // nothing: not defined
 };
 
-/// All of them, those of the plan first.
+/// All of them, those of the plan first; those of a cavity only where no osteotomy is planned.
 std::vector<AchievedFigure> figures_of(const Achieved& achieved);
 
 /// Meter that goes along with a drilling; a few look-ups for each voxel and tick. One thread, not
 /// the servo thread.
 class AchievedMeter {
  public:
-  /// @param plan  of this bone; null: the definition has no [cavity]
   /// @param rate  of ticks [Hz]
-  AchievedMeter(std::shared_ptr<const bone::BoneModel> bone,
-                std::shared_ptr<const subject::CavityPlan> plan, double rate, StudyBones& bones);
+  AchievedMeter(const ProcedurePlans& plans, std::shared_ptr<const bone::BoneModel> bone,
+                const Eigen::Isometry3d& pose_WB, double rate, StudyBones& bones);
 
   void tick(const ToolTick& tick);
   /// A voxel that is gone, however it went.
   void remove(const bone::Voxel& voxel);
+  void add(const record::PieceRow& row);
+  void add(const record::ScrewRow& row);
 
   Achieved achieved() const;
 
  private:
   std::shared_ptr<const bone::BoneModel> bone_;
   std::shared_ptr<const subject::CavityPlan> plan_;
+  std::optional<FragmentMeter> fragment_;
   std::vector<std::shared_ptr<const bone::DistanceField>> fields_;  // (achieved_.left)
   std::vector<std::optional<double>> nearest_;                      // (achieved_.left) [m]
   std::vector<bool> gone_;                                          // (grid.count())

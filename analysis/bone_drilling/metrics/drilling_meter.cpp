@@ -7,12 +7,12 @@ namespace haptrial::analysis::drilling {
 DrillingMeter::DrillingMeter(std::shared_ptr<const bone::BoneModel> bone,
                              const Eigen::Isometry3d& pose_WB,
                              const std::vector<ProcedureTool>& tools, double rate,
-                             StudyBones& bones, std::shared_ptr<const subject::CavityPlan> plan)
+                             StudyBones& bones, const ProcedurePlans& plans)
     : tools_(tools),
       usage_(bone, tools, rate),
       visibility_(bone, pose_WB),
       injuries_(bone, pose_WB, tools, bones),
-      achieved_(bone, std::move(plan), rate, bones) {}
+      achieved_(plans, bone, pose_WB, rate, bones) {}
 
 BurrOnTick DrillingMeter::burr() const noexcept {
   const bool known = last_.tool >= 0 && std::cmp_less(last_.tool, tools_.size());

@@ -15,16 +15,18 @@ namespace haptrial::analysis::drilling {
 /// file and in a session. A visitor of visit_in_order(). One thread, not the servo thread.
 class DrillingMeter {
  public:
-  /// @param plan  of the cavity; null: there is none
   DrillingMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
                 const std::vector<ProcedureTool>& tools, double rate, StudyBones& bones,
-                std::shared_ptr<const subject::CavityPlan> plan);
+                const ProcedurePlans& plans);
 
   void view(const View& view);
   void crumb(const Debris& crumb);
   void tick(const ToolTick& tick);
   void removal(const Removal& removal);
   void cut(const Removal& cut);
+  /// Rows of a list in their order; how they mix with those of others does not matter.
+  void add(const record::PieceRow& row) { achieved_.add(row); }
+  void add(const record::ScrewRow& row) { achieved_.add(row); }
 
   double time() const noexcept { return usage_.time(); }  // [s]
   Usage usage() const { return usage_.usage(); }

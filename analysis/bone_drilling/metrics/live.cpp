@@ -18,8 +18,8 @@ void drop(std::vector<Row>& rows, std::size_t count) {
 LiveMetrics::LiveMetrics(const std::shared_ptr<const bone::BoneModel>& bone,
                          const Eigen::Isometry3d& pose_WB, const std::vector<ProcedureTool>& tools,
                          double scale, double rate, const Eigen::Vector3d& handle,
-                         std::shared_ptr<const subject::CavityPlan> plan)
-    : meter_(bone, pose_WB, tools, rate, bones_, std::move(plan)), scale_(scale), handle_(handle) {}
+                         const ProcedurePlans& plans)
+    : meter_(bone, pose_WB, tools, rate, bones_, plans), scale_(scale), handle_(handle) {}
 
 void LiveMetrics::add(std::span<const record::Sample> samples,
                       std::span<const record::ToolRow> tool) {
@@ -56,7 +56,21 @@ void LiveMetrics::add(std::span<const record::SplitRow> rows) {
   }
 }
 
+void LiveMetrics::add(std::span<const record::PieceRow> rows) {
+  for (const record::PieceRow& row : rows) {
+    meter_.add(row);
+  }
+}
+
+void LiveMetrics::add(std::span<const record::ScrewRow> rows) {
+  for (const record::ScrewRow& row : rows) {
+    meter_.add(row);
+  }
+}
+
 void LiveMetrics::add(const Procedure& earlier) {
+  add(std::span(earlier.pieces));
+  add(std::span(earlier.screws));
   const auto append = [](auto& to, const auto& rows) {
     to.insert(to.end(), rows.begin(), rows.end());
   };

@@ -22,11 +22,10 @@ class LiveMetrics {
  public:
   /// One for each bone; a drilling that was broken off and goes on stays with its object.
   /// @param scale, handle  as ProcedureSetup has them
-  /// @param plan  of the cavity on this bone; null: there is none
   LiveMetrics(const std::shared_ptr<const bone::BoneModel>& bone, const Eigen::Isometry3d& pose_WB,
               const std::vector<ProcedureTool>& tools, double scale, double rate,
               const Eigen::Vector3d& handle = Eigen::Vector3d::UnitZ(),
-              std::shared_ptr<const subject::CavityPlan> plan = nullptr);
+              const ProcedurePlans& plans = {});
 
   /// Rows of the same ticks; those on which no bone was simulated are passed over.
   /// @throws std::invalid_argument where they are not of the same ticks.
@@ -34,6 +33,9 @@ class LiveMetrics {
   void add(std::span<const record::RemovalRow> rows);
   void add(std::span<const record::CameraRow> rows);
   void add(std::span<const record::SplitRow> rows);
+  /// These count at once.
+  void add(std::span<const record::PieceRow> rows);
+  void add(std::span<const record::ScrewRow> rows);
 
   /// Adds the bone that was removed before the first of these rows, in an earlier run of the
   /// session.

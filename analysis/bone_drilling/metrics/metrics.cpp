@@ -250,8 +250,14 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   summary.bone = procedure.bone;
   summary.field = procedure.field;
   DrillingMeter meter(procedure.bone, procedure.pose_WB, procedure.tools, procedure.rate, bones,
-                      procedure.plan);
+                      procedure.plans);
   visit_in_order(procedure, meter);
+  for (const record::PieceRow& row : procedure.pieces) {
+    meter.add(row);
+  }
+  for (const record::ScrewRow& row : procedure.screws) {
+    meter.add(row);
+  }
   summary.visibility = meter.visibility();
   sort_removed(procedure, summary);
   summary.injuries = meter.injuries().injuries();

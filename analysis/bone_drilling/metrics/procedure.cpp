@@ -86,6 +86,8 @@ class Loader {
         views_(file),
         splits_(file),
         tears_(file),
+        pieces_(file),
+        screws_(file),
         ends_(file.rows<record::ProcedureRow>()),
         fields_(file.rows<record::FieldRow>()) {
     for (const record::BoneRecord& record : record::recorded_bones(file)) {
@@ -107,7 +109,7 @@ class Loader {
       procedure.pose_WB = setup_.pose_WB(procedure.bone->grid);
     }
     procedure.tools = setup_.tools;
-    procedure.plan = setup_.plan ? setup_.plan(procedure.bone) : nullptr;
+    procedure.plans = setup_.plans ? setup_.plans(procedure.bone) : ProcedurePlans{};
     for (const Pass& pass : passes) {
       add(pass.pass, procedure);
     }
@@ -177,6 +179,11 @@ class Loader {
       procedure.tears.push_back(
           {row.sequence, row.label, row.by_suction, row.force, procedure.pose_WB * row.place});
     }
+    const auto append = [](auto& to, const auto& rows) {
+      to.insert(to.end(), rows.begin(), rows.end());
+    };
+    append(procedure.pieces, pieces_.of(pass));
+    append(procedure.screws, screws_.of(pass));
     for (const record::SplitRow& row : splits_.of(pass)) {
       if (row.to < 0) {
         procedure.crumbs.push_back({row.sequence, {row.voxel[0], row.voxel[1], row.voxel[2]}});
@@ -192,6 +199,8 @@ class Loader {
   Rows<record::CameraRow> views_;
   Rows<record::SplitRow> splits_;
   Rows<record::TearRow> tears_;
+  Rows<record::PieceRow> pieces_;
+  Rows<record::ScrewRow> screws_;
   std::vector<record::ProcedureRow> ends_;
   std::vector<record::FieldRow> fields_;
 };

@@ -14,7 +14,9 @@
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/bone/record/field_row.h"
+#include "core/bone/record/fragment_rows.h"
 #include "core/record/rows/session_types.h"
+#include "core/subject/drilling/fragment_plan.h"
 
 namespace haptrial::record {
 class SessionReader;
@@ -33,6 +35,12 @@ struct ProcedureTool {
   std::shared_ptr<const bone::BurrShape> shape{};  // of a burr that is no ball; else null
 };
 
+/// The plans of a procedure on its bone.
+struct ProcedurePlans {
+  std::shared_ptr<const subject::CavityPlan> cavity;  // null: the definition has no [cavity]
+  std::optional<subject::FragmentPlan> fragment;      // nothing: it has no [osteotomy]
+};
+
 /// Facts of a session that its definition has and its tables do not.
 struct ProcedureSetup {
   std::string group;  // of the participant
@@ -43,10 +51,8 @@ struct ProcedureSetup {
   /// but 0.
   Eigen::Vector3d handle{Eigen::Vector3d::UnitZ()};
   std::vector<ProcedureTool> tools;  // in the definition's order
-  /// The plan of the cavity on a bone; null where the definition has no [cavity].
-  std::function<std::shared_ptr<const subject::CavityPlan>(
-      const std::shared_ptr<const bone::BoneModel>&)>
-      plan;
+  /// The plans on a bone; empty: there are none.
+  std::function<ProcedurePlans(const std::shared_ptr<const bone::BoneModel>&)> plans;
 };
 
 /// One tick of a drilling; the tip in the scene's frame W.
@@ -101,7 +107,7 @@ struct Torn {
 /// in ascending order of their sequence numbers, and of one tick a crumb went before the removals
 /// and these before the cuts.
 ///
-/// What a session file does not say is not here: pieces that were carried stay where they were.
+/// Voxels are where they were at the beginning, also those of pieces that were carried.
 struct Procedure {
   std::string session;  // name of the file
   std::string participant;
@@ -121,7 +127,9 @@ struct Procedure {
   std::vector<Torn> tears;
   /// Heat and blood since the bone was new; none where the definition has neither.
   std::optional<record::FieldRow> field;
-  std::shared_ptr<const subject::CavityPlan> plan;  // null: the definition has no [cavity]
+  std::vector<record::PieceRow> pieces;  // none where the definition has no [osteotomy]
+  std::vector<record::ScrewRow> screws;  // likewise
+  ProcedurePlans plans;
 
   /// Null out of range.
   const ProcedureTool* tool(std::int32_t tool) const noexcept;

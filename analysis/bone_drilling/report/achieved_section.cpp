@@ -8,6 +8,14 @@
 namespace haptrial::analysis::drilling {
 namespace {
 
+constexpr const char* kCavity =
+    "The plan is the cavity of the definition as far as the smallest burr reaches; a voxel beside "
+    "it is neither planned nor beyond it.";
+constexpr const char* kOsteotomy =
+    "The plan is the osteotomy of the definition. Gap and step are the error of the fragment at "
+    "the middle of the planned cut, along its normal (above 0: open) and across it; a screw holds "
+    "with 2 mm of solid bone in its thread.";
+
 ValueTable column_values(const ValidityResult& result, const std::string& column) {
   ValueTable table = table_of(result.validity, result.procedures);
   for (std::size_t i = 0; i < result.procedures.size(); ++i) {
@@ -42,8 +50,8 @@ void add_achieved_section(Document& document, const ValidityResult& result) {
   document.heading(result.validity.simulated ? "What was achieved (simulated)"
                                              : "What was achieved");
   document.paragraph(
-      "The plan is the cavity of the definition as far as the smallest burr reaches; a voxel "
-      "beside it is neither planned nor beyond it. Bone left over a structure is the least "
+      std::string(result.procedures.front().achieved.fragment ? kOsteotomy : kCavity) +
+      " Bone left over a structure is the least "
       "distance from it to a removed voxel, up to 10 mm. Groups are not compared here.");
   document.table(heading, rows);
 }

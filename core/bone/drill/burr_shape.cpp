@@ -24,14 +24,15 @@ void check_dimensions(const BurrDimensions& d) {
   if (d.form == BurrForm::kBall) {
     return;
   }
-  const bool pear = d.form == BurrForm::kPear;
-  const bool narrow = pear || d.form == BurrForm::kCone;
-  need(d.length > (pear ? d.diameter : 0.0) && std::isfinite(d.length), "length", d.length,
-       pear ? "above the diameter [m]" : "above 0 [m]");
+  const bool solid = d.form == BurrForm::kPear || d.form == BurrForm::kBlade;
+  const bool narrow = solid || d.form == BurrForm::kCone;
+  const double least = d.form == BurrForm::kPear ? d.diameter : 0.0;
+  need(d.length > least && std::isfinite(d.length), "length", d.length,
+       least > 0.0 ? "above the diameter [m]" : "above 0 [m]");
   need(!narrow || (d.narrow_diameter >= 0.0 && d.narrow_diameter <= d.diameter &&
-                   (!pear || d.narrow_diameter > 0.0)),
+                   (!solid || d.narrow_diameter > 0.0)),
        "narrow_diameter", d.narrow_diameter,
-       pear ? "above 0, at most the diameter [m]" : "from 0 to the diameter [m]");
+       solid ? "above 0, at most the diameter [m]" : "from 0 to the diameter [m]");
 }
 
 /// The volume within a line's or an arc's turn about the axis, over pi.
@@ -48,7 +49,8 @@ double turned(const Vector2d& a, const Vector2d& b, double arc_z, double arc_rad
 }  // namespace
 
 std::string_view name_of(BurrForm form) noexcept {
-  constexpr std::array<std::string_view, 5> kNames{"ball", "cylinder", "cone", "pear", "rod"};
+  constexpr std::array<std::string_view, 6> kNames{"ball", "cylinder", "cone",
+                                                   "pear", "rod",      "blade"};
   return kNames[static_cast<std::size_t>(form)];
 }
 
@@ -62,6 +64,12 @@ BurrShape::BurrShape(const BurrDimensions& dimensions) : dimensions_(dimensions)
     return;
   }
   half_length_ = 0.5 * d.length;
+  if (d.form == BurrForm::kBlade) {
+    reach_ = 0.5 * Eigen::Vector3d(d.diameter, d.narrow_diameter, d.length).norm();
+    fullness_ = d.narrow_diameter * d.length / (d.diameter * d.diameter);
+    fill_with_balls();
+    return;
+  }
   if (d.form == BurrForm::kPear) {
     add_pear();
   } else {
@@ -145,7 +153,8 @@ void BurrShape::fill_with_balls() {
 }
 
 bool BurrShape::is_point_symmetric() const noexcept {
-  return is_ball() || dimensions_.form == BurrForm::kCylinder || dimensions_.form == BurrForm::kRod;
+  return is_ball() || dimensions_.form == BurrForm::kCylinder ||
+         dimensions_.form == BurrForm::kRod || dimensions_.form == BurrForm::kBlade;
 }
 
 double BurrShape::volume() const noexcept { return fullness_ * std::pow(dimensions_.diameter, 3); }
@@ -157,6 +166,9 @@ double BurrShape::ball_radius() const noexcept {
 double BurrShape::radius_at(double z) const noexcept {
   if (is_ball()) {
     return std::sqrt(std::max(0.0, reach_ * reach_ - z * z));
+  }
+  if (dimensions_.form == BurrForm::kBlade) {
+    return std::abs(z) <= half_length_ ? 0.5 * dimensions_.diameter : 0.0;
   }
   for (const Piece& piece : pieces_) {
     if (z < piece.a.y() || z > piece.b.y() || piece.is_flat_end()) {
@@ -172,7 +184,28 @@ double BurrShape::radius_at(double z) const noexcept {
   return 0.0;
 }
 
+/// Outside of an edge or a corner the normal leans over it.
+BurrShape::Nearest BurrShape::nearest_of_box(const Eigen::Vector3d& p_T) const noexcept {
+  const Eigen::Vector3d half =
+      0.5 * Eigen::Vector3d(dimensions_.diameter, dimensions_.narrow_diameter, dimensions_.length);
+  const Eigen::Vector3d beyond = p_T.cwiseAbs() - half;
+  const Eigen::Vector3d outside = beyond.cwiseMax(0.0);
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Eigen::Index face = 0;
+  double distance = beyond.maxCoeff(&face);
+  if (distance > 0.0) {
+    distance = outside.norm();
+    normal = outside / distance;
+  } else {
+    normal[face] = 1.0;
+  }
+  return {distance, (p_T.array() < 0.0).select(-normal, normal)};
+}
+
 BurrShape::Nearest BurrShape::nearest(const Eigen::Vector3d& p_T) const noexcept {
+  if (dimensions_.form == BurrForm::kBlade) {
+    return nearest_of_box(p_T);
+  }
   if (is_ball()) {
     const double length = p_T.norm();
     return {length - reach_,

@@ -14,9 +14,11 @@ enum class BurrForm : std::uint8_t {
   kCylinder,  // a fissure burr, with flat ends
   kCone,      // a taper, with flat ends, narrow at its tip
   kPear,      // the hull of two balls, narrow at its neck; a cylinder with round ends if it is not
-  kRod,  // a cylinder whose ends are within other parts: a shaft, which pushes by its side only
+  kRod,    // a cylinder whose ends are within other parts: a shaft, which pushes by its side only
+  kBlade,  // a flat box: x along its width, y across it; a saw's teeth, and the sheet behind them
 };
-/// Name of a form in definitions: "ball", "cylinder", "cone", "pear"; "rod" is none of theirs.
+/// Name of a form in definitions: "ball", "cylinder", "cone", "pear"; "rod" and "blade" are none of
+/// theirs.
 std::string_view name_of(BurrForm form) noexcept;
 
 /// Volume of a ball over diameter^3.
@@ -24,14 +26,15 @@ inline constexpr double kBallFullness = std::numbers::pi / 6.0;
 
 struct BurrDimensions {
   BurrForm form{BurrForm::kBall};
-  double diameter{4e-3};        // the greatest > 0 [m]
+  double diameter{4e-3};        // the greatest > 0; a blade's width [m]
   double length{0.0};           // along the axis > 0, a pear's above its diameter; no ball's [m]
-  double narrow_diameter{0.0};  // of a cone's tip >= 0 or a pear's neck > 0, <= diameter [m]
+  double narrow_diameter{0.0};  // of a cone's tip >= 0 or a pear's neck > 0, <= diameter; a
+                                // blade's thickness > 0 [m]
 };
 
-/// A convex solid of revolution about the z axis of the tool frame T (core/base/tool_state.h); the
-/// middle of its length is T's origin, and its tip is at negative z. Immutable: any thread.
-/// The source has balls only: Morris 2006, §3.2.3.6.
+/// A convex solid of revolution about the z axis of the tool frame T (core/base/tool_state.h), or a
+/// blade; the middle of its length is T's origin, and its tip is at negative z. Immutable: any
+/// thread. The source has balls only: Morris 2006, §3.2.3.6.
 class BurrShape {
  public:
   /// @throws std::invalid_argument naming the dimension that breaks its bound.
@@ -47,7 +50,7 @@ class BurrShape {
   double volume() const noexcept;                               // [m^3]
   /// Radius of the ball with the same volume [m].
   double ball_radius() const noexcept;
-  /// Radius of its section at a height; 0 beyond its ends [m].
+  /// Radius of its section at a height; half of a blade's width; 0 beyond its ends [m].
   double radius_at(double z) const noexcept;
 
   struct Nearest {
@@ -71,7 +74,7 @@ class BurrShape {
     double lateral;  // component of the normal across the axis, 0 to 1; of a flat end its edge's
   };
   /// The shape's meridian from the tip to the other end: a polyline for each smooth part, with the
-  /// arcs in `steps` chords.
+  /// arcs in `steps` chords. A blade has none.
   std::vector<std::vector<OutlinePoint>> outline(int steps) const;
 
  private:
@@ -88,6 +91,7 @@ class BurrShape {
   void add_line(const Eigen::Vector2d& a, const Eigen::Vector2d& b, bool pushes = true);
   void add_arc(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double z, double radius);
   void add_pear();
+  Nearest nearest_of_box(const Eigen::Vector3d& p_T) const noexcept;
   void measure();
   void fill_with_balls();
 

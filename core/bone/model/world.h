@@ -151,6 +151,8 @@ class BoneWorld {
   void drag(const Eigen::Isometry3d& pose_WT) noexcept;
   void release() noexcept;
   int held() const noexcept { return held_; }  // piece; -1: none
+  /// Everything that moves with what is held, one in the making among it.
+  PieceSet held_group() const noexcept { return held_group_; }
   /// The sum of all densities that crumbs had [voxels].
   double crumbled() const noexcept { return crumbled_; }
 

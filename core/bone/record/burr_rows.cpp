@@ -9,16 +9,18 @@ const Table<BurrRow>& table_of<BurrRow>() {
   using R = BurrRow;
   using T = Table<R>;
   static const EnumText kinds({{0, "diamond"}, {1, "cutting"}});
-  static const EnumText shapes({{0, "ball"}, {1, "cylinder"}, {2, "cone"}, {3, "pear"}});
+  static const EnumText shapes(
+      {{0, "ball"}, {1, "cylinder"}, {2, "cone"}, {3, "pear"}, {5, "blade"}});
   static const T table(
       {"burrs", "the burrs when they were new", 8, RowsOf::kSession, {"tool"}},
       {T::column("tool", &R::tool, "1", "as in /tool"),
        T::text("name", &R::name, kNameBytes, "in the definition"),
        T::code("kind", &R::kind, kinds, "0 diamond, 1 cutting"),
-       T::code("shape", &R::shape, shapes, "0 ball, 1 cylinder, 2 cone, 3 pear"),
-       T::column("diameter", &R::diameter, "m", "the greatest"),
+       T::code("shape", &R::shape, shapes, "0 ball, 1 cylinder, 2 cone, 3 pear, 5 a saw's blade"),
+       T::column("diameter", &R::diameter, "m", "the greatest; the width of a saw's blade"),
        T::column("length", &R::length, "m", "along the axis"),
-       T::column("narrow_diameter", &R::narrow_diameter, "m", "of a cone's tip or a pear's neck"),
+       T::column("narrow_diameter", &R::narrow_diameter, "m",
+                 "of a cone's tip or a pear's neck; the kerf of a saw"),
        T::column("clockwise", &R::clockwise, "1",
                  "1: turns so, seen from the handle, unless it is reversed"),
        T::column("shaft_radius", &R::shaft_radius, "m",

@@ -162,8 +162,12 @@ const Schema<PlateParameters>& plate_schema() {
   return schema;
 }
 
-PlateModel::PlateModel(std::string name, geometry::Mesh mesh, const PlateParameters& parameters)
-    : name_(std::move(name)), mesh_(std::move(mesh)), parameters_(parameters) {
+PlateModel::PlateModel(std::string name, geometry::Mesh mesh, const PlateParameters& parameters,
+                       std::vector<Eigen::Isometry3d> holes)
+    : name_(std::move(name)),
+      mesh_(std::move(mesh)),
+      parameters_(parameters),
+      holes_(std::move(holes)) {
   check(parameters);
   double total = 0.0;
   Eigen::AlignedBox3d box;
@@ -202,6 +206,15 @@ PlateModel PlateModel::load(const std::filesystem::path& file, double unit,
     throw InputError(fmt::format("{} has no triangle with an area; choose a mesh with a surface",
                                  file.string()));
   }
+}
+
+std::optional<double> way_out(const BoneWorld& world, int piece, const Vector3d& from_B,
+                              const Vector3d& to_B) noexcept {
+  const Bone bone{world.volume(piece), world.leaving(piece)};
+  if (!bone.holds(voxel_of(bone.volume.grid(), from_B))) {
+    return std::nullopt;
+  }
+  return way_out(bone, from_B, to_B, (to_B - from_B).norm());
 }
 
 PlateContact press(const PlateModel& plate, const Eigen::Isometry3d& pose_WP,

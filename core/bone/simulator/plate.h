@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,9 @@ const Schema<PlateParameters>& plate_schema();
 class PlateModel {
  public:
   /// @throws std::invalid_argument for a mesh without an area, or parameters out of bounds.
-  PlateModel(std::string name, geometry::Mesh mesh, const PlateParameters& parameters = {});
+  /// @param holes  for screws: their poses in P, on the side that lies on bone, z outwards
+  PlateModel(std::string name, geometry::Mesh mesh, const PlateParameters& parameters = {},
+             std::vector<Eigen::Isometry3d> holes = {});
   /// Reads OBJ, STL, PLY or OFF. @param unit  of the file [m]
   /// @throws InputError as geometry::read_mesh does, or where the mesh has no area.
   static PlateModel load(const std::filesystem::path& file, double unit = 1e-3,
@@ -42,11 +45,13 @@ class PlateModel {
   const geometry::Mesh& mesh() const noexcept { return mesh_; }
   const std::vector<PlateSample>& samples() const noexcept { return samples_; }
   const PlateParameters& parameters() const noexcept { return parameters_; }
+  const std::vector<Eigen::Isometry3d>& holes() const noexcept { return holes_; }
 
  private:
   std::string name_;
   geometry::Mesh mesh_;
   PlateParameters parameters_;
+  std::vector<Eigen::Isometry3d> holes_;
   std::vector<PlateSample> samples_;
 };
 
@@ -67,6 +72,13 @@ struct PlateContact {
 /// Servo thread: no allocation, lock or throw.
 PlateContact press(const PlateModel& plate, const Eigen::Isometry3d& pose_WP,
                    const BoneWorld& world) noexcept;
+
+/// How far a ray that begins in the bone of a piece runs before it leaves it; nothing where it
+/// begins beside it or does not leave it. Servo thread, as press().
+/// @param piece         one that is born, felt with what is about to leave it
+/// @param from_B, to_B  ends of the ray in the bone's frame [m]
+std::optional<double> way_out(const BoneWorld& world, int piece, const Eigen::Vector3d& from_B,
+                              const Eigen::Vector3d& to_B) noexcept;
 
 /// Fixes a plate where it is to every piece that its samples are in.
 /// @param model  the caller's number for the plate's model

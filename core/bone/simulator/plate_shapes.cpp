@@ -243,6 +243,25 @@ PlateShape l_plate(int along, int across, double pitch) {
   return shape;
 }
 
+Eigen::Isometry3d bent_at(const Eigen::Vector3d& place, double curvature) {
+  Eigen::Isometry3d pose(Eigen::Translation3d{place});
+  if (curvature > 0.0) {
+    const double radius = 1.0 / curvature;
+    const double angle = place.x() * curvature;
+    pose.linear() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    pose.translation() = Eigen::Vector3d((radius + place.z()) * std::sin(angle), place.y(),
+                                         (radius + place.z()) * std::cos(angle) - radius);
+  }
+  return pose;
+}
+
+Mesh bent(Mesh plate, double curvature) {
+  for (Eigen::Vector3d& vertex : plate.vertices) {
+    vertex = bent_at(vertex, curvature).translation();
+  }
+  return plate;
+}
+
 Mesh make_distractor(double gap) {
   if (!(gap > 0.0 && gap < 1.0)) {
     throw std::invalid_argument("plate: a distractor's gap must be above 0 and below 1 m");

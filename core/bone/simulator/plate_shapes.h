@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "core/geometry/mesh/mesh.h"
@@ -25,6 +25,12 @@ geometry::Mesh make_plate(const PlateShape& shape);
 PlateShape straight_miniplate(int holes, double pitch = 6e-3, double middle = 9e-3);
 /// An L: `along` holes along x from the corner, itself one of them, and `across` along y.
 PlateShape l_plate(int along = 4, int across = 2, double pitch = 6e-3);
+
+/// Where a place of a plate comes to when the plate is bent about y, as over a round bone, and how
+/// it is turned there. What lies on the bone, z = 0, keeps its length.
+/// @param curvature  of the bone under the plate >= 0 [1/m]
+Eigen::Isometry3d bent_at(const Eigen::Vector3d& place, double curvature);
+geometry::Mesh bent(geometry::Mesh plate, double curvature);
 
 /// An internal distractor: two footplates side by side in the plane z = 0, `gap` apart along x, and
 /// a rod with its housing over them: three closed meshes that overlap. @param gap  > 0 [m]

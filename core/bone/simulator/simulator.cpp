@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/bone/simulator/saw.h"
+
 namespace haptrial::bone {
 namespace {
 
@@ -120,6 +122,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   deposits_.clear();
   soft_.begin_tick();
   bleeding_.begin_tick();
+  screws_.begin_tick();
   const int tool = output_.tool;
   output_ = {};
   output_.tool = tool;
@@ -136,6 +139,9 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   output_.mode = mode_of(input);
   steer(input);
   carry(input);
+  if (output_.mode != HandMode::kTool || tools_[in_hand()].as<ScrewTool>() == nullptr) {
+    screws_.rest();
+  }
   if (output_.mode == HandMode::kTool) {
     work(input, pressed);
   } else {
@@ -224,6 +230,8 @@ void Simulator::steer(const SimulatorInput& input) noexcept {
 void Simulator::carry(const SimulatorInput& input) noexcept {
   if (output_.mode != HandMode::kCarry) {
     if (world_.held() >= 0) {
+      output_.moved = world_.held_group();
+      output_.let_go = true;
       world_.release();
     }
     return;
@@ -238,9 +246,15 @@ void Simulator::carry(const SimulatorInput& input) noexcept {
     const auto touched = world_.touch(input.tool.tip.position, reach);
     if (touched && !world_.is_fixed(touched->piece)) {
       world_.grab(*touched, pose);
+      carried_.begin(pose);
     }
   } else {
-    world_.drag(pose);
+    const HeldBone::Followed followed = carried_.follow(world_, pose, input.dt);
+    world_.drag(followed.tool);
+    output_.force = followed.force;
+    output_.immersed = followed.touching;
+    output_.contact = followed.touching > 0;
+    output_.moved = world_.held_group();
   }
 }
 
@@ -249,7 +263,7 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
   const ToolSpec& tool = tools_[in_hand()];
   if (const auto* burr = tool.as<BurrTool>()) {
     constexpr double kTurnsShown = 1.0 / 617.0;  // a tick: no screen keeps step with it
-    const double turning = handpiece_.turning(input.power);
+    const double turning = is_saw(*burr) ? 0.0 : handpiece_.turning(input.power);
     shown_turn_ += kTurnsShown * (burr->burr.clockwise ? -23.0 : 23.0) * turning;
     shown_turn_ -= std::floor(shown_turn_);
     drill(*burr, input);
@@ -261,6 +275,9 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
     yield({&end, 1}, input);
   } else if (tool.as<ProbeTool>() != nullptr) {
     output_.power = input.power;
+  } else if (const auto* driver = tool.as<ScrewTool>()) {
+    output_.power = input.power;
+    screws_.drive(world_, plates_, *driver, output_.tool, input.tool, input.power, input.dt);
   } else if (tool.as<PlateTool>() != nullptr) {
     hold_plate(input, apply);
   } else if (const auto* plane = tool.as<CutPlane>(); plane != nullptr && apply) {
@@ -295,8 +312,9 @@ void Simulator::warm_up(const SimulatorInput& input) noexcept {
   const auto* burr = tools_[in_hand()].as<BurrTool>();
   const bool turns = burr != nullptr && output_.mode == HandMode::kTool;
   const bool rinsed = second_ && second_->rinses(input.tube, input.tool.tip.position);
-  heat_->tick(turns ? output_.drag.norm() : 0.0, turns ? burr->radius() : 0.0,
-              turns ? input.power : 0.0, rinsed, input.dt);
+  const Rubbing rubbing =
+      turns ? rubbing_of(*burr, output_.force, output_.drag, input.tool.axis()) : Rubbing{0.0, 0.0};
+  heat_->tick(rubbing.force, rubbing.radius, turns ? input.power : 0.0, rinsed, input.dt);
 }
 
 /// Vessels bleed that lost a voxel on this tick, or were torn.

@@ -17,8 +17,10 @@
 #include "core/bone/simulator/bleeding.h"
 #include "core/bone/simulator/cut_plane.h"
 #include "core/bone/simulator/handpiece.h"
+#include "core/bone/simulator/held_bone.h"
 #include "core/bone/simulator/injury_watch.h"
 #include "core/bone/simulator/microscope.h"
+#include "core/bone/simulator/screws.h"
 #include "core/bone/simulator/second_hand.h"
 #include "core/bone/simulator/simulator_tools.h"
 #include "core/bone/simulator/soft_tissue.h"
@@ -82,13 +84,15 @@ struct SimulatorOutput {
   int tool{0};                   // in hand
   HandMode mode{HandMode::kTool};
   double power{0.0};    // of the tool in hand, 0 where it has none
-  bool contact{false};  // the tool touches bone
-  int immersed{0};      // samples of the tool in bone
+  bool contact{false};  // the tool, or the bone that it carries, touches bone
+  int immersed{0};      // samples of the tool, or of the bone that it carries, in bone
   double removed{0.0};  // sum of densities that the burr took [voxels]
   double cut{0.0};      // that the cut plane took [voxels]
   bool yields{false};   // soft tissue gives way to the tool
   bool camera_changed{false};
   bool finished{false};  // kFinish went down
+  PieceSet moved{0};     // pieces that a hand carried, or let go of, on this tick
+  bool let_go{false};    // of them
   TubeOutput tube{};
 };
 
@@ -130,6 +134,7 @@ class Simulator {
   const Bleeding& bleeding() const noexcept { return bleeding_; }
   const LastInjury& last_injury() const noexcept { return injuries_.last(); }
   const Handpiece& handpiece() const noexcept { return handpiece_; }
+  const Screws& screws() const noexcept { return screws_; }
   /// Shape of the burr in hand; null for another tool.
   const BurrShape* burr_shape() const noexcept;
   /// Balls of the burr in hand; none of another tool.
@@ -210,6 +215,8 @@ class Simulator {
   Bleeding bleeding_;
   InjuryWatch injuries_;
   CutPlaneTool cutter_;
+  HeldBone carried_;
+  Screws screws_;
   double cut_of_present_{0.0};
   Camera camera_;
   SimulatorOutput output_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/bone/simulator/piece_contact.h"
+#include "core/bone/simulator/saw.h"
 #include "core/bone/simulator/simulator.h"
 
 namespace haptrial::bone {
@@ -111,7 +112,8 @@ void Simulator::drill(const BurrTool& tool, const SimulatorInput& input) noexcep
   const double turning = handpiece_.turning(input.power);
   output_.force = bone_force(all, tool.feel, tool.burr, turning);
   output_.drag = drag_force(all, tool.burr, turning);
-  const double force = kForceStep * std::round(output_.force.norm() / kForceStep);
+  const double driving = removal_force(tool, output_.force, input.tool.axis());
+  const double force = kForceStep * std::round(driving / kForceStep);
   const double sharp_power = input.power * handpiece_.sharpness(output_.tool);
   double volume_taken = 0.0;
   for (int piece = 0; piece < pieces; ++piece) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/definition/schema.h"
 #include "core/bone/simulator/plate_shapes.h"
+#include "core/bone/simulator/saw.h"
 
 namespace haptrial::bone {
 namespace {
@@ -68,6 +70,21 @@ const Schema<GripTool>& grip_schema() {
   return schema;
 }
 
+const Schema<ScrewTool>& screw_schema() {
+  using T = ScrewTool;
+  static const auto schema =
+      Schema<T>()
+          .number("diameter", &T::diameter, {5e-4, 0.01}, "m", "Diameter of a screw's thread")
+          .number("length", &T::length, {1e-3, 0.05}, "m",
+                  "Length of a screw, from the outer side of the plate")
+          .number("pitch", &T::pitch, {1e-4, 0.005}, "m", "Advance of a screw in one turn")
+          .number("turns", &T::turns, {0.1, 100.0}, "1/s",
+                  "Turns of a screw in a second at full power")
+          .number("torque_rate", &T::torque_rate, {0.0, 1e5}, "N·m/m",
+                  "Torque of a screw over the length of solid bone that its thread is in");
+  return schema;
+}
+
 const Schema<PlateTool>& plate_tool_schema() {
   static const auto schema =
       Schema<PlateTool>()
@@ -77,6 +94,9 @@ const Schema<PlateTool>& plate_tool_schema() {
                   })
           .required()
           .integer("holes", &PlateTool::holes, 2, 20, "Number of holes of a straight plate")
+          .number("curvature", &PlateTool::curvature, {0.0, 200.0}, "1/m",
+                  "Curvature with which the plate is bent over the bone, about its y axis; not a "
+                  "distractor's")
           .table("contact", &PlateTool::contact, plate_schema(), "Feel of the plate on bone");
   return schema;
 }
@@ -86,9 +106,11 @@ void read_kind(Table& table, const std::string& key, ToolSpec& tool) {
     schema.read(table, tool.kind.emplace<Kind>());
   };
   const std::string type =
-      table.choice(key, {"burr", "suction", "cut_plane", "plate", "grip", "probe"});
+      table.choice(key, {"burr", "saw", "suction", "cut_plane", "plate", "grip", "screw", "probe"});
   if (type == "burr") {
     read(burr_tool_schema());
+  } else if (type == "saw") {
+    tool.kind = saw_tool(saw_schema().read(table));
   } else if (type == "suction") {
     read(suction_schema());
   } else if (type == "cut_plane") {
@@ -97,6 +119,8 @@ void read_kind(Table& table, const std::string& key, ToolSpec& tool) {
     read(plate_tool_schema());
   } else if (type == "grip") {
     read(grip_schema());
+  } else if (type == "screw") {
+    read(screw_schema());
   } else if (type == "probe") {
     read(probe_schema());
   }
@@ -115,14 +139,6 @@ const Schema<ToolSpec>& tool_schema() {
 }
 
 }  // namespace
-
-ShaftParameters default_shaft(double radius, double length) {
-  ShaftParameters shaft;
-  shaft.radius = radius;
-  shaft.length = length;
-  shaft.feel = default_feel(BurrShape(shaft.dimensions()).ball_radius());
-  return shaft;
-}
 
 std::vector<ToolSpec> read_tools(Table& table) {
   std::vector<ToolSpec> tools;
@@ -146,11 +162,19 @@ std::vector<ToolSpec> read_tools(Table& table) {
 }
 
 PlateModel make_plate_model(const std::string& name, const PlateTool& tool) {
+  const auto with_holes = [&](const PlateShape& shape) {
+    std::vector<Eigen::Isometry3d> holes;
+    for (const Eigen::Vector2d& hole : shape.holes) {
+      holes.push_back(bent_at({hole.x(), hole.y(), 0.0}, tool.curvature));
+    }
+    return PlateModel(name, bent(make_plate(shape), tool.curvature), tool.contact,
+                      std::move(holes));
+  };
   if (tool.shape == "straight") {
-    return {name, make_plate(straight_miniplate(tool.holes)), tool.contact};
+    return with_holes(straight_miniplate(tool.holes));
   }
   if (tool.shape == "l") {
-    return {name, make_plate(l_plate()), tool.contact};
+    return with_holes(l_plate());
   }
   if (tool.shape == "distractor") {
     return {name, make_distractor(), tool.contact};

@@ -5,8 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/bone/drill/burr.h"
-#include "core/bone/drill/feel.h"
+#include "core/bone/simulator/burr_tool.h"
 #include "core/bone/simulator/cut_plane.h"
 #include "core/bone/simulator/plate.h"
 
@@ -16,23 +15,6 @@ class Table;
 
 namespace haptrial::bone {
 
-/// The part of a tool behind its burr or its opening, as far as bone feels it and is not cut.
-struct ShaftParameters {
-  double radius{1e-3};    // > 0 [m]
-  double length{0.02};    // from the burr's or the opening's end on > 0 [m]
-  FeelParameters feel{};  // default_feel() of the ball of its volume
-
-  BurrDimensions dimensions() const noexcept { return {BurrForm::kRod, 2.0 * radius, length, 0.0}; }
-};
-/// A shaft with the default feel. @throws std::invalid_argument where a number is not above 0.
-ShaftParameters default_shaft(double radius, double length);
-
-struct BurrTool {
-  BurrParameters burr{};
-  FeelParameters feel{};
-  std::optional<ShaftParameters> shaft{};                         // none: it is not felt
-  double radius() const noexcept { return 0.5 * burr.diameter; }  // [m]
-};
 struct SuctionTool {
   double radius{1e-3};  // of the tube's opening > 0 [m]
 };
@@ -43,11 +25,20 @@ struct ProbeTool {
 struct PlateTool {
   std::string shape{"straight"};  // or "l", "distractor"
   int holes{4};                   // of a straight plate
+  double curvature{0.0};          // with which it is bent over the bone >= 0 [1/m]
   PlateParameters contact{};
 };
 /// Takes hold of a piece.
 struct GripTool {
   double reach{1.5e-3};  // to the bone > 0 [m]
+};
+/// Drives screws into the holes of plates (screws.h).
+struct ScrewTool {
+  double diameter{2.0e-3};    // of the thread > 0 [m]
+  double length{7e-3};        // of a screw, from the plate's outer side > 0 [m]
+  double pitch{0.8e-3};       // > 0 [m]
+  double turns{2.0};          // with full power > 0 [1/s]
+  double torque_rate{100.0};  // over the length of solid bone that the thread is in >= 0 [N·m/m]
 };
 
 /// One of the tools that a participant can take in hand.
@@ -56,7 +47,7 @@ struct ToolSpec {
   double handle_radius{2.5e-3};  // > 0 [m]
   double handle_length{0.1};     // > 0 [m]
   // A cut plane lies in the hand.
-  std::variant<BurrTool, SuctionTool, CutPlane, PlateTool, GripTool, ProbeTool> kind{};
+  std::variant<BurrTool, SuctionTool, CutPlane, PlateTool, GripTool, ProbeTool, ScrewTool> kind{};
 
   /// The tool as one kind; null if it is another.
   template <class Kind>
@@ -66,8 +57,8 @@ struct ToolSpec {
 };
 
 /// Reads a [tools] table: `in_hand`, the names in their order, and a table for each of them, which
-/// has a `type` ("burr", "suction", "cut_plane", "plate", "grip", "probe") and the keys of its
-/// kind.
+/// has a `type` ("burr", "saw", "suction", "cut_plane", "plate", "grip", "screw", "probe") and the
+/// keys of its kind.
 std::vector<ToolSpec> read_tools(Table& table);
 
 /// @throws std::invalid_argument for an unknown shape.

@@ -1,6 +1,7 @@
 #include "core/render/bone/bone_tools.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -221,6 +222,68 @@ geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double
   const double inner = 0.5 * inner_diameter;
   const double outer = 0.5 * outer_diameter;
   add_turned(mesh, {{inner, length}, {inner, 0.0}, {outer, 0.0}, {outer, length}, {inner, length}});
+  return mesh;
+}
+
+namespace {
+
+/// A flat body between y = -half and y = half over the quadrilateral of four corners (x, z), which
+/// run anticlockwise seen from -y; vertices of their own for each side.
+void add_slab(geometry::Mesh& mesh, const std::array<Eigen::Vector2d, 4>& corners, double half) {
+  const auto quad = [&](const std::array<Eigen::Vector3d, 4>& points) {
+    const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), points.begin(), points.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  };
+  const auto at = [&](std::size_t corner, double y) {
+    const Eigen::Vector2d& p = corners[corner % 4];
+    return Eigen::Vector3d(p.x(), y, p.y());
+  };
+  quad({at(0, -half), at(1, -half), at(2, -half), at(3, -half)});
+  quad({at(3, half), at(2, half), at(1, half), at(0, half)});
+  for (std::size_t side = 0; side < 4; ++side) {
+    quad({at(side + 1, -half), at(side, -half), at(side, half), at(side + 1, half)});
+  }
+}
+
+}  // namespace
+
+geometry::Mesh saw_mesh(const SawLook& look) {
+  require(look.width > 0.0 && look.kerf > 0.0 && look.teeth > 0.0 && look.sheet > 0.0 &&
+              look.thickness > 0.0 && look.length > look.teeth + look.sheet,
+          "saw_mesh: sizes above 0 and a length above the blade's are needed");
+  constexpr int kTeeth = 8;
+  const double wide = 0.5 * look.width;
+  const double front = -0.5 * look.teeth;
+  const double root = 0.5 * look.teeth;
+  const double end = root + look.sheet;
+  geometry::Mesh mesh;
+  add_slab(mesh, {{{-wide, root}, {wide, root}, {wide, end}, {-wide, end}}}, 0.5 * look.thickness);
+  for (int tooth = 0; tooth < kTeeth; ++tooth) {
+    const double left = -wide + look.width * tooth / kTeeth;
+    const double right = left + look.width / kTeeth;
+    const double middle = 0.5 * (left + right);
+    const double point = 0.1 * look.width / kTeeth;
+    add_slab(mesh,
+             {{{middle - point, front}, {middle + point, front}, {right, root}, {left, root}}},
+             0.5 * look.kerf);
+  }
+  add_handle(mesh, 0.4 * look.width, look.length, end, end);
+  return mesh;
+}
+
+geometry::Mesh screw_mesh(double diameter, double length) {
+  require(diameter > 0.0 && length > 0.0, "screw_mesh: a diameter and a length above 0 are needed");
+  const double thread = 0.5 * diameter;
+  const double head = 0.85 * diameter;
+  geometry::Mesh mesh;
+  add_turned(mesh, {{0.0, -length},
+                    {thread, -length + thread},
+                    {thread, 0.0},
+                    {head, 0.0},
+                    {0.7 * head, 0.5 * head},
+                    {0.0, 0.5 * head}});
   return mesh;
 }
 

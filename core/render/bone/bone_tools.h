@@ -34,6 +34,18 @@ struct BurrLook {
 geometry::Mesh burr_mesh(const BurrLook& look);
 std::vector<Capsule> burr_shadow(const BurrLook& look);
 geometry::Mesh suction_mesh(double inner_diameter, double outer_diameter, double length);
+/// A saw's blade from its teeth at negative z on, x along its width, with its handle.
+struct SawLook {
+  double width{0.0};      // > 0 [m]
+  double kerf{0.0};       // > 0 [m]
+  double teeth{0.0};      // length of the cutting end, whose middle is the origin > 0 [m]
+  double sheet{0.0};      // behind it > 0 [m]
+  double thickness{0.0};  // of the sheet > 0 [m]
+  double length{0.0};     // of all, from the origin [m]
+};
+geometry::Mesh saw_mesh(const SawLook& look);
+/// A screw whose head lies on z = 0 and whose thread goes down.
+geometry::Mesh screw_mesh(double diameter, double length);
 /// A rectangle in the plane z = 0 around the origin, seen from both sides.
 geometry::Mesh plane_mesh(double width, double height);
 /// Pose of a tool, from T to W.

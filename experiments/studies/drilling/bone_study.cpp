@@ -38,6 +38,8 @@ class DrillingFigures final : public record::LiveFigures {
     live_.add(batch.as<record::RemovalRow>());
     live_.add(batch.as<record::CameraRow>());
     live_.add(batch.as<record::SplitRow>());
+    live_.add(batch.as<record::PieceRow>());
+    live_.add(batch.as<record::ScrewRow>());
   }
   void samples(std::span<const record::Sample> samples) override { live_.add(samples); }
   void finish() override { live_.finish(); }

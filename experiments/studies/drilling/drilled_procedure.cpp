@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/counted.h"
+
 namespace haptrial::experiments {
 namespace {
 
@@ -30,6 +32,12 @@ std::string injured(const analysis::drilling::LiveFigures& figures) {
 }
 
 std::string of_the_plan(const analysis::drilling::Achieved& achieved) {
+  if (achieved.fragment) {
+    const analysis::drilling::FragmentFit& fit = *achieved.fragment;
+    return fit.came_off ? fmt::format("gap {:.1f} mm, step {:.1f} mm, {} hold, ", 1e3 * fit.gap,
+                                      1e3 * fit.step, counted(fit.screws, "screw", "screws"))
+                        : "no fragment has come off, ";
+  }
   const auto share = achieved.plan ? achieved.plan->share() : std::nullopt;
   return share ? fmt::format("{:.0f} % of the cavity, {:.1f} mm3 beyond it, ", 100.0 * *share,
                              1e9 * *achieved.beyond())
@@ -58,7 +66,8 @@ void add_figure(const analysis::drilling::AchievedFigure& figure, record::LiveSt
                            : figure.unit == "mm3/m" ? "mm\u00b3/m"
                                                     : figure.unit;
   state.figures.push_back(
-      {capital(figure.title), fmt::format("{:.1f} {}", *figure.value, unit), false});
+      {capital(figure.title),
+       fmt::format("{:.{}f} {}", *figure.value, figure.unit == "screws" ? 0 : 1, unit), false});
 }
 
 }  // namespace

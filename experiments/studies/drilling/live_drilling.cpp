@@ -25,6 +25,8 @@ struct LiveDrilling::Batch {
   std::vector<record::RemovalRow> removals;
   std::vector<record::CameraRow> views;
   std::vector<record::SplitRow> splits;
+  std::vector<record::PieceRow> pieces;
+  std::vector<record::ScrewRow> screws;
 };
 
 /// One bone under the meter.
@@ -33,7 +35,7 @@ struct LiveDrilling::Bone {
        const drilling::ProcedureSetup& setup, double rate)
       : pass(row),
         metrics(model, setup.pose_WB(model->grid), setup.tools, setup.scale, rate, setup.handle,
-                setup.plan ? setup.plan(model) : nullptr) {}
+                setup.plans ? setup.plans(model) : drilling::ProcedurePlans{}) {}
 
   record::PassRow pass;
   drilling::LiveMetrics metrics;
@@ -71,6 +73,8 @@ void LiveDrilling::add(std::span<const record::ToolRow> rows) { append(given_->t
 void LiveDrilling::add(std::span<const record::RemovalRow> rows) { append(given_->removals, rows); }
 void LiveDrilling::add(std::span<const record::CameraRow> rows) { append(given_->views, rows); }
 void LiveDrilling::add(std::span<const record::SplitRow> rows) { append(given_->splits, rows); }
+void LiveDrilling::add(std::span<const record::PieceRow> rows) { append(given_->pieces, rows); }
+void LiveDrilling::add(std::span<const record::ScrewRow> rows) { append(given_->screws, rows); }
 
 void LiveDrilling::add(std::span<const record::Sample> samples) {
   append(given_->samples, samples);
@@ -152,6 +156,8 @@ void LiveDrilling::measure(Batch& batch) {
   metrics.add(std::span<const record::RemovalRow>(batch.removals));
   metrics.add(std::span<const record::CameraRow>(batch.views));
   metrics.add(std::span<const record::SplitRow>(batch.splits));
+  metrics.add(std::span<const record::PieceRow>(batch.pieces));
+  metrics.add(std::span<const record::ScrewRow>(batch.screws));
   metrics.advance(batch.samples.back().sequence);
 }
 

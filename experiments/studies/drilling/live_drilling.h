@@ -12,6 +12,7 @@
 
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/bone/record/drilling_types.h"
+#include "core/bone/record/fragment_rows.h"
 #include "core/record/rows/session_types.h"
 #include "experiments/studies/drilling/drilled_procedure.h"
 
@@ -41,6 +42,8 @@ class LiveDrilling {
   void add(std::span<const record::RemovalRow> rows);
   void add(std::span<const record::CameraRow> rows);
   void add(std::span<const record::SplitRow> rows);
+  void add(std::span<const record::PieceRow> rows);
+  void add(std::span<const record::ScrewRow> rows);
   /// Ticks of which all other rows have been given.
   void add(std::span<const record::Sample> samples);
   /// Waits until everything that was given is measured. No more rows after that.

@@ -51,15 +51,18 @@ drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& defini
   setup.pose_WB = [placement = definition.placement](const geometry::VoxelGrid& grid) {
     return pose_of(placement, grid);
   };
-  if (definition.cavity) {
-    setup.plan = [kept = std::make_shared<KeptPlans>(), placement = definition.placement,
-                  cavity = *definition.cavity, burr = protocols::smallest_burr(definition)](
-                     const std::shared_ptr<const bone::BoneModel>& bone) {
-      return kept->of(bone, [&] {
-        return subject::plan_cavity(*bone, pose_of(placement, bone->grid), cavity, burr);
+  setup.plans = [kept = std::make_shared<KeptPlans>(), placement = definition.placement,
+                 cavity = definition.cavity, fragment = definition.osteotomy,
+                 burr = protocols::smallest_burr(definition)](
+                    const std::shared_ptr<const bone::BoneModel>& bone) {
+    drilling::ProcedurePlans plans{nullptr, fragment};
+    if (cavity) {
+      plans.cavity = kept->of(bone, [&] {
+        return subject::plan_cavity(*bone, pose_of(placement, bone->grid), *cavity, burr);
       });
-    };
-  }
+    }
+    return plans;
+  };
   for (const bone::ToolSpec& tool : definition.simulator.tools) {
     const auto* burr = tool.as<bone::BurrTool>();
     auto& made = setup.tools.emplace_back();

@@ -119,6 +119,24 @@ void read_surgeons(Table& root, BoneDefinition& d) {
   d.surgeon = p;
 }
 
+void read_osteotomy(Table& root, BoneDefinition& d) {
+  if (root.has("osteotomy")) {
+    Table table = root.table("osteotomy");
+    d.osteotomy = subject::fragment_plan_schema().read(table);
+  }
+  if (root.has("osteotomy_hand")) {
+    Table table = root.table("osteotomy_hand");
+    d.osteotomy_hand = subject::osteotomy_hand_schema().read(table);
+    if (!d.osteotomy) {
+      root.reject("osteotomy_hand", "needs a plan; add a table [osteotomy]");
+    }
+    for (const char* missing : subject::missing_tools(d.simulator.tools)) {
+      root.reject("osteotomy_hand",
+                  fmt::format("needs a tool of type \"{}\" in tools.in_hand", missing));
+    }
+  }
+}
+
 /// @param folder  of the file; null: tables of spectra are not read
 void read_sound(Table& root, BoneDefinition& d, const fs::path* folder) {
   d.sound_table = sound::default_sound();
@@ -304,6 +322,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
       d.cavity->offset_B.x() *= -1.0;
     }
   }
+  read_osteotomy(root, d);
   read_groups(root, d);
   root.leave("analysis");  // of the rule on marked trials
   read_surgeons(root, d);

@@ -21,6 +21,8 @@
 #include "core/subject/drilling/drilling_chart.h"
 #include "core/subject/drilling/drilling_hand.h"
 #include "core/subject/drilling/drilling_surgeon.h"
+#include "core/subject/drilling/fragment_plan.h"
+#include "core/subject/drilling/osteotomy_hand.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/bone_drilling/definition/placement.h"
 #include "protocols/definition/definition.h"
@@ -54,6 +56,8 @@ struct BoneDefinition : Definition {
   std::vector<ParticipantGroup> groups;       // none: everybody is alike
   double practice{0.0};                       // before the first procedure, of people only [s]
   std::optional<subject::CavityParameters> cavity;  // that is asked for
+  std::optional<subject::FragmentPlan> osteotomy;   // likewise, of a cut and its fragment
+  std::optional<subject::OsteotomyHandParameters> osteotomy_hand;  // of the virtual hand, with it
   /// Virtual participants are surgeons (drilling_surgeon.h) and not hands that drill; skill is that
   /// of their group.
   std::optional<subject::SurgeonParameters> surgeon;

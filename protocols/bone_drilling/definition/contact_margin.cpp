@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/bone/simulator/saw.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::protocols {
@@ -77,6 +78,11 @@ double stiffness_of_shape(const bone::BurrShape& shape, double force,
 
 double flat_bone_stiffness(const bone::BurrTool& tool, double force) {
   const bone::BurrShape shape(tool.burr.dimensions());
+  if (bone::is_saw(tool)) {  // the teeth or the sheet lie on bone by their largest sides
+    const bone::BurrParameters& teeth = tool.burr;
+    return std::max(tool.feel.second_gain * teeth.diameter * teeth.length,
+                    tool.shaft->feel.second_gain * teeth.diameter * tool.shaft->length);
+  }
   if (!shape.is_ball()) {
     return stiffness_of_shape(shape, force, tool.feel);
   }

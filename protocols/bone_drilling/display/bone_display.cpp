@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "core/bone/model/nearest_structure.h"
+#include "core/bone/simulator/plate_shapes.h"
+#include "core/bone/simulator/saw.h"
 #include "core/render/bone/bone_tools.h"
 
 namespace haptrial::protocols {
@@ -49,6 +51,12 @@ render::BurrLook look_of(const bone::BurrTool& tool, double length) {
     look.shaft_length = tool.shaft->length;
   }
   return look;
+}
+
+render::SawLook saw_look_of(const bone::BurrTool& saw, double length) {
+  const bone::BurrParameters& teeth = saw.burr;
+  return {teeth.diameter,    teeth.narrow_diameter, teeth.length,
+          saw.shaft->length, saw.shaft->thickness,  teeth.length + saw.shaft->length + length};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -152,6 +160,10 @@ BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
       definition_(definition) {
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
+    const auto* driver = stage_->simulator->tools()[tool].as<bone::ScrewTool>();
+    screws_.push_back(driver != nullptr ? std::make_shared<const geometry::Mesh>(
+                                              render::screw_mesh(driver->diameter, driver->length))
+                                        : nullptr);
   }
   if (const bone::TubeParameters* tube = stage_->simulator->tube()) {
     tube_ = std::make_shared<const geometry::Mesh>(
@@ -169,7 +181,8 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
     return std::make_shared<const geometry::Mesh>(std::move(mesh));
   };
   if (const auto* burr = spec.as<bone::BurrTool>()) {
-    return shared(render::burr_mesh(look_of(*burr, spec.handle_length)));
+    return shared(bone::is_saw(*burr) ? render::saw_mesh(saw_look_of(*burr, spec.handle_length))
+                                      : render::burr_mesh(look_of(*burr, spec.handle_length)));
   }
   if (const auto* suction = spec.as<bone::SuctionTool>()) {
     return shared(
@@ -184,10 +197,10 @@ std::shared_ptr<const geometry::Mesh> BoneDisplay::mesh_of(int tool) const {
   return shared(render::burr_mesh(1e-3, 1e-3, spec.handle_length));
 }
 
-/// The shadow of a burr or a suction tube; other tools cast none.
+/// The shadow of a burr or a suction tube; other tools cast none, a saw among them.
 std::vector<render::Capsule> BoneDisplay::shadow_of(int tool) const {
   const bone::ToolSpec& spec = stage_->simulator->tools()[static_cast<std::size_t>(tool)];
-  if (const auto* burr = spec.as<bone::BurrTool>()) {
+  if (const auto* burr = spec.as<bone::BurrTool>(); burr != nullptr && !bone::is_saw(*burr)) {
     return render::burr_shadow(look_of(*burr, spec.handle_length));
   }
   if (const auto* suction = spec.as<bone::SuctionTool>()) {
@@ -220,12 +233,17 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
                                poses[static_cast<std::size_t>(plate)], kPlate});
     }
   }
+  draw_screws(poses);
   if (seen.shown) {
     const auto tool = static_cast<std::size_t>(seen.tool);
     const bool plane = stage_->simulator->tools()[tool].as<bone::CutPlane>() != nullptr;
     const ToolState held{{seen.tip, Eigen::Vector3d::Zero()}, seen.orientation};
     Eigen::Isometry3d pose = render::pose_of(held);
-    pose.rotate(Eigen::AngleAxisd(2.0 * std::numbers::pi * seen.turned, Eigen::Vector3d::UnitZ()));
+    const auto* burr = stage_->simulator->tools()[tool].as<bone::BurrTool>();
+    if (burr == nullptr || !bone::is_saw(*burr)) {
+      pose.rotate(
+          Eigen::AngleAxisd(2.0 * std::numbers::pi * seen.turned, Eigen::Vector3d::UnitZ()));
+    }
     frame_.meshes.push_back({meshes_[tool], pose, plane ? kPlane : kSteel, shadow_of(seen.tool)});
     if (tube_ != nullptr && seen.tube.shown) {
       const ToolState other{{seen.tube.tip, Eigen::Vector3d::Zero()}, seen.tube.orientation};
@@ -250,6 +268,22 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
   }
   draw_still(seen.stills_asked);
   draw_plan(seen);
+}
+
+/// Screws in plates that are on, with their heads on the plates. @param plates  their poses, X_WP
+void BoneDisplay::draw_screws(const std::vector<Eigen::Isometry3d>& plates) {
+  const bone::Simulator& simulator = *stage_->simulator;
+  const bone::BoneWorld& world = simulator.world();
+  for (int number = 0; number < simulator.screws().count(); ++number) {
+    const bone::ScrewPlace at = simulator.screws().place(number);
+    if (at.plate < static_cast<int>(plates.size()) && world.plate_is_on(at.plate)) {
+      const auto& holes = simulator.plate(world.plate_model(at.plate))->holes();
+      const Eigen::Isometry3d hole = holes[static_cast<std::size_t>(at.hole)] *
+                                     Eigen::Translation3d(0.0, 0.0, bone::PlateShape{}.thickness);
+      frame_.meshes.push_back({screws_[static_cast<std::size_t>(at.tool)],
+                               plates[static_cast<std::size_t>(at.plate)] * hole, kSteel});
+    }
+  }
 }
 
 void BoneDisplay::label(const bone::DrillingView& seen) {

@@ -48,6 +48,7 @@ class BoneDisplay {
  private:
   std::shared_ptr<const geometry::Mesh> mesh_of(int tool) const;
   std::vector<render::Capsule> shadow_of(int tool) const;
+  void draw_screws(const std::vector<Eigen::Isometry3d>& plates);
   void label(const bone::DrillingView& seen);
   void show_injury(const bone::DrillingView& seen);
   std::vector<std::string> hints_in(const bone::DrillingView& seen) const;
@@ -66,6 +67,7 @@ class BoneDisplay {
   std::optional<hint::HintSetup> hints_;
   std::vector<std::string> vital_;  // names, as HintsNow::structure counts them
   std::vector<std::shared_ptr<const geometry::Mesh>> meshes_;  // by tool
+  std::vector<std::shared_ptr<const geometry::Mesh>> screws_;  // by tool; null where it drives none
   std::shared_ptr<const geometry::Mesh> tube_;  // in the other hand; null: there is none
   std::uint64_t dust_version_{~std::uint64_t{0}};
   std::uint64_t blood_version_{~std::uint64_t{0}};

@@ -21,6 +21,10 @@ std::string words_of(const bone::ToolSpec& tool) {
   const auto* suction = tool.as<bone::SuctionTool>();
   const double diameter =
       burr != nullptr ? burr->burr.diameter : (suction != nullptr ? 2.0 * suction->radius : 0.0);
+  if (burr != nullptr && burr->burr.form == bone::BurrForm::kBlade) {
+    return fmt::format("{}, {:.3g} mm wide, kerf {:.3g} mm", tool.name, 1e3 * diameter,
+                       1e3 * burr->burr.narrow_diameter);
+  }
   if (burr != nullptr && burr->burr.form != bone::BurrForm::kBall) {
     return fmt::format("{}, {:.3g} × {:.3g} mm", tool.name, 1e3 * diameter,
                        1e3 * burr->burr.length);

@@ -55,7 +55,7 @@ bool beside_plan(const bone::BoneModel& model, const bone::Voxel& v) {
 TEST(AchievedTest, CountsAreThoseOfTheRecordedRemovals) {
   Procedure p = test::procedure_on(block_with_nerve());
   const bone::BoneModel& model = *p.bone;
-  p.plan = std::make_shared<const subject::CavityPlan>(box_plan(model));
+  p.plans.cavity = std::make_shared<const subject::CavityPlan>(box_plan(model));
   RandomStream random(4, "removed");
   std::vector<bone::Voxel> voxels;
   for (int n = 0; n < 1500; ++n) {  // some of them more than once
@@ -112,7 +112,7 @@ TEST(AchievedTest, ThreeLayersAreLeftOverTheNerve) {
 
 TEST(AchievedTest, ThePathIsThatOfTheTip) {
   Procedure p = test::procedure_on(block_with_nerve());
-  p.plan = std::make_shared<const subject::CavityPlan>(box_plan(*p.bone));
+  p.plans.cavity = std::make_shared<const subject::CavityPlan>(box_plan(*p.bone));
   const auto tick = [&p](double x, double y, bool drives = true) {
     p.ticks.push_back(test::drilling_tick(p.ticks.size(), {x, y, 0.02}));
     p.ticks.back().drives_tool = drives;

@@ -54,9 +54,10 @@ TEST(LiveMetricsTest, EqualsTheAnalysisOfTheFile) {
     return Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.0, 1e-4));
   };
   const auto plan = std::make_shared<const subject::CavityPlan>(upper_half_plan(*bone));
-  setup.plan = [plan](const auto&) { return plan; };
+  const ProcedurePlans plans{plan, std::nullopt};
+  setup.plans = [plans](const auto&) { return plans; };
   LiveMetrics live(bone, setup.pose_WB(bone->grid), kTools, setup.scale, 1000.0, setup.handle,
-                   plan);
+                   plans);
   {
     record::SessionWriter writer(file, test::drilling_info(), record::drilling_tables(),
                                  record::rows_of(bones));
