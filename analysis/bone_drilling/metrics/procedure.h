@@ -80,6 +80,7 @@ struct View {
   std::uint64_t sequence{0};
   Eigen::Vector3d eye{Eigen::Vector3d::Zero()};     // in W [m]
   Eigen::Vector3d target{Eigen::Vector3d::Zero()};  // in W [m]
+  double field_of_view{0.6};                        // vertical [rad]
 };
 
 /// A voxel of a part that turned to dust, with all that hung together with it.
@@ -95,6 +96,12 @@ struct Torn {
   bool by_suction{false};
   double force{0.0};                               // [N]
   Eigen::Vector3d place{Eigen::Vector3d::Zero()};  // in W [m]
+};
+
+/// What a virtual surgeon began to work on.
+struct BegunWork {
+  double time{0.0};  // of the procedure [s]
+  std::string work;
 };
 
 /// One drilling of one participant: everything that metrics are made from. Rows of every list are
@@ -122,6 +129,7 @@ struct Procedure {
   /// Heat and blood since the bone was new; none where the definition has neither.
   std::optional<record::FieldRow> field;
   std::shared_ptr<const subject::CavityPlan> plan;  // null: the definition has no [cavity]
+  std::vector<BegunWork> work;                      // of a virtual surgeon; none: nobody knows
 
   /// Null out of range.
   const ProcedureTool* tool(std::int32_t tool) const noexcept;

@@ -47,6 +47,16 @@ MotorNoise noise_of(const DrillingSkill& skill, double step, std::uint64_t seed)
   return {person, step, RandomStream(seed, "drilling hand")};
 }
 
+/// The least depth at which bone of the cavity begins [m].
+double top_of(const DrillingChart& chart) {
+  const std::vector<float> floor = cavity_floor(chart);
+  auto top = static_cast<float>(chart.end.z());
+  for (std::size_t column = 0; column < floor.size(); ++column) {
+    top = floor[column] > chart.surface[column] ? std::min(top, chart.surface[column]) : top;
+  }
+  return static_cast<double>(top);
+}
+
 Eigen::Vector3d saturated(const Eigen::Vector3d& force, double most) noexcept {
   const double size = force.norm();
   return size > most ? Eigen::Vector3d(force * (most / size)) : force;
@@ -79,7 +89,9 @@ DrillingSurgeon::Procedure DrillingSurgeon::plan(const SurgeonParameters& p,
     rough = burr_reach(*chart, cavity_floor(*chart, view), p.rough.radius);
   }
   const DrillingChart& drawn = *chart;
+  const double top = top_of(drawn);
   return {std::move(chart),
+          top,
           skill_number,
           skill,
           view,
@@ -95,8 +107,8 @@ DrillingSurgeon::Procedure DrillingSurgeon::plan(const SurgeonParameters& p,
 DrillingSurgeon::DrillingSurgeon(const SurgeonParameters& parameters,
                                  std::vector<std::shared_ptr<const DrillingChart>> charts,
                                  HandModel& hand, device::VirtualDevice& device, double scale,
-                                 std::uint64_t seed, double step)
-    : parameters_(parameters), hand_(hand), device_(device), scale_(scale) {
+                                 std::uint64_t seed, double step, WorkLog* work)
+    : parameters_(parameters), hand_(hand), device_(device), scale_(scale), work_(work) {
   if (charts.empty()) {
     throw std::invalid_argument("DrillingSurgeon: there must be a chart");
   }
@@ -228,12 +240,28 @@ void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
     }
     return;
   }
+  if (work_ != nullptr) {
+    work_->note(seen.progress * seen.time_limit, work());
+  }
   looks_ = wants_to_look(seen);
   lift_to_ = p.memory.over(last_.head<2>(), strokes_.from) - kHover;
   if (looks_) {
     lift_to_ = std::min(lift_to_, p.memory.opening().z() - kRoomToLook);
   }
   begin(Doing::kLift);
+}
+
+/// What the bout that was chosen is for.
+SurgeonWork DrillingSurgeon::work() const noexcept {
+  if (fine_) {
+    return SurgeonWork::kFine;
+  }
+  const Procedure& p = now();
+  const double depth = p.memory.touch(0.5 * (strokes_.from + strokes_.to)) + burr().radius - p.top;
+  const double share = depth / std::max(p.chart->end.z() - p.top, 1e-9);
+  return share < 1.0 / 3.0   ? SurgeonWork::kUpper
+         : share < 2.0 / 3.0 ? SurgeonWork::kMiddle
+                             : SurgeonWork::kDeepest;
 }
 
 void DrillingSurgeon::decide(const bone::DrillingView& seen,

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/bone_drilling/feedback/findings.h"
+
+namespace haptrial::analysis::drilling {
+
+/// A section of a page, as HTML: the phases of a procedure as a band over its time, and the time in
+/// each beside the experts' range. Empty where the procedure is not divided.
+std::string phase_section(const Findings& findings, const Experts& experts);
+
+}  // namespace haptrial::analysis::drilling
