@@ -58,16 +58,6 @@ std::string legend(const std::vector<std::string>& phases, double end) {
   return html + fmt::format("from 0 to {:.0f} s</p>\n", end);
 }
 
-std::optional<SafeRange> experts_time(const Experts& experts, const std::string& phase) {
-  std::vector<double> values;
-  for (const ProcedureSummary& summary : experts.summaries) {
-    if (!summary.phases.empty()) {
-      values.push_back(time_in(summary.phases, phase));
-    }
-  }
-  return range_of(std::move(values));
-}
-
 std::vector<std::string> row_of(const Findings& f, const Experts& experts,
                                 const std::string& phase) {
   const std::vector<PhaseTime> own = phase_times(f.summary.phases);
@@ -84,6 +74,16 @@ std::vector<std::string> row_of(const Findings& f, const Experts& experts,
 }
 
 }  // namespace
+
+std::optional<SafeRange> experts_time(const Experts& experts, const std::string& phase) {
+  std::vector<double> values;
+  for (const ProcedureSummary& summary : experts.summaries) {
+    if (!summary.phases.empty()) {
+      values.push_back(time_in(summary.phases, phase));
+    }
+  }
+  return range_of(std::move(values));
+}
 
 std::string phase_section(const Findings& f, const Experts& experts) {
   if (f.summary.phases.empty()) {

@@ -11,7 +11,7 @@ const Table<CrossingRow>& table_of<CrossingRow>() {
   static const T table(
       {"crossings",
        "one row for each way of a burr through a forbidden region, when it ended",
-       48,
+       53,
        RowsOf::kTick,
        {"sequence"}},
       {T::column("sequence", &R::sequence, "1", "last tick in the region"),

@@ -31,7 +31,7 @@ const Table<WorkRow>& table_of<WorkRow>() {
   static const T table(
       {"work",
        "what a virtual surgeon worked on, a row for each change",
-       32,
+       37,
        RowsOf::kEndedPass,
        {"pass"}},
       {T::column("pass", &R::pass, "1", "row of /trials"),

@@ -111,7 +111,7 @@ TEST(ForbiddenRegionTest, NothingIsGainedOnAClosedPath) {
     before = now;
   }
   EXPECT_GT(moved, 1e-2);
-  EXPECT_LT(std::abs(work), 1e-6 * moved);
+  EXPECT_LT(std::abs(work), 1e-5 * moved);
 }
 
 TEST(ForbiddenRegionTest, TheForceGrowsWithoutAStepAndUpToItsLimit) {
