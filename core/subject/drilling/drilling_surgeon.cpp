@@ -37,6 +37,8 @@ constexpr double kPatience = 1.0;        // strokes without bone under the burr
 constexpr double kRoughShare = 0.9;      // of the completeness
 constexpr double kWithdrawn = 4e-3;      // after a tone of the nerve monitor [m]
 constexpr double kQuiet = 1.0;           // that it waits then [s]
+constexpr double kCortexDepth = 3e-3;    // below the surface that the bone had [m]
+constexpr double kMiddleDepth = 8e-3;    // likewise [m]
 constexpr int kSweeps = 6;               // of a bout
 constexpr int kSweepsUnder = 4;
 
@@ -45,16 +47,6 @@ MotorNoise noise_of(const DrillingSkill& skill, double step, std::uint64_t seed)
   person.force_noise = skill.force_noise;
   person.tremor = skill.tremor;
   return {person, step, RandomStream(seed, "drilling hand")};
-}
-
-/// The least depth at which bone of the cavity begins [m].
-double top_of(const DrillingChart& chart) {
-  const std::vector<float> floor = cavity_floor(chart);
-  auto top = static_cast<float>(chart.end.z());
-  for (std::size_t column = 0; column < floor.size(); ++column) {
-    top = floor[column] > chart.surface[column] ? std::min(top, chart.surface[column]) : top;
-  }
-  return static_cast<double>(top);
 }
 
 Eigen::Vector3d saturated(const Eigen::Vector3d& force, double most) noexcept {
@@ -89,9 +81,7 @@ DrillingSurgeon::Procedure DrillingSurgeon::plan(const SurgeonParameters& p,
     rough = burr_reach(*chart, cavity_floor(*chart, view), p.rough.radius);
   }
   const DrillingChart& drawn = *chart;
-  const double top = top_of(drawn);
   return {std::move(chart),
-          top,
           skill_number,
           skill,
           view,
@@ -256,12 +246,16 @@ SurgeonWork DrillingSurgeon::work() const noexcept {
   if (fine_) {
     return SurgeonWork::kFine;
   }
-  const Procedure& p = now();
-  const double depth = p.memory.touch(0.5 * (strokes_.from + strokes_.to)) + burr().radius - p.top;
-  const double share = depth / std::max(p.chart->end.z() - p.top, 1e-9);
-  return share < 1.0 / 3.0   ? SurgeonWork::kUpper
-         : share < 2.0 / 3.0 ? SurgeonWork::kMiddle
-                             : SurgeonWork::kDeepest;
+  const DrillingChart& chart = *now().chart;
+  const Eigen::Vector2d middle = 0.5 * (strokes_.from + strokes_.to);
+  const Eigen::Array2i cell = (middle.array() / chart.cell).round().cast<int>();
+  const int u = std::clamp(cell.x(), 0, chart.size[0] - 1);
+  const int v = std::clamp(cell.y(), 0, chart.size[1] - 1);
+  const auto surface = static_cast<double>(chart.surface[chart.column(u, v)]);
+  const double depth = now().memory.touch(middle) + burr().radius - surface;
+  return depth < kCortexDepth   ? SurgeonWork::kCortex
+         : depth < kMiddleDepth ? SurgeonWork::kMiddle
+                                : SurgeonWork::kDeep;
 }
 
 void DrillingSurgeon::decide(const bone::DrillingView& seen,

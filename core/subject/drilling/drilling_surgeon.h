@@ -68,7 +68,6 @@ class DrillingSurgeon final : public stimulus::Observer {
   /// Made up beforehand: nothing allocates while a procedure runs.
   struct Procedure {
     std::shared_ptr<const DrillingChart> chart;
-    double top;  // of the cavity's bone, a depth [m]
     double skill_number;
     DrillingSkill skill;
     CavityView view;

@@ -6,14 +6,14 @@
 
 namespace haptrial::subject {
 
-/// What a virtual surgeon works on: bone in the upper, middle or deepest third of the way from the
-/// cavity's highest bone to its end or, with the fine burr, what is near structures.
-enum class SurgeonWork : std::uint8_t { kUpper, kMiddle, kDeepest, kFine };
+/// What a virtual surgeon works on: bone within 3 mm below the surface that it had, down to 8 mm,
+/// deeper or, with the fine burr, what is near structures.
+enum class SurgeonWork : std::uint8_t { kCortex, kMiddle, kDeep, kFine };
 
 /// Work that a virtual surgeon began.
 struct BegunWork {
   double time{0.0};  // of the procedure [s]
-  SurgeonWork work{SurgeonWork::kUpper};
+  SurgeonWork work{SurgeonWork::kCortex};
 };
 
 /// A virtual surgeon's work in order, each piece noted where it differs from the one before: the

@@ -7,8 +7,7 @@
 namespace haptrial::record {
 namespace {
 
-constexpr std::array<const char*, 4> kWords{"upper third", "middle third", "deepest third",
-                                            "fine burr"};
+constexpr std::array<const char*, 4> kWords{"cortex", "middle depth", "deep", "fine burr"};
 
 EnumText works() {
   std::vector<EnumText::Entry> entries;
@@ -38,8 +37,8 @@ const Table<WorkRow>& table_of<WorkRow>() {
        T::column("time", &R::time, "s", "of the procedure, earlier passes on its bone included"),
        T::word(
            "work", &R::work, kStatusBytes, works(),
-           "third of the cavity's depth in which bone is removed, or with the fine burr what is "
-           "near structures")});
+           "cortex: within 3 mm below the surface that the bone had, middle depth: to 8 mm, deep, "
+           "or with the fine burr what is near structures")});
   return table;
 }
 

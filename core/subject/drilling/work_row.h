@@ -12,10 +12,10 @@ namespace haptrial::record {
 struct WorkRow {
   std::int32_t pass{0};  // row of /trials
   double time{0.0};      // of the procedure, earlier passes on its bone included [s]
-  subject::SurgeonWork work{subject::SurgeonWork::kUpper};
+  subject::SurgeonWork work{subject::SurgeonWork::kCortex};
 };
 
-/// "upper third", "fine burr".
+/// "cortex", "fine burr".
 std::string_view word_of(subject::SurgeonWork work) noexcept;
 
 template <>

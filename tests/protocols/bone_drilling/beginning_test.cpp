@@ -118,8 +118,8 @@ TEST_F(BeginningTest, TheNewSessionNeedsTheOldOneNoMore) {
 TEST_F(BeginningTest, MistakesAreSaid) {
   EXPECT_THAT(refusal("at = 99.0"), HasSubstr("ends after 4.000 s; bone.at is 99, allowed: 0 to"));
   EXPECT_THAT(refusal("procedure = 7"), HasSubstr("has no procedure 7 (bone.procedure); allowed"));
-  EXPECT_THAT(refusal("at_phase = \"deepest third\""),
-              HasSubstr("has no phase \"deepest third\"; allowed: a time (bone.at)"));
+  EXPECT_THAT(refusal("at_phase = \"deep\""),
+              HasSubstr("has no phase \"deep\"; allowed: a time (bone.at)"));
   EXPECT_THAT(refusal("at = 1.0\nat_phase = \"fine burr\""), HasSubstr("keep at or at_phase"));
   EXPECT_THAT(refusal("planned_to = 0.5"), HasSubstr("add a table [cavity]"));
   const auto intact = [] {

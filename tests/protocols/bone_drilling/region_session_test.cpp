@@ -29,13 +29,13 @@ fs::path with_regions(const fs::path& folder, const std::string& more) {
   return file;
 }
 
-struct Run {
+struct Recording {
   std::vector<record::CrossingRow> crossings;
   std::string condition;
   double pressed{0.0};  // mean force on the hand while it drills [N]
 };
 
-Run run(const fs::path& folder, const std::string& more) {
+Recording record_session(const fs::path& folder, const std::string& more) {
   const BoneDefinition d = load_bone_definition(with_regions(folder, more));
   experiments::SessionRequest request;
   request.protocol = &bone_drilling();
@@ -46,7 +46,7 @@ Run run(const fs::path& folder, const std::string& more) {
   experiments::run_session(request);
   EXPECT_EQ(BoneReplay(request.file).run(1).difference, "");
   const record::SessionReader reader(request.file);
-  Run result;
+  Recording result;
   result.crossings = reader.rows<record::CrossingRow>();
   result.condition = reader.passes().at(0).condition;
   for (const record::Sample& sample : reader.samples(0, reader.sample_count())) {
@@ -58,8 +58,8 @@ Run run(const fs::path& folder, const std::string& more) {
 
 TEST(RegionSessionTest, CrossingsAreRecordedAndTheForceIsFelt) {
   const test::TemporaryFolder folder;
-  const Run off = run(folder.path(), "given_in = \"none\"");
-  const Run hard = run(folder.path(), "kind = \"hard\"");
+  const Recording off = record_session(folder.path(), "given_in = \"none\"");
+  const Recording hard = record_session(folder.path(), "kind = \"hard\"");
   ASSERT_FALSE(off.crossings.empty());
   ASSERT_FALSE(hard.crossings.empty());
   EXPECT_EQ(off.condition, "regions off");
@@ -80,8 +80,8 @@ TEST(RegionSessionTest, CrossingsAreRecordedAndTheForceIsFelt) {
 
 TEST(RegionSessionTest, ASoundChangesNothingThatIsFelt) {
   const test::TemporaryFolder folder;
-  const Run off = run(folder.path(), "given_in = \"none\"");
-  const Run sound = run(folder.path(), "kind = \"sound\"");
+  const Recording off = record_session(folder.path(), "given_in = \"none\"");
+  const Recording sound = record_session(folder.path(), "kind = \"sound\"");
   EXPECT_EQ(sound.pressed, off.pressed);
   EXPECT_EQ(sound.crossings.size(), off.crossings.size());
 }
