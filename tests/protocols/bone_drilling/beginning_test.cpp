@@ -35,6 +35,12 @@ void run(const BoneDefinition& definition, const fs::path& file) {
   experiments::run_session(request);
 }
 
+/// The small drilling on other bones, beside the first session.
+BoneDefinition drilling_on(const fs::path& folder, const std::string& bones) {
+  fs::remove(folder / "slabs.nrrd");  // is written anew
+  return load_bone_definition(test::write_small_drilling(folder, 2.0, {{"bones", bones}}));
+}
+
 /// The bone under a simulator of its own.
 std::uint64_t checksum_of(const BoneDefinition& d, const bone::BoneModel& model) {
   return bone::Simulator(model, simulator_for(d, model.grid)).checksum();
@@ -55,8 +61,7 @@ class BeginningTest : public testing::Test {
   static fs::path first() { return *folder_ / "first.h5"; }
   /// A definition that begins at the first session's bone. @param keys  of [bone]
   static BoneDefinition beginning(const std::string& keys) {
-    return load_bone_definition(test::write_small_drilling(
-        folder_->path(), 2.0, {{"bones", "bones = [\"first.h5\"]\n" + keys}}));
+    return drilling_on(folder_->path(), "bones = [\"first.h5\"]\n" + keys);
   }
   static std::string refusal(const std::string& keys) {
     return test::message_of([&] { beginning(keys); });
@@ -122,15 +127,9 @@ TEST_F(BeginningTest, MistakesAreSaid) {
               HasSubstr("has no phase \"deep\"; allowed: a time (bone.at)"));
   EXPECT_THAT(refusal("at = 1.0\nat_phase = \"fine burr\""), HasSubstr("keep at or at_phase"));
   EXPECT_THAT(refusal("planned_to = 0.5"), HasSubstr("add a table [cavity]"));
-  const auto intact = [] {
-    load_bone_definition(test::write_small_drilling(
-        folder_->path(), 2.0, {{"bones", "bones = [\"slabs.nrrd\"]\nat = 1.0"}}));
-  };
+  const auto intact = [] { drilling_on(folder_->path(), "bones = [\"slabs.nrrd\"]\nat = 1.0"); };
   EXPECT_THAT(test::message_of(intact), HasSubstr("is about a recorded session; name one (.h5)"));
-  const auto missing = [] {
-    load_bone_definition(
-        test::write_small_drilling(folder_->path(), 2.0, {{"bones", "bones = [\"nobody.h5\"]"}}));
-  };
+  const auto missing = [] { drilling_on(folder_->path(), "bones = [\"nobody.h5\"]"); };
   EXPECT_THAT(test::message_of(missing), HasSubstr("nobody.h5"));
 }
 
