@@ -27,8 +27,8 @@ std::vector<std::string> all_phases(const ValidityResult& result) {
 
 /// One row: means of each group in a quantity of every divided procedure.
 template <class Value>
-std::vector<std::string> row_of(const ValidityResult& result, const std::string& title,
-                                const Value& value) {
+std::vector<std::string> phase_row(const ValidityResult& result, const std::string& title,
+                                   const Value& value) {
   ValueTable table = table_of(result.validity, result.procedures);
   for (std::size_t i = 0; i < result.procedures.size(); ++i) {
     if (!result.procedures[i].phases.empty()) {
@@ -81,11 +81,11 @@ void add_phase_section(Document& document, const ValidityResult& result) {
                  result.validity.plan.groups.end());
   Rows rows;
   for (const std::string& phase : all_phases(result)) {
-    rows.push_back(row_of(result, phase + ", time [s]", [&](const std::vector<PhaseSpan>& spans) {
-      return time_in(spans, phase);
-    }));
+    rows.push_back(
+        phase_row(result, phase + ", time [s]",
+                  [&](const std::vector<PhaseSpan>& spans) { return time_in(spans, phase); }));
   }
-  rows.push_back(row_of(result, "changes of the phase", [](const std::vector<PhaseSpan>& spans) {
+  rows.push_back(phase_row(result, "changes of the phase", [](const std::vector<PhaseSpan>& spans) {
     return static_cast<double>(phase_changes(spans));
   }));
   document.heading(result.validity.simulated ? "Phases (simulated)" : "Phases");
