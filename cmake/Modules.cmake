@@ -291,7 +291,7 @@ function(haptrial_tests)
   haptrial_together(deformable BallTouchTest)
   haptrial_together(experiments BoneSessionTest DesignReportsTest HintSessionTest NerveSessionTest RateTest
                                 SoftTissueSessionTest TwoHandsTest)
-  haptrial_together(protocols BoneRestoreTest ReplayTest)
+  haptrial_together(protocols BeginningTest BoneRestoreTest ReplayTest)
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
   get_property(groups GLOBAL PROPERTY HAPTRIAL_GROUPS)
   foreach(name ${modules} ${groups})

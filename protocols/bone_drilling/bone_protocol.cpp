@@ -22,6 +22,7 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/bone_renderer.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "protocols/bone_drilling/nerve_page.h"
 #include "protocols/bone_drilling/replayed_hints.h"
 #include "protocols/bone_drilling/replayed_nerves.h"
@@ -144,7 +145,7 @@ class BoneDrilling final : public Protocol {
     return std::make_unique<BoneDefinition>(read_bone_definition(root, file_name, folder));
   }
   void load(Definition& definition, const std::filesystem::path& folder) const override {
-    dynamic_cast<BoneDefinition&>(definition).load_bones(folder);
+    load_bones(dynamic_cast<BoneDefinition&>(definition), folder);
   }
   std::vector<std::pair<record::Phase, std::string>> phases() const override {
     return {{record::kDrillingPhase, "bone is drilled"}};
@@ -163,6 +164,8 @@ class BoneDrilling final : public Protocol {
     tables.push_back(&record::table_of<record::FieldRow>());
     tables.push_back(&record::table_of<record::PieceRow>());
     tables.push_back(&record::table_of<record::ScrewRow>());
+    tables.push_back(&record::table_of<record::WorkRow>());
+    tables.push_back(&record::table_of<record::CrossingRow>());
     return tables;
   }
   AuxiliaryPages auxiliary_pages(const Definition& definition) const override {

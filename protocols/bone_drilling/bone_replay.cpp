@@ -248,16 +248,18 @@ ReplayVerdict BoneReplay::run(int trial, const Watch& watch) const {
   return verdict;
 }
 
-std::shared_ptr<BoneStage> BoneReplay::restore(int trial, std::int32_t bone, ReplayVerdict& verdict,
-                                               const Pulse& pulse) const {
+std::shared_ptr<BoneStage> BoneReplay::restore_until(std::uint64_t ticks, int trial,
+                                                     std::int32_t bone, ReplayVerdict& verdict,
+                                                     const Pulse& pulse) const {
   verdict = {};
   verdict.trial = trial;
   std::shared_ptr<BoneStage> stage;
   for (std::size_t row = 0; row < passes_.size() && verdict.difference.empty(); ++row) {
-    if (passes_[row].trial == trial && passes_[row].repetition == bone) {
+    const bool own = passes_[row].trial == trial && passes_[row].repetition == bone;
+    if (own && (!stage || verdict.ticks < ticks)) {
       stage = stage ? stage : make_stage(trial, false);
       ++verdict.passes;
-      run_pass(static_cast<std::int32_t>(row), passes_[row], stage, {{}, pulse}, verdict);
+      run_pass(static_cast<std::int32_t>(row), passes_[row], stage, {{}, pulse, ticks}, verdict);
     }
   }
   return stage;
@@ -320,6 +322,7 @@ struct BoneReplay::Work {
     }
     ++verdict.ticks;
   }
+  bool reached() const { return verdict.ticks >= onlookers.until; }
 };
 
 void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
@@ -336,12 +339,15 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
             Cursor<record::ScrewRow>(screws_, pass.first_sample),
             {},
             {}};
+  if (work.reached()) {
+    return;
+  }
   if (led_.empty()) {
     run_own(pass, work);
   } else {
     run_led(pass, work);
   }
-  if (verdict.difference.empty()) {
+  if (verdict.difference.empty() && !work.reached()) {
     verdict.checksum = stage->simulator->checksum();
     check_end(row, *stage->simulator, verdict);
   }
@@ -403,6 +409,9 @@ void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
         return;
       }
       work.show(samples[i].sequence, now);
+      if (work.reached()) {
+        return;
+      }
     }
   }
 }
@@ -442,6 +451,9 @@ void BoneReplay::run_led(const record::PassRow& pass, Work& work) const {
     }
     if (!steps.empty()) {
       work.show(sequence, now);
+    }
+    if (work.reached()) {
+      return;
     }
   }
 }

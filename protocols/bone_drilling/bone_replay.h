@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,14 +69,23 @@ class BoneReplay {
   /// @param verdict  receives how that went; at its first difference the replay ends
   /// @returns its simulator, without companions and depths; null where no pass is on that bone
   std::shared_ptr<BoneStage> restore(int trial, std::int32_t bone, ReplayVerdict& verdict,
-                                     const Pulse& pulse = {}) const;
+                                     const Pulse& pulse = {}) const {
+    return restore_until(kNever, trial, bone, verdict, pulse);
+  }
+  /// The same after a number of simulated ticks of the trial, or at its end if it has fewer.
+  std::shared_ptr<BoneStage> restore_until(std::uint64_t ticks, int trial, std::int32_t bone,
+                                           ReplayVerdict& verdict, const Pulse& pulse = {}) const;
+  const record::SessionReader& reader() const { return reader_; }
 
  private:
+  static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
   [[noreturn]] void refuse_trial(int trial) const;
   /// Observers of a replay.
   struct Onlookers {
     const Watch& watch;
     const Pulse& pulse;
+    std::uint64_t until{kNever};  // simulated ticks of the trial
   };
   struct Work;
   void run_pass(std::int32_t row, const record::PassRow& pass,

@@ -16,6 +16,7 @@
 #include "core/bone/record/recorded_bone.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
+#include "core/subject/drilling/work_row.h"
 #include "protocols/bone_drilling/bone_restore.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
@@ -30,6 +31,9 @@ namespace {
 // begun.
 constexpr double kUntilDepths = 0.2;
 constexpr double kUntilSurface = 0.5;
+
+/// The notes where a burr enters a forbidden region: between those of hints and of injuries.
+constexpr hint::ChimeNotes kKeepOutNotes{660.0, 660.0, 0.3};
 
 /// How many bones a trial has had in earlier runs.
 std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
@@ -61,6 +65,9 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   }
   for (const auto& model : d_.bones) {
     records_.push_back(bone::record_of(*model, static_cast<std::int32_t>(records_.size())));
+  }
+  if (d_.surgeon && !place.real) {
+    work_ = std::make_unique<subject::WorkLog>();
   }
   open_sound();
   if (d_.drilling.second) {
@@ -102,12 +109,19 @@ void BoneTrials::open_sound() {
   if (d_.hints && d_.hints->sound) {
     chime_ = std::make_shared<hint::Chime>();
   }
-  const sound::SoundOutput::Mix mix = [voice = voice_, chime = chime_](std::span<float> part) {
+  if (d_.forbidden) {
+    keep_out_chime_ = std::make_shared<hint::Chime>(kKeepOutNotes);
+  }
+  const sound::SoundOutput::Mix mix = [voice = voice_, chime = chime_,
+                                       keep_out = keep_out_chime_](std::span<float> part) {
     if (voice) {
       voice->mix(part);
     }
     if (chime) {
       chime->mix(part);
+    }
+    if (keep_out) {
+      keep_out->mix(part);
     }
   };
   try {
@@ -116,6 +130,7 @@ void BoneTrials::open_sound() {
     notice_ = error.what();
     voice_.reset();
     chime_.reset();
+    keep_out_chime_.reset();
   }
 }
 
@@ -192,6 +207,12 @@ record::TableList BoneTrials::tables() const {
     tables.push_back(&record::table_of<record::PieceRow>());
     tables.push_back(&record::table_of<record::ScrewRow>());
   }
+  if (d_.forbidden) {
+    tables.push_back(&record::table_of<record::CrossingRow>());
+  }
+  if (work_) {
+    tables.push_back(&record::table_of<record::WorkRow>());
+  }
   return tables;
 }
 
@@ -208,7 +229,8 @@ std::vector<record::Rows> BoneTrials::first_rows() const {
 }
 
 std::unique_ptr<Rig> BoneTrials::virtual_rig() const {
-  return std::make_unique<DrillingRig>(d_, place_.hand_session_seed, place_.participant);
+  return std::make_unique<DrillingRig>(d_, place_.hand_session_seed, place_.participant,
+                                       work_.get());
 }
 
 void BoneTrials::empty_logs(SessionFile& file) {
@@ -242,6 +264,9 @@ void BoneTrials::empty_logs(SessionFile& file) {
       openings_ += rows.size();
     });
   }
+  if (d_.forbidden) {
+    empty(logs_.crossings);
+  }
   tell_shared(file);
   if (hints_) {
     hints_->beside().settle();  // likewise
@@ -257,11 +282,26 @@ void BoneTrials::tell_hints(SessionFile& file) {
   file.add(std::span(rows));
 }
 
+/// What the virtual surgeon worked on in a pass.
+void BoneTrials::tell_work(SessionFile& file, std::int32_t pass) {
+  std::vector<record::WorkRow> rows;
+  for (const subject::BegunWork& begun : work_->take()) {
+    rows.push_back({pass, begun.time, begun.work});
+  }
+  file.add(std::span<const record::WorkRow>(rows));
+}
+
 SharedSimulation* BoneTrials::share_world(bool leads) {
   if (d_.hints) {
     throw InputError(fmt::format(
         "{}: has hints, which are given to somebody who drills alone; leave [hints] out of a "
         "session that is linked to another",
+        d_.file_name));
+  }
+  if (d_.forbidden) {
+    throw InputError(fmt::format(
+        "{}: has forbidden regions, which are given to somebody who drills alone; leave "
+        "[forbidden] out of a session that is linked to another",
         d_.file_name));
   }
   if (d_.drilling.second) {
@@ -434,6 +474,9 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   if (hints_) {
     hints_->watch(bone_, *stage_->simulator);
   }
+  if (d_.forbidden) {
+    guard_ = std::make_unique<RegionGuard>(*d_.forbidden, d_.region_maps[bone_], keep_out_chime_);
+  }
   vibration_.reset();
   if (d_.vibration_gain > 0.0) {
     vibration_.emplace(d_.vibration_table, d_.vibration_gain, d_.rate, trial.stimulus_seed);
@@ -487,6 +530,10 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
   if (hints_) {
     pass_->give(hints_->beside());
   }
+  if (guard_) {
+    guard_->begin_pass(d_.has_regions(trial.trial, place_.participant));
+    pass_->keep_out(*guard_);
+  }
   return *pass_;
 }
 
@@ -506,6 +553,10 @@ void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
     hints_->beside().end_pass();
     tell_hints(file);
   }
+  if (guard_) {
+    guard_->end_pass(logs_);
+    logs_.crossings.flush([&file](auto rows) { file.add(rows); });
+  }
   stage_->companions->settle();
   record::ProcedureRow procedure = procedure_of(*stage_, row, static_cast<std::int32_t>(bone_));
   procedure.fallen += old_dust_;
@@ -513,6 +564,9 @@ void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
   if (d_.has_field()) {
     const record::FieldRow field = field_of(*stage_, row);
     file.add(std::span<const record::FieldRow>(&field, 1));
+  }
+  if (work_) {
+    tell_work(file, row);
   }
 }
 

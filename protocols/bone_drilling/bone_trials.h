@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/subject/drilling/surgeon_work.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
@@ -67,6 +68,7 @@ class BoneTrials final : public Trials {
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void open_sound();
   void tell_hints(SessionFile& file);
+  void tell_work(SessionFile& file, std::int32_t pass);
   void restore(const PlannedTrial& trial, SessionFile& file);
   static void begin_again(const PlannedTrial& trial, SessionFile& file);
   nerve::NerveExposures* exposures() { return nerves_ ? nerves_->exposures() : nullptr; }
@@ -78,14 +80,17 @@ class BoneTrials final : public Trials {
 
   const BoneDefinition& d_;
   const SessionPlace& place_;
+  std::unique_ptr<subject::WorkLog> work_;  // of a virtual surgeon on a simulated clock; else null
   FixedPlan plan_;
   DrillingLogs logs_;
   std::vector<record::BoneRecord> records_;  // of the bones
   std::vector<record::BurrRow> burrs_;
-  std::shared_ptr<nerve::NerveVoice> voice_;  // of the sound card
-  std::unique_ptr<TrialNerves> nerves_;       // null: nobody watches any
-  std::shared_ptr<hint::Chime> chime_;        // on the sound card; null: none
-  std::unique_ptr<TrialHints> hints_;         // null: none are given
+  std::shared_ptr<nerve::NerveVoice> voice_;     // of the sound card
+  std::unique_ptr<TrialNerves> nerves_;          // null: nobody watches any
+  std::shared_ptr<hint::Chime> chime_;           // on the sound card; null: none
+  std::unique_ptr<TrialHints> hints_;            // null: none are given
+  std::shared_ptr<hint::Chime> keep_out_chime_;  // on the sound card; null: none
+  std::unique_ptr<RegionGuard> guard_;           // of the bone; null: no region is forbidden
   std::unique_ptr<BonePictures> pictures_;
   std::shared_ptr<BoneStage> stage_;
   std::size_t bone_{0};         // of the definition's

@@ -152,6 +152,9 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   if (hints_ != nullptr) {
     tell_hints(*hints_, sequence_, simulator_, input);
   }
+  const Eigen::Vector3d kept_out = guard_ != nullptr
+                                       ? guard_->tick(sequence_, simulator_, input, logs_)
+                                       : Eigen::Vector3d::Zero();
   if (shared_ != nullptr) {
     shared_->tell_step(recorded, simulator_);
   }
@@ -169,7 +172,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   const Eigen::Vector3d shake =
       shaking(vibration_, simulator_, done.contact, done.force.norm(), input.tool);
   const Eigen::Vector3d wanted =
-      reading.shares.stiffness * (done.force + done.shaft + done.pushed) + shake;
+      reading.shares.stiffness * (done.force + done.shaft + done.pushed + kept_out) + shake;
   out.force = control::saturate(wanted, parameters_.force_limit);
   out.intent.push = reading.shares.stiffness * done.drag + shake;
   out.intent.stimulus = shake;

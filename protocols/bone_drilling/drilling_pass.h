@@ -12,6 +12,7 @@
 #include "core/sound/drill_sound.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/bone_drilling/drilling_rows.h"
+#include "protocols/bone_drilling/region_guard.h"
 #include "protocols/bone_drilling/shared_bone.h"
 #include "protocols/interface/pass.h"
 
@@ -63,6 +64,8 @@ class DrillingPass final : public Pass {
   void share(SharedBone& shared) noexcept { shared_ = &shared; }
   /// Gives hints; likewise. @param hints  outlive the pass
   void give(hint::HintsBeside& hints) noexcept { hints_ = &hints; }
+  /// Keeps burrs out of forbidden regions; likewise. @param guard  outlives the pass
+  void keep_out(RegionGuard& guard) noexcept { guard_ = &guard; }
 
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
@@ -87,6 +90,7 @@ class DrillingPass final : public Pass {
   nerve::NerveExposures* nerves_;
   SharedBone* shared_{nullptr};
   hint::HintsBeside* hints_{nullptr};
+  RegionGuard* guard_{nullptr};
   std::uint64_t time_limit_;  // [ticks]
   std::uint64_t ticks_;
   std::uint64_t sequence_{0};

@@ -65,7 +65,8 @@ class DrillingRig::BothHands final : public stimulus::Observer {
   stimulus::Observer& second_;
 };
 
-DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, int participant)
+DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, int participant,
+                         subject::WorkLog* work)
     : hand_(d.hand, 1.0 / d.rate, start_of(d)), device_(d.device, hand_, d.rate) {
   const std::uint64_t seed = derived_seed(session_seed, "subject");
   if (d.surgeon && !d.charts.empty()) {
@@ -73,8 +74,8 @@ DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, in
     if (const ParticipantGroup* group = group_of(d, participant)) {
       person.skill = group->skill;
     }
-    subject_ = std::make_unique<subject::DrillingSurgeon>(person, charts_of(d), hand_, device_,
-                                                          d.drilling.scale, seed, 1.0 / d.rate);
+    subject_ = std::make_unique<subject::DrillingSurgeon>(
+        person, charts_of(d), hand_, device_, d.drilling.scale, seed, 1.0 / d.rate, work);
   } else if (d.osteotomy_hand && d.osteotomy) {
     const subject::OsteotomyTools tools = subject::osteotomy_tools(d.simulator.tools);
     subject_ = std::make_unique<subject::OsteotomyHand>(

@@ -14,7 +14,9 @@ class DrillingRig final : public Rig {
  public:
   /// @param session_seed  whatever is drawn for the person follows from it
   /// @param participant   from 0; says the group
-  DrillingRig(const BoneDefinition& definition, std::uint64_t session_seed, int participant = 0);
+  /// @param work          of a virtual surgeon, as subject::DrillingSurgeon has it
+  DrillingRig(const BoneDefinition& definition, std::uint64_t session_seed, int participant = 0,
+              subject::WorkLog* work = nullptr);
   ~DrillingRig() override;
 
   device::Device& device() override { return device_; }

@@ -12,6 +12,7 @@
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
+#include "core/bone/region/crossing_row.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/realtime/block_log.h"
 #include "protocols/interface/pass.h"
@@ -35,6 +36,7 @@ class DrillingLogs final : public TickLog {
   realtime::BlockLog<record::ToolContactRow> tool_contact;
   realtime::BlockLog<record::PieceRow> pieces{256, 64};
   realtime::BlockLog<record::ScrewRow> screws{64, 16};
+  realtime::BlockLog<record::CrossingRow> crossings{256, 16};
 
   /// A row of /second_hand for every tick from now on, also between passes. Before the first tick.
   void watch_second() noexcept { two_hands_ = true; }
@@ -69,7 +71,8 @@ class DrillingLogs final : public TickLog {
   std::uint64_t dropped() const noexcept {
     return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
            tears.dropped() + led.dropped() + second.dropped() + openings.dropped() +
-           handpiece.dropped() + tool_contact.dropped() + pieces.dropped() + screws.dropped();
+           handpiece.dropped() + tool_contact.dropped() + pieces.dropped() + screws.dropped() +
+           crossings.dropped();
   }
 
  private:

@@ -15,6 +15,7 @@
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
+#include "protocols/bone_drilling/load_bones.h"
 
 namespace {
 

@@ -28,6 +28,7 @@
 #include "experiments/studies/experiment.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "protocols/bone_drilling/nerve_page.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"

@@ -20,6 +20,7 @@
 #include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/command.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"

@@ -20,6 +20,7 @@
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/placement_picture.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/message_of.h"
 #include "tests/support/sanitizer.h"

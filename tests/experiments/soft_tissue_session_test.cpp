@@ -16,6 +16,7 @@
 #include "experiments/studies/drilling/drilling_study.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/message_of.h"

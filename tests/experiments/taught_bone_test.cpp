@@ -26,6 +26,7 @@
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/drilling_pass.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/network_relay.h"

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 

@@ -13,6 +13,7 @@
 #include "experiments/studies/drilling/simulated_rater.h"
 #include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/null_study.h"

@@ -18,6 +18,7 @@
 #include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/load_bones.h"
 
 namespace haptrial::test {
 

@@ -12,6 +12,7 @@ namespace {
 MetricOptions metric_options(const SafeOptions& options) {
   MetricOptions metrics;
   metrics.bins = options.bins;
+  metrics.phases = options.phases;
   return metrics;
 }
 

@@ -6,6 +6,7 @@
 
 #include "analysis/bone_drilling/feedback/achieved_tables.h"
 #include "analysis/bone_drilling/feedback/page_frame.h"
+#include "analysis/bone_drilling/feedback/phase_tables.h"
 #include "analysis/bone_drilling/feedback/procedure_tables.h"
 #include "analysis/document/base64.h"
 #include "analysis/document/html.h"
@@ -83,7 +84,7 @@ std::string procedure_page(const ProcedurePage& page) {
         "all-clear.");
   }
   body += summary_points(f, experts) + view(page) + experts_sentence(experts);
-  body += page.score + achieved_section(f, experts);
+  body += page.score + page.checklist + achieved_section(f, experts) + phase_section(f, experts);
   body += heading("Near vital structures");
   body += f.structures.empty()
               ? paragraph("Vital structures of this bone are unknown.")

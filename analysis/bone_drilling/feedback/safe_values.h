@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/near_structure.h"
+#include "analysis/bone_drilling/metrics/phase_span.h"
 #include "analysis/bone_drilling/metrics/study_bones.h"
 
 namespace haptrial::analysis::drilling {
@@ -29,6 +30,7 @@ struct SafeOptions {
   double low{0.05};        // the range of the experts lies between these shares of removals
   double high{0.95};       // low < high < 1
   std::size_t fewest{20};  // removals; an interval with fewer says nothing
+  FindPhases phases;       // for summaries; empty: procedures are not divided
 };
 
 /// The removals of one expert.

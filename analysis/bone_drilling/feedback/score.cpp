@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/bone_drilling/feedback/achieved_tables.h"
 #include "analysis/bone_drilling/feedback/procedure_tables.h"
 #include "analysis/files/sha256.h"
 #include "analysis/statistics/base/distributions.h"
@@ -16,13 +15,6 @@ namespace {
 
 constexpr double kLowest = 1.0, kHighest = 5.0;  // of the raters' scale
 constexpr double kBothTails = 0.975;
-
-std::optional<double> value_of(const ProcedureSummary& summary, const std::string& name) {
-  const std::vector<MetricKind> kinds = metric_kinds();
-  const bool metric = std::any_of(kinds.begin(), kinds.end(),
-                                  [&](const MetricKind& kind) { return kind.name == name; });
-  return metric ? summary.value(name) : achieved_value(summary, name);
-}
 
 std::vector<ScoreMetric> candidates(const ProcedureSummary& summary) {
   std::vector<ScoreMetric> metrics;
@@ -49,7 +41,7 @@ std::vector<ScoreMetric> usable_metrics(std::span<const RatedSummary> procedures
   std::erase_if(metrics, [&](ScoreMetric& metric) {
     std::vector<double> values;
     for (const RatedSummary& each : procedures) {
-      if (const auto value = value_of(each.summary, metric.name)) {
+      if (const auto value = quantity(each.summary, metric.name)) {
         values.push_back(*value);
       }
     }
@@ -109,7 +101,7 @@ Defined<ScoreModel> learn_score(std::span<const RatedSummary> procedures) {
     model.simulated = model.simulated || s.simulated;
     for (std::size_t m = 0; m < model.metrics.size(); ++m) {
       predictors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m)) =
-          *value_of(s, model.metrics[m].name);
+          *quantity(s, model.metrics[m].name);
     }
   }
   const auto fit = cross_validated_ridge(ratings, predictors, who);
@@ -138,7 +130,7 @@ Defined<Score> score_of(const ScoreModel& model, const ProcedureSummary& summary
   Score score;
   double sum = model.intercept;
   for (const ScoreMetric& metric : model.metrics) {
-    const auto value = value_of(summary, metric.name);
+    const auto value = quantity(summary, metric.name);
     if (!value) {
       return Undefined{fmt::format("this procedure has no value of \"{}\"", metric.title)};
     }

@@ -8,6 +8,7 @@
 
 #include "analysis/bone_drilling/feedback/achieved_tables.h"
 #include "analysis/bone_drilling/feedback/page_frame.h"
+#include "analysis/bone_drilling/feedback/phase_tables.h"
 #include "analysis/bone_drilling/feedback/procedure_tables.h"
 #include "analysis/bone_drilling/feedback/range_plot.h"
 #include "analysis/document/html.h"
@@ -25,6 +26,24 @@ struct Line {
   std::optional<SafeRange> experts;
 };
 
+/// Time in each phase, where procedures are divided.
+void add_phases(const std::vector<TraineeProcedure>& procedures, const Experts& experts,
+                std::vector<Line>& lines) {
+  std::vector<std::vector<PhaseSpan>> divided;
+  for (const TraineeProcedure& p : procedures) {
+    if (!p.summary.phases.empty()) {
+      divided.push_back(p.summary.phases);
+    }
+  }
+  for (const std::string& phase : phases_in_order(divided)) {
+    const auto time = [phase](const TraineeProcedure& p) -> std::optional<double> {
+      return p.summary.phases.empty() ? std::nullopt
+                                      : std::optional(time_in(p.summary.phases, phase));
+    };
+    lines.push_back({"phase " + phase, "s", time, experts_time(experts, phase)});
+  }
+}
+
 std::vector<Line> lines_of(const std::vector<TraineeProcedure>& procedures,
                            const Experts& experts) {
   std::vector<Line> lines;
@@ -41,6 +60,7 @@ std::vector<Line> lines_of(const std::vector<TraineeProcedure>& procedures,
          [name = kind.name](const TraineeProcedure& p) { return p.summary.value(name); },
          experts_range(experts, kind.name)});
   }
+  add_phases(procedures, experts, lines);
   const auto share = [](std::size_t TraineeProcedure::*part) {
     return [part](const TraineeProcedure& p) -> std::optional<double> {
       if (p.judged == 0) {

@@ -1,5 +1,7 @@
 #include "analysis/bone_drilling/metrics/metrics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -208,6 +210,32 @@ std::vector<std::string> achieved_columns(std::span<const ProcedureSummary> proc
   return columns;
 }
 
+/// "phase_upper_third_s".
+std::string phase_column(std::string phase) {
+  std::replace(phase.begin(), phase.end(), ' ', '_');
+  return fmt::format("phase_{}_s", phase);
+}
+
+std::vector<std::string> phases_of(std::span<const ProcedureSummary> procedures) {
+  std::vector<std::vector<PhaseSpan>> all;
+  for (const ProcedureSummary& p : procedures) {
+    if (!p.phases.empty()) {
+      all.push_back(p.phases);
+    }
+  }
+  return phases_in_order(all);
+}
+
+void add_phases(const ProcedureSummary& p, const std::vector<std::string>& phases,
+                exchange::RowText& row) {
+  for (const std::string& phase : phases) {
+    p.phases.empty() ? row.add_missing() : row.add(time_in(p.phases, phase));
+  }
+  if (!phases.empty()) {
+    p.phases.empty() ? row.add_missing() : row.add(phase_changes(p.phases));
+  }
+}
+
 /// Nothing where the bones differ: their voxels are not the same places.
 std::optional<std::vector<RemovedRegion>> regions_of(std::span<const ProcedureSummary> procedures,
                                                      std::span<const std::string> expert_groups) {
@@ -265,6 +293,9 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   summary.usage = meter.usage();
   summary.achieved = meter.achieved();
   summary.strokes = stroke_figures(procedure, options.strokes);
+  if (options.phases) {
+    summary.phases = options.phases(procedure, bones);
+  }
   const NearRemovals near = measure_near(procedure, options, bones, summary.near);
   const Parts parts{procedure, summary, near, options.near};
   std::vector<std::optional<double>> values;
@@ -273,6 +304,31 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   }
   summary.values = std::move(values);
   return summary;
+}
+
+std::optional<double> quantity(const ProcedureSummary& summary, std::string_view name) {
+  for (std::size_t i = 0; i < kDefinitions.size(); ++i) {
+    if (kDefinitions[i].name == name) {
+      return summary.values.at(i);
+    }
+  }
+  for (const AchievedFigure& figure : figures_of(summary.achieved)) {
+    if (figure.column == name) {
+      return figure.value;
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> quantity_names(const ProcedureSummary& summary) {
+  std::vector<std::string> names;
+  for (const Definition& definition : kDefinitions) {
+    names.emplace_back(definition.name);
+  }
+  for (const AchievedFigure& figure : figures_of(summary.achieved)) {
+    names.push_back(figure.column);
+  }
+  return names;
 }
 
 std::vector<RegionScores> add_region_scores(std::span<ProcedureSummary> procedures,
@@ -313,6 +369,13 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
   for (const std::string& column : achieved) {
     row.add(std::string_view(column));
   }
+  const std::vector<std::string> phases = phases_of(procedures);
+  for (const std::string& phase : phases) {
+    row.add(std::string_view(phase_column(phase)));
+  }
+  if (!phases.empty()) {
+    row.add(std::string_view("phase_changes"));
+  }
   row.end();
   for (const ProcedureSummary& p : procedures) {
     row.add(std::string_view(p.session)).add(std::string_view(p.participant));
@@ -327,6 +390,7 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
                                    [&](const auto& each) { return each.column == column; });
       at != figures.end() && at->value ? row.add(*at->value) : row.add_missing();
     }
+    add_phases(p, phases, row);
     row.end();
   }
   return text;

@@ -11,6 +11,7 @@
 #include "analysis/bone_drilling/metrics/achieved.h"
 #include "analysis/bone_drilling/metrics/injuries.h"
 #include "analysis/bone_drilling/metrics/near_structure.h"
+#include "analysis/bone_drilling/metrics/phase_span.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/metrics/region_likelihood.h"
 #include "analysis/bone_drilling/metrics/strokes.h"
@@ -46,6 +47,7 @@ struct MetricOptions {
   double near{5e-3};                    // how far from them is near > 0 [m]
   NearBins bins;                        // at most 250 voxels far
   StrokeParameters strokes;
+  FindPhases phases;  // empty: procedures are not divided
 };
 
 /// Everything that a study keeps of a procedure: a few megabytes where the procedure has hundreds.
@@ -67,6 +69,7 @@ struct ProcedureSummary {
   std::optional<record::FieldRow> field;  // heat and blood, where there may be any
   /// Removals by structure of MetricOptions; a structure that this bone does not have has none.
   std::vector<NearRemovals> near;
+  std::vector<PhaseSpan> phases;  // none: not divided
   /// (metric_kinds()); nothing where it is not defined, as the share of no voxels. That of the
   /// region is filled by add_region_scores().
   std::vector<std::optional<double>> values;
@@ -75,6 +78,12 @@ struct ProcedureSummary {
 
   std::optional<double> value(std::string_view metric) const;
 };
+
+/// A metric by its name, or a figure of what was achieved by its column; nothing where it is not
+/// defined, or there is no such quantity.
+std::optional<double> quantity(const ProcedureSummary& summary, std::string_view name);
+/// The names that quantity() knows of a procedure.
+std::vector<std::string> quantity_names(const ProcedureSummary& summary);
 
 /// All metrics of one procedure but those that need the others.
 /// @param bones  for distance fields that several procedures on one bone share. Any thread.
@@ -97,8 +106,8 @@ std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummar
                                                  const RegionParameters& parameters = {});
 
 /// A tidy table (RFC 4180 with LF): session, participant, group, procedure, simulated, completed,
-/// then a column for each metric, named NAME_UNIT, and for each of figures_of(); empty where it is
-/// not defined.
+/// then a column for each metric, named NAME_UNIT, for each of figures_of() and, where procedures
+/// are divided, the time in each phase and the number of changes; empty where it is not defined.
 std::string metrics_csv(std::span<const ProcedureSummary> procedures);
 
 }  // namespace haptrial::analysis::drilling

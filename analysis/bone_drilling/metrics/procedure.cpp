@@ -17,6 +17,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
+#include "core/subject/drilling/work_row.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -89,7 +90,8 @@ class Loader {
         pieces_(file),
         screws_(file),
         ends_(file.rows<record::ProcedureRow>()),
-        fields_(file.rows<record::FieldRow>()) {
+        fields_(file.rows<record::FieldRow>()),
+        works_(file.rows<record::WorkRow>()) {
     for (const record::BoneRecord& record : record::recorded_bones(file)) {
       models_.push_back(keep(record));
     }
@@ -117,6 +119,12 @@ class Loader {
       if (std::any_of(passes.begin(), passes.end(),
                       [&](const Pass& pass) { return std::cmp_equal(field.pass, pass.row); })) {
         procedure.field = field;
+      }
+    }
+    for (const record::WorkRow& row : works_) {
+      if (std::any_of(passes.begin(), passes.end(),
+                      [&](const Pass& pass) { return std::cmp_equal(row.pass, pass.row); })) {
+        procedure.work.push_back({row.time, std::string(record::word_of(row.work))});
       }
     }
     return procedure;
@@ -203,6 +211,7 @@ class Loader {
   Rows<record::ScrewRow> screws_;
   std::vector<record::ProcedureRow> ends_;
   std::vector<record::FieldRow> fields_;
+  std::vector<record::WorkRow> works_;
 };
 
 double as_filed(double value, double resolution) {
@@ -269,6 +278,8 @@ Removal removal_of(const record::RemovalRow& row) {
           as_float(row.force), as_float(row.speed)};
 }
 
-View view_of(const record::CameraRow& row) { return {row.sequence, row.eye, row.target}; }
+View view_of(const record::CameraRow& row) {
+  return {row.sequence, row.eye, row.target, row.field_of_view};
+}
 
 }  // namespace haptrial::analysis::drilling

@@ -86,6 +86,7 @@ struct View {
   std::uint64_t sequence{0};
   Eigen::Vector3d eye{Eigen::Vector3d::Zero()};     // in W [m]
   Eigen::Vector3d target{Eigen::Vector3d::Zero()};  // in W [m]
+  double field_of_view{0.6};                        // vertical [rad]
 };
 
 /// A voxel of a part that turned to dust, with all that hung together with it.
@@ -101,6 +102,12 @@ struct Torn {
   bool by_suction{false};
   double force{0.0};                               // [N]
   Eigen::Vector3d place{Eigen::Vector3d::Zero()};  // in W [m]
+};
+
+/// What a virtual surgeon began to work on.
+struct BegunWork {
+  double time{0.0};  // of the procedure [s]
+  std::string work;
 };
 
 /// One drilling of one participant: everything that metrics are made from. Rows of every list are
@@ -130,6 +137,7 @@ struct Procedure {
   std::vector<record::PieceRow> pieces;  // none where the definition has no [osteotomy]
   std::vector<record::ScrewRow> screws;  // likewise
   ProcedurePlans plans;
+  std::vector<BegunWork> work;                      // of a virtual surgeon; none: nobody knows
 
   /// Null out of range.
   const ProcedureTool* tool(std::int32_t tool) const noexcept;

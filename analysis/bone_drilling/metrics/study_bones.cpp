@@ -19,6 +19,58 @@ bool same(const bone::BoneModel& a, const bone::BoneModel& b) {
                     [](const bone::Structure& x, const bone::Structure& y) { return same(x, y); });
 }
 
+/// The voxels without bone that hang together, through faces, with the outside of the grid.
+std::vector<bool> open_air(const bone::BoneModel& bone) {
+  const geometry::VoxelGrid& grid = bone.grid;
+  std::vector<bool> open(grid.count(), false);
+  std::vector<Eigen::Vector3i> todo;
+  const auto visit = [&](const Eigen::Vector3i& v) {
+    const bool inside = (v.array() >= 0).all() && v.x() < grid.size[0] && v.y() < grid.size[1] &&
+                        v.z() < grid.size[2];
+    const std::size_t at = inside ? grid.index(v.x(), v.y(), v.z()) : 0;
+    if (inside && bone.labels[at] == 0 && !open[at]) {
+      open[at] = true;
+      todo.push_back(v);
+    }
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const int one = (axis + 1) % 3, other = (axis + 2) % 3;
+    for (int i = 0; i < grid.size[static_cast<std::size_t>(one)]; ++i) {
+      for (int j = 0; j < grid.size[static_cast<std::size_t>(other)]; ++j) {
+        for (const int end : {0, grid.size[static_cast<std::size_t>(axis)] - 1}) {
+          Eigen::Vector3i v;
+          v[axis] = end;
+          v[one] = i;
+          v[other] = j;
+          visit(v);
+        }
+      }
+    }
+  }
+  while (!todo.empty()) {
+    const Eigen::Vector3i v = todo.back();
+    todo.pop_back();
+    for (int axis = 0; axis < 3; ++axis) {
+      visit(v + Eigen::Vector3i::Unit(axis));
+      visit(v - Eigen::Vector3i::Unit(axis));
+    }
+  }
+  return open;
+}
+
+/// A bone whose only structures are the air around it, label 1, and all else, label 2.
+bone::BoneModel in_air(const bone::BoneModel& bone) {
+  const std::vector<bool> open = open_air(bone);
+  bone::BoneModel model;
+  model.grid = bone.grid;
+  model.structures = {{}, {"air"}, {"bone"}};
+  model.labels.resize(open.size());
+  for (std::size_t at = 0; at < open.size(); ++at) {
+    model.labels[at] = open[at] ? 1 : 2;
+  }
+  return model;
+}
+
 }  // namespace
 
 std::shared_ptr<const bone::BoneModel> StudyBones::keep(bone::BoneModel bone) {
@@ -47,6 +99,17 @@ std::shared_ptr<const bone::DistanceField> StudyBones::field(
   auto& field = fields_[Key(bone, labels, reach)];
   if (field == nullptr) {
     field = std::make_shared<const bone::DistanceField>(*bone, labels, reach);
+  }
+  return field;
+}
+
+std::shared_ptr<const bone::DistanceField> StudyBones::air_around(
+    const std::shared_ptr<const bone::BoneModel>& bone, double reach) {
+  const std::lock_guard lock(mutex_);  // likewise
+  auto& field = air_[Key(bone, {}, reach)];
+  if (field == nullptr) {
+    field = std::make_shared<const bone::DistanceField>(in_air(*bone),
+                                                        std::vector<bool>{false, true}, reach);
   }
   return field;
 }

@@ -26,6 +26,10 @@ class StudyBones {
   std::shared_ptr<const bone::DistanceField> field(
       const std::shared_ptr<const bone::BoneModel>& bone, const std::vector<bool>& labels,
       double reach);
+  /// Distances to the air around a bone as it was made: in bone, the depth below its surface. Cells
+  /// that are closed off count as bone.
+  std::shared_ptr<const bone::DistanceField> air_around(
+      const std::shared_ptr<const bone::BoneModel>& bone, double reach);
 
  private:
   using Key = std::tuple<std::shared_ptr<const bone::BoneModel>, std::vector<bool>, double>;
@@ -33,6 +37,7 @@ class StudyBones {
   std::mutex mutex_;
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;
   std::map<Key, std::shared_ptr<const bone::DistanceField>> fields_;
+  std::map<Key, std::shared_ptr<const bone::DistanceField>> air_;  // without labels
 };
 
 }  // namespace haptrial::analysis::drilling

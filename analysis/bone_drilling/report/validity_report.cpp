@@ -8,6 +8,7 @@
 #include "analysis/bone_drilling/report/achieved_section.h"
 #include "analysis/bone_drilling/report/field_section.h"
 #include "analysis/bone_drilling/report/nerve_section.h"
+#include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/bone_drilling/report/validity_words.h"
@@ -40,8 +41,12 @@ class Report {
     add_design();
     add_nerve_section(document_, result_.nerves, v_.simulated);
     add_hint_section(document_, result_.hints, result_.hint_effects, v_.simulated);
+    add_crossing_section(document_, result_.crossings, v_.simulated);
     add_achieved_section(document_, result_);
+    add_phase_section(document_, result_);
     add_ratings();
+    add_checklist_section(document_, result_.checked, result_.procedures, v_.plan.groups,
+                          v_.simulated);
     add_metrics();
     add_forces();
     add_regions();

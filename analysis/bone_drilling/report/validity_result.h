@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/report/checklist_section.h"
+#include "analysis/bone_drilling/report/crossing_section.h"
 #include "analysis/bone_drilling/report/hint_findings.h"
 #include "analysis/bone_drilling/report/hint_section.h"
 #include "analysis/bone_drilling/report/nerve_findings.h"
@@ -33,6 +35,8 @@ struct ValidityResult {
   std::vector<std::string> remarks;    // sentences about the files, for the report
   std::vector<HintProcedure> hints{};  // of sessions that give hints
   std::vector<HintEffect> hint_effects{};
+  CheckedStudy checked{};                      // without rows: nobody filled in a checklist
+  std::vector<CrossingProcedure> crossings{};  // of sessions with forbidden regions
 };
 
 }  // namespace haptrial::analysis::drilling

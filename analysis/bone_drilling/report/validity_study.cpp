@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/report/field_section.h"
+#include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/ratings.h"
 #include "analysis/bone_drilling/report/validity.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
@@ -27,11 +28,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Results, nerve monitor and hints of every session.
+/// Results, nerve monitor, hints and forbidden regions of every session.
 struct Sessions {
   std::vector<ProcedureSummary> procedures;
   std::vector<NerveProcedure> nerves;
   std::vector<HintProcedure> hints;
+  std::vector<CrossingProcedure> crossings;
 };
 
 template <class T>
@@ -55,6 +57,7 @@ Sessions sessions_of(const ValidityStudy& study) {
       }
       own.nerves = load_nerves(reader, setup.group);
       own.hints = load_hints(reader, own.procedures);
+      own.crossings = load_crossings(reader, own.procedures);
       std::erase_if(own.nerves, [&](const auto& nerve) { return marked.contains(nerve.number); });
     };
   });
@@ -63,6 +66,7 @@ Sessions sessions_of(const ValidityStudy& study) {
     move_to(all.procedures, file.procedures);
     move_to(all.nerves, file.nerves);
     move_to(all.hints, file.hints);
+    move_to(all.crossings, file.crossings);
   }
   return all;
 }
@@ -102,6 +106,7 @@ ValidityResult analyze(const ValidityStudy& study) {
   result.procedures = std::move(sessions.procedures);
   result.nerves = std::move(sessions.nerves);
   result.hints = std::move(sessions.hints);
+  result.crossings = std::move(sessions.crossings);
   result.hint_effects = hint_effects(result.hints, result.procedures);
   if (result.procedures.empty()) {
     throw InputError("no session holds a drilling, so there is nothing to analyse");
@@ -110,6 +115,10 @@ ValidityResult analyze(const ValidityStudy& study) {
   std::vector<Rating> ratings;
   if (!study.ratings.empty() && fs::exists(study.ratings)) {
     ratings = load_ratings(study.ratings);
+  }
+  if (!study.checklist.empty()) {
+    result.checked.checklist = load_checklist(study.checklist);
+    result.checked.rows = load_checked(study.checked, result.checked.checklist);
   }
   const auto region_test =
       region_label_test(result.procedures, study.plan.expert_groups, study.region);
@@ -131,6 +140,12 @@ void write_validity(const ValidityResult& result, const fs::path& folder, int pa
   }
   if (!result.hints.empty()) {
     staging.write("hints.csv", hints_csv(result.hints));
+  }
+  if (!result.crossings.empty()) {
+    staging.write("crossings.csv", crossings_csv(result.crossings));
+  }
+  if (is_divided(result)) {
+    staging.write("phases.csv", phases_csv(result.procedures));
   }
   std::vector<Figure> figures = validity_figures(result);
   write_findings(own, staging, figures);

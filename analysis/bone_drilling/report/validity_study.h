@@ -29,6 +29,8 @@ struct ValidityStudy {
   /// removals near it, else the structure with most of them.
   std::string structure;
   std::filesystem::path ratings;       // of load_ratings(); a file that is absent: not rated yet
+  std::filesystem::path checklist;     // of load_checklist(); empty: none
+  std::filesystem::path checked;       // of load_checked(), if there is a checklist
   std::vector<StudyPicture> pictures;  // Figure 18 and others
   int threads{1};
 };
@@ -38,7 +40,7 @@ struct ValidityStudy {
 ValidityResult analyze(const ValidityStudy& study);
 
 /// report.html, report.md, statistics.json, metrics.csv and figures (SVG and PNG) into a folder,
-/// all or none; own_findings.csv if there are any.
+/// all or none; phases.csv if procedures are divided, own_findings.csv if there are any.
 /// @param own  findings of a program of one's own. @throws InputError, RunError as Staging and
 /// draw_figures() do.
 void write_validity(const ValidityResult& result, const std::filesystem::path& folder,

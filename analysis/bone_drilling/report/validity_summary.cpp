@@ -82,6 +82,9 @@ std::vector<std::string> summary_lines(const ValidityResult& result) {
   for (std::string& line : hint_lines(result.hints, result.hint_effects)) {
     lines.push_back(std::move(line));
   }
+  for (std::string& line : crossing_lines(result.crossings)) {
+    lines.push_back(std::move(line));
+  }
   if (const auto& fit = v.combined.fit; fit && fit->validated.r) {
     lines.push_back(
         fmt::format("all metrics together predict the ratings of participants left out with R = "

@@ -50,11 +50,20 @@ CavityPlan plan_of(const bone::BoneModel& model, const std::vector<float>& depth
   return plan;
 }
 
-CavityPlan plan_cavity(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
-                       const CavityParameters& cavity, double burr_radius) {
+std::vector<float> planned_depths(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
+                                  const CavityParameters& cavity, double burr_radius) {
   const DrillingChart chart = make_chart(model, X_WB, cavity);
   const BurrReach reach = burr_reach(chart, cavity_floor(chart), burr_radius);
-  return plan_of(model, cavity_depths(model, X_WB, chart, reach.floor));
+  return cavity_depths(model, X_WB, chart, reach.floor);
+}
+
+bool is_gone_at(float depth, double share, float deepest) noexcept {
+  return depth >= 0.0F && static_cast<double>(depth) <= share * static_cast<double>(deepest);
+}
+
+CavityPlan plan_cavity(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
+                       const CavityParameters& cavity, double burr_radius) {
+  return plan_of(model, planned_depths(model, X_WB, cavity, burr_radius));
 }
 
 }  // namespace haptrial::subject

@@ -37,6 +37,8 @@ constexpr double kPatience = 1.0;        // strokes without bone under the burr
 constexpr double kRoughShare = 0.9;      // of the completeness
 constexpr double kWithdrawn = 4e-3;      // after a tone of the nerve monitor [m]
 constexpr double kQuiet = 1.0;           // that it waits then [s]
+constexpr double kCortexDepth = 3e-3;    // below the surface that the bone had [m]
+constexpr double kMiddleDepth = 8e-3;    // likewise [m]
 constexpr int kSweeps = 6;               // of a bout
 constexpr int kSweepsUnder = 4;
 
@@ -95,8 +97,8 @@ DrillingSurgeon::Procedure DrillingSurgeon::plan(const SurgeonParameters& p,
 DrillingSurgeon::DrillingSurgeon(const SurgeonParameters& parameters,
                                  std::vector<std::shared_ptr<const DrillingChart>> charts,
                                  HandModel& hand, device::VirtualDevice& device, double scale,
-                                 std::uint64_t seed, double step)
-    : parameters_(parameters), hand_(hand), device_(device), scale_(scale) {
+                                 std::uint64_t seed, double step, WorkLog* work)
+    : parameters_(parameters), hand_(hand), device_(device), scale_(scale), work_(work) {
   if (charts.empty()) {
     throw std::invalid_argument("DrillingSurgeon: there must be a chart");
   }
@@ -228,12 +230,32 @@ void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
     }
     return;
   }
+  if (work_ != nullptr) {
+    work_->note(seen.progress * seen.time_limit, work());
+  }
   looks_ = wants_to_look(seen);
   lift_to_ = p.memory.over(last_.head<2>(), strokes_.from) - kHover;
   if (looks_) {
     lift_to_ = std::min(lift_to_, p.memory.opening().z() - kRoomToLook);
   }
   begin(Doing::kLift);
+}
+
+/// What the bout that was chosen is for.
+SurgeonWork DrillingSurgeon::work() const noexcept {
+  if (fine_) {
+    return SurgeonWork::kFine;
+  }
+  const DrillingChart& chart = *now().chart;
+  const Eigen::Vector2d middle = 0.5 * (strokes_.from + strokes_.to);
+  const Eigen::Array2i cell = (middle.array() / chart.cell).round().cast<int>();
+  const int u = std::clamp(cell.x(), 0, chart.size[0] - 1);
+  const int v = std::clamp(cell.y(), 0, chart.size[1] - 1);
+  const auto surface = static_cast<double>(chart.surface[chart.column(u, v)]);
+  const double depth = now().memory.touch(middle) + burr().radius - surface;
+  return depth < kCortexDepth   ? SurgeonWork::kCortex
+         : depth < kMiddleDepth ? SurgeonWork::kMiddle
+                                : SurgeonWork::kDeep;
 }
 
 void DrillingSurgeon::decide(const bone::DrillingView& seen,

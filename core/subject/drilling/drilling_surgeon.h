@@ -13,6 +13,7 @@
 #include "core/subject/drilling/drilling_memory.h"
 #include "core/subject/drilling/drilling_skill.h"
 #include "core/subject/drilling/hint_heeding.h"
+#include "core/subject/drilling/surgeon_work.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/motor_noise.h"
 
@@ -51,9 +52,11 @@ class DrillingSurgeon final : public stimulus::Observer {
   /// @param hand, device  of the participant; outlive this
   /// @param scale         of the scene in the device's workspace
   /// @param step          servo period > 0 [s]
+  /// @param work          receives what it works on; null: nobody asks. Outlives this
   DrillingSurgeon(const SurgeonParameters& parameters,
                   std::vector<std::shared_ptr<const DrillingChart>> charts, HandModel& hand,
-                  device::VirtualDevice& device, double scale, std::uint64_t seed, double step);
+                  device::VirtualDevice& device, double scale, std::uint64_t seed, double step,
+                  WorkLog* work = nullptr);
 
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
@@ -95,6 +98,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   void listen(const bone::DrillingView& seen, const Eigen::Vector3d& place, double dt) noexcept;
   void heed(const bone::DrillingView& seen, double dt) noexcept;
   void next_strokes(const bone::DrillingView& seen) noexcept;
+  SurgeonWork work() const noexcept;
   bool wants_to_look(const bone::DrillingView& seen) noexcept;
   void decide(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
   void decide_strokes(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
@@ -113,6 +117,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   HandModel& hand_;
   device::VirtualDevice& device_;
   double scale_;
+  WorkLog* work_;
   std::vector<Procedure> procedures_;
 
   std::size_t at_{0};

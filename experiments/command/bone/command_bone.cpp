@@ -20,6 +20,7 @@ void add_bone(CLI::App& app, int& status) {
   add_bone_page(*bone, status);
   add_bone_safe(*bone, status);
   add_bone_score(*bone, status);
+  add_bone_phases(*bone, status);
 }
 
 }  // namespace haptrial::experiments

@@ -16,6 +16,8 @@ struct BonePageOptions {
   std::vector<std::string> experts;
   std::string study;
   std::string score;
+  std::string phases;
+  std::string checklist;
   std::string out;
   std::optional<int> trial;
   bool overwrite{false};
@@ -30,6 +32,8 @@ int bone_page(const BonePageOptions& options) {
   request.experts.assign(options.experts.begin(), options.experts.end());
   request.study = options.study;
   request.score = options.score;
+  request.phases = options.phases;
+  request.checklist = options.checklist;
   request.out = options.out;
   request.overwrite = options.overwrite;
   if (options.trial) {
@@ -57,6 +61,10 @@ void add_bone_page(CLI::App& bone, int& status) {
                   "Session of an expert (.h5), shown beside on the same bone; may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--score", o.score, "File of a score (haptrial bone score) to be applied");
+  sub->add_option("--phases", o.phases,
+                  "File of phases (haptrial bone phases) by which procedures are divided");
+  sub->add_option("--checklist", o.checklist,
+                  "Checklist (.toml) whose items are filled in by their measures");
   sub->add_option("--trial", o.trial, "Procedure of each session (default: all)");
   sub->add_flag("--overwrite", o.overwrite, "Overwrite existing pages");
 }

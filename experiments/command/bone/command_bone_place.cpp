@@ -9,6 +9,7 @@
 #include "experiments/command/subcommand.h"
 #include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/placement_picture.h"
+#include "protocols/bone_drilling/load_bones.h"
 
 namespace haptrial::experiments {
 namespace {

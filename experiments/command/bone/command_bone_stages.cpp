@@ -8,6 +8,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
+#include "protocols/bone_drilling/load_bones.h"
 
 namespace haptrial::experiments {
 namespace {

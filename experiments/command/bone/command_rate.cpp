@@ -13,6 +13,7 @@
 #include <iterator>
 #include <set>
 
+#include "analysis/bone_drilling/checklist/checklist_sheet.h"
 #include "analysis/bone_drilling/report/ratings.h"
 #include "analysis/files/staging.h"
 #include "core/base/counted.h"
@@ -27,6 +28,7 @@
 #include "experiments/control/progress.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/drilling/drilling_study.h"
+#include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/rating_pictures.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/bone_replay.h"
@@ -38,6 +40,7 @@ namespace {
 struct RatePrepareOptions {
   std::string folder;
   std::string out;
+  std::string checklist;
   bool sheets{false};
   bool halves{false};
   int frames{12};
@@ -55,6 +58,7 @@ namespace drilling = analysis::drilling;
 
 constexpr const char* kKeyFile = "ratings.key";
 constexpr const char* kSheetFile = "rating-sheet.csv";
+constexpr const char* kPageFile = "checklist.html";
 
 std::string instructions(bool sheets, bool halves) {
   const std::string how =
@@ -156,6 +160,41 @@ void make_pictures(const Procedures& procedures, const drilling::RatingKey& key,
   progress.update(done, fmt::format("{} procedures", done.load()), 1.0);
 }
 
+std::vector<std::string> codes_of(const drilling::RatingKey& key) {
+  std::vector<std::string> codes;
+  for (const drilling::KeyEntry& entry : key.entries) {
+    codes.push_back(entry.code);
+  }
+  return codes;
+}
+
+/// What the measures of a checklist propose for every procedure of a study, in the key's order.
+std::vector<drilling::CheckedItem> proposed(const drilling::Checklist& checklist,
+                                            const drilling::RatingKey& key, const fs::path& study,
+                                            const char* ending, const std::string& name) {
+  drilling::StudyBones bones;
+  ExpertSessions sessions({}, bones);
+  for (const fs::path& file : files_of(study, Pilots::kLeftOut)) {
+    sessions.add(file);
+  }
+  std::vector<drilling::CheckedItem> items;
+  for (const drilling::KeyEntry& entry : key.entries) {
+    for (const ExpertSession& each : sessions.procedures()) {
+      const drilling::ProcedureSummary& summary = each.procedure.summary;
+      if (summary.session != entry.item.session || summary.number != entry.item.procedure) {
+        continue;
+      }
+      check_measures(checklist, summary, name);
+      drilling::CheckedItem item{entry.code, entry.code + ending, {}};
+      for (const drilling::ChecklistItem& question : checklist.items) {
+        item.proposed.push_back(proposed_points(question, summary));
+      }
+      items.push_back(std::move(item));
+    }
+  }
+  return items;
+}
+
 void must_be_new(const fs::path& path, const char* remedy) {
   std::error_code error;
   if (fs::exists(path, error) && !(fs::is_directory(path, error) && fs::is_empty(path, error))) {
@@ -182,6 +221,13 @@ int rate_prepare(const RatePrepareOptions& options) {
   watch_for_interrupt();
   const drilling::RatingKey key =
       drilling::blinded(procedures.items, procedures.seed, options.halves);
+  std::string page;
+  if (!options.checklist.empty()) {
+    const drilling::Checklist checklist = drilling::load_checklist(options.checklist);
+    page = drilling::checklist_page(
+        checklist,
+        proposed(checklist, key, study, options.sheets ? ".png" : ".mp4", options.checklist));
+  }
   {
     const analysis::Staging staging(folder);
     make_pictures(procedures, key, options, staging.path(), threads);
@@ -191,6 +237,11 @@ int rate_prepare(const RatePrepareOptions& options) {
     hide_time(staging.path() / "instructions.txt");
     const analysis::Staging beside(study);
     beside.write(kKeyFile, drilling::sealed(key));
+    if (!page.empty()) {
+      staging.write(kPageFile, page);
+      hide_time(staging.path() / kPageFile);
+      beside.write(kChecklistFile, file_text(options.checklist));
+    }
     beside.publish();
     staging.publish();
   }
@@ -200,6 +251,47 @@ int rate_prepare(const RatePrepareOptions& options) {
   return 0;
 }
 
+/// Opens the codes of raters' checklists and writes them into the study.
+void import_checklists(const std::vector<std::string>& sheets, const fs::path& study,
+                       const drilling::RatingKey& key) {
+  const fs::path file = study / kChecklistFile;
+  if (!fs::exists(file)) {
+    throw InputError(fmt::format(
+        "{}: no such file; run haptrial rate prepare with --checklist for the study first",
+        file.string()));
+  }
+  const drilling::Checklist checklist = drilling::load_checklist(file);
+  const auto items = proposed(checklist, key, study, "", file.string());
+  std::vector<drilling::CheckedRow> all;
+  std::set<std::string> raters;
+  for (const std::string& sheet : sheets) {
+    for (drilling::CheckedRow& row :
+         drilling::read_checklist_sheet(sheet, checklist, codes_of(key))) {
+      const auto at = std::find_if(items.begin(), items.end(),
+                                   [&](const auto& item) { return item.code == row.session; });
+      const auto entry = std::find_if(key.entries.begin(), key.entries.end(),
+                                      [&](const auto& each) { return each.code == row.session; });
+      for (std::size_t n = 0; n < row.proposed.size(); ++n) {
+        row.proposed[n] = at->proposed[n].value_or(-1);
+      }
+      row.session = entry->item.session;
+      row.procedure = entry->item.procedure;
+      all.push_back(std::move(row));
+    }
+    if (!raters.insert(all.back().rater).second) {
+      throw InputError(
+          fmt::format("{}: rater {} has another checklist already; name each rater's "
+                      "sheet after the rater",
+                      sheet, all.back().rater));
+    }
+  }
+  const analysis::Staging staging(study);
+  staging.write(kCheckedFile, drilling::checked_csv(checklist, all));
+  staging.publish();
+  fmt::print("{} by {}: {}\n", counted(all.size(), "checklist", "checklists"),
+             counted(raters.size(), "rater", "raters"), (study / kCheckedFile).string());
+}
+
 int rate_import(const RateImportOptions& options) {
   const fs::path study(options.folder);
   const fs::path key_file = study / kKeyFile;
@@ -207,13 +299,26 @@ int rate_import(const RateImportOptions& options) {
     throw InputError(fmt::format("{}: no such file; run haptrial rate prepare for the study first",
                                  key_file.string()));
   }
-  if (!options.overwrite) {
+  const drilling::RatingKey key = drilling::opened(file_text(key_file), key_file.string());
+  std::vector<std::string> sheets, checklists;
+  for (const std::string& sheet : options.sheets) {
+    (drilling::is_checklist_sheet(sheet) ? checklists : sheets).push_back(sheet);
+  }
+  if (!options.overwrite && !sheets.empty()) {
     must_be_new(study / kRatingsFile, "choose a study without ratings or add --overwrite");
   }
-  const drilling::RatingKey key = drilling::opened(file_text(key_file), key_file.string());
+  if (!options.overwrite && !checklists.empty()) {
+    must_be_new(study / kCheckedFile, "choose a study without checklists or add --overwrite");
+  }
+  if (!checklists.empty()) {
+    import_checklists(checklists, study, key);
+  }
+  if (sheets.empty()) {
+    return 0;
+  }
   std::vector<drilling::Rating> ratings;
   std::set<std::string> raters;
-  for (const std::string& sheet : options.sheets) {
+  for (const std::string& sheet : sheets) {
     const auto own = drilling::read_sheet(sheet, key);
     if (!raters.insert(own.front().rater).second) {
       throw InputError(fmt::format(
@@ -241,6 +346,8 @@ void add_rate_prepare(CLI::App& rate, int& status) {
   sub->add_option("DIR", o.folder, "Folder of drilling sessions (.h5)")->required();
   sub->add_option("--out", o.out, "New folder for the raters (default: DIR-rating)");
   sub->add_flag("--sheets", o.sheets, "Make sheets of pictures in place of films");
+  sub->add_option("--checklist", o.checklist,
+                  "Checklist (.toml) that raters fill in on a page beside the films");
   sub->add_option("--frames", o.frames, with_default("Number of pictures on a sheet", o.frames));
   sub->add_option("--speed", o.speed,
                   with_default("Speed of the films, in multiples of real time", o.speed));

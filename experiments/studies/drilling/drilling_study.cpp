@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "core/render/mesh/scene.h"
+#include "experiments/studies/drilling/learn_phases.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::experiments {
@@ -100,12 +101,20 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
       protocols::study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
   const auto definition = protocols::parse_bone_definition(first.definition, first.definition_name);
-  study.title = definition.nerves  ? "Drilling beside watched nerves"
-                : definition.hints ? "Drilling with hints"
-                                   : "Construct validity of simulated bone surgery";
+  study.title = definition.nerves      ? "Drilling beside watched nerves"
+                : definition.hints     ? "Drilling with hints"
+                : definition.forbidden ? "Drilling beside forbidden regions"
+                                       : "Construct validity of simulated bone surgery";
   study.files = request.files.files;
   study.threads = request.threads;
   study.ratings = request.folder / kRatingsFile;
+  if (const fs::path phases = request.folder / kPhasesFile; fs::exists(phases)) {
+    study.metrics.phases = phases_by(phases);
+  }
+  if (fs::exists(request.folder / kCheckedFile)) {
+    study.checklist = request.folder / kChecklistFile;
+    study.checked = request.folder / kCheckedFile;
+  }
   study.setup = [&](const record::SessionReader& session) {
     return procedure_setup(session, groups);
   };

@@ -15,6 +15,9 @@ namespace haptrial::experiments {
 
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";
+/// Likewise of a checklist that raters were given, and of what they filled in.
+inline constexpr const char* kChecklistFile = "checklist.toml";
+inline constexpr const char* kCheckedFile = "checklist.csv";
 
 /// Analyses drilling sessions. Ratings are in their folder.
 /// @returns lines for the terminal

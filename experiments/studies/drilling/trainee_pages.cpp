@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/bone_drilling/checklist/checklist.h"
 #include "analysis/bone_drilling/feedback/procedure_page.h"
 #include "analysis/bone_drilling/feedback/score.h"
 #include "analysis/bone_drilling/feedback/trainee_page.h"
@@ -16,6 +17,7 @@
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/expert_sessions.h"
+#include "experiments/studies/drilling/learn_phases.h"
 #include "experiments/studies/drilling/learn_score.h"
 #include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_run.h"
@@ -40,15 +42,27 @@ struct Session {
   protocols::BoneDefinition definition;
 };
 
+drilling::SafeOptions options_for(const TraineeRequest& request) {
+  drilling::SafeOptions options;
+  if (!request.phases.empty()) {
+    options.phases = phases_by(request.phases);
+  }
+  return options;
+}
+
 class Pages {
  public:
-  explicit Pages(const TraineeRequest& request) : request_(request) {}
+  explicit Pages(const TraineeRequest& request)
+      : request_(request), options_(options_for(request)) {}
 
   std::vector<fs::path> written() {
     load_sessions();
     load_experts();
     if (!request_.score.empty()) {
       score_ = drilling::read_score_model(request_.score);
+    }
+    if (!request_.checklist.empty()) {
+      checklist_ = drilling::load_checklist(request_.checklist);
     }
     std::vector<std::pair<const Session*, int>> procedures = chosen();
     require_room(procedures.size());
@@ -88,6 +102,7 @@ class Pages {
   std::vector<drilling::ExpertProcedure> summaries_;  // (of them)
   drilling::Experts experts_;
   std::optional<drilling::ScoreModel> score_;
+  std::optional<drilling::Checklist> checklist_;
   std::vector<drilling::TraineeProcedure> done_;
   std::vector<fs::path> files_;
 };
@@ -232,6 +247,10 @@ void Pages::write_procedure(const Session& session, int trial, std::size_t proce
     page.score = drilling::score_section(
         *score_, score_of(*score_, f.summary, score_rules(session.definition)));
   }
+  if (checklist_) {
+    check_measures(*checklist_, f.summary, request_.checklist.string());
+    page.checklist = drilling::checklist_section(*checklist_, f.summary);
+  }
   const fs::path file = several ? numbered(done_.size() + 1) : request_.out;
   write(file, drilling::procedure_page(page));
   drilling::TraineeProcedure done;
@@ -274,6 +293,12 @@ std::vector<std::string> page_after_session(const protocols::BoneDefinition& def
   }
   if (!definition.score_file.empty()) {
     request.score = folder / definition.score_file;
+  }
+  if (!definition.phases_file.empty()) {
+    request.phases = folder / definition.phases_file;
+  }
+  if (!definition.checklist_file.empty()) {
+    request.checklist = folder / definition.checklist_file;
   }
   try {
     return {"page: " + write_trainee_pages(request).front().string()};

@@ -16,9 +16,11 @@ struct TraineeRequest {
   std::vector<std::filesystem::path> sessions;  // of one participant; in order of their start
   std::optional<int> trial;                     // of each; default: all
   std::vector<std::filesystem::path> experts;   // sessions; the best seen procedure is shown beside
-  std::filesystem::path study;  // folder of sessions: those of its expert groups; empty: none
-  std::filesystem::path score;  // file of a score; empty: none
-  std::filesystem::path out;    // new page (.html)
+  std::filesystem::path study;      // folder of sessions: those of its expert groups; empty: none
+  std::filesystem::path score;      // file of a score; empty: none
+  std::filesystem::path phases;     // file of a model of phases; empty: none
+  std::filesystem::path checklist;  // empty: none
+  std::filesystem::path out;        // new page (.html)
   bool overwrite{false};
 };
 

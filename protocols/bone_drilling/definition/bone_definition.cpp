@@ -3,19 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <mutex>
-#include <utility>
 
 #include "core/base/error.h"
-#include "core/bone/data/ear_side.h"
-#include "core/bone/data/load_bone.h"
-#include "core/bone/data/mandible.h"
-#include "core/bone/data/temporal_bone.h"
 #include "protocols/bone_drilling/definition/bone_tables_internal.h"
 #include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/definition/groups.h"
-#include "protocols/definition/lab_file.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -172,6 +164,11 @@ void check_together(Table& root, const BoneDefinition& d) {
         .reject("force_limit", fmt::format("{}", d.drilling.second->force_limit),
                 fmt::format("at most envelope.max_force, {} [N]", d.envelope.max_force));
   }
+  if (d.forbidden && d.forbidden->most_force() > d.drilling.force_limit) {
+    root.table("forbidden")
+        .reject("force_limit", fmt::format("{}", d.forbidden->most_force()),
+                fmt::format("at most drilling.force_limit, {} [N]", d.drilling.force_limit));
+  }
   for (const bone::SoftTissueParameters& soft : d.simulator.soft_tissue) {
     if (soft.tears_at > d.drilling.force_limit) {
       root.reject("soft_tissue",
@@ -190,73 +187,6 @@ void check_together(Table& root, const BoneDefinition& d) {
                                        reach, d.envelope.workspace_radius));
     }
   }
-}
-
-/// A procedural bone; one of the last few if it is the same, as a definition is read many times.
-template <class Options>
-std::shared_ptr<const bone::BoneModel> procedural(
-    bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d) {
-  struct Kept {
-    std::uint64_t seed{0};
-    double spacing{0.0};
-    std::shared_ptr<const bone::BoneModel> model;
-  };
-  constexpr std::size_t kKept = 2;
-  static std::mutex mutex;
-  static std::array<Kept, kKept> kept;
-  static std::size_t next = 0;
-  Options options;
-  options.seed = d.bone_seed;
-  options.spacing = d.spacing.value_or(options.spacing);
-  const std::scoped_lock lock(mutex);
-  for (const Kept& each : kept) {
-    if (each.model && each.seed == options.seed && each.spacing == options.spacing) {
-      return each.model;
-    }
-  }
-  Kept& fresh = kept[std::exchange(next, (next + 1) % kKept)];
-  fresh = {options.seed, options.spacing,
-           std::make_shared<const bone::BoneModel>(make(options, {}))};
-  return fresh.model;
-}
-
-std::shared_ptr<const bone::BoneModel> load_source(const std::string& source,
-                                                   const BoneDefinition& d,
-                                                   const fs::path& folder) {
-  if (source == "procedural temporal") {
-    return procedural<bone::TemporalBoneOptions>(bone::make_temporal_bone, d);
-  }
-  if (source == "procedural mandible") {
-    return procedural<bone::MandibleOptions>(bone::make_mandible, d);
-  }
-  bone::LoadOptions options;
-  options.spacing = d.spacing;
-  const fs::path file = fs::path(source).is_absolute() ? fs::path(source) : folder / source;
-  return std::make_shared<const bone::BoneModel>(bone::load_bone(file, options));
-}
-
-/// Start of a hand that only sees: in the middle of the first picture, in front of all bone.
-Eigen::Vector3d before_bones(const BoneDefinition& d) {
-  constexpr double kBefore = 0.010;  // of the nearest bone; beyond the largest burr's radius [m]
-  const Camera& camera = d.simulator.camera.start;
-  const Eigen::Vector3d towards = camera.axes().col(2);
-  double nearest = camera.distance();
-  for (const auto& model : d.bones) {
-    const geometry::VoxelGrid& grid = model->grid;
-    const Eigen::Isometry3d pose = pose_of(d.placement, grid);
-    const Eigen::Vector3d along = grid.spacing * (pose.linear().transpose() * -towards);
-    const double first = towards.dot(camera.eye - pose * grid.origin);
-    std::size_t voxel = 0;
-    for (int k = 0; k < grid.size[2]; ++k) {
-      for (int j = 0; j < grid.size[1]; ++j) {
-        double depth = first + along.y() * j + along.z() * k;
-        for (int i = 0; i < grid.size[0]; ++i, ++voxel, depth += along.x()) {
-          nearest = model->labels[voxel] != 0 ? std::min(nearest, depth) : nearest;
-        }
-      }
-    }
-  }
-  return camera.eye - std::max(0.25 * nearest, nearest - kBefore) * towards;
 }
 
 }  // namespace
@@ -323,6 +253,9 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     }
   }
   read_osteotomy(root, d);
+  if (d.beginning.planned_to > 0.0 && !d.cavity) {
+    bone.reject("planned_to", "needs a cavity; add a table [cavity]");
+  }
   read_groups(root, d);
   root.leave("analysis");  // of the rule on marked trials
   read_surgeons(root, d);
@@ -339,39 +272,6 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     reject_speed(root, d, "drilling_hand", "speed", d.hand_plan.speed);
   }
   return d;
-}
-
-void BoneDefinition::load_bones(const fs::path& folder) {
-  if (hints) {
-    hint::load_limits(*hints, folder);
-  }
-  for (const std::string& source : sources) {
-    const auto loaded = load_source(source, *this, folder);
-    bones.push_back(mirror ? std::make_shared<const bone::BoneModel>(bone::mirrored(*loaded))
-                           : loaded);
-    try {
-      check_placement(placement, *bones.back(), simulator.camera.start,
-                      cavity ? &*cavity : nullptr);
-      bone::check_soft_tissue(*bones.back(), simulator.soft_tissue);
-      bone::check_bleeding(*bones.back(), simulator.bleeding);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", file_name, error.what()));
-    }
-    if (cavity) {
-      const bone::BoneModel& model = *bones.back();
-      charts.push_back(std::make_shared<const subject::DrillingChart>(
-          make_chart(model, pose_of(placement, model.grid), *cavity)));
-    }
-    if (nerves) {
-      nerve_distances.push_back(
-          std::make_shared<const nerve::NerveDistances>(*bones.back(), nerves->nerves));
-    }
-    if (hints) {
-      hint_maps.push_back(std::make_shared<const hint::HintMap>(*hints, *bones.back()));
-    }
-  }
-  mouse.in_space = true;
-  mouse.start = drilling.scale * before_bones(*this);
 }
 
 bool BoneDefinition::has_handpiece() const {
@@ -393,15 +293,6 @@ const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {
     participant -= group.participants;
   }
   return nullptr;
-}
-
-BoneDefinition load_bone_definition(const fs::path& file) {
-  const fs::path folder = file.parent_path();
-  Table root = load_with_lab(file);
-  BoneDefinition d = read_bone_definition(root, file.string(), &folder);
-  root.finish();
-  d.load_bones(folder);
-  return d;
 }
 
 BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name) {

@@ -13,6 +13,7 @@
 #include "core/bone/model/bone_model.h"
 #include "core/bone/nerve/nerve_distances.h"
 #include "core/bone/nerve/nerve_setup.h"
+#include "core/bone/region/forbidden_region.h"
 #include "core/bone/simulator/companions.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/render/gl/quality_steps.h"
@@ -39,13 +40,22 @@ struct ParticipantGroup {
   double skill{0.5};  // of virtual ones, 0 to 1
 };
 
+/// Where procedures begin instead of at intact bone.
+struct BoneBeginning {
+  int procedure{1};          // of recorded sessions among the bones >= 1
+  std::optional<double> at;  // time of it >= 0; default: its end [s]
+  std::string at_phase;      // that it begins to work on then, in place of a time; empty: none
+  double planned_to{0.0};    // share of the cavity's depth that is gone by the plan, 0 to 1
+};
+
 /// An experiment of drillings (`protocol = "bone_drilling"`), read from a definition file and valid
 /// as a whole. A trial is one procedure on one bone.
 struct BoneDefinition : Definition {
   std::vector<std::string>
-      sources;                    // of bones: "procedural temporal", "procedural mandible", files
+      sources;  // of bones: "procedural temporal", "procedural mandible", files, sessions
   std::uint64_t bone_seed{1};     // of procedural ones
   std::optional<double> spacing;  // of voxels [m]; default: as the source has it
+  BoneBeginning beginning;
   BonePlacement placement;
   bool mirror{false};                   // left and right of all bones are exchanged
   bone::SimulatorParameters simulator;  // but for the pose
@@ -70,18 +80,22 @@ struct BoneDefinition : Definition {
   bool stereo{false};
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
   int stills{0};              // of stages of the cavity, which can be called up; 0: none
-  std::optional<nerve::NerveSetup> nerves;  // that are watched
-  std::optional<hint::HintSetup> hints;     // to who drills
-  bool trainee_page{false};                 // written after a session, beside its file
-  std::string experts_study;                // folder that the page compares with; empty: nobody
-  std::string score_file;                   // of a score that the page applies; empty: none
+  std::optional<nerve::NerveSetup> nerves;     // that are watched
+  std::optional<hint::HintSetup> hints;        // to who drills
+  std::optional<bone::RegionSetup> forbidden;  // regions that burrs are kept out of
+  bool trainee_page{false};                    // written after a session, beside its file
+  std::string experts_study;                   // folder that the page compares with; empty: nobody
+  std::string score_file;                      // of a score that the page applies; empty: none
+  std::string phases_file;                     // of phases, likewise; empty: none
+  std::string checklist_file;                  // likewise; empty: none
   /// Bones by source; procedures take them in turn. There are none if only a text was parsed: a
   /// session file has its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;
   std::vector<std::shared_ptr<const subject::DrillingChart>> charts;  // (bones) with a cavity
 
   std::vector<std::shared_ptr<const nerve::NerveDistances>> nerve_distances;  // (bones) if watched
-  std::vector<std::shared_ptr<const hint::HintMap>> hint_maps;  // (bones) if there are hints
+  std::vector<std::shared_ptr<const hint::HintMap>> hint_maps;      // (bones) if there are hints
+  std::vector<std::shared_ptr<const bone::RegionMap>> region_maps;  // (bones) if any is forbidden
 
   std::vector<DeviceArm> arms() const override { return {drilling.second ? 2U : 1U, {envelope}}; }
   /// Whether something bleeds or warms up.
@@ -90,15 +104,14 @@ struct BoneDefinition : Definition {
   bool has_handpiece() const;
   /// Whether the tools of two hands push each other, which /tool_contact has.
   bool tools_meet() const { return simulator.tube && simulator.tube->at_tool.stiffness > 0.0; }
-  /// Whether a participant hears the nerve monitor in a procedure, or sees hints.
+  /// Whether a participant hears the nerve monitor in a procedure, sees hints, or is kept out of
+  /// forbidden regions.
   /// @param trial  from 1; practice: 0
   bool hears_nerves(int trial, int participant) const;
   bool sees_hints(int trial, int participant) const;
+  bool has_regions(int trial, int participant) const;
   /// Condition of a procedure: one of design.conditions.
   std::string condition(int trial, int participant) const;
-  /// Makes or reads the bones, which takes seconds. @param folder  of the file
-  /// @throws InputError as bone::load_bone does
-  void load_bones(const std::filesystem::path& folder);
 
   PedalUse pedal_use() const override;
   std::vector<ButtonUse> button_uses() const override;
@@ -115,11 +128,12 @@ struct BoneDefinition : Definition {
   }
 };
 
+/// Whether a source of bones is a recorded session.
+bool is_session(std::string_view source);
+
 /// @param participant  from 0. @returns null where there are no groups, or none for the number
 const ParticipantGroup* group_of(const BoneDefinition& definition, int participant);
 
-/// @throws InputError with a sentence for every problem of the file; as bone::load_bone does.
-BoneDefinition load_bone_definition(const std::filesystem::path& file);
 /// Definition from the text that a session file keeps, without bones.
 BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name);
 /// Definition from a table that others read on, and whose problems are still to be thrown; without
@@ -128,8 +142,8 @@ BoneDefinition parse_bone_definition(std::string_view text, std::string_view fil
 BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
                                     const std::filesystem::path* folder);
 
-/// Reads [nerve_monitor] and [hints], what participants may be given while they drill, and the
-/// conditions of procedures that follow from them.
+/// Reads [nerve_monitor], [hints] and [forbidden], what participants may be given while they drill,
+/// and the conditions of procedures that follow from them.
 void read_given(Table& root, BoneDefinition& definition);
 
 /// The simulator of a procedure: the definition's, around a bone.

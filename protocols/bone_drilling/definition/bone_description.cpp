@@ -91,6 +91,18 @@ std::string describe_hints(const hint::HintSetup& setup) {
   return fmt::format("hints: {}, {}{}", fmt::join(kinds, ", "), shown, from);
 }
 
+std::string describe_regions(const bone::RegionSetup& setup) {
+  const char* given = setup.given == GivenIn::kAll          ? "in every procedure"
+                      : setup.given == GivenIn::kEveryOther ? "in every other one"
+                                                            : "recorded only";
+  const std::string how =
+      setup.kind == bone::RegionKind::kSound
+          ? "a chime"
+          : fmt::format("{:g} N/m up to {:g} N and a chime", setup.spring(), setup.most_force());
+  return fmt::format("forbidden: burrs within {:g} mm of {}; {}, {}", 1e3 * setup.margin,
+                     fmt::join(setup.structures, ", "), how, given);
+}
+
 /// Whoever is hinted at by programs should know.
 void warn_of_hints(const BoneDefinition& d, std::vector<std::string>& warnings) {
   if (d.hints && d.hints->limits.simulated) {
@@ -162,6 +174,13 @@ std::vector<std::string> BoneDefinition::description() const {
   }
   if (hints) {
     lines.push_back(describe_hints(*hints));
+  }
+  if (forbidden) {
+    lines.push_back(describe_regions(*forbidden));
+  }
+  if (!bones.empty() &&
+      (beginning.planned_to > 0.0 || std::any_of(sources.begin(), sources.end(), is_session))) {
+    lines.push_back(fmt::format("begins with: {}", bones.front()->source));
   }
   if (const auto margin = contact_margin(*this)) {
     lines.push_back(describe(*margin));

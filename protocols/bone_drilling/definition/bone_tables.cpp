@@ -1,5 +1,7 @@
 #include "protocols/bone_drilling/definition/bone_tables_internal.h"
 
+#include <algorithm>
+
 #include "core/base/definition/schema.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
@@ -33,7 +35,41 @@ const Schema<subject::SkillSpread>& skill_schema() {
   return schema;
 }
 
+const Schema<BoneBeginning>& beginning_schema() {
+  using B = BoneBeginning;
+  static const auto schema =
+      Schema<B>()
+          .integer("procedure", &B::procedure, 1, 1000,
+                   "Procedure of a recorded session whose bone is drilled on")
+          .number("at", &B::at, {0.0, 36000.0}, "s",
+                  "Time of the recorded procedure at which its bone is taken")
+          .otherwise("its end")
+          .text("at_phase", &B::at_phase,
+                "Phase at whose beginning the bone is taken, in place of a time: one that the "
+                "session of a virtual surgeon tells (/work)")
+          .otherwise("none")
+          .number("planned_to", &B::planned_to, kFraction, "",
+                  "Share of the cavity's depth that is removed by the plan before a procedure "
+                  "begins");
+  return schema;
+}
+
+/// Refuses a beginning that nothing follows.
+void check_beginning(Table& table, D& d) {
+  const bool recorded = std::any_of(d.sources.begin(), d.sources.end(), is_session);
+  for (const char* key : {"procedure", "at", "at_phase"}) {
+    if (table.has(key) && !recorded) {
+      table.reject(key, "is about a recorded session; name one (.h5) among the bones");
+    }
+  }
+  if (d.beginning.at && !d.beginning.at_phase.empty()) {
+    table.reject("at_phase", "stands beside a time; keep at or at_phase");
+  }
+}
+
 }  // namespace
+
+bool is_session(std::string_view source) { return source.ends_with(".h5"); }
 
 const Schema<Design>& procedures_schema() {
   static const auto schema =
@@ -79,8 +115,8 @@ const Schema<D>& bone_schema() {
   static const auto schema =
       Schema<D>()
           .texts("bones", &D::sources,
-                 "Bones to drill: procedural temporal, procedural mandible, or files; procedures "
-                 "use them in turn")
+                 "Bones to drill: procedural temporal, procedural mandible, files, or recorded "
+                 "sessions (.h5), whose bone is drilled on; procedures use them in turn")
           .required()
           .check([](Table& table, D& d) {
             if (d.sources.empty()) {
@@ -93,7 +129,9 @@ const Schema<D>& bone_schema() {
                   "Edge of a voxel; smaller voxels show more and cost memory and time")
           .otherwise("of the bone")
           .keys_of(&D::placement, placement_schema())
-          .flag("mirror", &D::mirror, "Whether left and right of the bones are exchanged");
+          .flag("mirror", &D::mirror, "Whether left and right of the bones are exchanged")
+          .keys_of(&D::beginning, beginning_schema())
+          .check(check_beginning);
   return schema;
 }
 
@@ -193,6 +231,14 @@ const Schema<D>& feedback_schema() {
           .text("score", &D::score_file,
                 "File of a score, relative to the definition, as haptrial bone score writes it, "
                 "by which the page scores the participant")
+          .otherwise("none")
+          .text("phases", &D::phases_file,
+                "File of phases, relative to the definition, as haptrial bone phases writes it, by "
+                "which the page divides the procedure")
+          .otherwise("none")
+          .text("checklist", &D::checklist_file,
+                "File of a checklist, relative to the definition, whose items the page fills in by "
+                "their measures")
           .otherwise("none");
   return schema;
 }

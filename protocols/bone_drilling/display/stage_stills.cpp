@@ -9,6 +9,7 @@
 #include "core/bone/model/bone_volume.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/gl/offscreen.h"
+#include "core/subject/drilling/cavity_plan.h"
 #include "protocols/bone_drilling/definition/smallest_burr.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 
@@ -43,9 +44,7 @@ std::vector<StageStill> make_stills(const BoneDefinition& d, const bone::BoneMod
     for (int k = 0; k < model.grid.size[2]; ++k) {
       for (int j = 0; j < model.grid.size[1]; ++j) {
         for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-          const bool goes = stage > 0 && depths[at] >= 0.0F &&
-                            static_cast<double>(depths[at]) <= share * static_cast<double>(deepest);
-          if (goes) {
+          if (stage > 0 && subject::is_gone_at(depths[at], share, deepest)) {
             volume.take(volume.address({i, j, k}), 1.0F);
           }
         }

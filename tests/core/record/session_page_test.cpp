@@ -14,6 +14,7 @@
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
+#include "core/bone/region/crossing_row.h"
 #include "core/channel/channel_row.h"
 #include "core/record/rows/arm_row.h"
 #include "core/record/rows/common_tables.h"
@@ -27,6 +28,7 @@
 #include "core/record/rows/touched_body_row.h"
 #include "core/record/rows/trial_rows.h"
 #include "core/record/table/table_page.h"
+#include "core/subject/drilling/work_row.h"
 
 namespace haptrial::record::session_page_test {
 namespace {
@@ -89,6 +91,8 @@ TEST(SessionPageTest, TablesOfDrillings) {
   tables.push_back(&table_of<HandpieceRow>());
   tables.push_back(&table_of<OpeningRow>());
   tables.push_back(&table_of<FieldRow>());
+  tables.push_back(&table_of<WorkRow>());
+  tables.push_back(&table_of<CrossingRow>());
   expect_described("drilling", tables);
 }
 TEST(SessionPageTest, TablesOfHints) { expect_described("hints", hint_tables()); }

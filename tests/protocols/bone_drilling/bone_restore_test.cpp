@@ -19,6 +19,7 @@
 #include "experiments/runner/session.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"

@@ -21,6 +21,7 @@
 #include "experiments/studies/drilling/drilling_study.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/load_bones.h"
 #include "tests/analysis/bone_drilling/session_of_drillings.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"

@@ -1,0 +1,105 @@
+#include "analysis/bone_drilling/phases/phase_labels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/files/csv.h"
+#include "analysis/files/delimited.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+struct Row {
+  PhaseSpan span;
+  std::size_t row;  // of the table
+};
+
+/// Sorts a procedure's spans; refuses the first that overlaps the one before.
+std::vector<PhaseSpan> sorted(std::vector<Row> rows, const CsvTable& table, std::size_t column) {
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const Row& a, const Row& b) { return a.span.start < b.span.start; });
+  std::vector<PhaseSpan> spans;
+  for (const Row& row : rows) {
+    if (!spans.empty() && row.span.start < spans.back().end) {
+      table.refuse(row.row, column, "a time at or after the end of the phase before");
+    }
+    spans.push_back(row.span);
+  }
+  return spans;
+}
+
+int number_of(const CsvTable& table, std::size_t row, std::size_t column, double value) {
+  constexpr double kMostProcedures = 999'999.0;
+  if (!(value >= 1.0 && value <= kMostProcedures) || value != std::floor(value)) {
+    table.refuse(row, column, "a whole number from 1 to 999999");
+  }
+  return static_cast<int>(value);
+}
+
+}  // namespace
+
+std::string phase_labels_csv(const PhaseLabels& labels) {
+  std::string text = "session,procedure,phase,start_s,end_s\n";
+  for (const auto& [key, spans] : labels) {
+    for (const PhaseSpan& span : spans) {
+      exchange::RowText row(text, exchange::Delimited::kCsv);
+      row.add(std::string_view(key.first)).add(key.second).add(std::string_view(span.phase));
+      row.add(span.start).add(span.end).end();
+    }
+  }
+  return text;
+}
+
+PhaseLabels read_phase_labels(const std::filesystem::path& file) {
+  const CsvTable table = CsvTable::load(file);
+  const std::size_t session = table.column("session"), procedure = table.column("procedure");
+  const std::size_t phase = table.column("phase"), start = table.column("start_s");
+  const std::size_t end = table.column("end_s");
+  const std::vector<double> numbers = table.numbers(procedure), starts = table.numbers(start),
+                            ends = table.numbers(end);
+  std::map<std::pair<std::string, int>, std::vector<Row>> rows;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    PhaseSpan span{std::string(table.text(row, phase)), starts[row], ends[row]};
+    if (span.phase.empty()) {
+      table.refuse(row, phase, "the name of a phase");
+    }
+    if (!(span.start >= 0.0)) {
+      table.refuse(row, start, "a time of the procedure from 0 [s]");
+    }
+    if (!(span.end > span.start)) {
+      table.refuse(row, end, "a time after the start [s]");
+    }
+    const int number = number_of(table, row, procedure, numbers[row]);
+    rows[{std::string(table.text(row, session)), number}].push_back({std::move(span), row});
+  }
+  PhaseLabels labels;
+  for (auto& [key, own] : rows) {
+    labels[key] = sorted(std::move(own), table, start);
+  }
+  return labels;
+}
+
+std::vector<std::string> names_in(const PhaseLabels& labels) {
+  std::vector<std::vector<PhaseSpan>> procedures;
+  for (const auto& [key, spans] : labels) {
+    procedures.push_back(spans);
+  }
+  return phases_in_order(procedures);
+}
+
+std::vector<int> phases_at(std::span<const Action> actions, const std::vector<PhaseSpan>& spans,
+                           const std::vector<std::string>& names, double rate) {
+  std::vector<int> phases;
+  for (const Action& action : actions) {
+    const double middle = 0.5 * static_cast<double>(action.first + action.last + 1) / rate;
+    const auto span = std::find_if(spans.begin(), spans.end(), [&](const PhaseSpan& each) {
+      return each.start <= middle && middle < each.end;
+    });
+    const auto name =
+        span == spans.end() ? names.end() : std::find(names.begin(), names.end(), span->phase);
+    phases.push_back(name == names.end() ? -1 : static_cast<int>(name - names.begin()));
+  }
+  return phases;
+}
+
+}  // namespace haptrial::analysis::drilling

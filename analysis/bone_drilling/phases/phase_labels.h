@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/bone_drilling/metrics/phase_span.h"
+#include "analysis/bone_drilling/phases/phase_model.h"
+
+namespace haptrial::analysis::drilling {
+
+/// Phases of procedures as somebody labelled them, or as a model divided them: by the name of the
+/// session's file and the number of the procedure, in order of time.
+using PhaseLabels = std::map<std::pair<std::string, int>, std::vector<PhaseSpan>>;
+
+/// A table: session, procedure, phase, start_s, end_s.
+std::string phase_labels_csv(const PhaseLabels& labels);
+/// @throws InputError for what phase_labels_csv() does not write, among it an end that is not after
+/// its start or spans of one procedure that overlap. Rows may come in any order; gaps are allowed.
+PhaseLabels read_phase_labels(const std::filesystem::path& file);
+
+/// The names of all phases, by when they begin first (phases_in_order()).
+std::vector<std::string> names_in(const PhaseLabels& labels);
+
+/// The phase of the middle of each action; -1 where no span holds it.
+std::vector<int> phases_at(std::span<const Action> actions, const std::vector<PhaseSpan>& spans,
+                           const std::vector<std::string>& names, double rate);
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,180 @@
+#include "analysis/bone_drilling/report/crossing_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "analysis/files/delimited.h"
+#include "core/base/counted.h"
+#include "core/base/definition/given_in.h"
+#include "core/bone/region/crossing_row.h"
+#include "core/bone/region/region_setup.h"
+#include "core/record/read/session_reader.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// Sum over the procedures of one condition.
+struct CrossingSum {
+  int procedures{0};
+  double minutes{0.0};  // of drilling
+  int count{0};
+  double time{0.0};     // [s]
+  double deepest{0.0};  // [m]
+};
+
+/// Adds the crossings that began in a pass.
+void add_rows(const std::vector<record::CrossingRow>& rows, const record::PassRow& pass,
+              double rate, const bone::BoneModel& bone, CrossingProcedure& p) {
+  for (const record::CrossingRow& row : rows) {
+    if (row.begin < pass.first_sample || row.begin > pass.last_sample) {
+      continue;
+    }
+    const std::string& name = bone.structures.at(row.label).name;
+    auto at = std::find_if(p.structures.begin(), p.structures.end(),
+                           [&](const Crossings& each) { return each.structure == name; });
+    if (at == p.structures.end()) {
+      at = p.structures.insert(at, {name, 0, 0.0, 0.0});
+    }
+    ++at->count;
+    at->time += static_cast<double>(row.sequence - row.begin + 1) / rate;
+    at->deepest = std::max(at->deepest, row.depth);
+  }
+}
+
+std::map<std::string, CrossingSum> sums_of(std::span<const CrossingProcedure> procedures) {
+  std::map<std::string, CrossingSum> sums;
+  for (const CrossingProcedure& p : procedures) {
+    CrossingSum& sum = sums[p.condition];
+    ++sum.procedures;
+    sum.minutes += p.drilling / 60.0;
+    for (const Crossings& each : p.structures) {
+      sum.count += each.count;
+      sum.time += each.time;
+      sum.deepest = std::max(sum.deepest, each.deepest);
+    }
+  }
+  return sums;
+}
+
+/// Crossings a minute of drilling of each procedure.
+std::vector<GivenValue> rates_of(std::span<const CrossingProcedure> procedures) {
+  std::vector<GivenValue> rates;
+  for (const CrossingProcedure& p : procedures) {
+    rates.push_back(
+        {p.participant, p.given,
+         p.drilling > 0.0 ? std::optional(60.0 * p.count() / p.drilling) : std::nullopt});
+  }
+  return rates;
+}
+
+}  // namespace
+
+int CrossingProcedure::count() const {
+  int sum = 0;
+  for (const Crossings& each : structures) {
+    sum += each.count;
+  }
+  return sum;
+}
+
+std::vector<CrossingProcedure> load_crossings(const record::SessionReader& file,
+                                              std::span<const ProcedureSummary> summaries) {
+  if (!file.has(record::table_of<record::CrossingRow>())) {
+    return {};
+  }
+  const auto rows = file.rows<record::CrossingRow>();
+  const std::vector<record::PassRow> passes = file.passes();
+  std::vector<CrossingProcedure> procedures;
+  for (const ProcedureSummary& summary : summaries) {
+    CrossingProcedure p{summary.session,
+                        summary.participant,
+                        summary.group,
+                        "",
+                        summary.number,
+                        summary.simulated,
+                        true,
+                        summary.usage.drilling,
+                        {}};
+    std::int32_t bone = 0;  // of one that was begun anew only the last counts
+    for (const record::PassRow& pass : passes) {
+      if (!pass.practice && pass.trial == p.number) {
+        bone = std::max(bone, pass.repetition);
+        p.condition = pass.condition;
+      }
+    }
+    for (const record::PassRow& pass : passes) {
+      if (!pass.practice && pass.trial == p.number && pass.repetition == bone) {
+        add_rows(rows, pass, file.info().rate, *summary.bone, p);
+      }
+    }
+    p.given = !says_off(p.condition, bone::kRegions);
+    procedures.push_back(std::move(p));
+  }
+  return procedures;
+}
+
+std::string crossings_csv(std::span<const CrossingProcedure> procedures) {
+  std::string text =
+      "session,participant,group,procedure,simulated,condition,given,drilling_s,structure,"
+      "crossings,time_s,deepest_mm\n";
+  for (const CrossingProcedure& p : procedures) {
+    std::vector<Crossings> structures = p.structures;
+    if (structures.empty()) {
+      structures.emplace_back();
+    }
+    for (const Crossings& each : structures) {
+      exchange::RowText row(text, exchange::Delimited::kCsv);
+      row.add(std::string_view(p.session)).add(std::string_view(p.participant));
+      row.add(std::string_view(p.group)).add(p.number).add(p.simulated ? 1 : 0);
+      row.add(std::string_view(p.condition)).add(p.given ? 1 : 0).add(p.drilling);
+      row.add(std::string_view(each.structure)).add(each.count).add(each.time);
+      row.add(1e3 * each.deepest).end();
+    }
+  }
+  return text;
+}
+
+void add_crossing_section(Document& document, std::span<const CrossingProcedure> procedures,
+                          bool simulated) {
+  if (procedures.empty()) {
+    return;
+  }
+  document.heading(simulated ? "Forbidden regions (simulated)" : "Forbidden regions");
+  document.paragraph(
+      "A crossing begins where a burr, turning or not, comes nearer to a structure than its "
+      "margin, "
+      "and ends where it has left. Crossings are recorded whether the participant felt or heard "
+      "the "
+      "regions or not.");
+  Rows rows;
+  for (const auto& [condition, sum] : sums_of(procedures)) {
+    rows.push_back({condition, std::to_string(sum.procedures), fmt::format("{:.1f}", sum.minutes),
+                    std::to_string(sum.count),
+                    sum.minutes > 0.0 ? fmt::format("{:.2f}", sum.count / sum.minutes) : "–",
+                    fmt::format("{:.1f}", sum.time), fmt::format("{:.2f}", 1e3 * sum.deepest)});
+  }
+  document.table({"condition", "procedures", "drilling [min]", "crossings",
+                  "crossings a minute of drilling", "time in regions [s]", "deepest [mm]"},
+                 rows);
+  if (const std::vector<GivenValue> rates = rates_of(procedures); has_both(rates)) {
+    document.table({"with regions less without, participants' means", "result"},
+                   {{"crossings a minute of drilling (1/min)",
+                     difference_word(with_less_without(rates), "1/min")}});
+  }
+}
+
+std::vector<std::string> crossing_lines(std::span<const CrossingProcedure> procedures) {
+  std::vector<std::string> lines;
+  for (const auto& [condition, sum] : sums_of(procedures)) {
+    lines.push_back(fmt::format("{}: {} of forbidden regions in {}, {:.1f} min of drilling",
+                                condition, counted(sum.count, "crossing", "crossings"),
+                                counted(sum.procedures, "procedure", "procedures"), sum.minutes));
+  }
+  return lines;
+}
+
+}  // namespace haptrial::analysis::drilling

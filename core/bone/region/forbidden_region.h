@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/bone/drill/burr_shape.h"
+#include "core/bone/model/bone_model.h"
+#include "core/bone/region/region_setup.h"
+#include "core/bone/simulator/soft_tissue.h"
+
+namespace haptrial::bone {
+
+/// Distances from the structures of forbidden regions, of a bone before anything was drilled. Made
+/// once for a bone; any thread reads it.
+class RegionMap {
+ public:
+  /// @param largest  radius of a burr [m]
+  /// @throws InputError for a structure that the bone does not have
+  RegionMap(const RegionSetup& setup, const BoneModel& model, double largest);
+
+  std::size_t size() const noexcept { return depths_.size(); }  // structures
+  std::uint8_t label(std::size_t structure) const noexcept { return labels_[structure]; }
+  const SurfaceDepth& depth(std::size_t structure) const noexcept { return depths_[structure]; }
+
+ private:
+  std::vector<std::uint8_t> labels_;
+  std::vector<SurfaceDepth> depths_;
+};
+
+/// A burr, one ball or several of radius r and centre c, is kept out of the margin m around each
+/// structure, whose signed distance is φ, as far as its deepest ball is in it by p = r + m - φ(c):
+///
+///     f = min(k p, f_max) ∇φ(c),   p > 0
+///
+/// The force is minus the gradient of an energy, k p² / 2 and beyond p = f_max / k a line, so that
+/// nothing is gained on a closed path; it begins at 0 where the burr enters.
+/// A burr that is in a region when it is taken in hand, or when the hand comes back from the
+/// camera, is not pushed before it has left: it would be thrown out.
+///
+/// Servo thread: no allocation, lock or throw after construction.
+class ForbiddenRegion {
+ public:
+  /// @param map  not null
+  ForbiddenRegion(const RegionSetup& setup, std::shared_ptr<const RegionMap> map);
+
+  /// The burr is another one, or was away.
+  void forget() noexcept;
+  /// @param balls  of the burr along its axis from the tip; none: it is no burr
+  /// @returns the force on it, in B [N]
+  Eigen::Vector3d tick(std::span<const BurrShape::Ball> balls, const Eigen::Vector3d& tip_B,
+                       const Eigen::Vector3d& axis_B) noexcept;
+  /// How deep the burr is in the region of each structure; 0: outside [m].
+  std::span<const double> depths() const noexcept { return depths_; }
+  /// Energy of the force of a burr that is felt [J].
+  double energy(std::span<const BurrShape::Ball> balls, const Eigen::Vector3d& tip_B,
+                const Eigen::Vector3d& axis_B) const noexcept;
+
+ private:
+  struct Deepest {
+    double depth{0.0};  // [m]
+    Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
+  };
+  Deepest deepest(std::size_t structure, std::span<const BurrShape::Ball> balls,
+                  const Eigen::Vector3d& tip_B, const Eigen::Vector3d& axis_B) const noexcept;
+
+  double margin_, spring_, most_;
+  std::shared_ptr<const RegionMap> map_;
+  std::vector<double> depths_;  // (structures)
+  std::vector<bool> felt_;      // (structures) the burr has been outside since it was taken
+};
+
+}  // namespace haptrial::bone

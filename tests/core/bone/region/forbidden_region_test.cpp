@@ -1,0 +1,211 @@
+#include "core/bone/region/forbidden_region.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+#include "core/bone/region/crossing_row.h"
+#include "tests/support/allocation_guard.h"
+#include "tests/support/message_of.h"
+
+namespace haptrial::bone::forbidden_region_test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kVoxel = 0.5e-3;
+constexpr double kNerve = 3e-3;  // radius of the nerve, a cylinder along z [m]
+const Vector3d kAxis = Vector3d::UnitZ();
+const BurrShape::Ball kBurr[] = {{0.0, 2e-3}};
+
+/// Bone with a nerve along z through the origin of x and y.
+BoneModel bone_with_nerve() {
+  BoneModel model;
+  model.name = "block";
+  model.grid = {{61, 61, 41}, {-15e-3, -15e-3, -10e-3}, kVoxel};
+  model.structures = {{}, {"bone"}, {"facial nerve", {}, 0.5, true}};
+  for (int k = 0; k < 41; ++k) {
+    for (int j = 0; j < 61; ++j) {
+      for (int i = 0; i < 61; ++i) {
+        const Vector3d at = model.grid.centre(i, j, k);
+        model.labels.push_back(at.head<2>().norm() < kNerve ? 2 : 1);
+      }
+    }
+  }
+  return model;
+}
+
+RegionSetup setup_of(RegionKind kind) {
+  RegionSetup setup;
+  setup.structures = {"facial nerve"};
+  setup.kind = kind;
+  return setup;
+}
+
+ForbiddenRegion region_of(const RegionSetup& setup) {
+  static const BoneModel bone = bone_with_nerve();
+  return {setup, std::make_shared<const RegionMap>(setup, bone, 2e-3)};
+}
+
+/// The burr is outside, so that it is felt from now on.
+void leave(ForbiddenRegion& region) { region.tick(kBurr, Vector3d(14e-3, 0, 0), kAxis); }
+
+TEST(ForbiddenRegionTest, TheForceIsThatOfASpringFromTheMarginOn) {
+  const RegionSetup setup = setup_of(RegionKind::kHard);
+  ForbiddenRegion region = region_of(setup);
+  leave(region);
+  // The burr's surface is in the margin from nerve + margin + burr = 7 mm from the axis on.
+  for (const double depth : {-0.5e-3, 0.5e-3, 1e-3, 2e-3}) {
+    const Vector3d force = region.tick(kBurr, Vector3d(7e-3 - depth, 0, 0), kAxis);
+    const double expected = std::max(0.0, setup.spring() * depth);
+    EXPECT_NEAR(force.x(), expected, setup.spring() * 0.6 * kVoxel) << depth;
+    EXPECT_LT(force.tail<2>().norm(), 0.05) << depth;
+    EXPECT_NEAR(region.depths()[0], std::max(0.0, depth), 0.6 * kVoxel);
+  }
+}
+
+TEST(ForbiddenRegionTest, TheForceIsTheGradientOfItsEnergy) {
+  for (const RegionKind kind : {RegionKind::kSoft, RegionKind::kHard}) {
+    ForbiddenRegion region = region_of(setup_of(kind));
+    RandomStream random(1, "places");
+    int inside = 0;
+    for (int n = 0; n < 400; ++n) {
+      const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+      const double away = random.uniform(3.5e-3, 8e-3);
+      const Vector3d at(away * std::cos(angle), away * std::sin(angle),
+                        random.uniform(-5e-3, 5e-3));
+      leave(region);
+      const Vector3d force = region.tick(kBurr, at, kAxis);
+      constexpr double kStep = 1e-9;
+      for (int axis = 0; axis < 3; ++axis) {
+        const Vector3d aside = kStep * Vector3d::Unit(axis);
+        const double slope =
+            (region.energy(kBurr, at + aside, kAxis) - region.energy(kBurr, at - aside, kAxis)) /
+            (2.0 * kStep);
+        EXPECT_NEAR(force[axis], -slope, 2e-4) << at.transpose();
+      }
+      inside += force.norm() > 0.0 ? 1 : 0;
+    }
+    EXPECT_GT(inside, 200);
+  }
+}
+
+TEST(ForbiddenRegionTest, NothingIsGainedOnAClosedPath) {
+  ForbiddenRegion region = region_of(setup_of(RegionKind::kHard));
+  leave(region);
+  double work = 0.0, moved = 0.0;
+  Vector3d before(9e-3, 0, 0);
+  constexpr int kSteps = 200'000;
+  for (int n = 1; n <= kSteps; ++n) {  // a loop in and out of the region, three times around
+    const double t = 2.0 * std::numbers::pi * n / kSteps;
+    const double away = 6.5e-3 + 2.5e-3 * std::cos(5.0 * t);
+    const Vector3d now(away * std::cos(3.0 * t), away * std::sin(3.0 * t),
+                       3e-3 * std::sin(2.0 * t));
+    const Vector3d force = region.tick(kBurr, 0.5 * (before + now), kAxis);
+    work += force.dot(now - before);
+    moved += std::abs(force.dot(now - before));
+    before = now;
+  }
+  EXPECT_GT(moved, 1e-2);
+  EXPECT_LT(std::abs(work), 1e-5 * moved);
+}
+
+TEST(ForbiddenRegionTest, TheForceGrowsWithoutAStepAndUpToItsLimit) {
+  RegionSetup setup = setup_of(RegionKind::kHard);
+  setup.force_limit = 1.2;
+  ForbiddenRegion region = region_of(setup);
+  leave(region);
+  double before = 0.0, most = 0.0;
+  for (double away = 12e-3; away > 3.2e-3; away -= 1e-6) {
+    const double force = region.tick(kBurr, Vector3d(away, 1e-4, 2e-4), kAxis).norm();
+    if (region.depths()[0] < 1e-5) {
+      EXPECT_LT(std::abs(force - before), 2.0 * setup.spring() * 1e-6);
+    }
+    before = force;
+    most = std::max(most, force);
+  }
+  EXPECT_GT(most, 1.0);
+  EXPECT_LE(most, 1.2 * 1.001);  // the smoothed distance's slope is 1 at most
+}
+
+TEST(ForbiddenRegionTest, ABurrThatIsInsideWhenItIsTakenIsNotThrownOut) {
+  ForbiddenRegion region = region_of(setup_of(RegionKind::kHard));
+  const Vector3d inside(5.5e-3, 0, 0);
+  EXPECT_EQ(region.tick(kBurr, inside, kAxis).norm(), 0.0);
+  EXPECT_GT(region.depths()[0], 1e-3);
+  leave(region);
+  EXPECT_GT(region.tick(kBurr, inside, kAxis).norm(), 0.5);
+  region.forget();
+  EXPECT_EQ(region.tick(kBurr, inside, kAxis).norm(), 0.0);
+}
+
+TEST(ForbiddenRegionTest, ARegionThatOnlySoundsAndAToolThatIsNoBurrFeelNothing) {
+  ForbiddenRegion sound = region_of(setup_of(RegionKind::kSound));
+  leave(sound);
+  EXPECT_EQ(sound.tick(kBurr, Vector3d(5e-3, 0, 0), kAxis).norm(), 0.0);
+  EXPECT_GT(sound.depths()[0], 1e-3);
+  ForbiddenRegion hard = region_of(setup_of(RegionKind::kHard));
+  leave(hard);
+  EXPECT_EQ(hard.tick({}, Vector3d(5e-3, 0, 0), kAxis).norm(), 0.0);
+  EXPECT_EQ(hard.depths()[0], 0.0);
+}
+
+TEST(ForbiddenRegionTest, ATickDoesNotAllocate) {
+  ForbiddenRegion region = region_of(setup_of(RegionKind::kSoft));
+  CrossingWatch watch({2});
+  realtime::BlockLog<record::CrossingRow> log(64, 16);
+  std::size_t counted = 0;
+  {
+    const test::AllocationGuard guard;
+    for (std::uint64_t n = 0; n < 1000; ++n) {
+      const double away = 7e-3 + 2e-3 * std::cos(0.02 * static_cast<double>(n));
+      region.tick(kBurr, Vector3d(away, 0, 0), kAxis);
+      watch.after_tick(n, true, region.depths(), log);
+    }
+    region.forget();
+    counted = guard.count();
+  }
+  EXPECT_EQ(counted, 0u);
+}
+
+TEST(ForbiddenRegionTest, AStructureThatIsNotThereIsRefused) {
+  RegionSetup setup = setup_of(RegionKind::kSoft);
+  setup.structures = {"incus"};
+  EXPECT_THAT(test::message_of<InputError>([&] { region_of(setup); }), testing::HasSubstr("incus"));
+}
+
+TEST(CrossingWatchTest, CrossingsHaveTheirTicksAndGreatestDepth) {
+  CrossingWatch watch({2, 3});
+  realtime::BlockLog<record::CrossingRow> log(64, 16);
+  const double depths[][2] = {{0, 0},    {1e-3, 0}, {2e-3, 0}, {1e-3, 4e-3},
+                              {0, 5e-3}, {0, 0},    {3e-3, 0}};
+  std::vector<bool> entered;
+  for (std::uint64_t n = 0; n < std::size(depths); ++n) {
+    entered.push_back(watch.after_tick(100 + n, n != 6, depths[n], log));
+  }
+  watch.end(log);
+  std::vector<record::CrossingRow> rows;
+  log.flush([&](std::span<const record::CrossingRow> some) {
+    rows.insert(rows.end(), some.begin(), some.end());
+  });
+  EXPECT_EQ(entered, std::vector<bool>({false, true, false, true, false, false, true}));
+  ASSERT_EQ(rows.size(), 3u);
+  const auto expect_row = [&](std::size_t n, std::uint64_t begin, std::uint64_t end,
+                              std::uint8_t label, double depth, bool given) {
+    EXPECT_EQ(rows[n].begin, begin);
+    EXPECT_EQ(rows[n].sequence, end);
+    EXPECT_EQ(rows[n].label, label);
+    EXPECT_EQ(rows[n].depth, depth);
+    EXPECT_EQ(rows[n].given, given);
+  };
+  expect_row(0, 101, 103, 2, 2e-3, true);
+  expect_row(1, 103, 104, 3, 5e-3, true);
+  expect_row(2, 106, 106, 2, 3e-3, false);
+}
+
+}  // namespace
+}  // namespace haptrial::bone::forbidden_region_test
