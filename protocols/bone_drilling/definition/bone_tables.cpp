@@ -136,8 +136,7 @@ const Schema<D>& bone_display_schema() {
                       "Words over the picture after a vital structure was opened; {structure} and "
                       "{time} stand for its name and when that was")
           .shown_text("time_text", &D::time_text, kLongestLine,
-                      "Words in a corner of the picture for the time that is left, {time}; empty: "
-                      "none")
+                      "Words in a corner of the picture for the time that is left, {time}")
           .shown_text("plan_text", &D::plan_text, kLongestLine,
                       "Legend of the section by the plan, which the key P shows")
           .choice("quality", &D::quality,
