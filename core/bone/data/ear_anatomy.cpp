@@ -252,8 +252,12 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
     return {Anatomy::kInternalCanal, 1.0};
   }
   if (inside < 0.0) {
-    const bool lined = inside > -kDura && depth < kDura + 0.7 && border < -1.5;
-    return lined ? Material{Anatomy::kSinusAndDura, 1.0} : Material{};
+    const bool within = border < -1.5;  // bone closes the dura's edge
+    if (within) {
+      const bool lined = inside > -kDura && depth < kDura + 0.7;
+      return lined ? Material{Anatomy::kSinusAndDura, 1.0} : Material{};
+    }
+    return depth < 0.0 ? Material{Anatomy::kBone, 1.0} : Material{};
   }
   if (const double canal = ear_canal(p); canal < 0.0) {
     return lining(p, canal);

@@ -17,7 +17,7 @@ namespace haptrial::bone {
 ///
 /// A face that lacks a neighbour on both sides along an axis, at an edge or where the border is
 /// steep, stays in its middle; so does a sheet one voxel thick. A membrane would shrink what is
-/// round, so it counts fully on slopes of up to 1 in 7 and not at all on those of 1 in 3, whose
+/// round, so it counts fully on slopes of up to 1 in 4 and not at all on those of 1 in 2, whose
 /// terraces are so narrow that the sums around a cell level them. The share of a voxel is 1 and
 /// what its faces stand out by. A pure function of a volume's labels. Made by one thread and then
 /// never changed.
