@@ -10,8 +10,8 @@ namespace {
 constexpr int kNoFace = -1;
 constexpr int kRounds = 60;        // of relaxation: terraces of some twenty voxels become slopes
 constexpr int kSpreading = 8;      // rounds
-constexpr float kSteep = 0.85F;    // flatness of a slope of about 1 in 3
-constexpr float kFlat = 0.93F;     // and of 1 in 7
+constexpr float kSteep = 0.78F;    // flatness of a slope of about 1 in 2
+constexpr float kFlat = 0.88F;     // and of 1 in 4
 constexpr float kOverstep = 1.8F;  // of a round: successive overrelaxation
 constexpr float kHalf = 0.5F;      // of a voxel, that a face may stand in or out by
 
