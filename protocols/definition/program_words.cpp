@@ -60,6 +60,12 @@ constexpr std::array kSessionInGerman{
     GermanText{"Thank you\nThese were all questions for now.",
                "Vielen Dank\nDas waren vorerst alle Fragen."},
     GermanText{"Thank you\nThe session ends here.", "Vielen Dank\nDie Sitzung endet hier."},
+    GermanText{"You opened the {structure} after {time}", "Eröffnet: {structure}, nach {time}"},
+    GermanText{"{time} left", "noch {time}"},
+    GermanText{
+        "green: planned, removed   blue: planned, left   orange: beyond the plan   red: vital",
+        "grün: geplant, entfernt   blau: geplant, übrig   orange: über den Plan hinaus   rot: "
+        "zu schonen"},
     GermanText{"I agree to take part", "Ich stimme zu und nehme teil"},
     GermanText{"I do not agree", "Ich stimme nicht zu"},
 };

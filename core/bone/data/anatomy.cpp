@@ -27,7 +27,7 @@ struct Known {
 
 /// Hardness beside bone: ossicles and the otic capsule are its hardest parts, soft tissue gives way
 /// at once. The numbers are for the hand, not from measurements.
-const std::array<Known, 18> kKnown{{
+const std::array<Known, 19> kKnown{{
     {Anatomy::kBone, "bone", {0.90, 0.87, 0.78}, 1.0, false, "|temporal bone|cortical bone|skull|"},
     {Anatomy::kMalleus, "malleus", {0.93, 0.62, 0.44}, 1.2, true, "|"},
     {Anatomy::kIncus, "incus", {0.88, 0.50, 0.32}, 1.2, true, "|"},
@@ -100,6 +100,12 @@ const std::array<Known, 18> kKnown{{
      0.25,
      true,
      "|ian|mandibular nerve|mandibular canal|"},
+    {Anatomy::kDrum,
+     "tympanic membrane",
+     {0.80, 0.78, 0.74},
+     0.15,
+     true,
+     "|eardrum|ear drum|drum|membrana tympani|"},
     {Anatomy::kTooth, "tooth", {0.97, 0.96, 0.92}, 1.8, true, "|teeth|tooth root|dentition|"},
 }};
 

@@ -31,6 +31,7 @@ enum class Anatomy : std::uint8_t {
   kEarCanal = 16,
   kAlveolarNerve = 17,
   kTooth = 18,
+  kDrum = 19,  // of the ear
 };
 
 /// Name, colour, hardness and whether it is vital, of a structure known by any of its usual names:

@@ -5,17 +5,10 @@
 #include <iterator>
 
 #include "core/base/random.h"
+#include "core/bone/data/ear_landmarks.h"
 
 namespace haptrial::bone {
 namespace {
-
-// Landmarks of a mean right ear [mm].
-const Point kVestibule{31.5, 24.4, 26.2};
-const Point kCochlea{35.2, 20.2, 25.2};
-const Point kDrum{24.6, 20.4, 20.9};  // middle of the ear drum
-const Point kAntrum{22.6, 28.6, 27.2};
-const Point kMeatus{3.5, 27.3, 15.2};  // beyond where the ear canal opens
-constexpr double kBony = 6.2;          // x where the bony canal begins
 
 using Beads = std::vector<Tube::TubeNode>;
 
@@ -46,7 +39,7 @@ EarVariation ear_variation(std::uint64_t seed) {
 }
 
 EarAnatomy::EarAnatomy(const EarVariation& variation, double least)
-    : v_(variation), cells_(variation.noise, 3.0, 0.4) {
+    : v_(variation), lining_(std::max(0.7, 1.4 * least)), cells_(variation.noise, 2.8, 0.4) {
   add_nerves(least);
   add_ossicles(least);
   add_labyrinth(least);
@@ -173,8 +166,8 @@ void EarAnatomy::add_vessels(double least) {
                     1.2});
   internal_canal_ = Tube({{{34.0, 22.6, 28.2}, 2.0}, {{45.5, 23.0, 28.6}, 3.0}});
   const double y = 46.2 - v_.sinus;
-  sinus_ = Tube(smooth({{{4.0, 56.0, 33.0}, 5.0},
-                        {{9.0, 50.0, 32.0}, 5.0},
+  sinus_ = Tube(smooth({{{14.0, 57.0, 34.0}, 5.0},
+                        {{12.6, 51.0, 31.5}, 5.0},
                         {{13.4, y, 25.5}, 4.9},
                         {{14.6, y - 2.3, 19.0}, 4.7},
                         {{18.5, 40.0 - 0.4 * v_.sinus, 12.5}, 4.5},
@@ -183,110 +176,19 @@ void EarAnatomy::add_vessels(double least) {
                         {{32.5, 30.0, 6.0}, 4.2},
                         {{33.0, 29.0, -4.0}, 4.4}},
                        5));
+  temporal_line_ = Tube(smooth({{{4.6, 12.0, 25.6}, 1.5},
+                                {{3.8, 21.0, 26.4}, 1.4},
+                                {{3.6, 30.0, 28.0}, 1.3},
+                                {{3.4, 38.0, 31.5}, 1.1},
+                                {{3.4, 43.0, 36.5}, 0.7}},
+                               4));
   tube_ = Tube(
       smooth({{{27.2, 17.0, 19.8}, 1.8}, {{32.5, 11.5, 16.6}, 1.1}, {{40.0, 4.0, 12.5}, 1.3}}, 4));
 }
 
-double EarAnatomy::sinus(const Point& p) const { return sinus_.distance(p, 6.0); }
-
-/// A gentle bow that leans inwards on its way down.
-double EarAnatomy::outer_side(const Point& p) const {
-  const double bow = (p.y() - 26.0) / 26.0;
-  const double lean = (48.0 - p.z()) / 20.0;
-  return 0.6 + 1.6 * bow * bow + 2.0 * lean - p.x();
-}
-
-double EarAnatomy::wall(const Point& p) const {
-  return 4.2 + 1.6 * std::clamp((34.0 - p.z()) / 12.0, 0.0, 1.5) +
-         2.2 * std::clamp((p.y() - 34.0) / 10.0, 0.0, 1.0);
-}
-
-/// Higher over the superior canal (arcuate eminence), lower to the front and the side.
-double EarAnatomy::tegmen(const Point& p) const {
-  const double dx = (p.x() - 31.5) / 5.0;
-  const double dy = (p.y() - 25.0) / 5.0;
-  const double bump = 1.0 + dx * dx + dy * dy;
-  return 31.2 + v_.tegmen + 3.6 / (bump * bump) + 0.26 * std::min(0.0, p.y() - 24.0) -
-         0.10 * std::max(0.0, 22.0 - p.x()) + 0.5 * noise(v_.noise + 9, p / 5.0);
-}
-
-double EarAnatomy::behind(const Point& p) const {
-  return -(0.55 * (p.x() - 30.0) + 0.835 * (p.y() - 34.2)) + 0.4 * noise(v_.noise + 11, p / 7.0);
-}
-
-double EarAnatomy::fossa_floor(const Point& p) const {
-  return 10.0 + 0.3 * std::max(0.0, 40.0 - p.y());
-}
-
-double EarAnatomy::hull(const Point& p) const {
-  const double uneven = 0.3 * noise(v_.noise + 7, p / 6.0);
-  const double outer = outer_side(p);
-  const double squama = std::max({outer, -outer - wall(p) - 0.8, 23.5 - p.z()});
-  const Point tip(14.5, 35.0, 8.0 - v_.mastoid_tip);
-  const double mastoid =
-      std::min(smooth_union(round_cone(p, {13.0, 36.0, 24.0}, tip, 12.0, 6.2),
-                            round_cone(p, {13.5, 43.0, 25.0}, {13.5, 41.0, 11.0}, 12.0, 7.0), 3.0),
-               round_cone(p, {11.0, 50.0, 30.0}, {12.5, 47.0, 11.0}, 11.0, 7.0));
-  double bone = smooth_union(squama, std::max(mastoid, outer - 1.0), 2.0);
-  const double petrous = round_cone(p, {20.0, 31.0, 24.5}, {52.0, 16.0, 26.0}, 12.5, 9.0);
-  bone = smooth_union(bone, std::max(petrous, outer), 2.5);
-  const double roof = tegmen(p) - p.z();
-  const double front = -behind(p);
-  const double floor_of_middle =
-      std::max({-roof - 0.8, roof - 2.4, front, outer, p.x() - 38.0 + 0.6 * p.y()});
-  bone = smooth_union(bone, floor_of_middle, 2.0);
-  // The tympanic bone around the ear canal, the root of the zygoma, the roof of the jaw joint.
-  const double plate = std::max(
-      round_cone(p, {6.5, 26.4, 15.8}, kDrum, v_.canal + 2.3, v_.canal + 2.2), kBony - p.x());
-  bone = smooth_union(bone, plate, 1.5);
-  bone = smooth_union(bone, round_cone(p, {6.5, 21.5, 24.0}, {3.0, -2.0, 20.5}, 3.0, 2.6), 2.5);
-  const double above_joint =
-      std::max({-roof - 0.8, roof - 11.0, front, outer,
-                ellipsoid(p, {16.5, 11.0, 19.0}, {14.0, 11.0, 14.0}), 16.0 - p.z()});
-  bone = smooth_union(bone, above_joint, 2.0);
-  bone = std::max(bone, -ellipsoid(p, {16.5, 10.0, 13.0}, {11.6, 6.8, 7.2}));
-  bone = smooth_union(bone, round_cone(p, {25.2, 25.6, 12.0}, {27.8, 21.0, -6.0}, 2.2, 1.0), 1.5);
-  // The temporal line above the canal and the spine of Henle behind its upper edge.
-  bone = smooth_union(bone, round_cone(p, {4.4, 12.0, 26.0}, {2.2, 40.0, 31.0}, 1.7, 1.5), 2.0);
-  bone = smooth_union(bone, round_cone(p, {6.2, 30.4, 20.4}, {5.4, 29.2, 21.0}, 1.2, 0.9), 1.0);
-  const double low = fossa_floor(p) - p.z();
-  bone = smooth_union(bone,
-                      std::max({-low - 0.5, low - 4.0,
-                                ellipsoid(p, {16.0, 47.0, 8.0}, {16.0, 12.0, 9.0}), 13.0 - p.x()}),
-                      2.5);
-  bone = std::max(bone, -round_cone(p, {23.0, 31.0, 1.0}, {21.5, 44.0, 6.0}, 2.6, 2.2));
-  return bone + uneven;
-}
-
-double EarAnatomy::cranium(const Point& p) const {
-  const double inner = outer_side(p) + wall(p);
-  const double above = std::max(tegmen(p) - p.z(), inner);
-  const double posterior = std::max({behind(p), fossa_floor(p) - p.z(), inner});
-  return smooth_union(above, posterior, 2.0);
-}
-
-double EarAnatomy::ear_canal(const Point& p) const {
-  const Point inward = Point(0.76, -0.30, 0.55).normalized();  // across the drum
-  const double tube =
-      std::min(round_cone(p, kMeatus, {13.0, 24.6, 17.3}, v_.canal + 0.9, v_.canal - 0.3),
-               round_cone(p, {13.0, 24.6, 17.3}, kDrum, v_.canal - 0.3, v_.canal));
-  return std::max(tube, (p - kDrum).dot(inward));
-}
-
-double EarAnatomy::middle_ear(const Point& p) const {
-  const Point inward = Point(0.76, -0.30, 0.55).normalized();
-  const double drum = 0.3 - (p - kDrum).dot(inward);
-  const double tympanum = std::max(ellipsoid(p, {26.6, 20.6, 21.6}, {3.0, 4.8, 5.4}), drum);
-  const double attic = ellipsoid(p, {24.6, 21.2, 26.8}, {2.8, 4.0, 2.7});
-  const double antrum = ellipsoid(p, kAntrum, {3.6, 4.4, 3.2});
-  const double aditus = round_cone(p, {24.0, 23.0, 27.0}, kAntrum, 2.0, 2.2);
-  return std::min(smooth_union(smooth_union(tympanum, attic, 1.0), std::min(antrum, aditus), 1.0),
-                  tube_.distance(p));
-}
-
 EarAnatomy::Material EarAnatomy::jaw(const Point& p) const {
   const double condyle = std::min(ellipsoid(p, {16.5, 10.0, 14.0}, {9.0, 4.2, 4.4}),
-                                  round_cone(p, {15.8, 10.6, 11.5}, {14.5, 15.0, -4.0}, 3.0, 4.6));
+                                  round_cone(p, {15.8, 10.6, 11.5}, {15.2, 12.5, 4.0}, 3.0, 2.6));
   if (condyle >= 0.0) {
     return {};
   }
@@ -311,10 +213,20 @@ bool EarAnatomy::air_cell(const Point& p, double depth, double middle) const {
   return cells_.holds(p, v_.cell_fill * std::clamp(std::min(share, 1.0 - middle / 60.0), 0.0, 1.0));
 }
 
+/// The skin of the bony ear canal and the drum at its end; the rest of the canal is open.
+/// @param canal  ear_canal() there, below 0
+EarAnatomy::Material EarAnatomy::lining(const Point& p, double canal) const {
+  if (drum(p) > -lining_) {
+    return {Anatomy::kDrum, 1.0};
+  }
+  return canal > -lining_ && p.x() > kBony ? Material{Anatomy::kEarCanal, 1.0} : Material{};
+}
+
 EarAnatomy::Material EarAnatomy::at(const Point& p) const {
   constexpr double kDura = 2.5;  // what is kept of the inside of the skull
   const double depth = hull(p);
   const double inside = cranium(p);
+  const double border = outline(p);  // what lies beyond belongs to other bones
   if (depth > 6.0 && inside > 6.0 && sinus(p) > 0.0) {
     const Material condyle = jaw(p);
     if (condyle.label != Anatomy::kNothing) {
@@ -330,18 +242,25 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
       return {part.label, 1.0};
     }
   }
-  if (sinus(p) < 0.0 && (depth < 3.0 || inside < 0.0)) {
+  if (sinus(p) < 0.0 && border < -0.5 && (depth < 3.0 || inside < 0.0)) {
     return {Anatomy::kSinusAndDura, 1.0};
+  }
+  if (sinus(p) < 0.0 && border >= -0.5 && depth < 0.0) {  // its end
+    return {Anatomy::kBone, 1.0};
   }
   if (internal_canal_.distance(p) < 0.0 && depth < 0.0 && inside > -1.0) {
     return {Anatomy::kInternalCanal, 1.0};
   }
   if (inside < 0.0) {
-    const bool lined = inside > -kDura && depth < kDura + 0.7;
-    return lined ? Material{Anatomy::kSinusAndDura, 1.0} : Material{};
+    const bool within = border < -1.5;  // bone closes the dura's edge
+    if (within) {
+      const bool lined = inside > -kDura && depth < kDura + 0.7;
+      return lined ? Material{Anatomy::kSinusAndDura, 1.0} : Material{};
+    }
+    return depth < 0.0 ? Material{Anatomy::kBone, 1.0} : Material{};
   }
-  if (ear_canal(p) < 0.0) {  // its outer part is cartilage: open
-    return p.x() < kBony ? Material{} : Material{Anatomy::kEarCanal, 1.0};
+  if (const double canal = ear_canal(p); canal < 0.0) {
+    return lining(p, canal);
   }
   const Material condyle = jaw(p);
   if (condyle.label != Anatomy::kNothing) {
@@ -350,7 +269,9 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
   constexpr double kPlate = 1.0;  // over dura and sinus, also where the shapes leave a gap
   const bool plate = inside < kPlate || sinus(p) < kPlate;
   if (depth >= 0.0) {
-    return plate && depth < kDura + 0.8 ? Material{Anatomy::kBone, 1.0} : Material{};
+    return plate && border < -0.5 && p.z() > 4.0 && depth < kDura + 0.8
+               ? Material{Anatomy::kBone, 1.0}
+               : Material{};
   }
   const double middle = middle_ear(p);
   if (middle < 0.0) {

@@ -23,11 +23,13 @@ struct EarVariation {
 };
 EarVariation ear_variation(std::uint64_t seed);
 
-/// A right temporal bone as shapes; millimetres, LPS, in a box from 0 to 49. The course of the
-/// nerves and the sizes are from the texts in docs/algorithms/procedural-bones.md.
+/// A right temporal bone as shapes; millimetres, LPS, in a box from 0 to 49 and kAround about it.
+/// The course of the nerves and the sizes are from the texts in
+/// docs/algorithms/procedural-bones.md.
 class EarAnatomy {
  public:
-  static constexpr double kBox = 49.0;
+  static constexpr double kBox = 49.0;  // the middle of this is the middle of the volume
+  inline static const Point kAround{3.0, 9.0, 10.0};  // beyond it, at both ends
 
   /// @param least  radius that no nerve or vessel falls below, so that it stays in one piece
   EarAnatomy(const EarVariation& variation, double least);
@@ -52,6 +54,7 @@ class EarAnatomy {
   void add_vessels(double least);
 
   double outer_side(const Point& p) const;   // of the skull; below 0 inwards
+  double outline(const Point& p) const;      // of the bone as the side shows it; below 0 within
   double wall(const Point& p) const;         // its thickness
   double tegmen(const Point& p) const;       // z of the floor of the middle fossa
   double behind(const Point& p) const;       // the back of the petrous bone; below 0 behind it
@@ -60,9 +63,11 @@ class EarAnatomy {
   double cranium(const Point& p) const;      // the space inside the skull
   double sinus(const Point& p) const;
   double ear_canal(const Point& p) const;
+  double drum(const Point& p) const;  // below 0 on the canal's side of the ear drum
   double middle_ear(const Point& p) const;
   bool air_cell(const Point& p, double depth, double middle) const;
   Material jaw(const Point& p) const;
+  Material lining(const Point& p, double canal) const;
 
   EarVariation v_;
   std::vector<Part> parts_;  // the first that holds a place has it
@@ -70,6 +75,8 @@ class EarAnatomy {
   Tube sinus_;
   Tube tube_;  // of Eustachius
   Tube internal_canal_;
+  Tube temporal_line_;
+  double lining_;  // of the ear canal and the drum: no voxel lets through
   Cells cells_;
 };
 

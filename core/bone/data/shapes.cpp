@@ -158,7 +158,7 @@ bool Cells::holds(const Point& p, double fill) const {
       second = std::min(second, distance);
     }
   }
-  const double radius = fill * (0.45 + 0.45 * size);
+  const double radius = fill * (0.6 + 0.6 * size);
   return nearest < radius && (second - nearest) * pitch_ > wall_;
 }
 

@@ -53,10 +53,11 @@ std::vector<Tube::TubeNode> smooth(const std::vector<Tube::TubeNode>& through, i
 std::vector<Tube::TubeNode> arc(const Point& centre, const Point& u, const Point& v, double radius,
                                 double from_degrees, double to_degrees, double tube, int steps);
 
-/// Bubbles with thin walls, one about each node of a shaken lattice.
+/// Cells with thin walls half way between the nodes of a shaken lattice (Voronoi cells), each no
+/// larger than a ball about its node.
 class Cells {
  public:
-  /// @param pitch  of the lattice.  @param wall  between bubbles
+  /// @param pitch  of the lattice.  @param wall  between cells
   Cells(std::uint64_t seed, double pitch, double wall) : seed_(seed), pitch_(pitch), wall_(wall) {}
   /// @param fill  from 0, none, to 1, wall to wall
   bool holds(const Point& p, double fill) const;

@@ -18,7 +18,10 @@ BoneModel make_temporal_bone(const TemporalBoneOptions& options,
   // A tube whose radius is more than half a voxel's diagonal has no gaps.
   const double least = 0.9 * 1e3 * options.spacing / variation.scale;
   const EarAnatomy anatomy(variation, least);
-  const MadeGrid made{Point::Zero(),   Point::Constant(EarAnatomy::kBox),
+  // Whole voxels around the box leave its middle and the places of the voxels in it alone.
+  const double voxel = 1e3 * options.spacing / variation.scale;
+  const Point around = voxel * (EarAnatomy::kAround / voxel).array().ceil().matrix();
+  const MadeGrid made{-around,         Point::Constant(EarAnatomy::kBox) + around,
                       variation.scale, options.spacing,
                       options.threads, "temporal bone"};
   BoneModel model = fill(

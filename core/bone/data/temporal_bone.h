@@ -13,8 +13,8 @@ struct TemporalBoneOptions {
   int threads{0};          // 0: one per processor; the bone is the same
 };
 
-/// A right temporal bone made from shapes, about 49 mm along each axis, in the frame B (LPS: x from
-/// the side of the head inwards, y to the back, z up), with the labels of anatomy.h. Lengths and
+/// A right temporal bone made from shapes, about 55 x 67 x 69 mm, in the frame B (LPS: x from the
+/// side of the head inwards, y to the back, z up), with the labels of anatomy.h. Lengths and
 /// places are those of anatomy texts, with their variation: docs/algorithms/procedural-bones.md.
 /// @throws InputError unless the spacing is allowed; geometry::Cancelled.
 BoneModel make_temporal_bone(const TemporalBoneOptions& options = {},

@@ -20,7 +20,7 @@ struct DustBalance {
   double deposited{0.0};
   double lying{0.0};  // in cells, moving or at rest
   double held{0.0};   // at the burr, for want of room
-  double suctioned{0.0};
+  double suctioned{0.0};  // by a tube, or carried off by water
   double fallen{0.0};  // out of the region, or of the memory that there may be
 };
 

@@ -25,7 +25,12 @@ const Schema<DustParameters>& dust_schema() {
           .required()
           .number("suction_reach", &P::suction_reach, {0.0, 0.02, true}, "m",
                   "Distance from a suction tube's mouth within which dust is taken")
-          .required();
+          .required()
+          .number("water_rate", &P::water_rate, {0.0, 1e-3}, "m3/s",
+                  "Volume of dust that the water at a turning burr carries off in a second, "
+                  "counted as solid bone; 0: no water runs")
+          .number("water_reach", &P::water_reach, {0.0, 0.02, true}, "m",
+                  "Distance from a turning burr within which water carries dust off");
   return schema;
 }
 

@@ -20,6 +20,8 @@ struct DustParameters {
   double slope{0.65};            // of a pile at rest, rise over run, 0.05 to 0.7
   double suction_rate{1.5e-6};   // solid volume a second > 0 [m3/s]
   double suction_reach{2.5e-3};  // from the nozzle's mouth > 0 [m]
+  double water_rate{1e-8};       // solid volume a second that water at a burr takes >= 0 [m3/s]
+  double water_reach{4e-3};      // of that water from the burr's surface > 0 [m]
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};  // against gravity in W, of any length but 0
   /// Dust that leaves this box in W has fallen out.
   Eigen::AlignedBox3d region{Eigen::Vector3d::Constant(-0.15), Eigen::Vector3d::Constant(0.15)};

@@ -30,6 +30,9 @@ const DustParameters& checked(const DustParameters& p) {
   require(p.slope >= kLeastSlope && p.slope <= 0.7, "Dust: slope must be from 0.05 to 0.7");
   require(positive(p.suction_rate), "Dust: suction_rate must be above 0 m3/s");
   require(positive(p.suction_reach), "Dust: suction_reach must be above 0 m");
+  require(p.water_rate >= 0.0 && std::isfinite(p.water_rate),
+          "Dust: water_rate must not be below 0 m3/s");
+  require(positive(p.water_reach), "Dust: water_reach must be above 0 m");
   require(p.up.allFinite() && p.up.norm() > 0.0, "Dust: up must be a direction");
   require(p.max_blocks >= 1 && p.max_blocks <= 100'000, "Dust: max_blocks must be 1 to 100,000");
   require(!p.region.isEmpty() && p.region.min().allFinite() && p.region.max().allFinite(),

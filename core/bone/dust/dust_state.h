@@ -91,6 +91,7 @@ struct DustState {
   void wake_in(const DustWater& water);
   void expel();
   void suck();
+  void take_near(const Eigen::Vector3d& place_W, double reach, double rate);
   void set_free(Ref ref);
   void place_held();
   struct Placed {

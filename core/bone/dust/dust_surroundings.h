@@ -27,6 +27,7 @@ struct DustTool {
   double length{0.0};                              // of the segment >= 0 [m]
   double radius{0.0};                              // 0: no tool [m]
   bool sucks{false};                               // dust near the tip is taken away
+  bool rinses{false};                              // water near it carries dust off
 };
 /// Water that runs: dust within it is a slurry, which flows where dry dust would stand.
 struct DustWater {

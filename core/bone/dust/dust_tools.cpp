@@ -151,37 +151,47 @@ void DustState::expel() {
   make_flows();
 }
 
-/// Takes dust near the mouth of each sucking tool, from every cell the same part of what is there.
+/// Takes dust near the mouth of each sucking tool, and near each tool with water.
 void DustState::suck() {
-  const double reach = parameters.suction_reach;
-  const double voxel = parameters.voxel * parameters.voxel * parameters.voxel;
   for (const DustTool& tool : tools.tools) {
-    if (!tool.sucks || !(tool.radius > 0.0) || cells == 0) {
+    if (!(tool.radius > 0.0) || cells == 0) {
       continue;
     }
-    std::vector<Ref> reached;
-    std::int64_t there = 0;
-    const int around_tip = static_cast<int>(std::ceil(reach / parameters.cell)) + 1;
-    const DustCell tip = cell_at(tool.tip);
-    const DustCell extent = DustCell::Constant(around_tip);
-    grid.for_each_in(tip - extent, tip + extent, [&](Ref ref) {
-      const Eigen::Vector3d at = centre(grid.cell(ref));
-      if (grid.at(ref).amount > 0 && (at - tool.tip).squaredNorm() <= reach * reach &&
-          !bones.cross(at, tool.tip)) {
-        reached.push_back(ref);
-        there += grid.at(ref).amount;
-      }
-    });
-    const double step = parameters.cell / parameters.fall_speed;
-    const double may = parameters.suction_rate * step / voxel / kDustUnit;
-    const double part = std::min(1.0, may / static_cast<double>(std::max<std::int64_t>(1, there)));
-    for (const Ref ref : reached) {
-      const auto amount = static_cast<std::int32_t>(std::ceil(part * grid.at(ref).amount));
-      suctioned += amount;
-      lying -= amount;
-      change(ref, -amount);
-      wake_above_and_beside(ref);
+    if (tool.sucks) {
+      take_near(tool.tip, parameters.suction_reach, parameters.suction_rate);
     }
+    if (tool.rinses && parameters.water_rate > 0.0) {
+      take_near(tool.tip, tool.radius + parameters.water_reach, parameters.water_rate);
+    }
+  }
+}
+
+/// Takes dust that a straight line from a place reaches, from every cell the same part of what is
+/// there. @param rate  solid volume a second [m3/s]
+void DustState::take_near(const Eigen::Vector3d& place_W, double reach, double rate) {
+  const double voxel = parameters.voxel * parameters.voxel * parameters.voxel;
+  std::vector<Ref> reached;
+  std::int64_t there = 0;
+  const DustCell middle = cell_at(place_W);
+  const DustCell extent =
+      DustCell::Constant(static_cast<int>(std::ceil(reach / parameters.cell)) + 1);
+  grid.for_each_in(middle - extent, middle + extent, [&](Ref ref) {
+    const Eigen::Vector3d at = centre(grid.cell(ref));
+    if (grid.at(ref).amount > 0 && (at - place_W).squaredNorm() <= reach * reach &&
+        !bones.cross(at, place_W)) {
+      reached.push_back(ref);
+      there += grid.at(ref).amount;
+    }
+  });
+  const double step = parameters.cell / parameters.fall_speed;
+  const double may = rate * step / voxel / kDustUnit;
+  const double part = std::min(1.0, may / static_cast<double>(std::max<std::int64_t>(1, there)));
+  for (const Ref ref : reached) {
+    const auto amount = static_cast<std::int32_t>(std::ceil(part * grid.at(ref).amount));
+    suctioned += amount;
+    lying -= amount;
+    change(ref, -amount);
+    wake_above_and_beside(ref);
   }
 }
 

@@ -382,7 +382,8 @@ void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
     const double radius = burr->radius();
     const double top = drills_[in_hand()]->burr().shape().half_length();
     const double low = balls.front().z;
-    dust_tools_.tools[0] = {tip + low * axis, axis, balls.back().z - low, radius, false};
+    dust_tools_.tools[0] = {tip + low * axis, axis, balls.back().z - low, radius, false,
+                            output_.power > 0.0};
     const double thin = std::min(radius, burr->shaft ? burr->shaft->radius : tool.handle_radius);
     dust_tools_.tools[1] = {tip + top * axis, axis, tool.handle_length, thin, false};
   } else if (const auto* suction = tool.as<SuctionTool>()) {

@@ -105,6 +105,8 @@ void Surface::begin(const BoneVolume& volume) {
   bricks_.resize(places);
   marks_.assign(places, 0);
   near_.begin(volume, occupancy_);
+  border_ = BorderShares(volume);
+  mix_ = LabelMix(volume);
 }
 
 void Surface::forget_changes() {
@@ -181,8 +183,10 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
     brick = std::make_unique<CellBrick>();
     brick->vertices.fill(kNone);
   }
+  bool mixed = false;
   if (any) {
-    field_.smooth(remains_);
+    field_.smooth(remains_, border_);
+    mixed = mix_.is_mixed(volume, origin);
   }
   std::size_t at = 0;
   for (int k = 0; k < BoneVolume::kEdge; ++k) {
@@ -192,7 +196,7 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
         if (corners == 0 || corners == 255) {
           remove_vertex(*brick, at);
         } else {
-          const MadeVertex made = vertex_at(volume, origin, Voxel(i, j, k), field_);
+          const MadeVertex made = vertex_at(volume, origin, Voxel(i, j, k), field_, mixed);
           set_vertex(*brick, at, made.links, made.vertex);
         }
       }
@@ -201,20 +205,27 @@ void Surface::place_vertices(const BoneVolume& volume, std::size_t place) {
 }
 
 Surface::MadeVertex Surface::vertex_at(const BoneVolume& volume, const Voxel& origin,
-                                       const Voxel& of_brick, const CellField& field) const {
+                                       const Voxel& of_brick, const CellField& field,
+                                       bool mixed) const {
   const unsigned corners = field.corners(of_brick.x(), of_brick.y(), of_brick.z());
   const Voxel cell = origin + of_brick;
   Eigen::Vector3f normal;
   const Eigen::Vector3f offset =
       field.place(of_brick.x(), of_brick.y(), of_brick.z(), corners, normal);
   const std::uint8_t nearest = nearest_corner(corners, offset);
+  SurfaceVertex vertex = make_vertex(volume, cell, corners, offset, normal, nearest);
+  if (mixed) {
+    const LabelMix::Other other = LabelMix::around(volume, field, origin, of_brick, vertex.label);
+    vertex.other_label = other.label;
+    vertex.other_share = other.share;
+  }
   return {place_in_brick(of_brick),
           {{kNone, kNone, kNone},
            {static_cast<std::int16_t>(cell.x()), static_cast<std::int16_t>(cell.y()),
             static_cast<std::int16_t>(cell.z())},
            static_cast<std::uint8_t>(corners),
            nearest},
-          make_vertex(volume, cell, corners, offset, normal, nearest)};
+          vertex};
 }
 
 SurfaceVertex Surface::make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,

@@ -8,6 +8,8 @@
 
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/model/occupancy.h"
+#include "core/bone/surface/border_shares.h"
+#include "core/bone/surface/label_mix.h"
 #include "core/bone/surface/near_structures.h"
 #include "core/bone/surface/remains.h"
 #include "core/bone/surface/surface_cells.h"
@@ -120,7 +122,7 @@ class Surface {
 
   void place_vertices(const BoneVolume& volume, std::size_t place);
   MadeVertex vertex_at(const BoneVolume& volume, const Voxel& origin, const Voxel& of_brick,
-                       const CellField& field) const;
+                       const CellField& field, bool mixed) const;
   SurfaceVertex make_vertex(const BoneVolume& volume, const Voxel& cell, unsigned corners,
                             const Eigen::Vector3f& offset, const Eigen::Vector3f& normal,
                             std::uint8_t nearest) const;
@@ -145,6 +147,8 @@ class Surface {
   NearStructures near_;
   Occupancy occupancy_;
   RemainingFraction remains_;
+  BorderShares border_;
+  LabelMix mix_;
   geometry::VoxelGrid grid_;
   std::array<std::int32_t, 3> table_size_{0, 0, 0};  // in bricks of cells
   std::vector<std::unique_ptr<CellBrick>> bricks_;   // by place; null: no vertex there

@@ -113,13 +113,14 @@ void Surface::make_vertices(const BoneVolume& volume, std::size_t place, CellFie
   if (!field.read(volume, occupancy_, remains_, origin)) {
     return;
   }
-  field.smooth(remains_);
+  field.smooth(remains_, border_);
+  const bool mixed = mix_.is_mixed(volume, origin);
   for (int k = 0; k < BoneVolume::kEdge; ++k) {
     for (int j = 0; j < BoneVolume::kEdge; ++j) {
       for (int i = 0; i < BoneVolume::kEdge; ++i) {
         const unsigned corners = field.corners(i, j, k);
         if (corners != 0 && corners != 255) {
-          made.push_back(vertex_at(volume, origin, Voxel(i, j, k), field));
+          made.push_back(vertex_at(volume, origin, Voxel(i, j, k), field, mixed));
         }
       }
     }

@@ -191,7 +191,7 @@ unsigned CellField::corners(int i, int j, int k) const noexcept {
   return two(0) | two(1) << 2 | two(kWide) << 4 | two(kWide + 1) << 6;
 }
 
-void CellField::smooth(const RemainingFraction& remains) noexcept {
+void CellField::smooth(const RemainingFraction& remains, const BorderShares& border) noexcept {
   std::array<std::uint16_t, kWide * kWide * kWide> left;
   for_each_row([&](std::size_t row, std::size_t first, int y, int z) {
     std::array<std::uint32_t, 3> shares;
@@ -202,6 +202,17 @@ void CellField::smooth(const RemainingFraction& remains) noexcept {
       const std::size_t x = i + kEdge - kReach;
       const std::uint32_t share = (shares[x / kEdge] >> (4 * (x % kEdge)) & 0xFU) + 1;
       left[kWide * row + i] = static_cast<std::uint16_t>((holds_[row] >> i & 1U) * share);
+    }
+    for (std::size_t b = 0; b < 3; ++b) {
+      const std::uint8_t* shares_at_border = border.row(bricks_[first + b], y, z);
+      for (std::size_t x = 0; shares_at_border != nullptr && x < kEdge; ++x) {
+        const std::size_t i = kEdge * b + x - (kEdge - kReach);  // wraps below 0
+        if (i < kWide) {
+          std::uint16_t& here = left[kWide * row + i];
+          here = static_cast<std::uint16_t>(
+              (here * shares_at_border[x] + BorderShares::kWhole / 2) / BorderShares::kWhole);
+        }
+      }
     }
   });
   smooth_cube<kWide>(left.data(), sums_.data());

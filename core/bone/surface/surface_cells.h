@@ -6,6 +6,7 @@
 
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/model/occupancy.h"
+#include "core/bone/surface/border_shares.h"
 #include "core/bone/surface/remains.h"
 #include "core/bone/surface/surface_depths.h"
 
@@ -18,7 +19,9 @@ struct SurfaceVertex {
   std::uint8_t label{0};                 // of the nearest filled voxel
   std::uint8_t density{0};               // mean of the filled voxels' first one; 255 is 1
   std::uint8_t near_label{0};            // of the nearest structure; 0: none within reach
-  std::uint8_t near_depth{0};  // to it from the nearest filled voxel, in units of kDepthUnit
+  std::uint8_t near_depth{0};   // to it from the nearest filled voxel, in units of kDepthUnit
+  std::uint8_t other_label{0};  // of the structure that borders on it here; 0: none
+  std::uint8_t other_share{0};  // of that in what is filled around; 255 is all
 
   static constexpr double kDepthUnit = 25e-6;  // [m]; depths end at 255 units
   bool operator==(const SurfaceVertex&) const = default;
@@ -54,8 +57,14 @@ class CellField {
   Count count() const noexcept;
   /// Bit b is the cell's corner (b & 1, b >> 1 & 1, b >> 2): whether it is filled.
   unsigned corners(int i, int j, int k) const noexcept;
+  /// Whether a voxel is drawn as filled. @param voxel  from the origin of the cells, each
+  /// coordinate from -4 to 12
+  bool is_filled(const Voxel& voxel) const noexcept {
+    const auto row = static_cast<std::size_t>((voxel.y() + kReach) + kWide * (voxel.z() + kReach));
+    return (filled_[row] >> (voxel.x() + kReach) & 1U) != 0;
+  }
   /// Works out the sums; needed before place(). @param remains  as it was read
-  void smooth(const RemainingFraction& remains) noexcept;
+  void smooth(const RemainingFraction& remains, const BorderShares& border) noexcept;
   /// Place at which the smoothed field of a cell is half full, and its direction there.
   /// @param normal  outwards, of unit length
   /// @returns the place from the cell's middle, each coordinate from -0.5 to 0.5 [voxels]

@@ -187,8 +187,9 @@ StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>
   labels_.resize(static_cast<std::size_t>(bricks) * BoneVolume::kBrickVoxels);
   squares_.resize(labels_.size());
   for_each([&](const Voxel& voxel, Key key) {
-    if (is_near(key)) {
-      const std::size_t at = entry_index(table_[table_index(voxel)], voxel);
+    const std::int32_t brick = table_[table_index(voxel)];
+    if (is_near(key) && brick != 0) {  // brick 0 stands for all places with nothing near
+      const std::size_t at = entry_index(brick, voxel);
       labels_[at] = static_cast<std::uint8_t>(key % kLabels);
       squares_[at] = static_cast<std::uint16_t>(key / kLabels);
     }

@@ -19,7 +19,7 @@ using Corners = std::array<bone::DustQuad, 4 * kGrains>;
 /// Two triangles for each grain, of all of a cell or of its first.
 using Triangles = std::array<std::uint32_t, 6 * kGrains>;
 using FirstTriangles = std::array<std::uint32_t, 6>;
-constexpr float kWider = 1.5F;  // a grain that stands for three
+constexpr float kWider = 1.3F;  // a lump that stands for two
 
 template <class Triangles>
 Triangles grains_of(std::size_t cell) {

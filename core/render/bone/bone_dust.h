@@ -25,7 +25,7 @@ class DustDrawing {
   DustDrawing& operator=(const DustDrawing&) = delete;
 
   /// @param shaded  the openness of a BoneLayer, which is bound, is that of this picture
-  /// @param coarse  one grain a cell, larger, in place of three: a third of the time
+  /// @param coarse  one lump a cell, larger, in place of two: half of the time
   void draw(std::span<const bone::DustQuad> dust, const EyeView& view, const Colour& colour,
             bool shaded, bool coarse);
 

@@ -31,12 +31,29 @@ BonePalette::BonePalette(const BoneStyle& style, std::span<const bone::Structure
   }
 }
 
+bool BonePalette::is_structure(std::uint8_t label) const {
+  return label < is_structure_.size() && is_structure_[label];
+}
+
+/// A structure in its own colour, bone over one with some of that.
+std::array<float, 3> BonePalette::colour_of(std::uint8_t label,
+                                            const bone::SurfaceVertex& vertex) const {
+  if (is_structure(label)) {
+    return structures_[label];
+  }
+  const Rgb& bone = bone_[vertex.density];
+  return vertex.near_label != 0 && vertex.near_label < structures_.size()
+             ? mixed(bone, structures_[vertex.near_label], through_[vertex.near_depth])
+             : bone;
+}
+
 std::array<std::uint8_t, 4> BonePalette::of(const bone::SurfaceVertex& vertex) const {
-  Rgb colour = bone_[vertex.density];
-  if (vertex.label < is_structure_.size() && is_structure_[vertex.label]) {
-    colour = structures_[vertex.label];
-  } else if (vertex.near_label != 0 && vertex.near_label < structures_.size()) {
-    colour = mixed(colour, structures_[vertex.near_label], through_[vertex.near_depth]);
+  Rgb colour = colour_of(vertex.label, vertex);
+  if (vertex.other_label != 0) {
+    // Half way if both fill as much, and only one or the other a little way off.
+    constexpr float kSteep = 1.7F;
+    const float share = 0.5F + kSteep * (static_cast<float>(vertex.other_share) / 255.0F - 0.5F);
+    colour = mixed(colour, colour_of(vertex.other_label, vertex), std::clamp(share, 0.0F, 1.0F));
   }
   const auto byte = [](float c) {
     return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(c, 0.0F, 1.0F)));

@@ -3,6 +3,7 @@
 #include <GL/glcorearb.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -32,9 +33,11 @@ void check(const BoneFrame& frame, int width, int height) {
       throw std::invalid_argument("BoneScene: a bone without volume or pose, or an id twice");
     }
   }
-  for (const SceneMesh& mesh : frame.meshes) {
-    if (mesh.mesh == nullptr || !mesh.pose.matrix().allFinite()) {
-      throw std::invalid_argument("BoneScene: a tool without mesh or pose");
+  for (const std::vector<SceneMesh>* meshes : {&frame.meshes, &frame.scenery}) {
+    for (const SceneMesh& mesh : *meshes) {
+      if (mesh.mesh == nullptr || !mesh.pose.matrix().allFinite()) {
+        throw std::invalid_argument("BoneScene: a tool without mesh or pose");
+      }
     }
   }
 }
@@ -124,6 +127,7 @@ struct BoneScene::Impl {
         to_eye(gl.get_uniform_location(program, "to_eye")),
         to_clip(gl.get_uniform_location(program, "to_clip")),
         light(gl.get_uniform_location(program, "light")),
+        lens(gl.get_uniform_location(program, "lens")),
         dents(gl, program),
         dust(gl),
         blood(gl),
@@ -149,7 +153,7 @@ struct BoneScene::Impl {
   std::vector<PixelBox> draw_over(const BoneFrame& frame, const EyeView& view, const EyeArea& area);
   void smooth(std::vector<std::vector<PixelBox>> drawn, int across, int height);
   void use(const EyeView& view) const;
-  void draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent);
+  void draw_meshes(std::span<const SceneMesh> some, const EyeView& view, bool translucent);
   void use(const EyeView& view, const Eigen::Isometry3d& pose) const;
   void end() const;
 
@@ -161,6 +165,8 @@ struct BoneScene::Impl {
   int to_eye;
   int to_clip;
   int light;
+  int lens;
+  EyeArea eye_area;  // that is drawn on
   DentUniforms dents;
   DustDrawing dust;
   DustDrawing blood;
@@ -174,6 +180,7 @@ struct BoneScene::Impl {
   std::vector<PixelBox> changed;             // of it in this frame, by eye
   std::vector<std::vector<PixelBox>> over;   // where it was drawn over in the last frame, by eye
   std::map<std::uint32_t, DrawnBone> shown;  // in the kept picture
+  std::vector<std::shared_ptr<const geometry::Mesh>> scenery;  // likewise
   std::map<std::uint32_t, std::unique_ptr<BoneObject>> bones;
   std::map<const geometry::Mesh*, std::unique_ptr<BoneMesh>> meshes;
   std::unique_ptr<VisibilityWorker> worker;
@@ -186,16 +193,17 @@ void BoneScene::Impl::begin(const BoneFrame& frame, const std::vector<EyeView>& 
     return std::none_of(frame.bones.begin(), frame.bones.end(),
                         [&](const SceneBone& bone) { return bone.id == known.first; });
   });
-  std::erase_if(meshes, [&](const auto& known) {
-    return std::none_of(frame.meshes.begin(), frame.meshes.end(),
-                        [&](const SceneMesh& mesh) { return mesh.mesh.get() == known.first; });
-  });
-  for (const SceneMesh& mesh : frame.meshes) {
-    std::unique_ptr<BoneMesh>& known = meshes[mesh.mesh.get()];
-    if (known == nullptr) {
-      known = std::make_unique<BoneMesh>(gl, mesh.mesh);
+  std::set<const geometry::Mesh*> wanted;
+  for (const std::vector<SceneMesh>* some : {&frame.meshes, &frame.scenery}) {
+    for (const SceneMesh& mesh : *some) {
+      wanted.insert(mesh.mesh.get());
+      std::unique_ptr<BoneMesh>& known = meshes[mesh.mesh.get()];
+      if (known == nullptr) {
+        known = std::make_unique<BoneMesh>(gl, mesh.mesh);
+      }
     }
   }
+  std::erase_if(meshes, [&](const auto& known) { return !wanted.contains(known.first); });
   if (worker != nullptr) {
     for (const VisibilityResult& result : worker->take()) {
       if (const auto found = bones.find(result.id); found != bones.end()) {
@@ -229,8 +237,9 @@ void BoneScene::Impl::use(const EyeView& view, const Eigen::Isometry3d& pose) co
   gl.uniform_matrix4fv(to_eye, 1, GL_FALSE, eye.data());
 }
 
-void BoneScene::Impl::draw_meshes(const BoneFrame& frame, const EyeView& view, bool translucent) {
-  for (const SceneMesh& mesh : frame.meshes) {
+void BoneScene::Impl::draw_meshes(std::span<const SceneMesh> some, const EyeView& view,
+                                  bool translucent) {
+  for (const SceneMesh& mesh : some) {
     if ((mesh.colour.alpha < 1.0) == translucent) {
       use(view, mesh.pose);
       gl.vertex_attrib4f(
@@ -281,6 +290,10 @@ void BoneScene::Impl::use(const EyeView& view) const {
   const Eigen::Matrix4f clip = view.projection.cast<float>();
   gl.use_program(program);
   gl.uniform_matrix4fv(to_clip, 1, GL_FALSE, clip.data());
+  const double half = 0.5 * std::hypot(eye_area.width, eye_area.height);
+  gl.uniform4f(lens, static_cast<float>(eye_area.left + 0.5 * eye_area.width),
+               static_cast<float>(0.5 * eye_area.height), static_cast<float>(half),
+               static_cast<float>(style.vignette));
   gl.uniform4f(light, static_cast<float>(style.ambient), static_cast<float>(style.diffuse),
                static_cast<float>(style.specular), static_cast<float>(style.shininess));
 }
@@ -305,6 +318,8 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
                          : object.draw(style.visible_array, part, clip, width, height,
                                        !bounds_of(bone.dents).isEmpty());
   }
+  dents.set(gl, {});
+  draw_meshes(frame.scenery, view, false);
 }
 
 DepthTiles& BoneScene::Impl::tiles(const EyeArea& area) {
@@ -319,6 +334,7 @@ DepthTiles& BoneScene::Impl::tiles(const EyeArea& area) {
 std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const EyeView& view,
                                                  const EyeArea& area) {
   const std::vector<Capsule> capsules = capsules_of(frame);
+  eye_area = area;
   std::vector<PixelBox> parts;
   layer.begin_over();
   if (quality != Quality::kPlain && !capsules.empty()) {
@@ -338,12 +354,12 @@ std::vector<PixelBox> BoneScene::Impl::draw_over(const BoneFrame& frame, const E
   use(view);
   gl.disable(GL_BLEND);
   gl.depth_mask(GL_TRUE);
-  draw_meshes(frame, view, false);
+  draw_meshes(frame.meshes, view, false);
   gl.enable(GL_BLEND);
   gl.blend_equation(GL_FUNC_ADD);
   gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   gl.depth_mask(GL_FALSE);
-  draw_meshes(frame, view, true);
+  draw_meshes(frame.meshes, view, true);
   // Alpha tells the smoothing what is dust.
   gl.blend_func_separate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
   dust.draw(frame.dust, view, style.dust, is_shaded, quality == Quality::kPlain);
@@ -375,7 +391,18 @@ void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& v
       std::equal(views.begin(), views.end(), seen_from.begin(), seen_from.end(), is_same);
   const bool shaded =
       quality != Quality::kPlain && (rests || seen_from.empty() || style.shades_moving);
-  there = there && style.kept_layer && rests;
+  const bool same_scenery =
+      std::equal(frame.scenery.begin(), frame.scenery.end(), scenery.begin(), scenery.end(),
+                 [](const SceneMesh& a, const std::shared_ptr<const geometry::Mesh>& b) {
+                   return a.mesh == b;
+                 });
+  if (!same_scenery) {
+    scenery.clear();
+    for (const SceneMesh& mesh : frame.scenery) {
+      scenery.push_back(mesh.mesh);
+    }
+  }
+  there = there && style.kept_layer && rests && same_scenery;
   seen_from = views;
   gl.disable(GL_BLEND);
   gl.disable(GL_SCISSOR_TEST);
@@ -392,6 +419,7 @@ void BoneScene::Impl::keep(const BoneFrame& frame, const std::vector<EyeView>& v
       continue;
     }
     tiles({left, across, height}).change(part);
+    eye_area = {left, across, height};
     gl.viewport(left, 0, across, height);
     if (there) {
       gl.enable(GL_SCISSOR_TEST);

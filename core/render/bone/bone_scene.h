@@ -49,6 +49,7 @@ struct BoneFrame {
   std::optional<StereoPair> stereo;
   std::vector<SceneBone> bones;
   std::vector<SceneMesh> meshes;
+  std::vector<SceneMesh> scenery;     // what stays as it is and is kept with the bones
   std::vector<bone::DustQuad> dust;   // in any order
   std::vector<bone::DustQuad> blood;  // likewise
 };

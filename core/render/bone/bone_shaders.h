@@ -44,20 +44,24 @@ in vec3 at;
 in vec3 facing;
 in vec4 paint;
 uniform vec4 light;  // ambient, diffuse, specular, shininess
+uniform vec4 lens;   // middle of the eye's picture [px], its half diagonal [px], light lost there
 layout(location = 0) out vec4 colour;
 layout(location = 1) out vec4 normal;
 void main() {
   vec3 n = normalize(facing);
   float cosine = max(dot(n, -normalize(at)), 0.0);
-  colour = vec4(paint.rgb * (light.x + light.y * cosine) + light.z * pow(cosine, light.w),
+  float off = distance(gl_FragCoord.xy, lens.xy) / lens.z;
+  float through = 1.0 - lens.w * smoothstep(0.45, 1.0, off);
+  colour = vec4(through * (paint.rgb * (light.x + light.y * cosine) +
+                           light.z * pow(cosine, light.w)),
                 paint.a);
   normal = vec4(0.5 * n + 0.5, 1.0);
 })";
 
-/// Grains of dust, kGrains a cell: balls that face the eye, each a little off the middle of its
-/// cell by a random way that follows from where the cell is, so that they make no lattice. Four
-/// vertices a grain.
-inline constexpr unsigned kGrains = 3;
+/// Lumps of dust, kGrains a cell: discs that face the eye, each a little off the middle of its
+/// cell by a random way that follows from where the cell is, so that they make no lattice, and so
+/// wide that they run into each other as a paste. Four vertices a lump.
+inline constexpr unsigned kGrains = 2;
 inline constexpr const char* kDustVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 place;
 layout(location = 1) in vec2 size_and_alpha;
@@ -77,21 +81,22 @@ float between(float low, float high, inout uint state) {
 }
 void main() {
   uvec3 bits = floatBitsToUint(place);
-  uint state = mixed(bits.x ^ mixed(bits.y ^ mixed(bits.z + uint(gl_VertexID / 4 % 3))));
+  uint state = mixed(bits.x ^ mixed(bits.y ^ mixed(bits.z + uint(gl_VertexID / 4 % 2))));
   float size = size_and_alpha.x;
   vec3 off;
   off.x = between(-0.5, 0.5, state);
   off.y = between(-0.5, 0.5, state);
   off.z = between(-0.5, 0.5, state);
-  float radius = 0.5 * widen * size * sqrt(size_and_alpha.y) * between(0.6, 1.15, state);
+  float radius = 0.68 * widen * size * sqrt(size_and_alpha.y) * between(0.6, 1.15, state);
   from_middle = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1 & 1)) * 2.0 - 1.0;
   vec4 p = to_eye * vec4(place + size * off, 1.0);
   p.xy += radius * from_middle;
-  alpha_and_shade = vec2(sqrt(size_and_alpha.y), between(0.88, 1.0, state));
+  alpha_and_shade = vec2(sqrt(size_and_alpha.y), between(0.90, 1.0, state));
   gl_Position = to_clip * p;
 })";
 
-/// Lit as a ball by a lamp beside the eye, and darker where the bone behind is closed in.
+/// Lit as a flat lump by a lamp beside the eye, with a soft edge, and darker where the bone behind
+/// is closed in.
 inline constexpr const char* kDustFragmentShader = R"(#version 330 core
 in vec2 from_middle;
 flat in vec2 alpha_and_shade;
@@ -104,10 +109,14 @@ void main() {
   if (squared > 1.0) {
     discard;
   }
-  vec3 n = vec3(from_middle, sqrt(1.0 - squared));
-  float open = mix(1.0, texelFetch(openness, ivec2(gl_FragCoord.xy), 0).r, dust.a);
-  float light = open * alpha_and_shade.y * (0.5 + 0.55 * max(dot(n, kLamp), 0.0));
-  colour = vec4(dust.rgb * light, alpha_and_shade.x * (1.0 - squared * squared));
+  vec3 n = normalize(vec3(0.55 * from_middle, 1.0));
+  ivec2 first = ivec2(gl_FragCoord.xy) & ~1;  // of four pixels whose places differ
+  float four = texelFetch(openness, first, 0).r + texelFetch(openness, first + ivec2(1, 0), 0).r +
+               texelFetch(openness, first + ivec2(0, 1), 0).r +
+               texelFetch(openness, first + ivec2(1, 1), 0).r;
+  float open = mix(1.0, 0.25 * four, dust.a);
+  float light = open * alpha_and_shade.y * (0.38 + 0.72 * max(dot(n, kLamp), 0.0));
+  colour = vec4(dust.rgb * light, alpha_and_shade.x * (1.0 - squared));
 })";
 
 }  // namespace haptrial::render

@@ -9,7 +9,7 @@ struct BoneStyle {
   Colour background{0.08, 0.09, 0.11};
   Colour hard_bone{0.93, 0.88, 0.78};  // of density 1
   Colour soft_bone{0.80, 0.58, 0.45};  // of density 0
-  Colour dust{0.95, 0.92, 0.84};
+  Colour dust{0.90, 0.83, 0.72};       // wet
   Colour blood{0.50, 0.03, 0.03};
   double ambient{0.22};           // light from everywhere
   double diffuse{0.72};           // light at the eye, by the cosine
@@ -18,6 +18,7 @@ struct BoneStyle {
   double occlusion{0.85};         // share of the light that a closed-in place loses; 0: not drawn
   double occlusion_reach{0.005};  // how far what closes it in may lie [m]
   double shadow{0.5};             // share of the light that a tool takes; 0: not drawn
+  double vignette{0.0};           // share of the light that the corners of a picture lose
   bool smooth_edges{true};        // of the whole picture
   bool shades_moving{false};      // all of this also while the camera moves: pictures, no screen
   double through_length{0.0007};  // the share of a structure's colour in the bone over it is
@@ -28,5 +29,8 @@ struct BoneStyle {
   bool visible_array{true};  // else the complete array always
   bool kept_layer{true};     // what rests is drawn once; else all in every frame
 };
+
+/// As a microscope shows wet bone.
+BoneStyle microscope_style();
 
 }  // namespace haptrial::render

@@ -157,7 +157,8 @@ int bone_picture(const BonePictureOptions& options) {
   frame.bones = {{0, &volume, Eigen::Isometry3d::Identity()}};
   add_burr(options, frame);
 
-  render::BoneStyle style;
+  render::BoneStyle style = render::microscope_style();
+  style.vignette = 0.0;
   style.visible_array = false;  // one picture
   const int width = kFiner * options.width;
   const int height = kFiner * options.height;

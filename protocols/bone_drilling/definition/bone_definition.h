@@ -77,6 +77,11 @@ struct BoneDefinition : Definition {
   sound::SpectrumTable vibration_table;
   double vibration_gain{0.0};              // >= 0
   std::optional<render::Quality> quality;  // of the participant's screen; none: by frame time
+  bool surroundings{true};                 // soft tissue and drapes are drawn around the field
+  std::string opened_text{"You opened the {structure} after {time}"};
+  std::string time_text{"{time} left"};
+  std::string plan_text{
+      "green: planned, removed   blue: planned, left   orange: beyond the plan   red: vital"};
   bool stereo{false};
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
   int stills{0};              // of stages of the cavity, which can be called up; 0: none

@@ -158,6 +158,8 @@ const Schema<D>& bone_practice_schema() {
   return schema;
 }
 
+constexpr std::size_t kLongestLine = 200;  // over a picture
+
 const Schema<D>& bone_display_schema() {
   using render::Quality;
   static const auto schema =
@@ -165,6 +167,16 @@ const Schema<D>& bone_display_schema() {
           .keys_of<render::TrialDisplayStyle>(&D::display, picture_schema())
           .flag("stereo", &D::stereo,
                 "Whether pictures for the left and the right eye stand side by side")
+          .flag("surroundings", &D::surroundings,
+                "Whether retracted soft tissue and drapes are drawn around the field; they are "
+                "seen, not felt")
+          .shown_text("opened_text", &D::opened_text, kLongestLine,
+                      "Words over the picture after a vital structure was opened; {structure} and "
+                      "{time} stand for its name and when that was")
+          .shown_text("time_text", &D::time_text, kLongestLine,
+                      "Words in a corner of the picture for the time that is left, {time}")
+          .shown_text("plan_text", &D::plan_text, kLongestLine,
+                      "Legend of the section by the plan, which the key P shows")
           .choice("quality", &D::quality,
                   {{"auto", std::nullopt},
                    {"plain", Quality::kPlain},

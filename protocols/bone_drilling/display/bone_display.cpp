@@ -1,5 +1,7 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +12,7 @@
 #include "core/bone/simulator/plate_shapes.h"
 #include "core/bone/simulator/saw.h"
 #include "core/render/bone/bone_tools.h"
+#include "core/render/bone/surgical_field.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -59,6 +62,21 @@ render::SawLook saw_look_of(const bone::BurrTool& saw, double length) {
           saw.shaft->length, saw.shaft->thickness,  teeth.length + saw.shaft->length + length};
 }
 
+/// A text in which a word in braces is replaced.
+std::string with(std::string text, std::string_view word, const std::string& by) {
+  for (std::size_t at = text.find(word); at != std::string::npos;
+       at = text.find(word, at + by.size())) {
+    text.replace(at, word.size(), by);
+  }
+  return text;
+}
+
+/// Minutes and whole seconds: "0:31".
+std::string clock_time(double seconds) {
+  const auto whole = static_cast<int>(std::max(0.0, seconds));
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
 using Clock = std::chrono::steady_clock;
 
 class BoneDrawing final : public Drawing {
@@ -67,7 +85,7 @@ class BoneDrawing final : public Drawing {
               std::shared_ptr<const BoneStage> stage, int width, int height,
               std::shared_ptr<bone::Surface> surface)
       : definition_(definition),
-        display_(gl, definition, std::move(stage), width, height, render::BoneStyle{},
+        display_(gl, definition, std::move(stage), width, height, render::microscope_style(),
                  std::move(surface)),
         hand_(pointer_hand_of(definition)),
         chosen_(definition.quality) {}
@@ -170,6 +188,10 @@ BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
         render::suction_mesh(tube->outer_radius(), 2.0 * tube->radius, tube->handle_length));
   }
   set_stills(stage_->stills);
+  if (definition.surroundings) {
+    frame_.scenery = render::surgical_field(
+        *stage_->model, pose_of(definition.placement, stage_->model->grid), stage_->start_view);
+  }
   if (definition.stereo) {
     frame_.stereo = render::StereoPair{definition.eye_distance, std::nullopt};
   }
@@ -289,8 +311,12 @@ void BoneDisplay::draw_screws(const std::vector<Eigen::Isometry3d>& plates) {
 void BoneDisplay::label(const bone::DrillingView& seen) {
   const bone::ToolSpec& tool = stage_->simulator->tools()[static_cast<std::size_t>(seen.tool)];
   const std::vector<std::string> hints = hints_in(seen);
+  const double left_over = (1.0 - seen.progress) * seen.time_limit;
+  const std::string clock =
+      seen.time_limit > 0.0 ? with(definition_.time_text, "{time}", clock_time(left_over)) : "";
   for (int left = 0; left < width_; left += width()) {
     labels_.tool(words_of(tool, seen), {left, width()});
+    labels_.clock(clock, {left, width()});
     labels_.hints(hints, {left, width()});
   }
   show_injury(seen);
@@ -303,7 +329,9 @@ void BoneDisplay::show_injury(const bone::DrillingView& seen) {
   if (seen.injury.label == 0 || seen.injury.since > kWords) {
     return;
   }
-  const std::string words = stage_->model->structures[seen.injury.label].name + " opened";
+  const double when = seen.progress * seen.time_limit - seen.injury.since;
+  std::string words = with(definition_.opened_text, "{time}", clock_time(when));
+  words = with(std::move(words), "{structure}", stage_->model->structures[seen.injury.label].name);
   for (int left = 0; left < width_; left += width()) {
     labels_.injury(words, 1.0 - seen.injury.since / kFrame, {left, width()});
   }
@@ -366,7 +394,7 @@ void BoneDisplay::draw_plan(const bone::DrillingView& seen) {
     const Eigen::Vector4d place = plan_picture_->place(width(), height_);
     for (int left = 0; left < width_; left += width()) {
       plan_picture_->draw(0, left, width(), height_);
-      labels_.legend(kPlanSectionLegend, place.y() + place.w(), {left, width()});
+      labels_.legend(definition_.plan_text, place.y() + place.w(), {left, width()});
     }
   }
 }

@@ -8,7 +8,7 @@ namespace haptrial::protocols {
 
 /// Nobody waits for them.
 static render::BoneStyle style_of_pictures() {
-  render::BoneStyle style;
+  render::BoneStyle style = render::microscope_style();
   style.shades_moving = true;
   return style;
 }

@@ -57,9 +57,22 @@ void PictureLabels::line(const std::string& words, const Eigen::Vector2d& low, c
   text_.end();
 }
 
-void PictureLabels::tool(const std::string& words, const EyePicture& eye) {
+render::TextStyle PictureLabels::small() const {
   constexpr double kLines = 40.0;  // of text in a picture's height
-  const render::TextStyle style{std::max(10, static_cast<int>(height_ / kLines)), false, kPale};
+  return {std::max(10, static_cast<int>(height_ / kLines)), false, kPale};
+}
+
+void PictureLabels::clock(const std::string& words, const EyePicture& eye) {
+  const render::TextStyle style = small();
+  const double em = style.size;
+  if (!words.empty()) {
+    const double left = eye.left + eye.width - text_.width_of(words, style) - 1.6 * em;
+    line(words, {left, height_ - 2.4 * em}, {style, kDark});
+  }
+}
+
+void PictureLabels::tool(const std::string& words, const EyePicture& eye) {
+  const render::TextStyle style = small();
   const double em = style.size;
   line(words, {eye.left + 0.6 * em, height_ - 2.4 * em}, {style, kDark});
 }

@@ -33,6 +33,8 @@ class PictureLabels {
   PictureLabels(const render::Gl& gl, int width, int height);
   /// @param words  words_of() the tool
   void tool(const std::string& words, const EyePicture& eye);
+  /// In the lower right corner. @param words  empty: nothing
+  void clock(const std::string& words, const EyePicture& eye);
   /// A small line that ends at the right edge of the picture. @param low  its upper edge [px]
   void legend(const std::string& words, double low, const EyePicture& eye);
   /// One line below the other.
@@ -46,6 +48,7 @@ class PictureLabels {
     render::TextStyle text;
     render::Colour plate;
   };
+  render::TextStyle small() const;
   void line(const std::string& words, const Eigen::Vector2d& low, const Look& look);
 
   int height_;

@@ -16,6 +16,7 @@
 namespace haptrial::protocols {
 namespace {
 
+constexpr double kFirstRow = 5.0;                        // of names, from the top [em]
 constexpr double kBar = 0.010;                           // the scale's bar [m]
 const render::Colour kInk{0.96, 0.96, 0.96};             // of words and arrows
 const render::Colour kWordPlate{0.05, 0.06, 0.08, 0.7};  // under words
@@ -63,6 +64,18 @@ std::vector<std::optional<Eigen::Vector3d>> middles_in(const bone::BoneModel& mo
   return middles;
 }
 
+/// Whether two segments cross.
+bool cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+           const Eigen::Vector2d& d) {
+  const auto side = [](const Eigen::Vector2d& p, const Eigen::Vector2d& q,
+                       const Eigen::Vector2d& r) {
+    const Eigen::Vector2d along = q - p;
+    const Eigen::Vector2d to = r - p;
+    return along.x() * to.y() - along.y() * to.x();
+  };
+  return side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0;
+}
+
 /// Words and lines over a picture.
 class Legend {
  public:
@@ -96,19 +109,52 @@ class Legend {
     painter_.fill({low, high}, 0.25 * style_.size, kWordPlate);
   }
 
+  static std::string name_of(const PlacedStructure& one) {
+    return one.in_sight ? one.name : one.name + " (out of sight)";
+  }
+  double wide(const PlacedStructure& one) {
+    return text_.width_of(name_of(one), style_) + 2.0 * style_.size;
+  }
+  /// Where the line of a name in a row of a column begins [px].
+  Eigen::Vector2d line_from(const PlacedStructure& one, std::size_t in_row, bool left) {
+    const double across = 0.5 * style_.size + wide(one);
+    return {left ? across : width_ - across,
+            kFirstRow * style_.size + (static_cast<double>(in_row) + 0.5) * row()};
+  }
+
+  /// Swaps names whose lines cross. Each swap makes the two lines shorter together, so that it
+  /// ends; names differ in width, so that it is also ended.
+  void uncross(std::vector<PlacedStructure>& column, bool left) {
+    bool swapped = true;
+    for (std::size_t round = 0; swapped && round < column.size(); ++round) {
+      swapped = false;
+      for (std::size_t a = 0; a < column.size(); ++a) {
+        for (std::size_t b = a + 1; b < column.size(); ++b) {
+          if (column[a].in_sight && column[b].in_sight &&
+              cross(line_from(column[a], a, left), column[a].pixel, line_from(column[b], b, left),
+                    column[b].pixel)) {
+            std::swap(column[a], column[b]);
+            swapped = true;
+          }
+        }
+      }
+    }
+  }
+
   /// Names in a column at one side, from top to bottom as they are seen.
   void names(std::vector<PlacedStructure>& column, bool left) {
     std::ranges::stable_sort(column, {}, [](const auto& one) { return one.pixel.y(); });
+    uncross(column, left);
     const double em = style_.size;
-    double y = 5.0 * em;
-    for (const PlacedStructure& one : column) {
-      const std::string name = one.in_sight ? one.name : one.name + " (out of sight)";
-      const double wide = text_.width_of(name, style_) + 2.0 * em;
+    double y = kFirstRow * em;
+    for (std::size_t in_row = 0; in_row < column.size(); ++in_row) {
+      const PlacedStructure& one = column[in_row];
+      const std::string name = name_of(one);
+      const double wide = this->wide(one);
       const double x = left ? 0.5 * em : width_ - 0.5 * em - wide;
       painter_.begin_over();
       if (one.in_sight) {
-        const Eigen::Vector2d from(left ? x + wide : x, y + 0.5 * row());
-        painter_.line(from, one.pixel, 1.2, render::with_alpha(kInk, 0.6));
+        painter_.line(line_from(one, in_row, left), one.pixel, 1.2, render::with_alpha(kInk, 0.6));
         painter_.disc(one.pixel, 0.25 * em, kInk);
         painter_.disc(one.pixel, 0.17 * em, one.colour);
       }

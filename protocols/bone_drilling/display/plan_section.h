@@ -40,8 +40,4 @@ class PlanSection {
   std::optional<subject::CavityPlan> plan_;
 };
 
-/// Meanings of the colours of a section.
-inline constexpr const char* kPlanSectionLegend =
-    "green: planned, removed   blue: planned, left   orange: beyond the plan   red: vital";
-
 }  // namespace haptrial::protocols

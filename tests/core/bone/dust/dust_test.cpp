@@ -373,6 +373,32 @@ TEST(DustTest, SuctionTakesAtItsRateAndNotThroughBone) {
   expect_balanced(dust);
 }
 
+TEST(DustTest, WaterAtABurrCarriesDustOffAtItsRate) {
+  const BoneVolume bone = volume_of(40, [](int i, int j, int k) {
+    return k < 4 || i < 10 || i > 20 || j < 10 || j > 30;
+  });
+  DustParameters p = aligned();
+  p.water_rate = 20.0 * kEdge * kEdge * kEdge;  // 20 voxels a second
+  Dust dust(p);
+  const DustBone bones[] = {{&bone}};
+  dust.follow(bones);
+  for (int n = 0; n < 40; ++n) {
+    dust.deposit({middle(15, 20, 20), 0.0, 20.0});
+    dust.step(0.05);
+  }
+  settle(dust);
+  DustTools tools;
+  tools.tools[0] = {middle(15, 20, 9), Eigen::Vector3d::UnitZ(), 30e-3, 1e-3, false, false};
+  dust.place(tools);
+  dust.step(2.0);
+  EXPECT_EQ(dust.balance().suctioned, 0.0);  // a burr that rests has no water
+  tools.tools[0].rinses = true;
+  dust.place(tools);
+  dust.step(2.0);
+  EXPECT_NEAR(dust.balance().suctioned, 40.0, 0.5);
+  expect_balanced(dust);
+}
+
 TEST(DustTest, NothingIsLostInLongRandomRuns) {
   for (int seed = 0; seed < 3; ++seed) {
     RandomStream random(seed, "dust");

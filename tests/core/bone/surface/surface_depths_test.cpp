@@ -64,6 +64,22 @@ TEST(SurfaceDepthsTest, OfTwoAsNearTheLowerLabelCountsAndBoneNeverDoes) {
   EXPECT_EQ(StructureDepths(model, {}, 0.01).at({4, 4, 4}).label, 0);
 }
 
+/// A structure beside a brick without bone; far away is bone that has nothing within reach.
+TEST(SurfaceDepthsTest, WhatLiesBesideAnEmptyBrickDoesNotShowElsewhere) {
+  const BoneModel model = model_of(40, [](const Voxel& voxel) {
+    return voxel == Voxel(7, 7, 7) ? 2 : voxel.minCoeff() >= 32 ? 1 : 0;
+  });
+  const StructureDepths depths(model, all_but_bone(model.structures), 0.005);
+  EXPECT_EQ(depths.at({7, 7, 6}).label, 2);
+  for (int k = 32; k < 40; ++k) {
+    for (int j = 32; j < 40; ++j) {
+      for (int i = 32; i < 40; ++i) {
+        ASSERT_EQ(depths.at({i, j, k}).label, 0);
+      }
+    }
+  }
+}
+
 TEST(SurfaceDepthsTest, BoneIsToldByItsName) {
   const std::vector<Structure> structures{{""}, {"bone"}, {"cortical bone"}, {"facial nerve"}};
   EXPECT_EQ(all_but_bone(structures), (std::vector<bool>{false, false, false, true}));

@@ -9,6 +9,7 @@
 #include "core/bone/surface/surface.h"
 #include "core/render/bone/bone_scene.h"
 #include "core/render/bone/bone_tools.h"
+#include "core/render/bone/surgical_field.h"
 #include "core/render/gl/offscreen.h"
 #include "core/render/gl/window.h"
 #include "tests/core/render/bone/bone_changes.h"
@@ -35,6 +36,7 @@ struct Stage {
   static BoneStyle style_of(bool kept) {
     BoneStyle style;
     style.kept_layer = kept;
+    style.vignette = 0.6;
     return style;
   }
   Image draw(const BoneFrame& frame, int width = kWidth, int height = kHeight) {
@@ -80,6 +82,7 @@ BoneFrame frame_of(const BoneModel& model, const BoneVolume& volume) {
                           Eigen::Isometry3d::Identity(),
                           {0.2, 0.4, 1.0, 0.4}});
   frame.meshes.front().casts = burr_shadow(0.006, 0.002, 0.08);
+  frame.scenery = surgical_field(model, Eigen::Isometry3d::Identity(), frame.camera);
   return frame;
 }
 
