@@ -253,7 +253,8 @@ function(haptrial_test_needs)
   target_link_libraries(test_render_flat PRIVATE PkgConfig::harfbuzz)
   target_link_libraries(test_render_gl PRIVATE haptrial_render_flat)
   target_link_libraries(test_record PRIVATE haptrial_bone_record haptrial_record_rows  # tables to try
-                                            haptrial_bone_nerve haptrial_bone_hint haptrial_channel
+                                            haptrial_bone_nerve haptrial_bone_hint haptrial_bone_region
+                                            haptrial_subject_drilling haptrial_channel
                                             PkgConfig::hdf5)
   target_link_libraries(test_drilling_analysis PRIVATE haptrial_bone_data)
   find_library(xdf_library xdf REQUIRED)

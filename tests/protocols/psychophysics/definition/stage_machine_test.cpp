@@ -25,6 +25,11 @@ scene::Field floor_field() {
   return {.name = "floor", .kind = floor, .fade_in = 0.0, .fade_out = 0.0};
 }
 
+/// At least this depth in the first field, or the interval again.
+Requirement depth_of(double at_least) {
+  return {.of = Requirement::Of::kDepth, .field = 0, .at_least = at_least};
+}
+
 class StageMachineTest : public testing::Test {
  protected:
   StageMachineTest() : scene_({floor_field()}, 1.0 / kDt) {}
@@ -170,7 +175,7 @@ TEST_F(StageMachineTest, WhoDidNotPressGetsTheIntervalAgain) {
   Stage press;
   press.fields = 1;
   press.until.time = 0.1;
-  press.require = Requirement{Requirement::Of::kDepth, 0, 0.005, Consequence::kRepeat};
+  press.require = depth_of(0.005);
   repeats_ = 1;
   StageMachine m = machine({press});
   // 4 mm deep at first, then 6 mm.
@@ -216,7 +221,7 @@ TEST_F(StageMachineTest, WhatIsNotThereIsNamed) {
       },
       testing::ThrowsMessage<std::invalid_argument>("stage 2: its region is not there"));
   stage = {};
-  stage.require = Requirement{Requirement::Of::kForce, -1, 1.0};
+  stage.require = Requirement{.of = Requirement::Of::kForce, .at_least = 1.0};
   EXPECT_THROW(machine({stage}), std::invalid_argument);
   EXPECT_THROW(machine({}), std::invalid_argument);
 }
@@ -225,7 +230,7 @@ TEST_F(StageMachineTest, ATickDoesNotAllocate) {
   Stage stage;
   stage.until.time = 0.01;
   stage.fields = 1;
-  stage.require = Requirement{Requirement::Of::kDepth, 0, 0.1, Consequence::kRepeat};
+  stage.require = depth_of(0.1);
   StageMachine m = machine({stage, stage});
   const device::DeviceReading reading = at_height(-0.001);
   const test::AllocationGuard guard;
