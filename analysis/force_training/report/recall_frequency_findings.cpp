@@ -133,7 +133,11 @@ Figure frequency_figure(const std::vector<RecallBand>& bands, const Shown& shown
   figure.alt = fmt::format("{} by condition:", figure.title);
   figure.simulated = simulated;
   for (std::size_t c = 0; c < bands.front().conditions.size(); ++c) {
-    figure.series.push_back(series_of(bands, c, shown));
+    Series series = series_of(bands, c, shown);
+    if (series.x.empty()) {
+      continue;  // too few trials for this number
+    }
+    figure.series.push_back(std::move(series));
     for (std::size_t i = 0; i < figure.series.back().x.size(); ++i) {
       figure.alt += fmt::format("{} {} {:.3g}", i == 0 ? " " + figure.series.back().label : ",",
                                 i == 0 ? "from" : "then", figure.series.back().y[i]);
@@ -163,7 +167,10 @@ FindingList recall_frequency_findings(const std::vector<RecallBand>& bands, bool
     list.tables.push_back(tests);
   }
   for (const Shown& shown : kShown) {
-    list.figures.push_back(frequency_figure(bands, shown, simulated));
+    Figure figure = frequency_figure(bands, shown, simulated);
+    if (!figure.series.empty()) {
+      list.figures.push_back(std::move(figure));
+    }
   }
   Document notes;
   notes.paragraph(

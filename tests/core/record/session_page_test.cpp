@@ -11,6 +11,7 @@
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
+#include "core/bone/record/fragment_rows.h"
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
@@ -91,6 +92,8 @@ TEST(SessionPageTest, TablesOfDrillings) {
   tables.push_back(&table_of<HandpieceRow>());
   tables.push_back(&table_of<OpeningRow>());
   tables.push_back(&table_of<FieldRow>());
+  tables.push_back(&table_of<PieceRow>());
+  tables.push_back(&table_of<ScrewRow>());
   tables.push_back(&table_of<WorkRow>());
   tables.push_back(&table_of<CrossingRow>());
   expect_described("drilling", tables);

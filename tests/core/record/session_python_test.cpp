@@ -9,11 +9,14 @@
 #include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
+#include "core/bone/record/fragment_rows.h"
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
+#include "core/bone/region/crossing_row.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/rows/common_tables.h"
+#include "core/subject/drilling/work_row.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {
@@ -64,6 +67,10 @@ void expect_that_python_reads(bool drills) {
   own.push_back(&table_of<ToolContactRow>());
   own.push_back(&table_of<OpeningRow>());
   own.push_back(&table_of<FieldRow>());
+  own.push_back(&table_of<PieceRow>());
+  own.push_back(&table_of<ScrewRow>());
+  own.push_back(&table_of<WorkRow>());
+  own.push_back(&table_of<CrossingRow>());
   own.push_back(&table_of<BurrRow>());
   own.push_back(&table_of<HandpieceRow>());
   SessionWriter writer =
