@@ -65,7 +65,7 @@ TEST_F(ExamCommandTest, TheKeptScoresAreReproduced) {
   }
   ASSERT_EQ(run("score exam " + folders + "--out scores").status, 0);
   for (const std::string renderer : renderers) {
-    const std::string rows = rows_of(renderer, kSource / "results/exam/scores.csv");
+    const std::string rows = rows_of(renderer, kSource / "results/exam/exam-scores.csv");
     EXPECT_FALSE(rows.empty());
     EXPECT_EQ(rows_of(renderer, folder_ / "scores/scores.csv"), rows);
   }

@@ -53,7 +53,10 @@ std::string OsteotomySessionTest::output_;
 
 TEST_F(OsteotomySessionTest, TheFragmentComesToItsPlannedPlaceAndIsHeldByScrews) {
   const record::SessionReader reader(file());
-  const auto procedures = drilling::load_procedures(reader, procedure_setup(reader, {}));
+  const record::SessionInfo& info = reader.info();
+  const auto procedures = drilling::load_procedures(
+      reader,
+      procedure_setup(reader, protocols::study_groups(info.definition, info.definition_name)));
   ASSERT_EQ(procedures.size(), 1U);
   drilling::StudyBones bones;
   const drilling::Achieved achieved = drilling::summarize(procedures[0], {}, bones).achieved;
@@ -92,8 +95,9 @@ TEST_F(OsteotomySessionTest, TheReplayEndsWithTheSameBoneAndEveryPieceInItsPlace
 
 TEST_F(OsteotomySessionTest, AMissingToolOfTheHandIsNamed) {
   std::string text = shipped_osteotomy();
-  const std::string all = "\"saw\", \"grip\", ";
-  text.replace(text.find(all), all.size(), "\"saw\", ");
+  const std::string grip = "type = \"grip\"\nreach = 0.003";
+  ASSERT_NE(text.find(grip), std::string::npos);
+  text.replace(text.find(grip), grip.size(), "type = \"probe\"");
   test::write_text(*folder_ / "wrong.toml", text);
   const test::CommandResult run =
       test::run_command("haptrial validate '" + (*folder_ / "wrong.toml").string() + "'");

@@ -17,9 +17,11 @@ const Schema<FragmentPlan>& fragment_plan_schema() {
           .required()
           .vector("move", &P::move, {-0.1, 0.1}, "m",
                   "Planned displacement of the fragment at the cut, in the world")
+          .otherwise("none")
           .vector("turn", &P::turn, {-3.0, 3.0}, "rad",
                   "Planned rotation of the fragment about the middle of the cut, as a vector along "
-                  "its axis, in the world");
+                  "its axis, in the world")
+          .otherwise("none");
   return schema;
 }
 
