@@ -449,8 +449,7 @@ void Session::show_trial() {
   }
 }
 
-/// Whether a virtual participant did not complete any of so many passes that the rest of the
-/// session would go the same way.
+/// A virtual participant whose first 20 passes were all aborted will not complete any other.
 bool Session::is_hopeless() const {
   constexpr int kTries = 20;
   return !real_ && summary_.passes >= kTries && summary_.aborted_passes == summary_.passes;

@@ -41,7 +41,8 @@ struct Checklist {
 /// @throws InputError with a sentence for every mistake
 Checklist load_checklist(const std::filesystem::path& file);
 
-/// @throws InputError for an item whose measure no procedure has, with those there are
+/// Checks that procedures have the measure of every item.
+/// @throws InputError naming the first item without one, and the measures that may stand there
 void check_measures(const Checklist& checklist, const ProcedureSummary& summary,
                     const std::string& file);
 

@@ -104,7 +104,7 @@ struct Torn {
   Eigen::Vector3d place{Eigen::Vector3d::Zero()};  // in W [m]
 };
 
-/// What a virtual surgeon began to work on.
+/// A virtual surgeon begins to work on something.
 struct BegunWork {
   double time{0.0};  // of the procedure [s]
   std::string work;

@@ -12,7 +12,7 @@
 
 namespace haptrial::evaluation {
 
-/// What is wrong with the answers to a case, the worst first.
+/// A verdict says the worst that is wrong with the answers to a case; the worst stands first.
 enum class ExamVerdict : std::uint8_t {
   kPopsThrough,  // no force, or one into the body, where there should be one
   kSticks,       // a force in the air

@@ -37,7 +37,7 @@ std::vector<Complex> coefficients_of(const std::vector<double>& curve) {
   return found;
 }
 
-/// What a participant under a condition adds to a band.
+/// A participant adds this to a band under a condition.
 struct BandValue {
   const RecalledSpectra* of{nullptr};
   RecallResponse response;

@@ -31,7 +31,7 @@ struct BestPath {
 /// Source: Viterbi 1967. @throws std::invalid_argument where the sizes do not fit. Any thread.
 BestPath most_probable_path(const MarkovChain& chain, const Eigen::MatrixXd& emission);
 
-/// What a sequence says about its states.
+/// A sequence tells this about its states.
 struct StatePosterior {
   double log_likelihood{0.0};
   Eigen::MatrixXd states;       // (times x states) probability

@@ -14,7 +14,7 @@ struct PieceRow {
   std::uint64_t sequence{0};  // of the tick
   std::int32_t piece{0};
   std::int64_t voxels{0};  // when it was born; 0 in rows of its motion
-  /// Its motion since the procedure began, in W: a point p of the bone is at R(turn) p + shift.
+  /// The piece has moved since the procedure began: a point p of it is at R(turn) p + shift in W.
   Eigen::Vector3d shift{Eigen::Vector3d::Zero()};  // [m]
   Eigen::Vector3d turn{Eigen::Vector3d::Zero()};   // rotation vector [rad]
 };

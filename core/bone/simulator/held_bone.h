@@ -14,14 +14,15 @@ namespace haptrial::bone {
 ///
 /// Surface voxels of what is held are samples, each with its outward normal n. A sample in other
 /// bone at depth d, which is how far the ray against n runs before it leaves that bone, is pushed
-/// back by a stiff spring k. What is held rests each tick where the energy
+/// back by a stiff spring k. On each tick what is held goes by one step of Newton's method towards
+/// the least of the energy
 ///
 ///     E = 1/2 k_h |x - x_h|² + 1/2 k_t |θ|² + Σ 1/2 k d_i²
 ///
-/// of the hand's spring, its turn θ from the hand and all contacts is least, up to one step of
-/// Newton's method, with a friction of μ times each contact's force against its slip. The hand
-/// feels its own spring, k_h (x - x_h): nothing while nothing touches, when what is held goes with
-/// the hand exactly. Bone has no weight and no inertia here. The source moves pieces freely,
+/// that is stored between it and the hand (its place x from the hand's x_h, its turn θ from the
+/// hand's) and in all contacts. Friction of μ times a contact's force acts against its slip. The
+/// hand feels its own spring, k_h (x - x_h): nothing while nothing touches, when what is held goes
+/// with the hand exactly. Bone has no weight and no inertia here. The source moves pieces freely,
 /// without contact: Morris 2006, §3.2.6; rays along normals are those of its plates, §3.2.5.
 ///
 /// Servo thread: no allocation, lock, wait or throw after construction. A tick looks up at most
@@ -77,7 +78,7 @@ class HeldBone {
   Eigen::Isometry3d tool_{Eigen::Isometry3d::Identity()};
   Vector6 slip_{Vector6::Zero()};  // the last step: of the tip, and the turn
   PieceSet group_{0};              // that was sampled: what is held and born
-  int every_{1};                   // one surface voxel in so many is a sample
+  int every_{1};                   // of the surface voxels each every_-th one is a sample
   std::int32_t brick_{0};          // the next place of the grid to be looked at
 };
 

@@ -8,8 +8,8 @@
 
 namespace haptrial::render {
 
-/// What surrounds a bone in an operation: a wound whose retracted muscle, fat and skin lie over the
-/// bone around the field, and drapes over the rest. It is only seen, never felt. The opening is an
+/// A bone in an operation lies in a wound: retracted muscle, fat and skin cover it around the
+/// field, and drapes the rest. All this is only seen, never felt. The opening is an
 /// ellipse about the camera's target that follows the picture's height; the tissue lies on the
 /// bone, and beside it at most 8 mm deeper than the bone in the field.
 /// @param X_WB  pose of the bone  @param view  of the microscope at the start

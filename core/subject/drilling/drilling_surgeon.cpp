@@ -241,7 +241,7 @@ void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
   begin(Doing::kLift);
 }
 
-/// What the bout that was chosen is for.
+/// The bout that was chosen is for this work.
 SurgeonWork DrillingSurgeon::work() const noexcept {
   if (fine_) {
     return SurgeonWork::kFine;

@@ -6,8 +6,8 @@
 
 namespace haptrial::subject {
 
-/// What a virtual surgeon works on: bone within 3 mm below the surface that it had, down to 8 mm,
-/// deeper or, with the fine burr, what is near structures.
+/// A virtual surgeon works on bone within 3 mm below the surface that it had, down to 8 mm, deeper,
+/// or with the fine burr on bone near structures.
 enum class SurgeonWork : std::uint8_t { kCortex, kMiddle, kDeep, kFine };
 
 /// Work that a virtual surgeon began.

@@ -168,7 +168,8 @@ std::vector<std::string> codes_of(const drilling::RatingKey& key) {
   return codes;
 }
 
-/// What the measures of a checklist propose for every procedure of a study, in the key's order.
+/// The points that a checklist's measures propose for each procedure of a study, in the key's
+/// order.
 std::vector<drilling::CheckedItem> proposed(const drilling::Checklist& checklist,
                                             const drilling::RatingKey& key, const fs::path& study,
                                             const char* ending, const std::string& name) {

@@ -15,7 +15,7 @@ namespace haptrial::experiments {
 
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";
-/// Likewise of a checklist that raters were given, and of what they filled in.
+/// The names of a checklist that raters were given, and of the points that they gave.
 inline constexpr const char* kChecklistFile = "checklist.toml";
 inline constexpr const char* kCheckedFile = "checklist.csv";
 
