@@ -31,10 +31,10 @@ class ExamCommandTest : public testing::Test {
 
 /// A program that takes every body for a half-space is exact on the plane, and there alone.
 TEST_F(ExamCommandTest, AnotherProgramSitsIt) {
-  ASSERT_EQ(run("make exam").status, 0);
-  const auto sat = run("run exam --out answers --name half-space --program " + half_space_);
+  ASSERT_EQ(run("make 'an exam'").status, 0);
+  const auto sat = run("run 'an exam' --out answers --name half-space --program " + half_space_);
   ASSERT_EQ(sat.status, 0) << sat.errors;
-  const auto scored = run("score exam answers --out scores");
+  const auto scored = run("score 'an exam' answers --out scores");
   ASSERT_EQ(scored.status, 0) << scored.errors;
   EXPECT_THAT(scored.output, HasSubstr("half-space: 1 of 16 cases right"));
   const auto table = analysis::CsvTable::load(folder_ / "scores/scores.csv");
@@ -77,7 +77,8 @@ TEST_F(ExamCommandTest, BadInputGetsASentence) {
       {"run exam proxi --out a", "RENDERER is 'proxi'; allowed: proxy, penalty, voxel, "},
       {"run exam --out a", "exam run needs either RENDERER or --program"},
       {"run exam --out a --program no-such-program", "no-such-program cannot be started"},
-      {"run exam --out a --program cat", "cat answers 'body exam/bodies/plane.obj"},
+      {"run exam --out a --program cat",
+       "cat answers 'body stiffness 500 friction 0 rate 1000 exam/bodies/plane.obj'"},
       {"run exam --out a --program true", "true gave no line to 'body"},
       {"run nowhere proxy --out a", "nowhere/exam.json"},
       {"score exam nowhere", "nowhere/plane.csv"},

@@ -47,8 +47,8 @@ ProgramRenderer::ProgramRenderer(const std::vector<std::string>& words)
 }
 
 void ProgramRenderer::begin(const ContactTask& task) {
-  expect_ready(fmt::format("body {} stiffness {} friction {} rate {}", task.body.string(),
-                           task.stiffness, task.friction, task.rate));
+  expect_ready(fmt::format("body stiffness {} friction {} rate {} {}", task.stiffness,
+                           task.friction, task.rate, task.body.string()));
 }
 
 void ProgramRenderer::start(const Eigen::Vector3d& tool) {

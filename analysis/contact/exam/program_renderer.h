@@ -13,7 +13,7 @@ namespace haptrial::evaluation {
 /// Another program that renders contact. It reads lines of its standard input and answers each one
 /// with a line:
 ///
-///     body FILE stiffness N/m friction MU rate HZ     ready
+///     body stiffness N/m friction MU rate HZ FILE     ready
 ///     start X Y Z                                     ready
 ///     tick TIME X Y Z                                 FX FY FZ
 ///

@@ -81,8 +81,9 @@ int main() {
     std::string what, file, name;
     words >> what;
     if (what == "body") {
-      double stiffness = 0.0, friction = 0.0;
-      words >> file >> name >> stiffness >> name >> friction;
+      double stiffness = 0.0, friction = 0.0, rate = 0.0;
+      words >> name >> stiffness >> name >> friction >> name >> rate >> std::ws;
+      std::getline(words, file);
       candidate.begin(file, stiffness, friction);
       std::cout << "ready" << std::endl;
     } else if (what == "start") {

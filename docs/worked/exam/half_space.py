@@ -7,8 +7,8 @@ import sys
 stiffness = 0.0
 for line in sys.stdin:
     words = line.split()
-    if words[0] == "body":  # body FILE stiffness N/m friction MU rate HZ
-        stiffness = float(words[3])
+    if words[0] == "body":  # body stiffness N/m friction MU rate HZ FILE
+        stiffness = float(words[2])
         print("ready", flush=True)
     elif words[0] == "start":  # start X Y Z
         print("ready", flush=True)
