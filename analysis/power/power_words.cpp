@@ -106,6 +106,14 @@ std::vector<PowerLine> lines_over(const PowerResult& result, std::size_t key) {
   return all;
 }
 
+/// ", 12.5 hours of sessions": the time of so many participants in the lab.
+static std::string hours_words(const PowerLine& line, const std::optional<double>& participants) {
+  const double each = line.cells.back()->counts.hours.mean / line.x.back();
+  return participants && each > 0.0
+             ? fmt::format(", {:.1f} hours of sessions", each * std::ceil(*participants - 1e-9))
+             : "";
+}
+
 std::vector<std::string> size_lines(const PowerResult& result) {
   std::vector<std::string> lines;
   if (!result.participants() || !is_power(result)) {
@@ -129,9 +137,9 @@ std::vector<std::string> size_lines(const PowerResult& result) {
                                       : fmt::format("{:.0f}", std::ceil(*n - 1e-9));
     };
     lines.push_back(fmt::format(
-        "{}{}a power of {:g} takes {} participants (95 % Monte Carlo interval {} to {})", line.name,
-        line.name.empty() ? "" : ": ", result.target, word(size.n), word(size.low),
-        word(size.high)));
+        "{}{}a power of {:g} takes {} participants (95 % Monte Carlo interval {} to {}){}",
+        line.name, line.name.empty() ? "" : ": ", result.target, word(size.n), word(size.low),
+        word(size.high), hours_words(line, size.n)));
   }
   if (!lines.empty()) {
     lines.emplace_back(

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <future>
 #include <utility>
 
 #include "analysis/document/palette.h"
@@ -18,8 +19,9 @@ namespace {
 
 namespace palette = analysis::palette;
 
-/// Longer trials are not simulated for a page: those of drillings [s]
-constexpr double kLongestTrial = 50.0;
+/// Longer trials, those of drillings, are simulated for a page in their first seconds alone.
+constexpr double kLongestTrial = 50.0;  // [s]
+constexpr double kFirstSeconds = 10.0;  // [s]
 
 constexpr std::array<analysis::Look, 3> kLooks{{{palette::kBlue, palette::kSolid, 7, 2.5, 1.0},
                                                 {palette::kOrange, palette::kLong, 7, 2.5, 1.0},
@@ -155,25 +157,48 @@ void add_checks(const Experiment& experiment, Preview& preview) {
   preview.document.points(experiment.definition->description());
 }
 
-void add_virtual_trial(const Experiment& experiment, const PreviewRequest& request,
-                       Preview& preview) {
-  const protocols::Definition& definition = *experiment.definition;
-  preview.document.heading("The trial of a virtual participant");
-  if (definition.longest(1) > kLongestTrial) {
-    preview.document.paragraph(
-        fmt::format("A trial takes up to {:.0f} s, which is too long to be simulated for a page; "
-                    "haptrial dry-run simulates the study.",
-                    definition.longest(1)));
+void add_objects(Preview& preview) {
+  if (preview.objects.empty()) {
     return;
   }
-  const VirtualTrial trial =
-      virtual_trial(experiment.study->protocol(), definition, previewed_session(request.seed),
-                    request.trial, kLongestTrial);
+  std::vector<std::string> names;
+  for (const SpaceObject& object : preview.objects) {
+    names.push_back(object.name);
+  }
+  preview.document.heading("Objects and places");
+  analysis::Figure figure;
+  figure.name = "objects";
+  figure.title = "Objects and places of the trial";
+  figure.caption = "As lines, meshes thinned. Turn them with the pointer or the sliders.";
+  figure.alt = fmt::format("Lines of {}.", fmt::join(names, ", "));
+  preview.add(std::move(figure), turned_svg(preview.objects, preview.language));
+}
+
+namespace {
+
+bool is_simulated_whole(const protocols::Definition& definition) {
+  return definition.longest(1) <= kLongestTrial;
+}
+
+VirtualTrial virtual_trial_of(const Experiment& experiment, const PreviewRequest& request) {
+  const protocols::Definition& definition = *experiment.definition;
+  return virtual_trial(experiment.study->protocol(), definition, previewed_session(request.seed),
+                       request.trial,
+                       is_simulated_whole(definition) ? kLongestTrial : kFirstSeconds);
+}
+
+void add_virtual_trial(const protocols::Definition& definition, const VirtualTrial& trial,
+                       Preview& preview) {
+  preview.document.heading("The trial of a virtual participant");
   preview.document.paragraph(
       "SIMULATED: nobody did this trial. A virtual participant, as in a dry run with the same "
-      "seed, "
-      "holds a virtual device; earlier trials of the session are taken as done, without answers.");
-  if (!trial.completed) {
+      "seed, holds a virtual device; earlier trials of the session are taken as done, without "
+      "answers.");
+  if (!is_simulated_whole(definition)) {
+    preview.document.paragraph(fmt::format(
+        "A trial takes up to {:.0f} s. These are its first {:g} s; haptrial dry-run simulates all.",
+        definition.longest(1), kFirstSeconds));
+  } else if (!trial.completed) {
     preview.document.alarm("The simulated trial was not completed: " + trial.why);
   }
   if (trial.times.empty()) {
@@ -188,9 +213,15 @@ void add_virtual_trial(const Experiment& experiment, const PreviewRequest& reque
   add_virtual_table(trial, preview);
 }
 
+}  // namespace
+
 Preview preview_of(const Experiment& experiment, const PreviewRequest& request) {
   Preview preview;
   const protocols::Definition& definition = *experiment.definition;
+  std::future<VirtualTrial> trial;  // meanwhile
+  if (request.virtual_trial) {
+    trial = std::async(std::launch::async, [&] { return virtual_trial_of(experiment, request); });
+  }
   preview.language = request.language;
   preview.document.title = "Preview of " + definition.name;
   preview.document.subtitle = fmt::format(
@@ -200,8 +231,8 @@ Preview preview_of(const Experiment& experiment, const PreviewRequest& request) 
   preview.document.simulated = request.virtual_trial;
   add_checks(experiment, preview);
   experiment.study->add_preview(definition, request, preview);
-  if (request.virtual_trial) {
-    add_virtual_trial(experiment, request, preview);
+  if (trial.valid()) {
+    add_virtual_trial(definition, trial.get(), preview);
   }
   preview.document.source(definition.file_name, definition.text);
   preview.draw_figures();

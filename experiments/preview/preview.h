@@ -26,11 +26,8 @@ protocols::SessionPlace previewed_session(std::uint64_t seed, int participant = 
 
 /// Description, warnings and texts that cannot be drawn: the lines of `haptrial validate`.
 void add_checks(const Experiment& experiment, Preview& preview);
-/// A trial of a virtual participant. An experiment whose trials are long gets a sentence instead.
-/// @throws InputError for a trial beyond the session
-void add_virtual_trial(const Experiment& experiment, const PreviewRequest& request,
-                       Preview& preview);
-
+/// preview.objects in a view to be turned; nothing where there are none.
+void add_objects(Preview& preview);
 /// All parts that the experiment has, drawn.
 /// @throws InputError for a trial beyond the session; RunError where a picture cannot be made
 Preview preview_of(const Experiment& experiment, const PreviewRequest& request);

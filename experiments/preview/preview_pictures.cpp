@@ -69,18 +69,33 @@ struct Rows {
   double y(std::size_t at) const { return top + row * static_cast<double>(at); }
 };
 
-/// Words on the side that has room, else smaller on the right.
+/// The first letters of UTF-8 text, with three dots where it is longer.
+std::string shortened(std::string words, std::size_t letters) {
+  if (words.size() <= letters) {
+    return words;
+  }
+  std::size_t end = letters > 3 ? letters - 3 : 0;
+  while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xC0U) == 0x80U) {
+    --end;
+  }
+  words.resize(end);
+  return words + "...";
+}
+
+/// Words on the side that has room, else as small as can be read on the wider side, and cut there:
+/// the table below the picture has all of them.
 /// @param room_left  [px]  @param right, left  where the words begin or end
 std::string words_beside(const std::string& words, double room_left, double right, double left,
                          double y) {
   constexpr double kLetter = 6.0;  // about the width of one at 13 px [px]
-  constexpr double kSmallest = 8.0;
+  constexpr double kUsual = 13.0, kSmallest = 8.0;
   const double needed = kLetter * static_cast<double>(words.size());
-  const double room = kWide - right;
-  if (needed > room && needed < room_left) {
-    return text_at(left, y, "end", words);
-  }
-  return text_at(right, y, "start", words, std::clamp(13.0 * room / needed, kSmallest, 13.0));
+  const bool at_left = needed > kWide - right && room_left > kWide - right;
+  const double room = at_left ? room_left : kWide - right;
+  const double size = std::clamp(kUsual * room / needed, kSmallest, kUsual);
+  const auto letters = static_cast<std::size_t>(std::max(0.0, room * kUsual / (kLetter * size)));
+  return text_at(at_left ? left : right, y, at_left ? "end" : "start", shortened(words, letters),
+                 size);
 }
 
 std::string bar_of(const TimelineBar& bar, double begin, std::size_t at, const Rows& rows) {

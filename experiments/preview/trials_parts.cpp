@@ -268,23 +268,6 @@ void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& plan
              document);
 }
 
-void add_objects(Preview& preview) {
-  if (preview.objects.empty()) {
-    return;
-  }
-  std::vector<std::string> names;
-  for (const SpaceObject& object : preview.objects) {
-    names.push_back(object.name);
-  }
-  preview.document.heading("Objects and places");
-  analysis::Figure figure;
-  figure.name = "objects";
-  figure.title = "Objects and places of the trial";
-  figure.caption = "As lines, meshes thinned. Turn them with the pointer or the sliders.";
-  figure.alt = fmt::format("Lines of {}.", fmt::join(names, ", "));
-  preview.add(std::move(figure), turned_svg(preview.objects, preview.language));
-}
-
 void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
                       Preview& preview) {
   constexpr int kPictureWidth = 640;      // [px]

@@ -26,8 +26,6 @@ void add_planned(const protocols::TrialsDefinition& definition,
 /// The stages of a trial with what ends, moves and shows them, as a table.
 void add_stage_table(const protocols::PreviewedTrial& trial, analysis::Document& document);
 
-/// The objects as a view to turn; nothing if the trial has none.
-void add_objects(Preview& preview);
 /// All of them.
 void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
                       Preview& preview);

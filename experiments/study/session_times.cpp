@@ -6,10 +6,13 @@
 
 #include "core/base/counted.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::experiments {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// A simulated clock stands still in breaks.
 double seconds_of(const record::SessionReader& session, const protocols::Definition& d) {
@@ -25,6 +28,11 @@ double seconds_of(const record::SessionReader& session, const protocols::Definit
   return last;
 }
 
+bool was_ended(const record::SessionReader& session) {
+  const auto events = session.events();
+  return std::ranges::find(events, record::kEndedForGood, &record::EventRow::kind) != events.end();
+}
+
 }  // namespace
 
 std::optional<SessionTimes> session_times(const std::vector<std::filesystem::path>& files,
@@ -32,7 +40,7 @@ std::optional<SessionTimes> session_times(const std::vector<std::filesystem::pat
   SessionTimes times;
   for (const std::filesystem::path& file : files) {
     const record::SessionReader session(file);
-    if (session.info().pilot) {
+    if (session.info().pilot || is_declined(session) || was_ended(session)) {
       continue;
     }
     const double seconds = seconds_of(session, definition);
@@ -43,6 +51,18 @@ std::optional<SessionTimes> session_times(const std::vector<std::filesystem::pat
   return times.sessions > 0 ? std::optional(times) : std::nullopt;
 }
 
+std::optional<SessionTimes> recorded_times(const fs::path& folder,
+                                           const protocols::Definition& definition) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".h5") {
+      files.push_back(entry.path());
+    }
+  }
+  return session_times(files, definition);
+}
+
 static std::string minutes_text(double seconds) {
   constexpr double kMinute = 60.0;
   constexpr double kFew = 10.0;
@@ -50,13 +70,17 @@ static std::string minutes_text(double seconds) {
   return all < kFew ? fmt::format("{:.1f}", all) : fmt::format("{:.0f}", all);
 }
 
+std::string time_words(const SessionTimes& times) {
+  return fmt::format("{} minutes ({} to {} in {})", minutes_text(times.mean),
+                     minutes_text(times.shortest), minutes_text(times.longest),
+                     counted(times.sessions, "session", "sessions"));
+}
+
 std::string lab_time(const SessionTimes& times, int sessions, std::optional<double> setup) {
   constexpr double kHour = 3600.0;
   constexpr double kMinute = 60.0;
   std::string text =
-      fmt::format("a session takes {} minutes ({} to {} in {}); {} take {:.1f} hours",
-                  minutes_text(times.mean), minutes_text(times.shortest),
-                  minutes_text(times.longest), counted(times.sessions, "session", "sessions"),
+      fmt::format("a session takes {}; {} take {:.1f} hours", time_words(times),
                   counted(sessions, "session", "sessions"), sessions * times.mean / kHour);
   if (setup) {
     text += fmt::format(", {:.1f} in the lab with {:g} minutes between them",

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <mutex>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/kept.h"
 #include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/data/mandible.h"
@@ -26,28 +25,31 @@ namespace fs = std::filesystem;
 template <class Options>
 std::shared_ptr<const bone::BoneModel> procedural(
     bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d) {
-  struct Kept {
-    std::uint64_t seed{0};
-    double spacing{0.0};
-    std::shared_ptr<const bone::BoneModel> model;
-  };
-  constexpr std::size_t kKept = 2;
-  static std::mutex mutex;
-  static std::array<Kept, kKept> kept;
-  static std::size_t next = 0;
+  static Kept<Options, bone::BoneModel> kept(2);
   Options options;
   options.seed = d.bone_seed;
   options.spacing = d.spacing.value_or(options.spacing);
-  const std::scoped_lock lock(mutex);
-  for (const Kept& each : kept) {
-    if (each.model && each.seed == options.seed && each.spacing == options.spacing) {
-      return each.model;
-    }
-  }
-  Kept& fresh = kept[std::exchange(next, (next + 1) % kKept)];
-  fresh = {options.seed, options.spacing,
-           std::make_shared<const bone::BoneModel>(make(options, {}))};
-  return fresh.model;
+  return kept.get(options,
+                  [&] { return std::make_shared<const bone::BoneModel>(make(options, {})); });
+}
+
+/// All that a chart depends on.
+struct Charted {
+  std::shared_ptr<const bone::BoneModel> model;
+  BonePlacement placement;
+  subject::CavityParameters cavity;
+  bool operator==(const Charted&) const = default;
+};
+
+/// The chart of a bone; one of the last few if it is the same, likewise.
+std::shared_ptr<const subject::DrillingChart> chart_of(
+    const std::shared_ptr<const bone::BoneModel>& model, const BonePlacement& placement,
+    const subject::CavityParameters& cavity) {
+  static Kept<Charted, subject::DrillingChart> kept(4);
+  return kept.get({model, placement, cavity}, [&] {
+    return std::make_shared<const subject::DrillingChart>(
+        make_chart(*model, pose_of(placement, model->grid), cavity));
+  });
 }
 
 std::shared_ptr<const bone::BoneModel> load_source(const std::string& source,
@@ -148,9 +150,7 @@ void load_bones(BoneDefinition& d, const fs::path& folder) {
       throw InputError(fmt::format("{}: {}", d.file_name, error.what()));
     }
     if (d.cavity) {
-      const bone::BoneModel& model = *d.bones.back();
-      d.charts.push_back(std::make_shared<const subject::DrillingChart>(
-          make_chart(model, pose_of(d.placement, model.grid), *d.cavity)));
+      d.charts.push_back(chart_of(d.bones.back(), d.placement, *d.cavity));
     }
     if (d.nerves) {
       d.nerve_distances.push_back(

@@ -151,16 +151,15 @@ TEST_P(RealAnatomyTest, ThePictureBeforeASessionHasTheCavityAndEveryNameInSight)
     d_.display.width = 640;  // half a picture does for one of both
     d_.display.height = 360;
   }
-  const int width = d_.display.width;
-  const int height = d_.display.height;
-  EXPECT_THAT(protocols::placement_words(d_, model()),
+  const protocols::PlacedBone bone = protocols::placed_bone(d_, 0);
+  EXPECT_THAT(protocols::placement_words(bone),
               testing::HasSubstr(GetParam().left ? "a left ear, by its structures; placed as"
                                                  : "a right ear, by its structures"));
-  for (const auto& one : protocols::placed_structures(d_, model(), width, height)) {
+  for (const auto& one : protocols::placed_structures(bone)) {
     EXPECT_TRUE(one.in_sight) << one.name;
   }
-  const render::Image image = protocols::placement_picture(d_, 0);
-  ASSERT_EQ(image.width, width);
+  const render::Image image = protocols::placement_picture(bone);
+  ASSERT_EQ(image.width, d_.display.width);
   std::size_t red = 0;  // unlike bone and words: the cavity
   for (std::size_t at = 0; at < image.rgb.size(); at += 3) {
     const int green = std::max(image.rgb[at + 1], image.rgb[at + 2]);

@@ -11,6 +11,8 @@ struct TemporalBoneOptions {
   std::uint64_t seed{1};   // of the anatomy: size, cells, sinus, tegmen, nerve
   double spacing{0.5e-3};  // edge of a voxel, 0.1e-3 to 2e-3 [m]
   int threads{0};          // 0: one per processor; the bone is the same
+
+  bool operator==(const TemporalBoneOptions&) const = default;
 };
 
 /// A right temporal bone made from shapes, about 55 x 67 x 69 mm, in the frame B (LPS: x from the

@@ -38,7 +38,7 @@ std::shared_ptr<const MovingBody> made(const SharedHapticMesh& mesh, const Sprin
 
 SharedMovingBody prepared(const SharedHapticMesh& mesh, const SpringTissue& tissue) {
   static PreparedBodies<SpringTissue, MovingBody> bodies;
-  return bodies.get(mesh, tissue, [&] { return made(mesh, tissue); });
+  return bodies.get({mesh, tissue}, [&] { return made(mesh, tissue); });
 }
 
 int steps_on_a_tick(const MovingBody& body, double period) {

@@ -49,7 +49,7 @@ double stiffest_touch(const Compliance& body, double radius) {
 
 std::shared_ptr<const Compliance> prepared(const SharedHapticMesh& mesh, const Tissue& tissue) {
   static PreparedBodies<Tissue, Compliance> bodies;
-  return bodies.get(mesh, tissue, [&] {
+  return bodies.get({mesh, tissue}, [&] {
     check_tissue(*mesh, tissue);
     check_memory(*mesh);
     return std::make_shared<const Compliance>(mesh, tissue);

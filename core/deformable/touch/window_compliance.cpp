@@ -69,7 +69,7 @@ WindowCompliance::WindowCompliance(const MovingBody& body, double time) {
 
 SharedWindowCompliance prepared_compliance(const SharedMovingBody& body, double window) {
   static PreparedBodies<WindowedTissue, WindowCompliance> bodies;
-  return bodies.get(body->mesh, {body, window}, [&] {
+  return bodies.get({body->mesh, {body, window}}, [&] {
     check_memory(*body->mesh);
     return std::make_shared<const WindowCompliance>(*body, window);
   });

@@ -38,21 +38,24 @@ std::vector<std::uint8_t> encoded(const Image& image) {
 
 Image coarser(const Image& fine, int times) {
   Image image{fine.width / times, fine.height / times, {}};
-  image.rgb.reserve(3 * static_cast<std::size_t>(image.width) *
-                    static_cast<std::size_t>(image.height));
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      for (int channel = 0; channel < 3; ++channel) {
-        int sum = 0;
-        for (int part = 0; part < times * times; ++part) {
-          const int row = times * y + part / times;
-          const int column = times * x + part % times;
-          sum +=
-              fine.rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.width) +
-                            static_cast<std::size_t>(column)) +
-                       static_cast<std::size_t>(channel)];
-        }
+  const std::size_t wide = 3 * static_cast<std::size_t>(image.width);
+  image.rgb.reserve(wide * static_cast<std::size_t>(image.height));
+  const std::size_t fine_wide = 3 * static_cast<std::size_t>(fine.width);
+  const auto block = static_cast<std::size_t>(times);
+  std::vector<int> sums(wide);
+  for (std::size_t row = 0; row < block * static_cast<std::size_t>(image.height); ++row) {
+    const std::uint8_t* from = fine.rgb.data() + row * fine_wide;
+    for (std::size_t x = 0; x < wide; x += 3) {
+      for (std::size_t column = 0; column < block; ++column, from += 3) {
+        sums[x] += from[0];
+        sums[x + 1] += from[1];
+        sums[x + 2] += from[2];
+      }
+    }
+    if (row % block == block - 1) {
+      for (int& sum : sums) {
         image.rgb.push_back(static_cast<std::uint8_t>(sum / (times * times)));
+        sum = 0;
       }
     }
   }

@@ -22,6 +22,8 @@ struct CavityParameters {
   double margin{1e-3};                                // to any structure >= 0 [m]
   std::vector<std::string> structures;                // with margins of their own
   std::vector<double> margins;                        // theirs >= 0 [m]
+
+  bool operator==(const CavityParameters&) const = default;
 };
 
 /// Knowledge of a virtual surgeon about a bone before the first cut, and of a rater about a drilled

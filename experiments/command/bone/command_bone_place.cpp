@@ -29,18 +29,17 @@ int bone_place(const BonePlaceOptions& options) {
   const protocols::BoneDefinition definition = protocols::load_bone_definition(options.definition);
   const int number =
       checked_number("--bone", options.bone, 1, static_cast<int>(definition.bones.size()));
-  const auto index = static_cast<std::size_t>(number - 1);
-  const bone::BoneModel& model = *definition.bones[index];
-  render::write_png(options.out, protocols::placement_picture(definition, index));
-  fmt::print("bone        {}\nside        {}\n", model.name,
-             protocols::placement_words(definition, model));
-  for (const protocols::PlacedStructure& one : protocols::placed_structures(
-           definition, model, definition.display.width, definition.display.height)) {
+  const protocols::PlacedBone bone =
+      protocols::placed_bone(definition, static_cast<std::size_t>(number - 1));
+  render::write_png(options.out, protocols::placement_picture(bone));
+  fmt::print("bone        {}\nside        {}\n", bone.model->name,
+             protocols::placement_words(bone));
+  for (const protocols::PlacedStructure& one : protocols::placed_structures(bone)) {
     if (!one.in_sight) {
       fmt::print("out of sight  {}\n", one.name);
     }
   }
-  if (!bone::has_vital_structures(model)) {
+  if (!bone::has_vital_structures(*bone.model)) {
     fmt::print("WARNING: vital structures are unknown: no injury can be told in this bone\n");
   }
   fmt::print("wrote       {}\n", options.out);

@@ -120,14 +120,7 @@ std::optional<SessionTimes> known_times(const RosterOptions& options,
   if (!options.rehearsal.empty()) {
     return session_times(session_files(options.rehearsal), d);
   }
-  std::vector<fs::path> had;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(options.folder, ignored)) {
-    if (entry.path().extension() == ".h5") {
-      had.push_back(entry.path());
-    }
-  }
-  return session_times(had, d);
+  return recorded_times(options.folder, d);
 }
 
 /// How long the rest of the study takes in sessions.

@@ -18,6 +18,7 @@
 #include "experiments/command/start/doctor_checks.h"
 #include "experiments/runner/devices.h"
 #include "experiments/study/session_length.h"
+#include "experiments/study/session_times.h"
 #include "protocols/definition/button_uses.h"
 #include "protocols/definition/groups.h"
 #include "protocols/definition/mirroring.h"
@@ -166,6 +167,16 @@ double free_bytes(const fs::path& folder) {
   return error ? 0.0 : static_cast<double>(space.available);
 }
 
+/// @param planned  at most [s]
+MachineCheck check_duration(const fs::path& folder, const Definition& d, double planned) {
+  std::string found =
+      fmt::format("takes at most about {}, pages and pauses not counted", planned_minutes(planned));
+  if (const auto times = recorded_times(folder, d)) {
+    found += "; before, it took " + time_words(*times);
+  }
+  return {"duration", State::kReady, found};
+}
+
 /// Bytes that a session writes at most, roughly: the rows of its samples as they are in memory, and
 /// half as much for other tables.
 double expected_bytes(const Definition& d, double seconds) {
@@ -248,9 +259,7 @@ SessionChecks session_checks(RunOptions& options, const Experiment& experiment) 
   found.subject = options.subject;
   found.session = options.session.value_or(1);
   found.seconds = session_seconds(d, options.trials.value_or(d.design.trials));
-  found.checks.push_back(
-      {"duration", State::kReady,
-       "takes at most about " + planned_minutes(found.seconds) + ", pages and pauses not counted"});
+  found.checks.push_back(check_duration(options.out, d, found.seconds));
   add(check_definition(options, experiment));
   found.checks.push_back(check_consent(options, d));
   const fs::path files = there_above(session_folder(options));

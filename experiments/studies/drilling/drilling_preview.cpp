@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
+#include "core/base/kept.h"
 #include "core/render/gl/image.h"
 #include "experiments/preview/certified_part.h"
 #include "experiments/preview/fixed_plan.h"
 #include "experiments/preview/preview_pictures.h"
+#include "experiments/studies/drilling/drilling_objects.h"
 #include "protocols/bone_drilling/bone_trials.h"
 #include "protocols/bone_drilling/burr_forces.h"
 #include "protocols/bone_drilling/display/placement_picture.h"
@@ -51,17 +54,28 @@ void add_timeline(const BoneDefinition& d, const protocols::PlannedTrial& trial,
         "when the participant says so (function finish), or when the time is over"}});
 }
 
+/// A bone's picture, one of the last few if nothing that it shows has changed.
+std::shared_ptr<const render::Image> kept_picture(const protocols::PlacedBone& bone) {
+  static Kept<protocols::PlacedBone, render::Image> kept(2);
+  return kept.get(bone, [&] {
+    return std::make_shared<const render::Image>(protocols::placement_picture(bone));
+  });
+}
+
 void add_seen(const BoneDefinition& d, std::size_t bone, Preview& preview) {
   constexpr int kWide = 900;  // [px]
-  const render::Image drawn = protocols::placement_picture(d, bone);
-  const render::Image image = render::coarser(drawn, (drawn.width + kWide - 1) / kWide);
+  protocols::PlacedBone placed = protocols::placed_bone(d, bone);
+  const int coarser = (placed.width + kWide - 1) / kWide;
+  placed.width /= coarser;
+  placed.height /= coarser;
+  const auto image = kept_picture(placed);
   const std::string words = fmt::format("the first picture, bone {} of {}: {}", bone + 1,
                                         d.bones.size(), d.bones[bone]->name);
   preview.document.heading("What the participant sees");
   preview.add(gallery_figure({words},
                              "By the drawing of sessions. Names, the structures that show "
                              "through, axes and scale are not there in a session."),
-              gallery_svg({{render::png_bytes(image), image.width, image.height, words}}));
+              gallery_svg({{render::png_bytes(*image), image->width, image->height, words}}));
 }
 
 void add_burr_figure(const std::vector<BurrForce>& burrs, double limit, Preview& preview) {
@@ -153,7 +167,10 @@ void add_drilling_preview(const BoneDefinition& d, const PreviewRequest& request
                           Preview& preview) {
   const protocols::PlannedTrial trial = procedure_of(d, request);
   add_timeline(d, trial, preview);
-  add_seen(d, static_cast<std::size_t>(trial.trial - 1) % d.bones.size(), preview);
+  const std::size_t bone = static_cast<std::size_t>(trial.trial - 1) % d.bones.size();
+  add_seen(d, bone, preview);
+  preview.objects = *objects_of(protocols::placed_bone(d, bone), d.drilling.scale);
+  add_objects(preview);
   preview.document.heading("What is felt");
   const std::vector<BurrForce> burrs = protocols::burr_forces(d);
   if (burrs.empty()) {

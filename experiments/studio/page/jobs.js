@@ -88,7 +88,7 @@ function show_state(card, job) {
     card.bar.value = job.written / job.sessions;
     card.count.textContent = word("sessions_of", {n: job.written, all: job.sessions});
   }
-  if (job.state === "done" && job.sessions > 0) attempt(async () => { card.cost.textContent = ((await get("/job", {job: job.job})).output.match(/^lab time: .*$/m) || [""])[0]; });
+  if (job.state === "done") attempt(async () => { card.cost.textContent = ((await get("/job", {job: job.job})).output.match(/^lab time: .*$|^.* hours of sessions$/m) || [""])[0]; });
   if (job.state === "done") card.actions.replaceChildren(...(job.sessions > 0 ? [analyze_button(job.study, job.folder, card.list)] : job.folder ? [report_of(job)] : []));
 }
 

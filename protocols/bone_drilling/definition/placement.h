@@ -20,6 +20,8 @@ struct BonePlacement {
   Eigen::Vector3d centre{Eigen::Vector3d::Zero()};    // of its grid, in W [m]
   Eigen::Matrix3d turn{Eigen::Matrix3d::Identity()};  // from B to W: a rotation
   bool left_ear{false};                               // as `place` says
+
+  bool operator==(const BonePlacement&) const = default;
 };
 Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid);
 

@@ -79,18 +79,17 @@ bool cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vect
 /// Words and lines over a picture.
 class Legend {
  public:
-  Legend(const render::Gl& gl, const BoneDefinition& d, const bone::BoneModel& model)
-      : d_(d),
-        model_(model),
-        width_(d.display.width),
-        height_(d.display.height),
+  Legend(const render::Gl& gl, const PlacedBone& bone)
+      : bone_(bone),
+        width_(bone.width),
+        height_(bone.height),
         painter_(gl, width_, height_),
         text_(gl, width_, height_) {
     constexpr double kLines = 40.0;  // of text in a picture's height
     style_ = {std::max(9, static_cast<int>(height_ / kLines)), false, kInk};
   }
   void draw() {
-    std::vector<PlacedStructure> all = placed_structures(d_, model_, width_, height_);
+    std::vector<PlacedStructure> all = placed_structures(bone_);
     std::ranges::stable_sort(all, {}, [](const auto& one) { return one.pixel.x(); });
     const auto half = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
     std::vector<PlacedStructure> left(all.begin(), half);
@@ -175,15 +174,15 @@ class Legend {
 
   void words() {
     const double em = style_.size;
-    const std::string side = placement_words(d_, model_);
+    const std::string side = placement_words(bone_);
     std::string asked;
-    if (d_.cavity) {
-      asked = fmt::format("red: the cavity that is asked for, beside the {}", d_.cavity->beside);
+    if (bone_.cavity) {
+      asked = fmt::format("red: the cavity that is asked for, beside the {}", bone_.beside);
     }
     painter_.begin_over();
     plate({0.0, 0.0}, {static_cast<double>(width_), 3.2 * em});
     painter_.end();
-    line(model_.name, {em, 1.3 * em});
+    line(bone_.model->name, {em, 1.3 * em});
     line(asked, {width_ - em, 1.3 * em}, render::Align::kRight);
     line(side, {em, 2.7 * em});
   }
@@ -192,8 +191,7 @@ class Legend {
   void axes() {
     const double em = style_.size;
     const Eigen::Vector2d from(6.0 * em, height_ - 5.0 * em);
-    const Eigen::Matrix3d to_picture =
-        d_.simulator.camera.start.axes().transpose() * d_.placement.turn;
+    const Eigen::Matrix3d to_picture = bone_.camera.axes().transpose() * bone_.placement.turn;
     const std::array<std::pair<Eigen::Vector3d, const char*>, 3> arrows{
         {{-Eigen::Vector3d::UnitX(), "right"},
          {Eigen::Vector3d::UnitY(), "back"},
@@ -223,7 +221,7 @@ class Legend {
 
   void scale() {
     const double em = style_.size;
-    const Camera& camera = d_.simulator.camera.start;
+    const Camera& camera = bone_.camera;
     const double length =
         kBar * 0.5 * height_ / std::tan(0.5 * camera.field_of_view) / camera.distance();
     const Eigen::Vector2d right(width_ - 1.5 * em, height_ - 1.2 * em);
@@ -236,8 +234,7 @@ class Legend {
     line(words, {0.5 * (left.x() + right.x()), height_ - 1.9 * em}, render::Align::kCentre);
   }
 
-  const BoneDefinition& d_;
-  const bone::BoneModel& model_;
+  const PlacedBone& bone_;
   int width_;
   int height_;
   render::Painter painter_;
@@ -262,11 +259,10 @@ void set_words_apart(std::span<Eigen::Vector2d> places, double row, double wide)
   }
 }
 
-std::vector<PlacedStructure> placed_structures(const BoneDefinition& d,
-                                               const bone::BoneModel& model, int width,
-                                               int height) {
-  const Eigen::Isometry3d pose = pose_of(d.placement, model.grid);
-  const Camera& camera = d.simulator.camera.start;
+std::vector<PlacedStructure> placed_structures(const PlacedBone& bone) {
+  const bone::BoneModel& model = *bone.model;
+  const Eigen::Isometry3d pose = pose_of(bone.placement, model.grid);
+  const Camera& camera = bone.camera;
   const auto middles = middles_in(model);
   std::vector<PlacedStructure> placed;
   for (std::size_t label = 1; label < middles.size(); ++label) {
@@ -275,9 +271,10 @@ std::vector<PlacedStructure> placed_structures(const BoneDefinition& d,
       continue;
     }
     const Eigen::Vector3d p_W = pose * *middles[label];
-    const Eigen::Vector2d pixel = pixel_of(camera, p_W, width, height);
+    const Eigen::Vector2d pixel = pixel_of(camera, p_W, bone.width, bone.height);
     const bool before = (p_W - camera.eye).dot(camera.target - camera.eye) > 0.0;
-    const bool within = (pixel.array() >= 0.0).all() && pixel.x() < width && pixel.y() < height;
+    const bool within =
+        (pixel.array() >= 0.0).all() && pixel.x() < bone.width && pixel.y() < bone.height;
     placed.push_back({structure.name,
                       {structure.colour[0], structure.colour[1], structure.colour[2]},
                       pixel,
@@ -286,24 +283,23 @@ std::vector<PlacedStructure> placed_structures(const BoneDefinition& d,
   return placed;
 }
 
-std::string placement_words(const BoneDefinition& d, const bone::BoneModel& model) {
-  const auto side = bone::ear_side(model);
+std::string placement_words(const PlacedBone& bone) {
+  const auto side = bone::ear_side(*bone.model);
   std::string words = !side
                           ? "no side is known: inner ear, ear canal and sinus are not all labelled"
                       : *side == bone::EarSide::kLeft ? "a left ear, by its structures"
                                                       : "a right ear, by its structures";
-  if (d.mirror) {
+  if (bone.mirrored) {
     words += "; left and right exchanged by mirror = true";
   }
-  if (d.placement.left_ear) {
+  if (bone.placement.left_ear) {
     words += "; placed as a surgeon sees a left ear";
   }
   return words;
 }
 
-void draw_placement_legend(const render::Gl& gl, const BoneDefinition& d,
-                           const bone::BoneModel& model) {
-  Legend(gl, d, model).draw();
+void draw_placement_legend(const render::Gl& gl, const PlacedBone& bone) {
+  Legend(gl, bone).draw();
 }
 
 }  // namespace haptrial::protocols

@@ -6,7 +6,7 @@
 
 #include "core/render/gl/colour.h"
 #include "core/render/gl/gl.h"
-#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/display/placed_bone.h"
 
 namespace haptrial::protocols {
 
@@ -18,9 +18,8 @@ struct PlacedStructure {
   bool in_sight{false};   // within the picture
 };
 
-/// All that has voxels but plain bone, by label. @param width, height  of the picture [px]
-std::vector<PlacedStructure> placed_structures(const BoneDefinition& definition,
-                                               const bone::BoneModel& model, int width, int height);
+/// All that has voxels but plain bone, by label.
+std::vector<PlacedStructure> placed_structures(const PlacedBone& bone);
 
 /// Moves words down that would lie on one another, from top to bottom.
 /// @param places  where the words begin [px]
@@ -28,12 +27,11 @@ std::vector<PlacedStructure> placed_structures(const BoneDefinition& definition,
 void set_words_apart(std::span<Eigen::Vector2d> places, double row, double wide);
 
 /// Which ear a bone is and how it is placed: "a left ear by its structures; placed as ...".
-std::string placement_words(const BoneDefinition& definition, const bone::BoneModel& model);
+std::string placement_words(const PlacedBone& bone);
 
 /// Draws over a picture what is said of it: names with lines to their structures, the side and the
 /// cavity in words, arrows of the patient's axes, and a bar for the scale at the depth of the
 /// camera's target. Thread with the context of OpenGL.
-void draw_placement_legend(const render::Gl& gl, const BoneDefinition& definition,
-                           const bone::BoneModel& model);
+void draw_placement_legend(const render::Gl& gl, const PlacedBone& bone);
 
 }  // namespace haptrial::protocols

@@ -8,7 +8,6 @@
 #include "core/render/bone/bone_scene.h"
 #include "core/render/flat/picture_quad.h"
 #include "core/render/gl/offscreen.h"
-#include "protocols/bone_drilling/definition/smallest_burr.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
@@ -24,9 +23,11 @@ const render::Colour kCavity{0.95, 0.25, 0.20};  // unlike any known structure
 /// Draws parts of a bone as the camera has them.
 class Views {
  public:
-  Views(const BoneDefinition& d, const Eigen::Isometry3d& pose)
-      : width_(kSharper * d.display.width), height_(kSharper * d.display.height), pose_(pose) {
-    frame_.camera = d.simulator.camera.start;
+  explicit Views(const PlacedBone& bone)
+      : width_(kSharper * bone.width),
+        height_(kSharper * bone.height),
+        pose_(pose_of(bone.placement, bone.model->grid)) {
+    frame_.camera = bone.camera;
     style_.visible_array = false;
   }
   render::Image draw(const bone::BoneModel& model, const render::BoneStyle& style, bool through) {
@@ -39,6 +40,7 @@ class Views {
     return context.read();
   }
   const render::BoneStyle& style() const { return style_; }
+  const Eigen::Isometry3d& pose() const { return pose_; }
 
  private:
   int width_;
@@ -78,9 +80,9 @@ bool holds_any(const bone::BoneModel& model) {
   return std::ranges::any_of(model.labels, [](std::uint8_t label) { return label != 0; });
 }
 
-render::Image bare_picture(const BoneDefinition& d, std::size_t bone) {
-  const bone::BoneModel& model = *d.bones[bone];
-  Views views(d, pose_of(d.placement, model.grid));
+render::Image bare_picture(const PlacedBone& bone) {
+  const bone::BoneModel& model = *bone.model;
+  Views views(bone);
   render::Image image = views.draw(model, views.style(), true);
   render::BoneStyle on_black = views.style();
   on_black.background = {};
@@ -91,12 +93,11 @@ render::Image bare_picture(const BoneDefinition& d, std::size_t bone) {
   if (holds_any(inner)) {
     lay_over(views.draw(inner, on_black, false), kStructureShare, image);
   }
-  if (!d.charts.empty()) {
-    const subject::DrillingChart& chart = *d.charts[bone];
+  if (bone.cavity) {
+    const subject::DrillingChart& chart = *bone.cavity;
     const subject::BurrReach reach =
-        subject::burr_reach(chart, subject::cavity_floor(chart), smallest_burr(d));
-    const std::vector<float> depths =
-        cavity_depths(model, pose_of(d.placement, model.grid), chart, reach.floor);
+        subject::burr_reach(chart, subject::cavity_floor(chart), bone.burr);
+    const std::vector<float> depths = cavity_depths(model, views.pose(), chart, reach.floor);
     bone::BoneModel cavity = part_of(model, [&](std::size_t at) { return depths[at] >= 0.0F; });
     on_black.hard_bone = kCavity;
     on_black.soft_bone = kCavity;
@@ -109,12 +110,12 @@ render::Image bare_picture(const BoneDefinition& d, std::size_t bone) {
 
 }  // namespace
 
-render::Image placement_picture(const BoneDefinition& d, std::size_t bone) {
-  const auto bare = std::make_shared<const render::Image>(bare_picture(d, bone));
+render::Image placement_picture(const PlacedBone& bone) {
+  const auto bare = std::make_shared<const render::Image>(bare_picture(bone));
   render::OffscreenContext context(bare->width, bare->height);
   render::PictureQuad quad(context.gl(), bare->width, bare->height);
   quad.draw(bare, {{0.0, 0.0}, {static_cast<double>(bare->width), bare->height}});
-  draw_placement_legend(context.gl(), d, *d.bones[bone]);
+  draw_placement_legend(context.gl(), bone);
   return context.read();
 }
 

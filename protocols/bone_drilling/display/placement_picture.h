@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstddef>
-
 #include "core/render/gl/image.h"
-#include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/display/placed_bone.h"
 
 namespace haptrial::protocols {
 
@@ -11,8 +9,7 @@ namespace haptrial::protocols {
 /// structures and the cavity that is asked for show through in their colours, with their names;
 /// words say which side it is; arrows show the patient's axes, and a bar the scale at the depth of
 /// the camera's target.
-/// @param bone  of definition.bones
 /// @throws RunError without OpenGL.
-render::Image placement_picture(const BoneDefinition& definition, std::size_t bone);
+render::Image placement_picture(const PlacedBone& bone);
 
 }  // namespace haptrial::protocols

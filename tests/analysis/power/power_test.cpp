@@ -71,6 +71,15 @@ PowerResult result_with(std::size_t null_rejected) {
   return result;
 }
 
+TEST(PowerWords, TheSizeHasItsHoursInTheLab) {
+  PowerResult result = result_with(100);
+  for (PowerCell& cell : result.cells) {
+    cell.counts.hours.add(0.75 * cell.levels[0]);
+  }
+  // 800 of 990 tests of 20 participants, 400 of those of 10: by a straight line 0.8 takes 19.8.
+  EXPECT_THAT(size_lines(result).front(), testing::EndsWith(", 15.0 hours of sessions"));
+}
+
 TEST(PowerResult, RejectionsArePowerOnlyIfTheTestDoesNotExceedItsLevel) {
   EXPECT_TRUE(is_power(result_with(100)));
   EXPECT_EQ(level_of(result_with(127), "t"), Level::kAbove);

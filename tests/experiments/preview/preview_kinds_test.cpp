@@ -38,6 +38,7 @@ TEST_P(PreviewKindsTest, HaveEveryPart) {
     EXPECT_THAT(page, HasSubstr(part));
   }
   EXPECT_THAT(page, HasSubstr("data:image/png"));
+  EXPECT_THAT(page, HasSubstr("<metadata class=\"film\">"));
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(http"}) {
     EXPECT_THAT(page, Not(HasSubstr(outside)));
   }

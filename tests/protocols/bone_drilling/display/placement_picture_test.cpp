@@ -1,5 +1,5 @@
-#include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/placement_picture.h"
+#include "protocols/bone_drilling/display/placement_legend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ int red_pixels(const render::Image& image) {
 
 TEST(PlacementPictureTest, AStructureIsWhereTheCameraHasIt) {
   BoneDefinition d = placed_slabs(false);
-  const auto placed = placed_structures(d, *d.bones.front(), 640, 360);
+  const auto placed = placed_structures(placed_bone(d, 0));
   ASSERT_EQ(placed.size(), 1U);
   EXPECT_EQ(placed[0].name, "facial nerve");
   EXPECT_TRUE(placed[0].in_sight);
@@ -59,7 +59,7 @@ TEST(PlacementPictureTest, AStructureIsWhereTheCameraHasIt) {
   EXPECT_NEAR(placed[0].pixel.x(), 320.0 + scale * from_eye.dot(right), 1e-6);
   EXPECT_NEAR(placed[0].pixel.y(), 180.0 - scale * from_eye.dot(right.cross(forward)), 1e-6);
   d.simulator.camera.start.target.x() += 0.2;
-  EXPECT_FALSE(placed_structures(d, *d.bones.front(), 640, 360)[0].in_sight);
+  EXPECT_FALSE(placed_structures(placed_bone(d, 0))[0].in_sight);
 }
 
 TEST(PlacementPictureTest, WordsOfAxesLieOnLinesOfTheirOwn) {
@@ -71,8 +71,8 @@ TEST(PlacementPictureTest, WordsOfAxesLieOnLinesOfTheirOwn) {
 }
 
 TEST(PlacementPictureTest, TheCavityIsRedAndNothingElse) {
-  const render::Image without = placement_picture(placed_slabs(false), 0);
-  const render::Image with = placement_picture(placed_slabs(true), 0);
+  const render::Image without = placement_picture(placed_bone(placed_slabs(false), 0));
+  const render::Image with = placement_picture(placed_bone(placed_slabs(true), 0));
   ASSERT_EQ(with.width, 640);
   ASSERT_EQ(with.height, 360);
   EXPECT_EQ(red_pixels(without), 0);
@@ -81,10 +81,10 @@ TEST(PlacementPictureTest, TheCavityIsRedAndNothingElse) {
 
 TEST(PlacementPictureTest, TheWordsSayWhatIsKnownOfTheSide) {
   BoneDefinition d = placed_slabs(false);
-  EXPECT_THAT(placement_words(d, *d.bones.front()), testing::HasSubstr("no side is known"));
+  EXPECT_THAT(placement_words(placed_bone(d, 0)), testing::HasSubstr("no side is known"));
   d.mirror = true;
   d.placement.left_ear = true;
-  EXPECT_THAT(placement_words(d, *d.bones.front()),
+  EXPECT_THAT(placement_words(placed_bone(d, 0)),
               testing::HasSubstr("left and right exchanged by mirror = true; placed as a surgeon "
                                  "sees a left ear"));
 }
