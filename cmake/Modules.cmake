@@ -310,7 +310,12 @@ function(haptrial_tests)
   haptrial_test_needs()
   file(GLOB architecture CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tests/architecture/*.cpp)
   add_executable(test_architecture ${architecture})
-  target_link_libraries(test_architecture PRIVATE GTest::gmock GTest::gtest GTest::gtest_main)
+  # Eigen and fmt are in the precompiled headers.
+  target_link_libraries(test_architecture PRIVATE Eigen3::Eigen fmt::fmt GTest::gmock GTest::gtest
+                                                  GTest::gtest_main)
   target_compile_definitions(test_architecture PRIVATE HAPTRIAL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  haptrial_optimise(test_architecture tests)
+  haptrial_precompile(test_architecture tests tests)
+  haptrial_unite_tests(test_architecture ${architecture})
   haptrial_discover(test_architecture "*" 4)
 endfunction()
