@@ -1,5 +1,5 @@
 # make-package.sh: Debian packages of what Install.cmake installs, the command apart from the
-# libraries. Dependencies are found from what the command links.
+# libraries. Dependencies are found from what the command links, but for what it loads when it draws.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "the haptrial authors")
 # CPACK_PACKAGE_CONTACT is in Settings.cmake: the packages' change logs name it, too.
@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME haptrial)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS TRUE)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "gnuplot-nox | gnuplot, fonts-dejavu-core, fonts-noto-core")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "libosmesa6, gnuplot-nox | gnuplot, fonts-dejavu-core, fonts-noto-core")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "ffmpeg, libjs-codemirror, xdg-utils")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS libespeak-ng1)
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "Psychophysics experiments on a

@@ -12,17 +12,24 @@ mkdir -p "$top/lib" "$top/share/doc/haptrial/licenses"
 # What the kernel, the loader and the C library give must be the machine's.
 machine='^(linux-vdso|ld-linux[a-z0-9-]*|libc|libm|libmvec|libdl|librt|libpthread|libresolv|libutil|libanl)\.so'
 
-# libraries FILE: name and path of every library that it loads, as the loader finds them.
+# libraries FILE: name and path of every library that it is linked with, as the loader finds them.
 libraries() { ldd "$1" | awk '$2 == "=>" { print $1, $3 }'; }
+
+# all_libraries: those of the command, and OSMesa's, which the command loads when it draws.
+osmesa=$(/sbin/ldconfig -p | awk '$1 == "libOSMesa.so.8" { print $NF; exit }')
+[ -n "$osmesa" ] || { echo "bundle.sh: not found: libOSMesa.so.8" >&2; exit 1; }
+all_libraries() {
+  { libraries "$top/bin/haptrial"; echo "libOSMesa.so.8 $osmesa"; libraries "$osmesa"; } | sort -u
+}
 
 # package_of FILE: whose it is; dpkg knows some files of /usr/lib as those of /lib.
 package_of() {
   { dpkg-query -S "$1" || dpkg-query -S "${1#/usr}" || true; } 2>/dev/null | head -n 1 | cut -d: -f1
 }
 
-missing=$(libraries "$top/bin/haptrial" | awk '$2 == "not" { print $1 }')
+missing=$(all_libraries | awk '$2 == "not" { print $1 }')
 [ -z "$missing" ] || { echo "bundle.sh: not found: $missing" >&2; exit 1; }
-libraries "$top/bin/haptrial" | while read -r library path; do
+all_libraries | while read -r library path; do
   [[ $library =~ $machine ]] && continue
   install -m 644 "$path" "$top/lib/$library"
   patchelf --set-rpath '$ORIGIN' "$top/lib/$library"

@@ -10,7 +10,7 @@ find_dependency(PNG)
 find_dependency(meshoptimizer)
 find_dependency(SUNDIALS)
 find_dependency(PkgConfig)
-foreach(library hdf5:hdf5-serial gsl:gsl osmesa:osmesa freetype:freetype2 glfw:glfw3
+foreach(library hdf5:hdf5-serial gsl:gsl freetype:freetype2 glfw:glfw3
                 libdeflate:libdeflate tomlplusplus:tomlplusplus httplib:cpp-httplib
                 sndfile:sndfile alsa:alsa muparser:muparser pangoft2:pangoft2
                 nlopt:nlopt sodium:libsodium)

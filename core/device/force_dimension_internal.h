@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/device/dynamic_library.h"
+#include "core/base/dynamic_library.h"
 #include "core/device/force_dimension.h"
 
 // The vendor's library; for the files of this driver alone.

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "core/base/definition/schema.h"
+#include "core/base/dynamic_library.h"
 #include "core/base/error.h"
-#include "core/device/dynamic_library.h"
 
 namespace haptrial::device {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/device/dynamic_library.h"
+#include "core/base/dynamic_library.h"
 
 namespace haptrial::stream {
 
@@ -73,7 +73,7 @@ class LslLibrary {
   std::int32_t (*is_empty)(Xml){nullptr};
 
  private:
-  device::DynamicLibrary library_;
+  DynamicLibrary library_;
 };
 
 }  // namespace haptrial::stream

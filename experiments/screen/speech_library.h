@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/device/dynamic_library.h"
+#include "core/base/dynamic_library.h"
 
 namespace haptrial::experiments {
 
@@ -26,7 +26,7 @@ class SpeechLibrary {
  private:
   using Callback = int (*)(short* wave, int count, void* events);
 
-  device::DynamicLibrary library_;
+  DynamicLibrary library_;
   int (*initialize_)(int output, int buffer, const char* path, int options){nullptr};
   void (*set_callback_)(Callback){nullptr};
   int (*set_voice_)(const char* name){nullptr};

@@ -106,6 +106,15 @@ TEST_F(CommandTest, FramesAreWritten) {
   EXPECT_EQ(pictures, 3 * 2 * 2) << "trials x passes x frames";
 }
 
+/// OSMesa brings LLVM, which takes longer to load than most commands run: a command that draws
+/// nothing does without them. That pictures are drawn is FramesAreWritten's.
+TEST_F(CommandTest, WhatDrawsIsLoadedOnlyToDraw) {
+  const CommandResult linked = run_command("ldd \"$HAPTRIAL\"");
+  EXPECT_THAT(linked.output, HasSubstr("libhdf5"));
+  EXPECT_THAT(linked.output, Not(HasSubstr("libOSMesa")));
+  EXPECT_THAT(linked.output, Not(HasSubstr("libLLVM")));
+}
+
 TEST_F(CommandTest, ValidateAndDevices) {
   const CommandResult valid = run_command("haptrial validate " + shipped());
   EXPECT_EQ(valid.status, 0);

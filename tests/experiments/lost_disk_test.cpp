@@ -11,8 +11,8 @@
 #include <fstream>
 #include <vector>
 
+#include "core/base/dynamic_library.h"
 #include "core/base/error.h"
-#include "core/device/dynamic_library.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
@@ -32,7 +32,7 @@ const std::string kLibrary = std::string(HAPTRIAL_BINARY_DIR) + "/libstand_in_dh
 /// the motors were given and the error.
 void run_until_the_disk_is_full(const SessionRequest& request, const fs::path& folder) {
   ::setenv("STAND_IN_FORCES", (folder / "forces").c_str(), 1);
-  const device::DynamicLibrary library(kLibrary, "the stand-in");  // its record is mapped now
+  const DynamicLibrary library(kLibrary, "the stand-in");  // its record is mapped now
   std::ofstream out(folder / "error.txt");
   signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{400'000, 400'000};

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/dynamic_library.h"
 #include "core/base/error.h"
-#include "core/device/dynamic_library.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
@@ -21,7 +21,7 @@ using testing::HasSubstr;
 const std::string kLibrary = std::string(HAPTRIAL_BINARY_DIR) + "/libstand_in_dhd.so";
 
 TEST(OverloadTest, APassIsAbortedWithASentenceAndAnEvent) {
-  const device::DynamicLibrary library(kLibrary, "the stand-in");
+  const DynamicLibrary library(kLibrary, "the stand-in");
   void (*fail)(int, long){nullptr};
   void (*reset)(){nullptr};
   library.get(fail, "stand_in_fail");

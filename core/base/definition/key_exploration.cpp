@@ -95,11 +95,10 @@ std::vector<KeyExploration::Plan> KeyExploration::further() {
   keep_chosen();
   std::vector<Plan> plans;
   for (const auto& [name, ways] : taken_) {
-    for (std::size_t way = 1; way < ways; ++way) {
-      if (seen_.emplace(name, way).second) {
-        plans.push_back(plan_);
-        plans.back()[name] = way;
-      }
+    std::size_t& planned = planned_.try_emplace(name, 1).first->second;  // the first needs none
+    for (; planned < ways; ++planned) {
+      plans.push_back(plan_);
+      plans.back()[name] = planned;
     }
   }
   return plans;

@@ -7,6 +7,8 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -70,9 +72,9 @@ class KeyExploration {
 
   Plan plan_;
   std::vector<std::pair<std::string, std::size_t>> taken_;  // of this reading: name, ways
-  std::set<std::pair<std::string, std::size_t>> seen_;
-  std::map<std::string, Choices> chosen_;          // of this reading, by table
-  std::map<std::string, std::set<Choices>> read_;  // what readings chose, by table
+  std::unordered_map<std::string, std::size_t> planned_;    // ways that have a plan, by name
+  std::map<std::string, Choices> chosen_;                   // of this reading, by table
+  std::map<std::string, std::set<Choices>> read_;           // what readings chose, by table
   struct Known {
     KnownKey key;
     std::size_t order{0};
@@ -81,11 +83,11 @@ class KeyExploration {
     std::map<std::string, std::size_t> with_count;
   };
   bool bound_by(const Known& known, const std::string& choice) const;
-  std::map<std::string, Known> known_;                                            // by path
+  std::unordered_map<std::string, Known> known_;                                  // by path
   std::map<std::string, std::map<std::string, std::vector<std::string>>> words_;  // table, key
-  std::set<std::string> optional_, required_, texts_;
-  std::map<std::string, std::string> defaults_;
-  std::map<std::string, std::string> described_;  // words, by path
+  std::unordered_set<std::string> optional_, required_, texts_;
+  std::unordered_map<std::string, std::string> defaults_;
+  std::unordered_map<std::string, std::string> described_;  // words, by path
 };
 
 /// Finds every key that a reader asks for, by reading definitions that are not there: each key that

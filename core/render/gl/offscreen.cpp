@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "core/base/dynamic_library.h"
 #include "core/base/error.h"
 
 namespace haptrial::render {
@@ -13,12 +14,37 @@ namespace {
 
 constexpr int kBufferChannels = 4;
 
+/// OSMesa, loaded with the first context and never unloaded: it brings LLVM, whose loading takes
+/// longer than most commands, and its threads may still run when the program ends.
+struct Osmesa {
+  DynamicLibrary library{"libOSMesa.so.8", "Debian's package libosmesa6"};
+  decltype(&OSMesaCreateContextAttribs) create{};
+  decltype(&OSMesaDestroyContext) destroy{};
+  decltype(&OSMesaMakeCurrent) make_current{};
+  decltype(&OSMesaGetIntegerv) get_integer{};
+  decltype(&OSMesaGetProcAddress) get_address{};
+
+  Osmesa() {
+    library.get(create, "OSMesaCreateContextAttribs");
+    library.get(destroy, "OSMesaDestroyContext");
+    library.get(make_current, "OSMesaMakeCurrent");
+    library.get(get_integer, "OSMesaGetIntegerv");
+    library.get(get_address, "OSMesaGetProcAddress");
+  }
+};
+
+/// @throws InputError when the library cannot be loaded.
+const Osmesa& osmesa() {
+  static const Osmesa& loaded = *new Osmesa;
+  return loaded;
+}
+
 void* osmesa_address(const char* name) {
-  return reinterpret_cast<void*>(OSMesaGetProcAddress(name));
+  return reinterpret_cast<void*>(osmesa().get_address(name));
 }
 
 struct DestroyContext {
-  void operator()(osmesa_context* context) const { OSMesaDestroyContext(context); }
+  void operator()(osmesa_context* context) const { osmesa().destroy(context); }
 };
 
 }  // namespace
@@ -44,12 +70,12 @@ OffscreenContext::OffscreenContext(int width, int height)
                                    OSMESA_CONTEXT_MINOR_VERSION,
                                    3,
                                    0};
-  impl_->context.reset(OSMesaCreateContextAttribs(kAttributes.data(), nullptr));
+  impl_->context.reset(osmesa().create(kAttributes.data(), nullptr));
   if (!impl_->context) {
     throw RunError("OSMesa gives no OpenGL 3.3 core context, so nothing can be drawn off screen");
   }
   GLint largest = 0;
-  OSMesaGetIntegerv(OSMESA_MAX_WIDTH, &largest);
+  osmesa().get_integer(OSMESA_MAX_WIDTH, &largest);
   if (width < 1 || height < 1 || width > largest || height > largest) {
     throw RunError(
         fmt::format("a picture of {} x {} pixels cannot be drawn off screen; allowed: "
@@ -65,8 +91,8 @@ OffscreenContext::OffscreenContext(int width, int height)
 OffscreenContext::~OffscreenContext() = default;
 
 void OffscreenContext::make_current() {
-  if (OSMesaMakeCurrent(impl_->context.get(), impl_->pixels.data(), GL_UNSIGNED_BYTE, impl_->width,
-                        impl_->height) != GL_TRUE) {
+  if (osmesa().make_current(impl_->context.get(), impl_->pixels.data(), GL_UNSIGNED_BYTE,
+                            impl_->width, impl_->height) != GL_TRUE) {
     throw RunError(fmt::format("OSMesa cannot draw into a picture of {} x {} pixels", impl_->width,
                                impl_->height));
   }

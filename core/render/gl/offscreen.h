@@ -13,7 +13,8 @@ class OffscreenContext {
  public:
   /// Makes itself current on this thread.
   /// @param width, height  [px].
-  /// @throws RunError when OSMesa offers no such context or picture size.
+  /// @throws RunError when OSMesa offers no such context or picture size; InputError naming the package
+  ///         when the library is not installed.
   OffscreenContext(int width, int height);
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;

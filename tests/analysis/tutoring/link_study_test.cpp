@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr std::size_t kStudies = 400;
+constexpr std::size_t kStudies = 100;
 const std::vector<std::string> kNetworks{"near", "middle", "far", "farther", "farthest"};
 
 /// Passes of participants who differ, over networks of which none does but for `slope`.

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/dynamic_library.h"
 #include "core/device/device.h"
-#include "core/device/dynamic_library.h"
 #include "core/device/paddle_board.h"
 #include "tests/support/stand_in.h"
 
@@ -60,7 +60,7 @@ struct StandIn {
   StandInSetup setup() const;
 
   std::string path;
-  device::DynamicLibrary library;
+  DynamicLibrary library;
   void (*reset)();
   void (*fail)(int, long);
   void (*place)(const double*);

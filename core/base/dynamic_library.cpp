@@ -1,4 +1,4 @@
-#include "core/device/dynamic_library.h"
+#include "core/base/dynamic_library.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 
-namespace haptrial::device {
+namespace haptrial {
 
 DynamicLibrary::DynamicLibrary(std::string name, std::string_view where) : name_(std::move(name)) {
   if (name_.find('/') != std::string::npos) {  // others are looked for among the system's
@@ -42,4 +42,4 @@ void* DynamicLibrary::required(const char* symbol) const {
   return address;
 }
 
-}  // namespace haptrial::device
+}  // namespace haptrial

@@ -3,10 +3,10 @@
 #include <string>
 #include <string_view>
 
-namespace haptrial::device {
+namespace haptrial {
 
-/// A shared library of a vendor, loaded at run time, so that the program neither links nor ships
-/// it.
+/// A shared library that is loaded at run time: one of a vendor, which the program neither links nor
+/// ships, or one that few commands need and that takes long to load.
 class DynamicLibrary {
  public:
   /// @param name   a file name that the system's loader searches for ("libdhd.so.3"), or a path
@@ -40,4 +40,4 @@ class DynamicLibrary {
   void* handle_{nullptr};
 };
 
-}  // namespace haptrial::device
+}  // namespace haptrial
