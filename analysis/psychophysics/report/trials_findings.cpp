@@ -381,6 +381,9 @@ FindingTable law_findings(const TrialsResult& result) {
                         {"low_95", l.low},
                         {"high_95", l.high},
                         {"participants", l.participants}});
+      if (!result.plan.measured.empty()) {
+        levels.back()["measured"] = l.measured;
+      }
     }
     add_json(row, "law/levels", levels);
   }
