@@ -13,9 +13,13 @@
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/study/covariate.h"
 #include "analysis/psychophysics/study/trials_study.h"
+#include "analysis/statistics/design/related_covariate.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/record/read/session_reader.h"
+#include "experiments/studies/power_plan.h"
+#include "experiments/studies/psychophysics/file_quantities.h"
 #include "experiments/study/study_run.h"
 #include "protocols/psychophysics/response_session.h"
 
@@ -121,7 +125,7 @@ class TrialsStudySimulation final : public StudySimulation {
  public:
   TrialsStudySimulation(const StudiedDefinition& definition, trials::TrialsPlan plan,
                         std::string asked_in, const std::string& watched)
-      : d_(definition), plan_(std::move(plan)), asked_in_(std::move(asked_in)) {
+      : d_(definition), plan_(std::move(plan)), asked_in_(std::move(asked_in)), watched_(watched) {
     plan_.resamples = 0;
     plan_.bayesian = false;
     plan_.hierarchical = false;
@@ -130,19 +134,10 @@ class TrialsStudySimulation final : public StudySimulation {
     plan_.population = !plan_.by.empty();                    // it tests nothing but conditions
     plan_.permutations =
         watched.find(", permutation") != std::string::npos ? plan_.permutations : 0;
-    if (plan_.kind == trials::AnalysisKind::kReaching ||
-        plan_.kind == trials::AnalysisKind::kPursuit ||
-        plan_.kind == trials::AnalysisKind::kProduced ||
-        plan_.kind == trials::AnalysisKind::kPaired || plan_.cues) {
-      throw InputError(
-          fmt::format("{}: power by simulation does not know analyses of movements, of pairs or of "
-                      "two cues; watch a "
-                      "psychometric, detection, identification, magnitude or adjustment analysis",
-                      d_.file_name));
-    }
     const int most = std::max(1, d_.most_trials());
     hours_of_trial_ = d_.longest(most) / most / 3600.0;
     read_responses();
+    read_relation();
   }
 
   bool people_differ() const override {
@@ -151,6 +146,7 @@ class TrialsStudySimulation final : public StudySimulation {
   }
 
   SimulatedStudy responses(std::uint64_t seed) const override {
+    check_depth();
     if (d_.script) {
       throw InputError(fmt::format(
           "{}: level_script chooses the levels, which responses alone do not run; give power.depth "
@@ -164,21 +160,22 @@ class TrialsStudySimulation final : public StudySimulation {
                       asked_in_));
     }
     trials::TrialsData data;
-    trials::TrialsPlan plan = plan_;
+    analysis::Covariate covariate{plan_.plan.covariate.name};
     for (int p = 0; p < d_.design.participants; ++p) {
       for (int session = 1; session <= d_.sessions(); ++session) {
         add_session(p, session, seed, data);
       }
-      draw_covariate(participant_name(p), seed, plan.plan.covariate);
+      draw_covariate(participant_name(p), seed, covariate);
     }
-    return analyzed(std::move(data), plan);
+    return analyzed(std::move(data), std::move(covariate), {}, seed);
   }
 
   SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
     const auto group = [this](const std::string& subject) { return group_of(subject); };
-    trials::TrialsPlan plan = plan_;
-    trials::add_covariate(trials::page_scores(files, d_.pages, group), plan.plan.covariate);
-    return analyzed(trials::read_trials(files, group, 1), plan);
+    analysis::Covariate covariate{plan_.plan.covariate.name};
+    trials::add_covariate(trials::page_scores(files, d_.pages, group), covariate);
+    return analyzed(trials::read_trials(files, group, 1), std::move(covariate), files,
+                    record::SessionReader(files.front()).info().seed);
   }
 
  private:
@@ -196,6 +193,50 @@ class TrialsStudySimulation final : public StudySimulation {
     } catch (const InputError& error) {
       responses.reject("met", fmt::format("is \"{}\": {}", met, error.what()));
       root.check();
+    }
+  }
+
+  /// What looks at movements needs a hand, and two cues need every trial's intervals.
+  void check_depth() const {
+    using trials::AnalysisKind;
+    const AnalysisKind kind = plan_.kind;
+    if (kind == AnalysisKind::kReaching || kind == AnalysisKind::kPursuit ||
+        kind == AnalysisKind::kProduced || kind == AnalysisKind::kPaired || plan_.cues) {
+      throw InputError(fmt::format("{}: responses alone do not simulate analyses of movements, of "
+                                   "pairs or of two cues; give power.depth = \"sessions\"",
+                                   asked_in_));
+    }
+  }
+
+  /// The relation of the covariate, which needs a test that is adjusted for it.
+  void read_relation() {
+    Table root = d_.root();
+    if (!root.has("power") || !root.table("power").has("covariate")) {
+      return;
+    }
+    correlation_ = read_power_plan(root).covariate;
+    if (correlation_ != 0.0 && watched_.find(", adjusted for ") == std::string::npos) {
+      Table power = root.table("power");
+      power.reject("covariate", "is stated, but the watched test is not adjusted for one; watch "
+                                "\"... planned A < B, adjusted for PAGE.SCORE\"");
+      root.check();
+    }
+  }
+
+  /// Gives the watched planned test a covariate with the stated relation to what it compares.
+  void relate_covariate(trials::TrialsResult& result, std::uint64_t seed) const {
+    for (trials::Quantity& quantity : result.quantities) {
+      for (const analysis::SideTest& test : quantity.tests.planned.tests) {
+        const std::string name =
+            fmt::format("{}: planned {}, adjusted for ", quantity.title, text_of(test.sides));
+        if (watched_.starts_with(name)) {
+          const analysis::Covariate covariate{
+              plan_.plan.covariate.name,
+              analysis::related_covariate(quantity.table, test.sides, correlation_, seed)};
+          trials::hold_covariate(quantity, covariate, result.plan);
+          return;
+        }
+      }
     }
   }
 
@@ -234,8 +275,20 @@ class TrialsStudySimulation final : public StudySimulation {
     }
   }
 
-  SimulatedStudy analyzed(trials::TrialsData data, const trials::TrialsPlan& plan) const {
-    SimulatedStudy r = simulated_study_of(trials::analyze(std::move(data), plan, procedures(), 1));
+  /// @param files  of the sessions; none of responses alone
+  SimulatedStudy analyzed(trials::TrialsData data, analysis::Covariate covariate,
+                          const std::vector<std::filesystem::path>& files,
+                          std::uint64_t seed) const {
+    trials::TrialsPlan plan = plan_;
+    plan.plan.covariate = correlation_ == 0.0 ? std::move(covariate) : analysis::Covariate{};
+    trials::TrialsResult result = trials::analyze(std::move(data), plan, procedures(), 1);
+    if (!files.empty()) {
+      add_file_quantities(d_, files, 1, result);
+    }
+    if (correlation_ != 0.0) {
+      relate_covariate(result, seed);
+    }
+    SimulatedStudy r = simulated_study_of(result);
     r.hours = static_cast<double>(r.trials) * hours_of_trial_;
     return r;
   }
@@ -264,6 +317,8 @@ class TrialsStudySimulation final : public StudySimulation {
   const StudiedDefinition& d_;
   trials::TrialsPlan plan_;
   std::string asked_in_;  // file with [power]
+  std::string watched_;   // test
+  double correlation_{0.0};  // of the covariate with what that test compares
   double hours_of_trial_{0.0};
   std::optional<protocols::ResponseSession> session_;
 };
