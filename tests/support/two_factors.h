@@ -41,8 +41,7 @@ inline TwoFactors mixed_factors(const std::vector<Rows>& groups) {
 }
 
 /// Both between participants. @param cells  values of each, levels of b running fastest
-inline TwoFactors two_between(const std::vector<std::vector<double>>& cells,
-                              std::size_t levels_a) {
+inline TwoFactors two_between(const std::vector<std::vector<double>>& cells, std::size_t levels_a) {
   const std::size_t levels_b = cells.size() / levels_a;
   analysis::MultifactorTable table{{}, {levels_a, levels_b}, {}, {}};
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {

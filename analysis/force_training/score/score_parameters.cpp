@@ -70,7 +70,8 @@ const Schema<AlignmentOptions>& alignment_schema() {
 /// The keys of the shares.
 void add_shares(Schema<ScoreParameters>& schema) {
   using P = ScoreParameters;
-  schema.number("cost_share", &P::cost_share, kWeight, "",
+  schema
+      .number("cost_share", &P::cost_share, kWeight, "",
               "Share of the alignment's cost in the score")
       .required()
       .number("force_share", &P::force_share, kWeight, "1/N",
@@ -106,14 +107,14 @@ const Schema<ScoreParameters>& score_schema() {
   static const auto schema = [] {
     Schema<P> all;
     all.integer("samples", &P::samples, 2, kMostSamples,
-                   "Samples of the time base on which curves are compared")
+                "Samples of the time base on which curves are compared")
         .required()
         .number("filter_width", &P::filter_width, {0.0, kWidestFilter}, "s",
-                 "Width of the box filter on the applied force")
+                "Width of the box filter on the applied force")
         .required()
         .keys_of(&P::alignment, alignment_schema())
         .number("window", &P::window, kNonNegative, "s",
-                 "Greatest difference in time that the alignment may make")
+                "Greatest difference in time that the alignment may make")
         .otherwise("no window");
     add_shares(all);
     return all;

@@ -115,8 +115,9 @@ Defined<Slope> slope_of(const std::map<double, Repeats>& levels, const Points& p
   }
   const auto scatter = scatter_of(levels);
   if (!scatter) {
-    return Undefined{"no level was presented twice, so that the error of the measured stimuli is "
-                     "not known"};
+    return Undefined{
+        "no level was presented twice, so that the error of the measured stimuli is "
+        "not known"};
   }
   std::vector<NoisyPoint> noisy;
   for (std::size_t i = 0; i < points.x.size(); ++i) {

@@ -43,10 +43,10 @@ struct PowerLaw {
   double constant{0.0};                   // of the common modulus
   double r_squared{0.0};                  // of the logarithms of the levels' means
   std::vector<std::size_t> participants;  // (n) rising
-  std::vector<double> exponents;       // (n) each participant's slope of log on log
-  std::vector<double> moduli;          // (n) what the participant's estimates are divided by
-  std::vector<PersonalLine> lines;     // (n) how well each exponent is known
-  std::vector<MagnitudeLevel> levels;  // rising
+  std::vector<double> exponents;          // (n) each participant's slope of log on log
+  std::vector<double> moduli;             // (n) what the participant's estimates are divided by
+  std::vector<PersonalLine> lines;        // (n) how well each exponent is known
+  std::vector<MagnitudeLevel> levels;     // rising
 };
 
 /// Repeated estimates of a participant at a level become their geometric mean. A participant's
@@ -58,8 +58,8 @@ struct PowerLaw {
 /// errors on both axes (errors_in_variables.h), which scatter as the logarithms of a participant's
 /// repeated trials do around the means of their levels: otherwise it would come out too small.
 /// Undefined when a participant has fewer than two levels, some trials alone were measured, a
-/// participant's measured trials do not tell their scatter, a value is not above 0 or not finite, or
-/// participants have no levels in common, directly or through others.
+/// participant's measured trials do not tell their scatter, a value is not above 0 or not finite,
+/// or participants have no levels in common, directly or through others.
 /// @param level  coverage of the intervals, inside (0, 1). @throws std::invalid_argument naming it.
 Defined<PowerLaw> power_law(std::span<const MagnitudeTrial> trials, double level = 0.95);
 

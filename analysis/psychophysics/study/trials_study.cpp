@@ -376,9 +376,9 @@ void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {
   for (const auto& effect : q.tests.effects) {
     if (effect) {
       const auto held = effect->test.find("covariance");
-      tests.push_back({q.title + ": " + effect->factor +
-                           (held == std::string::npos ? "" : ", " + effect->test),
-                       effect->p});
+      tests.push_back(
+          {q.title + ": " + effect->factor + (held == std::string::npos ? "" : ", " + effect->test),
+           effect->p});
     }
   }
   if (q.tests.ranks) {

@@ -65,8 +65,8 @@ MatrixXd residuals(const MatrixXd& design, const MatrixXd& scores) {
 
 /// The squares of scores along columns of full rank: what these explain.
 double squares_along(const MatrixXd& columns, const MatrixXd& scores) {
-  const MatrixXd directions = columns.householderQr().householderQ() *
-                              MatrixXd::Identity(columns.rows(), columns.cols());
+  const MatrixXd directions =
+      columns.householderQr().householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
   return (directions.transpose() * scores).squaredNorm();
 }
 

@@ -28,7 +28,8 @@ struct MultifactorEffect {
 /// @returns single factors first, and of these the ones between participants; each undefined if its
 /// error does not vary, and all if a value is not finite, if the participants are no more than the
 /// groups, or if some combination of groups has no participant
-/// Source: weighted squares of means (Yates 1934); Searle 1971, Linear Models; Maxwell and Delaney 2004, chapters 12 to 14.
+/// Source: weighted squares of means (Yates 1934); Searle 1971, Linear Models; Maxwell and Delaney
+/// 2004, chapters 12 to 14.
 std::vector<MultifactorEffect> multifactor_anova(const MultifactorTable& table);
 
 }  // namespace haptrial::analysis

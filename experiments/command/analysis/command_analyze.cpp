@@ -74,9 +74,10 @@ std::vector<std::string> given_instead(const AnalyzeOptions& options) {
 /// Studies without curves have no shares.
 void check_shares(const AnalyzeOptions& options, const record::SessionInfo& session) {
   if (!options.shares.empty() && !study_of(session).curves(session)) {
-    throw InputError(fmt::format("--shares is given, but the passes of {} have no force to recall; "
-                                 "leave it out",
-                                 session.definition_name));
+    throw InputError(
+        fmt::format("--shares is given, but the passes of {} have no force to recall; "
+                    "leave it out",
+                    session.definition_name));
   }
 }
 
@@ -203,9 +204,10 @@ void add_analyze(CLI::App& app, int& status) {
   sub->add_option("--reference", o.reference, "Reference condition in place of the definition's");
   sub->add_option("--shares", o.shares,
                   "File of judge fit with shares of the score, in place of the definition's");
-  sub->add_option("--paper", o.paper,
-                  "Width [mm] of figures for a paper, such as 85: PDF and SVG in 8 pt, without titles "
-                  "(default: none are written)");
+  sub->add_option(
+      "--paper", o.paper,
+      "Width [mm] of figures for a paper, such as 85: PDF and SVG in 8 pt, without titles "
+      "(default: none are written)");
   sub->add_option("--jobs", o.jobs, kJobsHelp);
 }
 

@@ -202,9 +202,10 @@ class TrialsStudySimulation final : public StudySimulation {
     const AnalysisKind kind = plan_.kind;
     if (kind == AnalysisKind::kReaching || kind == AnalysisKind::kPursuit ||
         kind == AnalysisKind::kProduced || kind == AnalysisKind::kPaired || plan_.cues) {
-      throw InputError(fmt::format("{}: responses alone do not simulate analyses of movements, of "
-                                   "pairs or of two cues; give power.depth = \"sessions\"",
-                                   asked_in_));
+      throw InputError(
+          fmt::format("{}: responses alone do not simulate analyses of movements, of "
+                      "pairs or of two cues; give power.depth = \"sessions\"",
+                      asked_in_));
     }
   }
 
@@ -217,8 +218,9 @@ class TrialsStudySimulation final : public StudySimulation {
     correlation_ = read_power_plan(root).covariate;
     if (correlation_ != 0.0 && watched_.find(", adjusted for ") == std::string::npos) {
       Table power = root.table("power");
-      power.reject("covariate", "is stated, but the watched test is not adjusted for one; watch "
-                                "\"... planned A < B, adjusted for PAGE.SCORE\"");
+      power.reject("covariate",
+                   "is stated, but the watched test is not adjusted for one; watch "
+                   "\"... planned A < B, adjusted for PAGE.SCORE\"");
       root.check();
     }
   }
@@ -316,8 +318,8 @@ class TrialsStudySimulation final : public StudySimulation {
 
   const StudiedDefinition& d_;
   trials::TrialsPlan plan_;
-  std::string asked_in_;  // file with [power]
-  std::string watched_;   // test
+  std::string asked_in_;     // file with [power]
+  std::string watched_;      // test
   double correlation_{0.0};  // of the covariate with what that test compares
   double hours_of_trial_{0.0};
   std::optional<protocols::ResponseSession> session_;

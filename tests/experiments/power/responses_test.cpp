@@ -142,6 +142,31 @@ TEST(PowerQuestion, RefusesBadInputWithASentence) {
                  "does not know the report of protocol 'bone_drilling'");
 }
 
+/// A definition of the everyday experiments with a question about it beside.
+std::string everyday_power(const std::string& name, const std::string& rest) {
+  return "[power]\ndefinition = \"" +
+         (kSource / "docs/worked/everyday" / (name + ".toml")).string() + "\"\n" + rest;
+}
+
+TEST(PowerQuestion, WhatHandsProduceIsWatchedInFullSessionsAlone) {
+  const std::string watch = "watch = \"no such test\"\n";
+  const std::string vary = "[[power.vary]]\nkey = \"design.participants\"\nvalues = [3]\n";
+  expect_refused(everyday_power("force_matching", watch + vary), "depth = \"sessions\"");
+  expect_refused(everyday_power("force_matching", watch + "depth = \"sessions\"\n" + vary),
+                 "\"constant error: target\"");
+}
+
+TEST(PowerQuestion, ACovariateIsRelatedToAPlannedTestAlone) {
+  const std::string met = "covariate = 0.5\n[power.responses]\nmet = \"$stiffness\"\n";
+  expect_refused(power_of("stiffness_discrimination",
+                          "watch = \"drift over the trials\"\n" + met + kVary),
+                 "the watched test is not adjusted for one");
+  expect_refused(power_of("stiffness_discrimination",
+                          "watch = \"drift over the trials\"\ncovariate = 1.5\n" +
+                              std::string(kVary)),
+                 "power.covariate is 1.5");
+}
+
 TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {
   const TemporaryFolder folder;
   const PowerQuestion q = question_of(

@@ -124,9 +124,8 @@ void add_person(std::size_t person, double exponent, RandomStream& random,
     const double nominal = std::exp(0.4 * level);
     for (int k = 0; k < 4; ++k) {
       const double measured = nominal * std::exp(0.4 * random.normal());
-      trials.push_back(
-          {person, nominal, std::pow(nominal, exponent) * std::exp(0.3 * random.normal()),
-           measured});
+      trials.push_back({person, nominal,
+                        std::pow(nominal, exponent) * std::exp(0.3 * random.normal()), measured});
     }
   }
 }

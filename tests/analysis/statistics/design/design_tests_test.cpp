@@ -159,8 +159,7 @@ TEST(DesignTests, GroupsOfPeopleAndConditionsWithinTakeTheMixedAnalysis) {
   const auto mixed = test::mixed_factors(groups);
   ASSERT_EQ(tests.effects.size(), 3u);
   expect_effect(tests.effects[0], "group", mixed.a->f, mixed.a->p);
-  expect_effect(tests.effects[1], "condition", mixed.b->f,
-                mixed.b->p_greenhouse_geisser);
+  expect_effect(tests.effects[1], "condition", mixed.b->f, mixed.b->p_greenhouse_geisser);
   expect_effect(tests.effects[2], "group × condition", mixed.interaction->f,
                 mixed.interaction->p_greenhouse_geisser);
   // x-y, x-z, y-z; expert-novice; and cells: 3 pairs in each of 2 groups, 3 between groups.

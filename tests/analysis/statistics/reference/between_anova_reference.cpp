@@ -29,8 +29,8 @@ void compare_two_way(Answers& r, const std::string& name) {
     cells[2 * a + ((row + 1) % 3 == 0 ? 1 : 0)].push_back(values[row]);
   }
   const auto found = test::two_between(cells, levels.size());
-  for (const auto& [effect, test] : {std::pair{"a", &found.a}, std::pair{"b", &found.b},
-                                     std::pair{"a:b", &found.interaction}}) {
+  for (const auto& [effect, test] :
+       {std::pair{"a", &found.a}, std::pair{"b", &found.b}, std::pair{"a:b", &found.interaction}}) {
     r.at("Two-way ANOVA type III", name + " " + effect)
         .is("f", (*test)->f)
         .is("df", (*test)->df)

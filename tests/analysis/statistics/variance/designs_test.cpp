@@ -98,8 +98,7 @@ TEST(TwoFactorsWithin, TakesTheSquaresApart) {
 
 TEST(TwoFactorsWithin, SaysWhyAnEffectIsNotDefined) {
   // b differs by 2 for everyone; a does not.
-  const auto anova =
-      test::two_within({{1, 3, 5, 7}, {2, 4, 3, 5}, {0, 2, 9, 11}}, 2);
+  const auto anova = test::two_within({{1, 3, 5, 7}, {2, 4, 3, 5}, {0, 2, 9, 11}}, 2);
   EXPECT_TRUE(anova.a);
   EXPECT_THAT(anova.b.because(), HasSubstr("same amount"));
   EXPECT_THAT(anova.interaction.because(), HasSubstr("same amount"));
