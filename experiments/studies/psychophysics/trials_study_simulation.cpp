@@ -137,7 +137,7 @@ class TrialsStudySimulation final : public StudySimulation {
     const int most = std::max(1, d_.most_trials());
     hours_of_trial_ = d_.longest(most) / most / 3600.0;
     read_responses();
-    read_relation();
+    read_question();
   }
 
   bool people_differ() const override {
@@ -146,7 +146,6 @@ class TrialsStudySimulation final : public StudySimulation {
   }
 
   SimulatedStudy responses(std::uint64_t seed) const override {
-    check_depth();
     if (d_.script) {
       throw InputError(fmt::format(
           "{}: level_script chooses the levels, which responses alone do not run; give power.depth "
@@ -197,7 +196,7 @@ class TrialsStudySimulation final : public StudySimulation {
   }
 
   /// What looks at movements needs a hand, and two cues need every trial's intervals.
-  void check_depth() const {
+  void check_responses() const {
     using trials::AnalysisKind;
     const AnalysisKind kind = plan_.kind;
     if (kind == AnalysisKind::kReaching || kind == AnalysisKind::kPursuit ||
@@ -209,13 +208,18 @@ class TrialsStudySimulation final : public StudySimulation {
     }
   }
 
-  /// The relation of the covariate, which needs a test that is adjusted for it.
-  void read_relation() {
+  /// The depth must suit the analysis, and a relation of the covariate needs a test that is
+  /// adjusted for it.
+  void read_question() {
     Table root = d_.root();
-    if (!root.has("power") || !root.table("power").has("covariate")) {
+    if (!root.has("power")) {
       return;
     }
-    correlation_ = read_power_plan(root).covariate;
+    const PowerPlan asked = read_power_plan(root);
+    if (asked.depth == PowerDepth::kResponses) {
+      check_responses();
+    }
+    correlation_ = asked.covariate;
     if (correlation_ != 0.0 && watched_.find(", adjusted for ") == std::string::npos) {
       Table power = root.table("power");
       power.reject("covariate",
