@@ -72,10 +72,6 @@ const Schema<PowerPlan>& power_schema() {
           .choice("depth", &P::depth,
                   {{"responses", PowerDepth::kResponses}, {"sessions", PowerDepth::kSessions}},
                   "Depth of the simulation: responses alone, or full sessions of each participant")
-          .number("covariate", &P::covariate, {-0.99, 0.99}, "",
-                  "Correlation of the score analysis.covariate, which is then made up, with what "
-                  "the watched planned test compares: of the same people their difference; 0: the "
-                  "score says nothing")
           .check([](Table& table, P& plan) {
             if (plan.depth == PowerDepth::kSessions && !table.has("block")) {
               plan.block = 1;  // full sessions take long

@@ -34,7 +34,6 @@ struct PowerPlan {
   PowerDepth depth{PowerDepth::kResponses};
   int checked_cells{0};  // cells that are also simulated in full
   int checked_replications{4};
-  double covariate{0.0};  // its correlation with what the watched planned test compares
   std::vector<VariedKey> vary;
 };
 

@@ -40,14 +40,6 @@ Undefined left_out(const std::vector<std::string>& open, std::size_t others) {
                       open.size() + others, fmt::join(open, ", "))};
 }
 
-Resampling resampling_of(const Quantity& quantity, const TrialsPlan& plan) {
-  Resampling resampling;
-  resampling.seed = plan.seed;
-  resampling.stream = "trials " + quantity.name;
-  resampling.count = plan.permutations;
-  return resampling;
-}
-
 }  // namespace
 
 Quantity quantity(std::string name, std::string title, std::string unit,
@@ -94,18 +86,13 @@ Quantity quantity(std::string name, std::string title, std::string unit,
   }
   result.compared = result.table.cells.size() > 1;
   if (result.compared) {
-    result.tests = design_tests(result.table, plan.plan, resampling_of(result, plan));
+    Resampling resampling;
+    resampling.seed = plan.seed;
+    resampling.stream = "trials " + result.name;
+    resampling.count = plan.permutations;
+    result.tests = design_tests(result.table, plan.plan, resampling);
   }
   return result;
-}
-
-void hold_covariate(Quantity& quantity, const Covariate& covariate, const TrialsPlan& plan) {
-  AnalysisPlan adjusted = plan.plan;
-  adjusted.covariate = covariate;
-  for (std::size_t i = 0; i < quantity.tests.planned.tests.size(); ++i) {
-    adjusted.tests[i] = quantity.tests.planned.tests[i].sides;  // with the tails of this quantity
-  }
-  quantity.tests = design_tests(quantity.table, adjusted, resampling_of(quantity, plan));
 }
 
 }  // namespace haptrial::analysis::trials

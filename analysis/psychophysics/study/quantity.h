@@ -51,7 +51,4 @@ Quantity quantity(std::string name, std::string title, std::string unit,
                   const std::vector<QuantityValue>& values, const TrialsPlan& plan,
                   ValueRange range = ValueRange::kAny);
 
-/// The same quantity with its planned tests adjusted for a covariate.
-void hold_covariate(Quantity& quantity, const Covariate& covariate, const TrialsPlan& plan);
-
 }  // namespace haptrial::analysis::trials

@@ -13,11 +13,9 @@
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/study/covariate.h"
 #include "analysis/psychophysics/study/trials_study.h"
-#include "analysis/statistics/design/related_covariate.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/record/read/session_reader.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/psychophysics/file_quantities.h"
 #include "experiments/study/study_run.h"
@@ -125,7 +123,7 @@ class TrialsStudySimulation final : public StudySimulation {
  public:
   TrialsStudySimulation(const StudiedDefinition& definition, trials::TrialsPlan plan,
                         std::string asked_in, const std::string& watched)
-      : d_(definition), plan_(std::move(plan)), asked_in_(std::move(asked_in)), watched_(watched) {
+      : d_(definition), plan_(std::move(plan)), asked_in_(std::move(asked_in)) {
     plan_.resamples = 0;
     plan_.bayesian = false;
     plan_.hierarchical = false;
@@ -137,7 +135,7 @@ class TrialsStudySimulation final : public StudySimulation {
     const int most = std::max(1, d_.most_trials());
     hours_of_trial_ = d_.longest(most) / most / 3600.0;
     read_responses();
-    read_question();
+    check_question();
   }
 
   bool people_differ() const override {
@@ -159,22 +157,21 @@ class TrialsStudySimulation final : public StudySimulation {
                       asked_in_));
     }
     trials::TrialsData data;
-    analysis::Covariate covariate{plan_.plan.covariate.name};
+    trials::TrialsPlan plan = plan_;
     for (int p = 0; p < d_.design.participants; ++p) {
       for (int session = 1; session <= d_.sessions(); ++session) {
         add_session(p, session, seed, data);
       }
-      draw_covariate(participant_name(p), seed, covariate);
+      draw_covariate(participant_name(p), seed, plan.plan.covariate);
     }
-    return analyzed(std::move(data), std::move(covariate), {}, seed);
+    return analyzed(std::move(data), plan, {});
   }
 
   SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
     const auto group = [this](const std::string& subject) { return group_of(subject); };
-    analysis::Covariate covariate{plan_.plan.covariate.name};
-    trials::add_covariate(trials::page_scores(files, d_.pages, group), covariate);
-    return analyzed(trials::read_trials(files, group, 1), std::move(covariate), files,
-                    record::SessionReader(files.front()).info().seed);
+    trials::TrialsPlan plan = plan_;
+    trials::add_covariate(trials::page_scores(files, d_.pages, group), plan.plan.covariate);
+    return analyzed(trials::read_trials(files, group, 1), plan, files);
   }
 
  private:
@@ -208,41 +205,11 @@ class TrialsStudySimulation final : public StudySimulation {
     }
   }
 
-  /// The depth must suit the analysis, and a relation of the covariate needs a test that is
-  /// adjusted for it.
-  void read_question() {
+  /// The depth must suit the analysis.
+  void check_question() const {
     Table root = d_.root();
-    if (!root.has("power")) {
-      return;
-    }
-    const PowerPlan asked = read_power_plan(root);
-    if (asked.depth == PowerDepth::kResponses) {
+    if (root.has("power") && read_power_plan(root).depth == PowerDepth::kResponses) {
       check_responses();
-    }
-    correlation_ = asked.covariate;
-    if (correlation_ != 0.0 && watched_.find(", adjusted for ") == std::string::npos) {
-      Table power = root.table("power");
-      power.reject("covariate",
-                   "is stated, but the watched test is not adjusted for one; watch "
-                   "\"... planned A < B, adjusted for PAGE.SCORE\"");
-      root.check();
-    }
-  }
-
-  /// Gives the watched planned test a covariate with the stated relation to what it compares.
-  void relate_covariate(trials::TrialsResult& result, std::uint64_t seed) const {
-    for (trials::Quantity& quantity : result.quantities) {
-      for (const analysis::SideTest& test : quantity.tests.planned.tests) {
-        const std::string name =
-            fmt::format("{}: planned {}, adjusted for ", quantity.title, text_of(test.sides));
-        if (watched_.starts_with(name)) {
-          const analysis::Covariate covariate{
-              plan_.plan.covariate.name,
-              analysis::related_covariate(quantity.table, test.sides, correlation_, seed)};
-          trials::hold_covariate(quantity, covariate, result.plan);
-          return;
-        }
-      }
     }
   }
 
@@ -282,17 +249,11 @@ class TrialsStudySimulation final : public StudySimulation {
   }
 
   /// @param files  of the sessions; none of responses alone
-  SimulatedStudy analyzed(trials::TrialsData data, analysis::Covariate covariate,
-                          const std::vector<std::filesystem::path>& files,
-                          std::uint64_t seed) const {
-    trials::TrialsPlan plan = plan_;
-    plan.plan.covariate = correlation_ == 0.0 ? std::move(covariate) : analysis::Covariate{};
+  SimulatedStudy analyzed(trials::TrialsData data, const trials::TrialsPlan& plan,
+                          const std::vector<std::filesystem::path>& files) const {
     trials::TrialsResult result = trials::analyze(std::move(data), plan, procedures(), 1);
     if (!files.empty()) {
       add_file_quantities(d_, files, 1, result);
-    }
-    if (correlation_ != 0.0) {
-      relate_covariate(result, seed);
     }
     SimulatedStudy r = simulated_study_of(result);
     r.hours = static_cast<double>(r.trials) * hours_of_trial_;
@@ -322,9 +283,7 @@ class TrialsStudySimulation final : public StudySimulation {
 
   const StudiedDefinition& d_;
   trials::TrialsPlan plan_;
-  std::string asked_in_;     // file with [power]
-  std::string watched_;      // test
-  double correlation_{0.0};  // of the covariate with what that test compares
+  std::string asked_in_;  // file with [power]
   double hours_of_trial_{0.0};
   std::optional<protocols::ResponseSession> session_;
 };

@@ -161,17 +161,6 @@ TEST(PowerQuestion, WhatHandsProduceIsWatchedInFullSessionsAlone) {
   expect_refused(produced_power("depth = \"sessions\"\n"), "\"constant error: target\"");
 }
 
-TEST(PowerQuestion, ACovariateIsRelatedToAPlannedTestAlone) {
-  const std::string met = "covariate = 0.5\n[power.responses]\nmet = \"$stiffness\"\n";
-  expect_refused(
-      power_of("stiffness_discrimination", "watch = \"drift over the trials\"\n" + met + kVary),
-      "the watched test is not adjusted for one");
-  expect_refused(
-      power_of("stiffness_discrimination",
-               "watch = \"drift over the trials\"\ncovariate = 1.5\n" + std::string(kVary)),
-      "power.covariate is 1.5");
-}
-
 TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {
   const TemporaryFolder folder;
   const PowerQuestion q = question_of(
