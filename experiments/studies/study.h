@@ -34,6 +34,7 @@ struct AnalysisRequest {
   int paper{0};                      // width of figures as PDF [mm]; 0: none
   std::vector<std::string> planned;  // tests, in place of the definition's
   std::string reference;             // condition, likewise
+  std::filesystem::path shares;      // file with the shares of a score of curves, likewise
 };
 
 /// A protocol together with what is computed from its sessions. It is one object without state.

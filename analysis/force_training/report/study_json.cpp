@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/force_training/report/recall_frequency_findings.h"
 #include "analysis/force_training/study/identity_json_internal.h"
@@ -108,7 +110,8 @@ Json random_terms(const StudyMixed& mixed) {
     rows.push_back({{"term", term.words},
                     {"lme4", term.notation},
                     {"groups", term.groups},
-                    {"variance", mixed.model->variances[k]}});
+                    {"variance", mixed.model->variances[k]},
+                    {"standard_deviation", std::sqrt(mixed.model->variances[k])}});
   }
   return rows;
 }
@@ -138,6 +141,7 @@ Json mixed_model(const StudyMixed& mixed) {
           {"random_terms", random_terms(mixed)},
           {"terms_left_out", mixed.left_out},
           {"variance_residual", mixed.model->variance_within},
+          {"standard_deviation_residual", std::sqrt(mixed.model->variance_within)},
           {"at_boundary", mixed.model->at_boundary},
           {"log_likelihood_reml", mixed.model->log_likelihood},
           {"conditions_differ", to_json(mixed.omnibus)},

@@ -67,41 +67,67 @@ const Schema<AlignmentOptions>& alignment_schema() {
   return schema;
 }
 
+/// The keys of the shares.
+void add_shares(Schema<ScoreParameters>& schema) {
+  using P = ScoreParameters;
+  schema
+      .number("cost_share", &P::cost_share, kWeight, "",
+              "Share of the alignment's cost in the score")
+      .required()
+      .number("force_share", &P::force_share, kWeight, "1/N",
+              "Share of the difference of force in the score")
+      .required()
+      .number("slope_share", &P::slope_share, kWeight, "s/N",
+              "Share of the difference of slope in the score")
+      .required()
+      .check([](Table& table, const P& p) {
+        const bool all_there =
+            table.has("cost_share") && table.has("force_share") && table.has("slope_share");
+        if (all_there && p.cost_share + p.force_share + p.slope_share == 0.0) {
+          table.reject("cost_share",
+                       "is 0, like force_share and slope_share; set at least one of them "
+                       "above 0");
+        }
+      });
+}
+
+const Schema<ScoreParameters>& shares_schema() {
+  static const auto schema = [] {
+    Schema<ScoreParameters> shares;
+    add_shares(shares);
+    return shares;
+  }();
+  return schema;
+}
+
 }  // namespace
 
 const Schema<ScoreParameters>& score_schema() {
   using P = ScoreParameters;
-  static const auto schema =
-      Schema<P>()
-          .integer("samples", &P::samples, 2, kMostSamples,
-                   "Samples of the time base on which curves are compared")
-          .required()
-          .number("filter_width", &P::filter_width, {0.0, kWidestFilter}, "s",
-                  "Width of the box filter on the applied force")
-          .required()
-          .keys_of(&P::alignment, alignment_schema())
-          .number("window", &P::window, kNonNegative, "s",
-                  "Greatest difference in time that the alignment may make")
-          .otherwise("no window")
-          .number("cost_share", &P::cost_share, kWeight, "",
-                  "Share of the alignment's cost in the score")
-          .required()
-          .number("force_share", &P::force_share, kWeight, "1/N",
-                  "Share of the difference of force in the score")
-          .required()
-          .number("slope_share", &P::slope_share, kWeight, "s/N",
-                  "Share of the difference of slope in the score")
-          .required()
-          .check([](Table& table, const P& p) {
-            const bool all_there =
-                table.has("cost_share") && table.has("force_share") && table.has("slope_share");
-            if (all_there && p.cost_share + p.force_share + p.slope_share == 0.0) {
-              table.reject("cost_share",
-                           "is 0, like force_share and slope_share; set at least one of them "
-                           "above 0");
-            }
-          });
+  static const auto schema = [] {
+    Schema<P> all;
+    all.integer("samples", &P::samples, 2, kMostSamples,
+                "Samples of the time base on which curves are compared")
+        .required()
+        .number("filter_width", &P::filter_width, {0.0, kWidestFilter}, "s",
+                "Width of the box filter on the applied force")
+        .required()
+        .keys_of(&P::alignment, alignment_schema())
+        .number("window", &P::window, kNonNegative, "s",
+                "Greatest difference in time that the alignment may make")
+        .otherwise("no window");
+    add_shares(all);
+    return all;
+  }();
   return schema;
+}
+
+ScoreParameters with_shares_of(const std::filesystem::path& file, ScoreParameters parameters) {
+  Table root = Table::load(file);
+  Table analysis = root.table("analysis");
+  shares_schema().read(analysis, parameters);
+  root.check();
+  return parameters;
 }
 
 ScoreParameters read_scoring(Table& root, Table& analysis) {

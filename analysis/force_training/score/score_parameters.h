@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,6 +34,10 @@ struct ScoreParameters {
 
 /// The keys of [analysis] that say how a recall is scored.
 const Schema<ScoreParameters>& score_schema();
+
+/// The same parameters with the shares that a file states in its table [analysis], as
+/// `haptrial judge fit` writes it. @throws InputError for a file without them, or with other keys
+ScoreParameters with_shares_of(const std::filesystem::path& file, ScoreParameters parameters);
 
 /// Reads them with what follows from the guidance of a definition.
 /// @param analysis  the table of that name in `root`

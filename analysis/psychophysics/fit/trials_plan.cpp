@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -355,9 +356,20 @@ bool answers(const TrialsPlan& plan) {
          plan.kind != AnalysisKind::kProduced;
 }
 bool is_timed(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kTimes; }
+bool has_magnitudes(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kMagnitude; }
 bool identifies(const TrialsPlan& plan) { return plan.kind == AnalysisKind::kIdentification; }
 bool may_rate(const TrialsPlan& plan) {
   return plan.kind == AnalysisKind::kDetection || identifies(plan);
+}
+
+void check_measured(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan) {
+  std::vector<std::string> names;
+  std::ranges::transform(defaults.produced.measures, std::back_inserter(names), &MeasureName::name);
+  if (!plan.measured.empty() && !has_name(names, plan.measured)) {
+    table.reject("measured", fmt::format("\"{}\"", plan.measured),
+                 names.empty() ? "a name of [measures], of which there is none"
+                               : fmt::format("one of: {}", fmt::join(names, ", ")));
+  }
 }
 
 /// The keys that say which answers are compared.
@@ -410,6 +422,16 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
         } else if (plan.metacognition && identifies(plan) && plan.choices.size() != 2) {
           table.reject("metacognition", "true",
                        "false where the response does not have two choices");
+        }
+      })
+      .text("measured", &P::measured,
+            "Measure of what the stimulus was in each trial; the exponent then allows for errors "
+            "of both the stimulus and the number that was given")
+      .otherwise("stimuli are exactly at their levels")
+      .only_if(has_magnitudes)
+      .check([&](Table& table, P& plan) {
+        if (has_magnitudes(plan)) {
+          check_measured(table, defaults, plan);
         }
       })
       .text("stage", &P::stage, "Stage whose duration is the time")

@@ -81,6 +81,7 @@ struct TrialsPlan {
   bool level_is_set{false};     // `level` is one that procedures set; trials in which another
                                 // procedure set another one have none
   bool level_assumed{false};    // procedures set several variables, and `level` is the first
+  std::string measured;         // measure of the stimulus, of magnitudes; empty: it is the level
   std::string rating;           // question with a number: how sure; empty: none
   std::string stimulus;         // factor that says what was presented, of an identification
   std::vector<std::string> choices;  // of the question, likewise

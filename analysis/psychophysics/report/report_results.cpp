@@ -240,6 +240,9 @@ void add_results(Document& document, const TrialsResult& result,
   }
   if (!result.surfaces.empty()) {
     add_section(document, result, "Functions of several variables");
+    if (result.series.empty()) {
+      add_means(document, result);  // else they stand with the functions of one variable
+    }
     add_surfaces(document, result, drawings);
   }
   if (result.plan.functions && (result.surfaces.empty() || !result.series.empty())) {

@@ -121,10 +121,13 @@ void add_surfaces(Document& document, const TrialsResult& result,
       method_of(result.surfaces) +
       fmt::format(" The threshold is where the probability of the answer 1 is {:g} %; its interval "
                   "is that of "
-                  "one variable at one value of the other. \"Open\" is an end beyond the range. "
-                  "Conditions are "
-                  "not tested against each other here.",
-                  100.0 * (result.surfaces.empty() ? 0.5 : result.surfaces.front().share)));
+                  "one variable at one value of the other. \"Open\" is an end beyond the range."
+                  "{}",
+                  100.0 * (result.surfaces.empty() ? 0.5 : result.surfaces.front().share),
+                  result.plan.by.empty()
+                      ? ""
+                      : " Conditions are compared in the mean of each participant's threshold over "
+                        "the other variable, and in its slope by least squares."));
 }
 
 }  // namespace haptrial::analysis::trials

@@ -156,7 +156,7 @@ std::vector<Figure> magnitude_figures(const TrialsResult& result) {
     Series means{name, Mark::kBars, look};
     Series line{fmt::format("exponent {:.2f}", one.law->exponent), Mark::kLine, look};
     for (const MagnitudeLevel& level : one.law->levels) {
-      means.x.push_back(std::log10(level.level));
+      means.x.push_back(std::log10(level.measured));
       means.y.push_back(std::log10(level.mean));
       means.low.push_back(std::log10(level.low));
       means.high.push_back(std::log10(level.high));

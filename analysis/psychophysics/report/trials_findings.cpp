@@ -374,6 +374,14 @@ FindingTable law_findings(const TrialsResult& result) {
     add(row, "law/r_squared", "R² of the levels' means", law.r_squared);
     add_json(row, "law/exponents", law.exponents);
     add_json(row, "law/moduli", law.moduli);
+    Json lines = Json::array();
+    for (const PersonalLine& line : law.lines) {
+      lines.push_back({{"low_95", line.low},
+                       {"high_95", line.high},
+                       {"r_squared", line.r_squared},
+                       {"residual_standard_deviation", line.deviation}});
+    }
+    add_json(row, "law/lines", lines);
     Json levels = Json::array();
     for (const MagnitudeLevel& l : law.levels) {
       levels.push_back({{"level", l.level},
@@ -381,6 +389,9 @@ FindingTable law_findings(const TrialsResult& result) {
                         {"low_95", l.low},
                         {"high_95", l.high},
                         {"participants", l.participants}});
+      if (!result.plan.measured.empty()) {
+        levels.back()["measured"] = l.measured;
+      }
     }
     add_json(row, "law/levels", levels);
   }

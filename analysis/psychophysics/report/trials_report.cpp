@@ -155,8 +155,15 @@ void add_methods(Document& document, const TrialsResult& result) {
   } else if (plan.kind == AnalysisKind::kMagnitude) {
     document.paragraph(
         "A participant's repeated estimates at a level are put together by their geometric mean; "
-        "the exponent is the least-squares slope of log estimate over log level. Moduli are "
-        "equalised before participants are averaged (Lane, Catania and Stevens 1961).");
+        "the exponent is " +
+        std::string(plan.measured.empty()
+                        ? "the least-squares slope of log estimate over log level."
+                        : fmt::format("the slope of log estimate over the logarithm of {}, with "
+                                      "errors on both axes as repeated trials scatter (York et "
+                                      "al. 2004).",
+                                      plan.measured)) +
+        " Moduli are equalised before participants are averaged (Lane, Catania and Stevens "
+        "1961).");
   }
   if (plan.kind == AnalysisKind::kAdjustment) {
     document.paragraph(

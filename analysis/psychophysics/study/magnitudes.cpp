@@ -12,9 +12,9 @@
 namespace haptrial::analysis::trials {
 namespace {
 
-/// The number that was given; NaN: none.
-double given(const StudyTrial& trial, const TrialsPlan& plan) {
-  const GivenAnswer* answer = answer_to(trial, plan.question);
+/// The number that was given, or measured; NaN: none.
+double given(const StudyTrial& trial, const std::string& question) {
+  const GivenAnswer* answer = answer_to(trial, question);
   return answer == nullptr ? kNotKnown : answer->value;
 }
 
@@ -33,14 +33,16 @@ std::vector<MagnitudeCondition> magnitudes(const TrialsData& data, const TrialsP
   std::map<std::vector<std::string>, MagnitudeCondition> all;
   for (const StudyTrial& trial : data.trials) {
     const double level = level_of(trial, plan);
-    const double value = given(trial, plan);
+    const double value = given(trial, plan.question);
     if (!trial.counts() || !trial.probe.empty() || !std::isfinite(level) || !std::isfinite(value)) {
       continue;
     }
     MagnitudeCondition& own = all[factors_of(data, trial, plan)];
-    if (level > 0.0 && value > 0.0) {
-      own.trials.push_back(
-          {number_of(own.participants, data.session_of(trial).participant), level, value});
+    const double measured = plan.measured.empty() ? kNotKnown : given(trial, plan.measured);
+    const bool known = plan.measured.empty() || measured > 0.0;
+    if (level > 0.0 && value > 0.0 && known) {
+      own.trials.push_back({number_of(own.participants, data.session_of(trial).participant), level,
+                            value, measured});
     } else {
       ++own.not_positive;
     }

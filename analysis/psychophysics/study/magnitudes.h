@@ -16,7 +16,7 @@ struct MagnitudeCondition {
   std::vector<std::string> participants;  // by the numbers in `law`
   std::vector<MagnitudeTrial> trials;
   Defined<PowerLaw> law{Undefined{"nothing was fitted"}};
-  std::size_t not_positive{0};  // answers of 0 or below, which have no logarithm: left out
+  std::size_t not_positive{0};  // answers or measures of 0 or below, without logarithm: left out
 };
 
 /// Answers are numbers in proportion to what was felt.

@@ -297,6 +297,61 @@ void add_times(TrialsResult& result) {
   }
 }
 
+/// A number of each surface's threshold over its other variable; nothing is known of surfaces whose
+/// threshold is not single everywhere, which are left out as open.
+template <class Value>
+std::vector<QuantityValue> surface_values(const TrialsResult& result, Value&& value) {
+  std::vector<QuantityValue> values;
+  for (const SurfaceCondition& one : result.surfaces) {
+    if (one.points.empty()) {
+      continue;
+    }
+    const bool single = std::ranges::all_of(
+        one.points, [](const ContourPoint& point) { return point.second.size() == 1; });
+    values.push_back(
+        {one.participant, one.levels, single ? value(one.points) : kNotKnown, !single});
+  }
+  return values;
+}
+
+double mean_threshold(const std::vector<ContourPoint>& points) {
+  double sum = 0.0;
+  for (const ContourPoint& point : points) {
+    sum += point.second.front();
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+/// Rise of the threshold over the other variable, by least squares.
+double threshold_slope(const std::vector<ContourPoint>& points) {
+  const double middle = 0.5 * (points.front().first + points.back().first);  // evenly spaced
+  double products = 0.0, squares = 0.0;
+  for (const ContourPoint& point : points) {
+    products += (point.first - middle) * point.second.front();
+    squares += (point.first - middle) * (point.first - middle);
+  }
+  return products / squares;
+}
+
+/// Conditions are compared in the mean threshold of each participant over the other variable, and
+/// in its slope.
+void add_surface_quantities(TrialsResult& result) {
+  const auto drawn =
+      std::ranges::find_if(result.surfaces, [](const auto& one) { return !one.points.empty(); });
+  if (result.plan.by.empty() || drawn == result.surfaces.end()) {
+    return;
+  }
+  const std::string& unit = result.plan.function.axis.unit;
+  const std::string& over = drawn->variables[0];
+  const std::string of = fmt::format("threshold of {} over {}", drawn->variables[1], over);
+  result.quantities.push_back(quantity("surface_threshold", "mean " + of, unit,
+                                       surface_values(result, mean_threshold), result.plan));
+  result.quantities.push_back(quantity("surface_slope", "slope of the " + of,
+                                       fmt::format("{} per {}", unit.empty() ? "1" : unit, over),
+                                       surface_values(result, threshold_slope),
+                                       without_directions(result.plan)));
+}
+
 /// A participant's setting under a condition: the mean of their tracks' own estimates.
 void add_settings(TrialsResult& result) {
   std::map<std::pair<std::string, std::vector<std::string>>, std::vector<double>> settings;
@@ -320,7 +375,10 @@ void add_settings(TrialsResult& result) {
 void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {
   for (const auto& effect : q.tests.effects) {
     if (effect) {
-      tests.push_back({q.title + ": " + effect->factor, effect->p});
+      const auto held = effect->test.find("covariance");
+      tests.push_back(
+          {q.title + ": " + effect->factor + (held == std::string::npos ? "" : ", " + effect->test),
+           effect->p});
     }
   }
   if (q.tests.ranks) {
@@ -373,6 +431,7 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
   }
   if (plan.level.empty() && (plan.functions || plan.kind == AnalysisKind::kDetection)) {
     result.surfaces = surface_conditions(result.data, plan.by, plan.threshold_at, procedure_of);
+    add_surface_quantities(result);
   }
   if (plan.functions) {
     add_functions(result, procedure_of, threads);

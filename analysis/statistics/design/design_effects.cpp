@@ -6,8 +6,6 @@
 #include <algorithm>
 
 #include "analysis/statistics/variance/anova.h"
-#include "analysis/statistics/variance/factorial_anova.h"
-#include "analysis/statistics/variance/mixed_anova.h"
 #include "analysis/statistics/variance/multifactor_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "analysis/statistics/variance/welch_anova.h"
@@ -58,28 +56,18 @@ EffectTest described(const std::string& factor, const std::string& test, double 
   return effect;
 }
 
-Defined<EffectTest> within_effect(const std::string& factor, const std::string& test,
-                                  const Defined<WithinEffect>& found) {
-  if (!found) {
-    return Undefined{found.because()};
+Defined<EffectTest> described(const std::string& factor, const std::string& test,
+                              const MultifactorEffect& found) {
+  if (!found.test) {
+    return Undefined{found.test.because()};
   }
-  EffectTest effect =
-      described(factor, test, found->f, found->df, found->df_error, found->p_greenhouse_geisser);
-  if (found->df > 1.0) {
-    effect.epsilon = found->sphericity.greenhouse_geisser;
+  EffectTest effect = described(factor, test, found.test->f, found.test->df, found.test->df_error,
+                                found.test->p_greenhouse_geisser);
+  if (!found.within.empty() && found.test->df > 1.0) {
+    effect.epsilon = found.test->sphericity.greenhouse_geisser;
   }
   return effect;
 }
-
-Defined<EffectTest> between_effect(const std::string& factor, const std::string& test,
-                                   const Defined<Anova>& found) {
-  if (!found) {
-    return Undefined{found.because()};
-  }
-  return described(factor, test, found->f, found->df_between, found->df_within, found->p);
-}
-
-std::string together(const Factor& a, const Factor& b) { return a.name + " × " + b.name; }
 
 Effects one_within(const DesignTable& table) {
   const auto found = repeated_measures_anova(rows_of(table, table.complete(), all_cells(table)));
@@ -101,59 +89,6 @@ Effects one_between(const DesignTable& table) {
   }
   return {described(table.factors[0].name, "Welch's analysis of variance", found->f,
                     found->df_between, found->df_within, found->p)};
-}
-
-Effects two_within(const DesignTable& table) {
-  const auto found = two_way_repeated_measures_anova(
-      rows_of(table, table.complete(), all_cells(table)), table.factors[0].levels.size());
-  if (!found) {
-    return {Undefined{found.because()}};
-  }
-  const char* test = "two-way repeated-measures analysis of variance";
-  return {within_effect(table.factors[0].name, test, found->a),
-          within_effect(table.factors[1].name, test, found->b),
-          within_effect(together(table.factors[0], table.factors[1]), test, found->interaction)};
-}
-
-/// @param between, within  which factor is which
-Effects mixed(const DesignTable& table, std::size_t between, std::size_t within) {
-  std::vector<Rows> groups;
-  for (std::size_t level = 0; level < table.factors[between].levels.size(); ++level) {
-    std::vector<std::size_t> cells;
-    for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
-      if (table.cells[cell][between] == level) {
-        cells.push_back(cell);
-      }
-    }
-    std::vector<std::size_t> members;
-    for (const std::size_t s : table.complete()) {
-      if (table.means[s][cells.front()]) {
-        members.push_back(s);
-      }
-    }
-    groups.push_back(rows_of(table, members, cells));
-  }
-  const auto found = mixed_anova(groups, Squares::kMarginal);
-  if (!found) {
-    return {Undefined{found.because()}};
-  }
-  const char* test = "mixed analysis of variance";
-  const Factor& group = table.factors[between];
-  const Factor& condition = table.factors[within];
-  return {between_effect(group.name, test, found->group),
-          within_effect(condition.name, test, found->condition),
-          within_effect(together(group, condition), test, found->interaction)};
-}
-
-Effects two_between(const DesignTable& table) {
-  const auto found = two_way_anova(groups_of(table), table.factors[0].levels.size());
-  if (!found) {
-    return {Undefined{found.because()}};
-  }
-  const char* test = "two-way analysis of variance";
-  return {between_effect(table.factors[0].name, test, found->a),
-          between_effect(table.factors[1].name, test, found->b),
-          between_effect(together(table.factors[0], table.factors[1]), test, found->interaction)};
 }
 
 /// The cell of a participant under levels of the factors within.
@@ -197,12 +132,24 @@ MultifactorTable multifactor_table(const DesignTable& table, const std::vector<s
   return values;
 }
 
-/// Three or four factors, each within or between participants.
+/// The name of the analysis of several factors. @param within, between  how many
+std::string name_of_analysis(std::size_t within, std::size_t between) {
+  if (within + between > 2) {
+    return fmt::format("analysis of variance of {} factors",
+                       within + between == 3 ? "three" : "four");
+  }
+  return within == 2    ? "two-way repeated-measures analysis of variance"
+         : between == 2 ? "two-way analysis of variance"
+                        : "mixed analysis of variance";
+}
+
+/// Two to four factors, each within or between participants.
 Effects several(const DesignTable& table) {
   std::vector<std::size_t> within, between;
   for (std::size_t f = 0; f < table.factors.size(); ++f) {
     (table.factors[f].within ? within : between).push_back(f);
   }
+  const std::string test = name_of_analysis(within.size(), between.size());
   Effects effects;
   for (const MultifactorEffect& found :
        multifactor_anova(multifactor_table(table, within, between))) {
@@ -213,10 +160,7 @@ Effects several(const DesignTable& table) {
     for (const std::size_t f : found.within) {
       names.push_back(table.factors[within[f]].name);
     }
-    effects.push_back(within_effect(fmt::format("{}", fmt::join(names, " × ")),
-                                    fmt::format("analysis of variance of {} factors",
-                                                table.factors.size() == 3 ? "three" : "four"),
-                                    found.test));
+    effects.push_back(described(fmt::format("{}", fmt::join(names, " × ")), test, found));
   }
   return effects;
 }
@@ -252,13 +196,7 @@ Effects design_effects(const DesignTable& all) {
   if (!table.crossed) {
     return {Undefined{"some combinations of levels have no trials; cells are compared two by two"}};
   }
-  if (factors.size() > 2) {
-    return several(table);
-  }
-  if (factors[0].within == factors[1].within) {
-    return factors[0].within ? two_within(table) : two_between(table);
-  }
-  return factors[0].within ? mixed(table, 1, 0) : mixed(table, 0, 1);
+  return several(table);
 }
 
 Defined<RankAnova> design_ranks(const DesignTable& all) {

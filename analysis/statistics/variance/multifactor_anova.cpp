@@ -2,6 +2,10 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <string>
 
 namespace haptrial::analysis {
 namespace {
@@ -59,6 +63,13 @@ MatrixXd residuals(const MatrixXd& design, const MatrixXd& scores) {
              : MatrixXd(scores - design * design.colPivHouseholderQr().solve(scores));
 }
 
+/// The squares of scores along columns of full rank: what these explain.
+double squares_along(const MatrixXd& columns, const MatrixXd& scores) {
+  const MatrixXd directions =
+      columns.householderQr().householderQ() * MatrixXd::Identity(columns.rows(), columns.cols());
+  return (directions.transpose() * scores).squaredNorm();
+}
+
 std::vector<std::size_t> factors_of(Mask mask) {
   std::vector<std::size_t> factors;
   for (std::size_t f = 0; mask >> f != 0; ++f) {
@@ -74,46 +85,77 @@ class Analysis {
   explicit Analysis(const MultifactorTable& table)
       : table_(table),
         full_(design_without(table, ~0U)),
-        rounding_(within::rounding_squares(table.values)) {
-    rank_ = full_.colPivHouseholderQr().rank();
-  }
+        rounding_(within::rounding_squares(table.values)),
+        problem_(problem_of()) {}
+
+  /// Why nothing is defined; empty if effects are.
+  const std::string& problem() const { return problem_; }
 
   Defined<WithinEffect> tested(Mask within_mask, Mask between_mask) const {
-    if (rank_ < full_.cols()) {
-      return Undefined{"a combination of groups has no participant"};
-    }
-    const auto df_rows = static_cast<double>(full_.rows() - rank_);
-    if (df_rows < 1.0) {
-      return Undefined{"there is one participant in every group"};
-    }
     const MatrixXd scores = scores_of(within_mask);
     const MatrixXd error = residuals(full_, scores);
-    const MatrixXd without = residuals(design_without(table_, between_mask), scores);
-    const double squares = without.squaredNorm() - error.squaredNorm();
-    const auto df = static_cast<double>(scores.cols() * columns_of(table_, between_mask).cols());
-    return within::tested(squares, df, error.transpose() * error, df_rows, rounding_);
+    const MatrixXd columns = columns_of(table_, between_mask);
+    const MatrixXd own = residuals(design_without(table_, between_mask), columns);
+    const auto df = static_cast<double>(scores.cols() * columns.cols());
+    auto test = within::tested(squares_along(own, scores), df, error.transpose() * error,
+                               static_cast<double>(full_.rows() - full_.cols()), rounding_);
+    return test || within_mask != 0 || test.because() == kBeyondDouble
+               ? test
+               : Undefined{"the values do not vary within any group"};
   }
 
  private:
-  /// Contrasts lose each participant's own offset; means keep it.
+  std::string problem_of() const {
+    const auto alone = [](std::size_t levels) { return levels < 2; };
+    if (std::ranges::any_of(table_.within, alone) || std::ranges::any_of(table_.between, alone)) {
+      return "a factor has fewer than two levels";
+    }
+    if (auto problem = problem_of_values(); !problem.empty()) {
+      return problem;
+    }
+    if (full_.colPivHouseholderQr().rank() < full_.cols()) {
+      return "a combination of groups has no participant";
+    }
+    return full_.rows() > full_.cols() ? "" : "there is one participant in every group";
+  }
+
+  std::string problem_of_values() const {
+    if (table_.values.size() < 2) {
+      return "fewer than two participants have a mean in every condition";
+    }
+    const auto cells = std::accumulate(table_.within.begin(), table_.within.end(), std::size_t{1},
+                                       std::multiplies{});
+    for (const auto& row : table_.values) {
+      if (row.size() != cells) {
+        return "a participant lacks a condition";
+      }
+      if (!std::ranges::all_of(row, [](double v) { return std::isfinite(v); })) {
+        return "a value is not a finite number";
+      }
+    }
+    return {};
+  }
+
+  /// Contrasts lose each participant's own offset; means keep it, less one that all have.
   MatrixXd scores_of(Mask within_mask) const {
     const MatrixXd contrasts = contrasts_of(table_.within, within_mask);
     if (within_mask != 0) {
       return within::scores(table_.values, contrasts);
     }
+    const double origin = table_.values.front().front();
     MatrixXd means(full_.rows(), 1);
     for (Index i = 0; i < means.rows(); ++i) {
       const auto& row = table_.values[static_cast<std::size_t>(i)];
-      means(i, 0) =
-          Eigen::Map<const Eigen::VectorXd>(row.data(), contrasts.rows()).dot(contrasts.col(0));
+      const auto values = Eigen::Map<const Eigen::VectorXd>(row.data(), contrasts.rows());
+      means(i, 0) = (values.array() - origin).matrix().dot(contrasts.col(0));
     }
     return means;
   }
 
   const MultifactorTable& table_;
   MatrixXd full_;
-  Index rank_{0};
   double rounding_;
+  std::string problem_;
 };
 
 }  // namespace
@@ -122,11 +164,12 @@ std::vector<MultifactorEffect> multifactor_anova(const MultifactorTable& table) 
   std::vector<MultifactorEffect> effects;
   const Mask between = 1U << table.between.size(), within = 1U << table.within.size();
   const Analysis analysis(table);
-  for (Mask b = 0; b < between; ++b) {
-    for (Mask w = 0; w < within; ++w) {
-      if (b != 0 || w != 0) {
-        effects.push_back({factors_of(w), factors_of(b), analysis.tested(w, b)});
-      }
+  for (Mask w = 0; w < within; ++w) {
+    for (Mask b = w == 0 ? 1 : 0; b < between; ++b) {
+      effects.push_back({factors_of(w), factors_of(b),
+                         analysis.problem().empty()
+                             ? analysis.tested(w, b)
+                             : Defined<WithinEffect>(Undefined{analysis.problem()})});
     }
   }
   std::ranges::stable_sort(effects, {}, [](const MultifactorEffect& effect) {

@@ -25,9 +25,11 @@ struct MultifactorEffect {
 /// (type III): groups weigh alike. Each effect is held against the variation of its own contrasts
 /// between participants of a group; one between participants against that of their means, where
 /// sphericity says nothing.
-/// @returns single factors first; each undefined as WithinEffect, where the participants are no
-/// more than the groups, or where some combination of groups has no participant
-/// Source: Searle 1971, Linear Models; Maxwell and Delaney 2004, chapters 12 to 14.
+/// @returns single factors first, and of these the ones between participants; each undefined if its
+/// error does not vary, and all if a value is not finite, if the participants are no more than the
+/// groups, or if some combination of groups has no participant
+/// Source: weighted squares of means (Yates 1934); Searle 1971, Linear Models; Maxwell and Delaney
+/// 2004, chapters 12 to 14.
 std::vector<MultifactorEffect> multifactor_anova(const MultifactorTable& table);
 
 }  // namespace haptrial::analysis

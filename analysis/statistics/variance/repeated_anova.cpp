@@ -1,7 +1,5 @@
 #include "analysis/statistics/variance/repeated_anova.h"
 
-#include <numeric>
-#include <stdexcept>
 #include <string>
 
 #include "analysis/statistics/base/descriptive.h"
@@ -55,29 +53,6 @@ Defined<RepeatedAnova> repeated_measures_anova(const Table& table) {
   result.partial_eta_squared = condition->partial_eta_squared;
   result.sphericity = condition->sphericity;
   result.p_huynh_feldt = condition->p_huynh_feldt;
-  return result;
-}
-
-Defined<TwoWayRepeatedAnova> two_way_repeated_measures_anova(const Table& table,
-                                                             std::size_t levels_a) {
-  if (auto problem = within::problem(table); !problem.empty()) {
-    return Undefined{std::move(problem)};
-  }
-  const std::size_t cells = table.front().size();
-  if (levels_a < 1 || cells % levels_a != 0) {
-    throw std::invalid_argument("two_way_repeated_measures_anova: " + std::to_string(levels_a) +
-                                " levels do not divide " + std::to_string(cells) + " cells");
-  }
-  const std::size_t levels_b = cells / levels_a;
-  if (levels_a < 2 || levels_b < 2) {
-    return Undefined{"a factor has fewer than two levels"};
-  }
-  const auto a = within::contrasts(levels_a);
-  const auto b = within::contrasts(levels_b);
-  TwoWayRepeatedAnova result{table.size(), levels_a, levels_b};
-  result.a = effect(table, within::product(a, within::constant(levels_b)));
-  result.b = effect(table, within::product(within::constant(levels_a), b));
-  result.interaction = effect(table, within::product(a, b));
   return result;
 }
 

@@ -30,23 +30,4 @@ struct RepeatedAnova {
 /// that is not finite, or differences between conditions that are the same for every participant.
 Defined<RepeatedAnova> repeated_measures_anova(const std::vector<std::vector<double>>& table);
 
-/// Two-way analysis of variance with both factors within participants. Each effect has its own
-/// error, its interaction with participants, and its own sphericity.
-struct TwoWayRepeatedAnova {
-  std::size_t participants{0};
-  std::size_t levels_a{0};
-  std::size_t levels_b{0};
-  Defined<WithinEffect> a{Undefined{"nothing was measured"}};
-  Defined<WithinEffect> b{Undefined{"nothing was measured"}};
-  Defined<WithinEffect> interaction{Undefined{"nothing was measured"}};
-};
-
-/// @param table     (participants x levels_a * levels_b), levels of b running fastest.
-/// @param levels_a  divides the length of a row.
-/// Undefined as for one factor, or with fewer than two levels of a factor. An effect that differs
-/// by the same amount for every participant is not defined by itself.
-/// @throws std::invalid_argument when levels_a does not divide the length of the first row.
-Defined<TwoWayRepeatedAnova> two_way_repeated_measures_anova(
-    const std::vector<std::vector<double>>& table, std::size_t levels_a);
-
 }  // namespace haptrial::analysis

@@ -104,6 +104,7 @@ struct Window::Impl {
   std::vector<KeyPress> keys;
   std::vector<int> held;
   Pointer pointer;
+  std::uint32_t pressed{0};  // buttons that went down in the last poll, and may be up again
 
   void open(const WindowOptions& options);
   void listen();
@@ -179,6 +180,7 @@ void Window::Impl::listen() {
     const std::uint32_t bit = button < 32 ? 1u << button : 0u;
     std::uint32_t& buttons = of(w).pointer.buttons;
     buttons = action == GLFW_PRESS ? buttons | bit : buttons & ~bit;
+    of(w).pressed |= action == GLFW_PRESS ? bit : 0u;
   });
 }
 
@@ -201,7 +203,10 @@ int Window::width() const noexcept { return impl_->width; }
 int Window::height() const noexcept { return impl_->height; }
 double Window::refresh_rate() const noexcept { return impl_->refresh_rate; }
 
-void Window::poll() { glfwPollEvents(); }
+void Window::poll() {
+  impl_->pressed = 0;
+  glfwPollEvents();
+}
 void Window::swap() {
   glfwSwapBuffers(impl_->window.get());
   impl_->gl.finish();  // else the driver may queue pictures, and the time would not be that of one
@@ -212,6 +217,10 @@ Image Window::read() { return read_frame(impl_->gl, impl_->width, impl_->height)
 bool Window::close_asked() const { return glfwWindowShouldClose(impl_->window.get()) != 0; }
 std::vector<KeyPress> Window::take_keys() { return std::exchange(impl_->keys, {}); }
 std::vector<int> Window::held_keys() const { return impl_->held; }
-Pointer Window::pointer() const { return impl_->pointer; }
+Pointer Window::pointer() const {
+  Pointer pointer = impl_->pointer;
+  pointer.buttons |= impl_->pressed;
+  return pointer;
+}
 
 }  // namespace haptrial::render

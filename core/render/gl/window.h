@@ -59,6 +59,8 @@ class Window {
   bool close_asked() const;            // by the window's button
   std::vector<KeyPress> take_keys();   // since the last call
   std::vector<int> held_keys() const;  // as KeyPress has them, in the order of their presses
+  /// The pointer after the last poll. A button that went down and up again within a poll is down,
+  /// so that no click is lost, however short it was or however late the poll came.
   Pointer pointer() const;
 
  private:

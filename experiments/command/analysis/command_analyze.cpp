@@ -24,6 +24,7 @@ namespace {
 
 struct AnalyzeOptions : CurveOptions {
   std::string folder;
+  std::string shares;
   bool pilots{false};
   std::optional<int> paper;
   std::optional<int> jobs;
@@ -58,6 +59,28 @@ int paper_width(const AnalyzeOptions& options) {
   return options.paper ? checked_number("--paper", *options.paper, kNarrowest, kWidest) : 0;
 }
 
+/// What replaces parts of the definition.
+std::vector<std::string> given_instead(const AnalyzeOptions& options) {
+  std::vector<std::string> given = options.planned;
+  if (!options.reference.empty()) {
+    given.push_back("reference " + options.reference);
+  }
+  if (!options.shares.empty()) {
+    given.push_back("shares of " + options.shares);
+  }
+  return given;
+}
+
+/// Studies without curves have no shares.
+void check_shares(const AnalyzeOptions& options, const record::SessionInfo& session) {
+  if (!options.shares.empty() && !study_of(session).curves(session)) {
+    throw InputError(
+        fmt::format("--shares is given, but the passes of {} have no force to recall; "
+                    "leave it out",
+                    session.definition_name));
+  }
+}
+
 int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads, int paper) {
   mallopt(M_ARENA_MAX,
           1);  // what is read of thousands of files stays; what was read with is reused
@@ -65,8 +88,9 @@ int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads, 
   request.folder = options.folder;
   request.files = with_recorded_kinds(
       options.folder, [&] { return study_files(options.folder, pilots, protocol_of); });
+  check_shares(options, request.files.first);
   if (pilots == Pilots::kLeftOut) {
-    note_analysis(options.folder, options.planned, options.reference);
+    note_analysis(options.folder, given_instead(options));
   }
   request.out = report_folder(options.folder, pilots);
   request.pilots = pilots;
@@ -74,6 +98,7 @@ int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads, 
   request.paper = paper;
   request.planned = options.planned;
   request.reference = options.reference;
+  request.shares = options.shares;
   const std::vector<std::string> lines = with_recorded_kinds(
       options.folder, [&] { return study_of(request.files.first).analyze(request); });
   print_report(lines, request.out);
@@ -122,6 +147,7 @@ void check_source(const AnalyzeOptions& options) {
   allow(is_import(options), "--definition", !options.definition.empty(), kImport);
   allow(is_import(options), "--column", !options.columns.empty(), kImport);
   allow(is_import(options), "--factor", !options.factors.empty(), kImport);
+  allow(!is_import(options), "--shares", !options.shares.empty(), "a folder of sessions");
   allow(!is_import(options), "--pilots", options.pilots, "a folder of sessions");
   if (is_import(options) && holds_sessions(options.out)) {  // whose report this would replace
     throw InputError(
@@ -176,9 +202,12 @@ void add_analyze(CLI::App& app, int& status) {
                   "repeated")
       ->allow_extra_args(false);
   sub->add_option("--reference", o.reference, "Reference condition in place of the definition's");
-  sub->add_option("--paper", o.paper,
-                  "Width [mm] of figures for a paper, such as 85: PDF and SVG in 8 pt, without titles "
-                  "(default: none are written)");
+  sub->add_option("--shares", o.shares,
+                  "File of judge fit with shares of the score, in place of the definition's");
+  sub->add_option(
+      "--paper", o.paper,
+      "Width [mm] of figures for a paper, such as 85: PDF and SVG in 8 pt, without titles "
+      "(default: none are written)");
   sub->add_option("--jobs", o.jobs, kJobsHelp);
 }
 

@@ -182,21 +182,16 @@ void add_stated_and_done() {
   static_cast<void>(added);
 }
 
-void note_analysis(const fs::path& folder, const std::vector<std::string>& planned,
-                   const std::string& reference) {
+void note_analysis(const fs::path& folder, const std::vector<std::string>& given) {
   const auto plan = plan_in(folder);
   if (!plan) {
     return;
-  }
-  std::vector<std::string> tests = planned;
-  if (!reference.empty()) {
-    tests.push_back("reference " + reference);
   }
   note_in_log(
       *plan, kAnalysed,
       fmt::format("people={} tests={}",
                   complete_people(read_study_plan(*plan), session_facts(folder)),
-                  tests.empty() ? "definition" : fmt::format("{}", fmt::join(tests, "; "))));
+                  given.empty() ? "definition" : fmt::format("{}", fmt::join(given, "; "))));
 }
 
 }  // namespace haptrial::experiments

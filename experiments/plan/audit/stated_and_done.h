@@ -51,8 +51,7 @@ analysis::FindingList stated_and_done(const std::vector<std::filesystem::path>& 
 void add_stated_and_done();
 
 /// Adds an analysis of a folder to the log of its plan, if it has one: how many participants had
-/// every session, and which tests were given in place of the definition's.
-void note_analysis(const std::filesystem::path& folder, const std::vector<std::string>& planned,
-                   const std::string& reference);
+/// every session, and what was given in place of the definition's tests.
+void note_analysis(const std::filesystem::path& folder, const std::vector<std::string>& given);
 
 }  // namespace haptrial::experiments

@@ -38,6 +38,20 @@ std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t ses
   return remarks;
 }
 
+/// The definition's score, unless an analysis was given other shares; then `remarks` say so.
+analysis::ScoreParameters scoring_for(const std::filesystem::path& shares,
+                                      analysis::ScoreParameters scoring,
+                                      std::vector<std::string>& remarks) {
+  if (shares.empty()) {
+    return scoring;
+  }
+  remarks.push_back(
+      fmt::format("The shares of the score were given to analyze ({}), not stated in the "
+                  "definition.",
+                  shares.filename().string()));
+  return analysis::with_shares_of(shares, std::move(scoring));
+}
+
 analysis::StudyResult analyzed(const AnalysisRequest& request) {
   const StudyFiles& found = request.files;
   const record::SessionInfo& first = found.first;
@@ -47,8 +61,8 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
   std::vector<std::string> remarks;
   const analysis::AnalysisPlan plan =
       plan_for(request.planned, request.reference, curves.plan, remarks);
-  analysis::StudyResult study =
-      analysis::analyze_study(found.files, curves.scoring, request.threads, plan);
+  analysis::StudyResult study = analysis::analyze_study(
+      found.files, scoring_for(request.shares, curves.scoring, remarks), request.threads, plan);
   if (study.scores.empty()) {
     throw InputError(
         fmt::format("{}: no session holds a completed test pass, so nothing can be scored",

@@ -14,17 +14,13 @@
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/psychophysics/report/write_trials.h"
 #include "analysis/psychophysics/study/covariate.h"
-#include "analysis/psychophysics/study/paired_quantities.h"
-#include "analysis/psychophysics/study/produced_quantities.h"
-#include "analysis/psychophysics/study/pursuit_quantities.h"
-#include "analysis/psychophysics/study/reach_quantities.h"
 #include "analysis/psychophysics/study/trials_study.h"
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/preview/trials_parts.h"
 #include "experiments/preview/tried_trial.h"
-#include "experiments/studies/psychophysics/reach_routes.h"
+#include "experiments/studies/psychophysics/file_quantities.h"
 #include "experiments/studies/psychophysics/trials_analysis.h"
 #include "experiments/studies/psychophysics/trials_methods.h"
 #include "experiments/studies/psychophysics/trials_study_simulation.h"
@@ -251,25 +247,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   trials::add_covariate(scores, plan.plan.covariate);
   trials::TrialsResult result =
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
-  if (plan.kind == trials::AnalysisKind::kReaching) {
-    const auto routes = reach_routes(definition, result.data, plan.reaching);
-    result.reaching = trials::reaching_study(
-        result.data,
-        trials::study_reaches(result.data, request.files.files, routes, plan.reaching.stage,
-                              plan.reaching.clamp, request.threads),
-        plan.reaching, request.threads);
-    result.quantities = trials::reach_quantities(result.data, *result.reaching, plan);
-  }
-  if (plan.kind == trials::AnalysisKind::kPursuit) {
-    result.quantities =
-        trials::pursuit_quantities(result.data, request.files.files, plan, request.threads);
-  }
-  if (plan.kind == trials::AnalysisKind::kPaired) {
-    result.quantities = trials::paired_quantities(result.data, plan);
-  }
-  if (plan.kind == trials::AnalysisKind::kProduced) {
-    result.quantities = trials::produced_quantities(result.data, plan);
-  }
+  add_file_quantities(definition, request.files.files, request.threads, result);
   check_planned(result);
   add_sequential(request, definition, result);
   result.page_scores = std::move(scores);

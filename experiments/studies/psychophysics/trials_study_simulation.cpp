@@ -16,6 +16,8 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "experiments/studies/power_plan.h"
+#include "experiments/studies/psychophysics/file_quantities.h"
 #include "experiments/study/study_run.h"
 #include "protocols/psychophysics/response_session.h"
 
@@ -130,19 +132,10 @@ class TrialsStudySimulation final : public StudySimulation {
     plan_.population = !plan_.by.empty();                    // it tests nothing but conditions
     plan_.permutations =
         watched.find(", permutation") != std::string::npos ? plan_.permutations : 0;
-    if (plan_.kind == trials::AnalysisKind::kReaching ||
-        plan_.kind == trials::AnalysisKind::kPursuit ||
-        plan_.kind == trials::AnalysisKind::kProduced ||
-        plan_.kind == trials::AnalysisKind::kPaired || plan_.cues) {
-      throw InputError(
-          fmt::format("{}: power by simulation does not know analyses of movements, of pairs or of "
-                      "two cues; watch a "
-                      "psychometric, detection, identification, magnitude or adjustment analysis",
-                      d_.file_name));
-    }
     const int most = std::max(1, d_.most_trials());
     hours_of_trial_ = d_.longest(most) / most / 3600.0;
     read_responses();
+    check_question();
   }
 
   bool people_differ() const override {
@@ -171,14 +164,14 @@ class TrialsStudySimulation final : public StudySimulation {
       }
       draw_covariate(participant_name(p), seed, plan.plan.covariate);
     }
-    return analyzed(std::move(data), plan);
+    return analyzed(std::move(data), plan, {});
   }
 
   SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
     const auto group = [this](const std::string& subject) { return group_of(subject); };
     trials::TrialsPlan plan = plan_;
     trials::add_covariate(trials::page_scores(files, d_.pages, group), plan.plan.covariate);
-    return analyzed(trials::read_trials(files, group, 1), plan);
+    return analyzed(trials::read_trials(files, group, 1), plan, files);
   }
 
  private:
@@ -196,6 +189,27 @@ class TrialsStudySimulation final : public StudySimulation {
     } catch (const InputError& error) {
       responses.reject("met", fmt::format("is \"{}\": {}", met, error.what()));
       root.check();
+    }
+  }
+
+  /// What looks at movements needs a hand, and two cues need every trial's intervals.
+  void check_responses() const {
+    using trials::AnalysisKind;
+    const AnalysisKind kind = plan_.kind;
+    if (kind == AnalysisKind::kReaching || kind == AnalysisKind::kPursuit ||
+        kind == AnalysisKind::kProduced || kind == AnalysisKind::kPaired || plan_.cues) {
+      throw InputError(
+          fmt::format("{}: responses alone do not simulate analyses of movements, of "
+                      "pairs or of two cues; give power.depth = \"sessions\"",
+                      asked_in_));
+    }
+  }
+
+  /// The depth must suit the analysis.
+  void check_question() const {
+    Table root = d_.root();
+    if (root.has("power") && read_power_plan(root).depth == PowerDepth::kResponses) {
+      check_responses();
     }
   }
 
@@ -234,8 +248,14 @@ class TrialsStudySimulation final : public StudySimulation {
     }
   }
 
-  SimulatedStudy analyzed(trials::TrialsData data, const trials::TrialsPlan& plan) const {
-    SimulatedStudy r = simulated_study_of(trials::analyze(std::move(data), plan, procedures(), 1));
+  /// @param files  of the sessions; none of responses alone
+  SimulatedStudy analyzed(trials::TrialsData data, const trials::TrialsPlan& plan,
+                          const std::vector<std::filesystem::path>& files) const {
+    trials::TrialsResult result = trials::analyze(std::move(data), plan, procedures(), 1);
+    if (!files.empty()) {
+      add_file_quantities(d_, files, 1, result);
+    }
+    SimulatedStudy r = simulated_study_of(result);
     r.hours = static_cast<double>(r.trials) * hours_of_trial_;
     return r;
   }

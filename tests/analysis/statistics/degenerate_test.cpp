@@ -8,10 +8,10 @@
 #include "analysis/statistics/tests/t_tests.h"
 #include "analysis/statistics/tests/wilcoxon.h"
 #include "analysis/statistics/variance/levene.h"
-#include "analysis/statistics/variance/mixed_anova.h"
 #include "analysis/statistics/variance/rank_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "tests/analysis/statistics/degenerate_samples.h"
+#include "tests/support/two_factors.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -75,6 +75,12 @@ void check(const std::string& what, const Defined<WithinEffect>& e) {
   }
 }
 
+void check(const std::string& what, const test::TwoFactors& found) {
+  check(what, found.a);
+  check(what, found.b);
+  check(what, found.interaction);
+}
+
 TEST(DegenerateData, GiveNumbersOrASentenceInTestsOfTwoSamples) {
   for (std::size_t i = 0; i < kSamples.size(); ++i) {
     for (std::size_t j = 0; j < kSamples.size(); ++j) {
@@ -124,19 +130,9 @@ TEST(DegenerateData, GiveNumbersOrASentenceInDesignsWithinParticipants) {
           check("repeated, " + name(i, j), a->sphericity);
         }
         if (!table.empty() && table.front().size() == 4) {
-          const auto a = two_way_repeated_measures_anova(table, 2);
-          if (has_value("two way", a)) {
-            check("two way, " + name(i, j), a->a);
-            check("two way, " + name(i, j), a->b);
-            check("two way, " + name(i, j), a->interaction);
-          }
+          check("two way, " + name(i, j), test::two_within(table, 2));
         }
-        const auto m = mixed_anova({table, {kSamples[j]}}, Squares::kMarginal);
-        if (has_value("mixed", m)) {
-          check("mixed, " + name(i, j), m->group);
-          check("mixed, " + name(i, j), m->condition);
-          check("mixed, " + name(i, j), m->interaction);
-        }
+        check("mixed, " + name(i, j), test::mixed_factors({table, {kSamples[j]}}));
         table.push_back(Values(kSamples[i].rbegin(), kSamples[i].rend()));
       }
     }

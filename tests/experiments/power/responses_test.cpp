@@ -108,10 +108,11 @@ TEST(PowerQuestion, RefusesBadInputWithASentence) {
   expect_refused(power_of(name, "watch = \"sign test\"\n" + met + kVary),
                  "power.watch is \"sign test\", which a first study could not make; made, and "
                  "allowed: \"drift over the trials\"");
-  expect_refused(power_of(name, "watch = \"threshold: paired t\"\n" + met + kVary),
-                 "power.watch is \"threshold: paired t\", which a first study could not make; made, and "
-                 "allowed: \"drift over the trials\", "
-                 "\"repetition of the answer before\"");
+  expect_refused(
+      power_of(name, "watch = \"threshold: paired t\"\n" + met + kVary),
+      "power.watch is \"threshold: paired t\", which a first study could not make; made, and "
+      "allowed: \"drift over the trials\", "
+      "\"repetition of the answer before\"");
   std::string huge = "watch = \"drift over the trials\"\n" + met;
   for (const char* key : {"observer.drift", "observer.repetition", "observer.lapse.median"}) {
     huge += "[[power.vary]]\nkey = \"" + std::string(key) + "\"\nvalues = [";
@@ -140,6 +141,24 @@ TEST(PowerQuestion, RefusesBadInputWithASentence) {
                  "power.toml:8: power.vary[1].values is an empty array");
   expect_refused(power_of("bone_drilling", "watch = \"t\"\n" + std::string(kVary)),
                  "does not know the report of protocol 'bone_drilling'");
+}
+
+/// Four trials of force matching by people who differ, and a question about them.
+std::string produced_power(const std::string& rest) {
+  std::string text = file_text(kSource / "docs/worked/everyday/force_matching.toml");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("trials = 40", "trials = 4");
+  replace("trials = 4\n", "trials = 1\n");  // of practice
+  replace("[observer]\n", "[observer]\nforce_weber = { median = 0.07, spread = 0.3 }\n");
+  return text + "\n[power]\nwatch = \"no such test\"\n" + rest +
+         "[[power.vary]]\nkey = \"design.participants\"\nvalues = [3]\n";
+}
+
+TEST(PowerQuestion, WhatHandsProduceIsWatchedInFullSessionsAlone) {
+  expect_refused(produced_power(""), "power.depth = \"sessions\"");
+  expect_refused(produced_power("depth = \"sessions\"\n"), "\"constant error: target\"");
 }
 
 TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {

@@ -161,5 +161,23 @@ TEST_F(JudgingTest, TheReportShowsNoSharesOfDice) {
   EXPECT_THAT(report, Not(HasSubstr("| share |")));
 }
 
+/// What `judge fit` writes is what `analyze --shares` scores by.
+TEST_F(JudgingTest, WrittenSharesAreReadBackIntoTheScore) {
+  SkillFit skill{40, 5, 0.6, 0.4, 0.8, 0.01, {{{0.5, 0.4, 0.6}, {0.3, 0.2, 0.4}, {0.2, 0.1, 0.3}}}};
+  ScoreParameters own;
+  own.samples = 321;
+  const ScoreParameters read = with_shares_of(file("shares.toml", judged_weights(skill)), own);
+  EXPECT_EQ(read.cost_share, 0.5);
+  EXPECT_EQ(read.force_share, 0.3);
+  EXPECT_EQ(read.slope_share, 0.2);
+  EXPECT_EQ(read.samples, 321) << "the rest of the score stays";
+  try {
+    with_shares_of(file("typing.toml", "[analysis]\ncost_share = 1\nforce_share = 1\n"), own);
+    ADD_FAILURE() << "a missing share is read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("slope_share"));
+  }
+}
+
 }  // namespace
 }  // namespace haptrial::analysis

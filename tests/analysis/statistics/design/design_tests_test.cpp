@@ -8,13 +8,12 @@
 #include "analysis/statistics/base/p_adjust.h"
 #include "analysis/statistics/design/design_lines.h"
 #include "analysis/statistics/design/wording.h"
-#include "analysis/statistics/variance/factorial_anova.h"
-#include "analysis/statistics/variance/mixed_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "analysis/statistics/variance/welch_anova.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "tests/support/message_of.h"
+#include "tests/support/two_factors.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -157,13 +156,12 @@ TEST(DesignTests, GroupsOfPeopleAndConditionsWithinTakeTheMixedAnalysis) {
   // The factor within comes first here: which is which is found, not given.
   const DesignTable table = design_table(made.observations, {"condition", "group"});
   const DesignTests tests = design_tests(table, {}, kNone);
-  const auto mixed = mixed_anova(groups, Squares::kMarginal);
+  const auto mixed = test::mixed_factors(groups);
   ASSERT_EQ(tests.effects.size(), 3u);
-  expect_effect(tests.effects[0], "group", mixed->group->f, mixed->group->p);
-  expect_effect(tests.effects[1], "condition", mixed->condition->f,
-                mixed->condition->p_greenhouse_geisser);
-  expect_effect(tests.effects[2], "group × condition", mixed->interaction->f,
-                mixed->interaction->p_greenhouse_geisser);
+  expect_effect(tests.effects[0], "group", mixed.a->f, mixed.a->p);
+  expect_effect(tests.effects[1], "condition", mixed.b->f, mixed.b->p_greenhouse_geisser);
+  expect_effect(tests.effects[2], "group × condition", mixed.interaction->f,
+                mixed.interaction->p_greenhouse_geisser);
   // x-y, x-z, y-z; expert-novice; and cells: 3 pairs in each of 2 groups, 3 between groups.
   ASSERT_EQ(tests.families.size(), 3u);
   EXPECT_EQ(tests.families[0].tests.size(), 3u);
@@ -188,12 +186,12 @@ TEST(DesignTests, TwoFactorsWithinTakeTheTwoWayAnalysis) {
   AnalysisPlan plan;
   plan.tests = {{"x", "z", Tail::kLess}, {"now, x", "soon, x", Tail::kTwoSided}};
   const DesignTests tests = design_tests(table, plan, kNone);
-  const auto both = two_way_repeated_measures_anova(rows, 2);
+  const auto both = test::two_within(rows, 2);
   ASSERT_EQ(tests.effects.size(), 3u);
-  expect_effect(tests.effects[0], "delay", both->a->f, both->a->p_greenhouse_geisser);
-  expect_effect(tests.effects[1], "shape", both->b->f, both->b->p_greenhouse_geisser);
-  expect_effect(tests.effects[2], "delay × shape", both->interaction->f,
-                both->interaction->p_greenhouse_geisser);
+  expect_effect(tests.effects[0], "delay", both.a->f, both.a->p_greenhouse_geisser);
+  expect_effect(tests.effects[1], "shape", both.b->f, both.b->p_greenhouse_geisser);
+  expect_effect(tests.effects[2], "delay × shape", both.interaction->f,
+                both.interaction->p_greenhouse_geisser);
   std::vector<double> x, z;  // a level is the mean of its cells
   for (const auto& row : rows) {
     x.push_back(0.5 * (row[0] + row[3]));
@@ -220,9 +218,9 @@ TEST(DesignTests, TwoFactorsBetweenTakeTheTwoWayAnalysis) {
   }
   const DesignTests tests =
       design_tests(design_table(made.observations, {"delay", "shape"}), {}, kNone);
-  const auto both = two_way_anova(cells, 2);
+  const auto both = test::two_between(cells, 2);
   ASSERT_EQ(tests.effects.size(), 3u);
-  expect_effect(tests.effects[1], "shape", both->b->f, both->b->p);
+  expect_effect(tests.effects[1], "shape", both.b->f, both.b->p);
 }
 
 TEST(DesignTests, LevelsAcrossUnequalGroupsAreWeighedAlike) {

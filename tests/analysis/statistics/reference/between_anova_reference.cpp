@@ -1,8 +1,8 @@
 #include <set>
 
-#include "analysis/statistics/variance/factorial_anova.h"
 #include "analysis/statistics/variance/welch_anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
+#include "tests/support/two_factors.h"
 
 namespace haptrial::analysis::reference::between_anova_reference {
 namespace {
@@ -28,13 +28,13 @@ void compare_two_way(Answers& r, const std::string& name) {
         static_cast<std::size_t>(std::distance(levels.begin(), levels.find(groups[row])));
     cells[2 * a + ((row + 1) % 3 == 0 ? 1 : 0)].push_back(values[row]);
   }
-  const auto found = two_way_anova(cells, levels.size());
-  for (const auto& [effect, test] : {std::pair{"a", &found->a}, std::pair{"b", &found->b},
-                                     std::pair{"a:b", &found->interaction}}) {
+  const auto found = test::two_between(cells, levels.size());
+  for (const auto& [effect, test] :
+       {std::pair{"a", &found.a}, std::pair{"b", &found.b}, std::pair{"a:b", &found.interaction}}) {
     r.at("Two-way ANOVA type III", name + " " + effect)
         .is("f", (*test)->f)
-        .is("df", (*test)->df_between)
-        .is("squares", (*test)->squares_between)
+        .is("df", (*test)->df)
+        .is("squares", (*test)->squares)
         .is("p", (*test)->p);
   }
 }

@@ -26,19 +26,13 @@ mixed <- function(case, data, value) {
   answer(case, f = between[1, "F value"], df = between[1, "Df"], df_error = between[2, "Df"],
          squares = between[1, "Sum Sq"], squares_error = between[2, "Sum Sq"],
          p = between[1, "Pr(>F)"])
-  procedure_once("Mixed ANOVA: condition (sequential)",
-                 "anova(lm(contrasts ~ group), test = 'Spherical'); mauchly.test; aov")
-  within(case, table, "(Intercept)", epsilon, mauchly)
-  answer(case, squares = inside[1, "Sum Sq"], squares_error = inside[3, "Sum Sq"],
-         f_aov = inside[1, "F value"])
   procedure_once("Mixed ANOVA: interaction",
                  "anova(lm(contrasts ~ group), test = 'Spherical'); mauchly.test; aov")
   within(case, table, "group", epsilon, mauchly)
-  answer(case, squares = inside[2, "Sum Sq"], squares_error = inside[3, "Sum Sq"],
-         f_aov = inside[2, "F value"])
+  answer(case, squares = inside[2, "Sum Sq"], squares_error = inside[3, "Sum Sq"])
 
   # Type III: the intercept last, after groups coded to sum to zero.
-  procedure_once("Mixed ANOVA: condition (marginal)",
+  procedure_once("Mixed ANOVA: condition",
                  "anova(full, reduced, test = 'Spherical') with contr.sum")
   codes <- contr.sum(nlevels(group))[group, , drop = FALSE]
   marginal <- anova(lm(scores ~ codes), lm(scores ~ codes - 1), test = "Spherical")

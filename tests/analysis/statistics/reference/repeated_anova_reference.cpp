@@ -1,7 +1,7 @@
 #include "analysis/statistics/variance/repeated_anova.h"
 
-#include "analysis/statistics/variance/mixed_anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
+#include "tests/support/two_factors.h"
 
 namespace haptrial::analysis::reference::repeated_anova_reference {
 namespace {
@@ -54,9 +54,9 @@ void compare_one(Answers& r, const std::string& name, const Table& table) {
 }
 
 void compare_two(Answers& r, const std::string& name, const Table& table, std::size_t levels_a) {
-  const auto a = two_way_repeated_measures_anova(table, levels_a);
+  const auto a = test::two_within(table, levels_a);
   for (const auto& [effect, found] :
-       {std::pair{" a", a->a}, std::pair{" b", a->b}, std::pair{" a:b", a->interaction}}) {
+       {std::pair{" a", a.a}, std::pair{" b", a.b}, std::pair{" a:b", a.interaction}}) {
     compare_tests(r.at(kTwoFactors, name + effect), *found);
     compare_squares(r.at(kTwoFactors, name + effect), *found);
   }
@@ -119,29 +119,26 @@ std::vector<Table> by_group(const DataSet& data, const char* value) {
 }
 
 void compare_design(Answers& r, const char* name, const std::vector<Table>& groups) {
-  const auto a = mixed_anova(groups);
+  const auto found = test::mixed_factors(groups);
+  const WithinEffect& group = *found.a;
   r.at("Mixed ANOVA: group", name)
-      .is("f", a->group->f)
-      .is("df", a->group->df_between)
-      .is("df_error", a->group->df_within)
-      .is("squares", a->group->squares_between)
-      .is("squares_error", a->group->squares_within)
-      .is("p", a->group->p);
-  for (const auto& [procedure, effect] :
-       {std::pair{"Mixed ANOVA: condition (sequential)", a->condition},
-        std::pair{"Mixed ANOVA: interaction", a->interaction}}) {
-    compare_tests(r.at(procedure, name), *effect);
-    compare_squares(r.at(procedure, name), *effect);
-    r.at(procedure, name).is("f_aov", effect->f);
-  }
-  const auto marginal = mixed_anova(groups, Squares::kMarginal)->condition;
-  r.at("Mixed ANOVA: condition (marginal)", name)
-      .is("f", marginal->f)
-      .is("df", marginal->df)
-      .is("df_error", marginal->df_error)
-      .is("p", marginal->p)
-      .is("p_gg", marginal->p_greenhouse_geisser)
-      .is("p_hf", *marginal->p_huynh_feldt);
+      .is("f", group.f)
+      .is("df", group.df)
+      .is("df_error", group.df_error)
+      .is("squares", group.squares)
+      .is("squares_error", group.squares_error)
+      .is("p", group.p);
+  const auto interaction = r.at("Mixed ANOVA: interaction", name);
+  compare_tests(interaction, *found.interaction);
+  compare_squares(interaction, *found.interaction);
+  const WithinEffect& condition = *found.b;
+  r.at("Mixed ANOVA: condition", name)
+      .is("f", condition.f)
+      .is("df", condition.df)
+      .is("df_error", condition.df_error)
+      .is("p", condition.p)
+      .is("p_gg", condition.p_greenhouse_geisser)
+      .is("p_hf", *condition.p_huynh_feldt);
 }
 
 void compare_mixed(Answers& r) {

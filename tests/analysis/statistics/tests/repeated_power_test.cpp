@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/statistics/variance/mixed_anova.h"
 #include "core/base/random.h"
+#include "tests/support/two_factors.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -57,10 +57,10 @@ TEST(RepeatedPower, IsTheShareOfMixedAnalysesThatReject) {
         groups[static_cast<std::size_t>(g)].push_back(row);
       }
     }
-    const auto found = mixed_anova(groups);
-    between += found->group->p < 0.05 ? 1 : 0;
-    within += found->condition->p < 0.05 ? 1 : 0;
-    interaction += found->interaction->p < 0.05 ? 1 : 0;
+    const auto found = test::mixed_factors(groups);
+    between += found.a->p < 0.05 ? 1 : 0;
+    within += found.b->p < 0.05 ? 1 : 0;
+    interaction += found.interaction->p < 0.05 ? 1 : 0;
   }
   const double three = std::sqrt(2.0 / 3.0);  // of -1, 0, 1
   const auto near = [&](int count, RepeatedTerm term, double f) {

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "analysis/statistics/tests/t_tests.h"
-#include "analysis/statistics/variance/mixed_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "core/base/random.h"
+#include "tests/support/two_factors.h"
 
 namespace haptrial::analysis::designs_test {
 namespace {
@@ -32,7 +31,7 @@ Table drawn(RandomStream& random, std::size_t rows, std::size_t columns) {
   return table;
 }
 
-TEST(TwoWayRepeatedAnova, HasTheOneWayAnalysisOfEachFactorsMeans) {
+TEST(TwoFactorsWithin, HasTheOneWayAnalysisOfEachFactorsMeans) {
   RandomStream random(71, "margins");
   const Table table = drawn(random, 8, 12);  // 3 levels of a, 4 of b
   Table over_b(8, Values(3, 0.0)), over_a(8, Values(4, 0.0));
@@ -42,20 +41,19 @@ TEST(TwoWayRepeatedAnova, HasTheOneWayAnalysisOfEachFactorsMeans) {
       over_a[i][j % 4] += table[i][j] / 3.0;
     }
   }
-  const auto both = two_way_repeated_measures_anova(table, 3);
-  ASSERT_TRUE(both);
+  const auto both = test::two_within(table, 3);
   const auto a = repeated_measures_anova(over_b);
   const auto b = repeated_measures_anova(over_a);
-  EXPECT_NEAR(both->a->f, a->f, 1e-11 * a->f);
-  EXPECT_NEAR(both->a->squares, 4.0 * a->squares_condition, 1e-11);
-  EXPECT_NEAR(both->a->sphericity.mauchly->p, a->sphericity.mauchly->p, 1e-12);
-  EXPECT_NEAR(both->b->f, b->f, 1e-11 * b->f);
-  EXPECT_NEAR(*both->b->p_huynh_feldt, *b->p_huynh_feldt, 1e-12);
-  EXPECT_EQ(both->interaction->df, 6.0);
-  EXPECT_EQ(both->interaction->df_error, 42.0);
+  EXPECT_NEAR(both.a->f, a->f, 1e-11 * a->f);
+  EXPECT_NEAR(both.a->squares, 4.0 * a->squares_condition, 1e-11);
+  EXPECT_NEAR(both.a->sphericity.mauchly->p, a->sphericity.mauchly->p, 1e-12);
+  EXPECT_NEAR(both.b->f, b->f, 1e-11 * b->f);
+  EXPECT_NEAR(*both.b->p_huynh_feldt, *b->p_huynh_feldt, 1e-12);
+  EXPECT_EQ(both.interaction->df, 6.0);
+  EXPECT_EQ(both.interaction->df_error, 42.0);
 }
 
-TEST(TwoWayRepeatedAnova, OfTwoByTwoIsThePairedTOfTheDifferences) {
+TEST(TwoFactorsWithin, OfTwoByTwoIsThePairedTOfTheDifferences) {
   RandomStream random(72, "two by two");
   const Table table = drawn(random, 9, 4);
   Values first, second;
@@ -63,15 +61,15 @@ TEST(TwoWayRepeatedAnova, OfTwoByTwoIsThePairedTOfTheDifferences) {
     first.push_back(row[0] - row[1]);
     second.push_back(row[2] - row[3]);
   }
-  const auto anova = two_way_repeated_measures_anova(table, 2);
+  const auto anova = test::two_within(table, 2);
   const auto t = paired_t_test(first, second, Tail::kTwoSided);
-  EXPECT_NEAR(anova->interaction->f, t->t * t->t, 1e-11 * (1.0 + t->t * t->t));
-  EXPECT_NEAR(anova->interaction->p, t->p, 1e-12);
-  EXPECT_THAT(anova->interaction->sphericity.mauchly.because(), HasSubstr("single difference"));
+  EXPECT_NEAR(anova.interaction->f, t->t * t->t, 1e-11 * (1.0 + t->t * t->t));
+  EXPECT_NEAR(anova.interaction->p, t->p, 1e-12);
+  EXPECT_THAT(anova.interaction->sphericity.mauchly.because(), HasSubstr("single difference"));
 }
 
 // Squares of the effects, of participants and of the errors add up to those of all values.
-TEST(TwoWayRepeatedAnova, TakesTheSquaresApart) {
+TEST(TwoFactorsWithin, TakesTheSquaresApart) {
   RandomStream random(73, "parts");
   const Table table = drawn(random, 5, 6);
   double mean = 0.0, total = 0.0;
@@ -91,26 +89,20 @@ TEST(TwoWayRepeatedAnova, TakesTheSquaresApart) {
   for (const double participant : participants) {
     parts += 6.0 * (participant - mean) * (participant - mean);
   }
-  const auto anova = two_way_repeated_measures_anova(table, 3);
-  for (const auto* effect : {&anova->a, &anova->b, &anova->interaction}) {
+  const auto anova = test::two_within(table, 3);
+  for (const auto* effect : {&anova.a, &anova.b, &anova.interaction}) {
     parts += (*effect)->squares + (*effect)->squares_error;
   }
   EXPECT_NEAR(parts, total, 1e-12 * total);
 }
 
-TEST(TwoWayRepeatedAnova, SaysWhyAnEffectIsNotDefined) {
+TEST(TwoFactorsWithin, SaysWhyAnEffectIsNotDefined) {
   // b differs by 2 for everyone; a does not.
-  const auto anova =
-      two_way_repeated_measures_anova({{1, 3, 5, 7}, {2, 4, 3, 5}, {0, 2, 9, 11}}, 2);
-  ASSERT_TRUE(anova);
-  EXPECT_TRUE(anova->a);
-  EXPECT_THAT(anova->b.because(), HasSubstr("same amount"));
-  EXPECT_THAT(anova->interaction.because(), HasSubstr("same amount"));
-  EXPECT_THAT(two_way_repeated_measures_anova({{1, 2}, {3, 4}}, 2).because(),
-              HasSubstr("fewer than two levels"));
-  EXPECT_THAT(two_way_repeated_measures_anova({{1, 2, 3, 4}}, 2).because(),
-              HasSubstr("two participants"));
-  EXPECT_THROW(two_way_repeated_measures_anova({{1, 2, 3}, {1, 2, 4}}, 2), std::invalid_argument);
+  const auto anova = test::two_within({{1, 3, 5, 7}, {2, 4, 3, 5}, {0, 2, 9, 11}}, 2);
+  EXPECT_TRUE(anova.a);
+  EXPECT_THAT(anova.b.because(), HasSubstr("same amount"));
+  EXPECT_THAT(anova.interaction.because(), HasSubstr("same amount"));
+  EXPECT_THAT(test::two_within({{1, 2, 3, 4}}, 2).a.because(), HasSubstr("two participants"));
 }
 
 TEST(Sphericity, HoldsWhereContrastsVaryAlike) {
@@ -175,7 +167,7 @@ TEST(Sphericity, SaysWhyItIsNotDefined) {
               HasSubstr("follows from the others"));
 }
 
-TEST(MixedAnova, OfTwoGroupsAndTwoConditionsHasThreeTTests) {
+TEST(MixedFactors, OfTwoGroupsAndTwoConditionsHasThreeTTests) {
   RandomStream random(77, "two groups");
   const std::vector<Table> groups{drawn(random, 5, 2), drawn(random, 8, 2)};
   Values means[2], differences[2];
@@ -185,54 +177,40 @@ TEST(MixedAnova, OfTwoGroupsAndTwoConditionsHasThreeTTests) {
       differences[g].push_back(row[0] - row[1]);
     }
   }
-  const auto anova = mixed_anova(groups);
-  ASSERT_TRUE(anova);
+  const auto anova = test::mixed_factors(groups);
   const auto between = student_t_test(means[0], means[1], Tail::kTwoSided);
   const auto interaction = student_t_test(differences[0], differences[1], Tail::kTwoSided);
-  EXPECT_NEAR(anova->group->f, between->t * between->t, 1e-11);
-  EXPECT_NEAR(anova->group->p, between->p, 1e-12);
-  EXPECT_NEAR(anova->interaction->f, interaction->t * interaction->t, 1e-11);
-  EXPECT_NEAR(anova->interaction->p, interaction->p, 1e-12);
+  EXPECT_NEAR(anova.a->f, between->t * between->t, 1e-11);
+  EXPECT_NEAR(anova.a->p, between->p, 1e-12);
+  EXPECT_NEAR(anova.interaction->f, interaction->t * interaction->t, 1e-11);
+  EXPECT_NEAR(anova.interaction->p, interaction->p, 1e-12);
 }
 
-TEST(MixedAnova, WeighsConditionsAlikeInGroupsOfEqualSize) {
-  RandomStream random(78, "equal");
-  std::vector<Table> groups{drawn(random, 6, 3), drawn(random, 6, 3), drawn(random, 6, 3)};
-  const auto sequential = mixed_anova(groups, Squares::kSequential);
-  const auto marginal = mixed_anova(groups, Squares::kMarginal);
-  EXPECT_NEAR(sequential->condition->f, marginal->condition->f, 1e-12);
-  groups[0].resize(2);
-  EXPECT_GT(std::abs(mixed_anova(groups, Squares::kSequential)->condition->f -
-                     mixed_anova(groups, Squares::kMarginal)->condition->f),
-            1e-6);
-}
-
-TEST(MixedAnova, RejectsNoInteractionAsOftenAsItSays) {
+TEST(MixedFactors, RejectsNoInteractionAsOftenAsItSays) {
   RandomStream random(79, "null mixed");
   int rejected = 0;
   constexpr int kRepeats = 4000;
   for (int i = 0; i < kRepeats; ++i) {
-    const auto anova = mixed_anova({drawn(random, 4, 3), drawn(random, 7, 3)});
-    rejected += anova->interaction->p < 0.05 ? 1 : 0;
+    const auto anova = test::mixed_factors({drawn(random, 4, 3), drawn(random, 7, 3)});
+    rejected += anova.interaction->p < 0.05 ? 1 : 0;
   }
   EXPECT_NEAR(rejected, 0.05 * kRepeats, 4.0 * std::sqrt(0.05 * 0.95 * kRepeats));
 }
 
-TEST(MixedAnova, SaysWhyItIsNotDefined) {
+TEST(MixedFactors, SaysWhyItIsNotDefined) {
   const Table a{{1, 2}, {3, 5}}, b{{4, 4}, {6, 9}};
-  EXPECT_TRUE(mixed_anova({a, b}));
-  EXPECT_TRUE(mixed_anova({a, {{4, 4}}}));  // one participant in a group is enough
-  EXPECT_THAT(mixed_anova({a}).because(), HasSubstr("fewer than two groups"));
-  EXPECT_THAT(mixed_anova({a, {}}).because(), HasSubstr("empty"));
-  EXPECT_THAT(mixed_anova({{{1, 2}}, {{4, 4}}}).because(), HasSubstr("single participant"));
-  EXPECT_THAT(mixed_anova({a, {{4}, {6}}}).because(), HasSubstr("lacks a condition"));
-  EXPECT_THAT(mixed_anova({a, {{4, kNan}}}).because(), HasSubstr("finite"));
-  const auto alike = mixed_anova({{{1, 3}, {3, 1}}, {{2, 5}, {5, 2}}});
-  EXPECT_THAT(alike->group.because(), HasSubstr("not vary"));
-  EXPECT_TRUE(alike->condition);
-  const auto parallel = mixed_anova({{{1, 3}, {4, 6}}, {{2, 5}, {9, 12}}});
-  EXPECT_TRUE(parallel->group);
-  EXPECT_THAT(parallel->interaction.because(), HasSubstr("same amount"));
+  EXPECT_TRUE(test::mixed_factors({a, b}).a);
+  EXPECT_TRUE(test::mixed_factors({a, {{4, 4}}}).a);  // one participant in a group is enough
+  EXPECT_THAT(test::mixed_factors({a, {}}).a.because(), HasSubstr("no participant"));
+  EXPECT_THAT(test::mixed_factors({{{1, 2}}, {{4, 4}}}).b.because(),
+              HasSubstr("one participant in every group"));
+  EXPECT_THAT(test::mixed_factors({a, {{4, kNan}}}).a.because(), HasSubstr("finite"));
+  const auto alike = test::mixed_factors({{{1, 3}, {3, 1}}, {{2, 5}, {5, 2}}});
+  EXPECT_THAT(alike.a.because(), HasSubstr("not vary"));
+  EXPECT_TRUE(alike.b);
+  const auto parallel = test::mixed_factors({{{1, 3}, {4, 6}}, {{2, 5}, {9, 12}}});
+  EXPECT_TRUE(parallel.a);
+  EXPECT_THAT(parallel.interaction.because(), HasSubstr("same amount"));
 }
 
 }  // namespace

@@ -6,8 +6,6 @@
 #include <map>
 #include <string>
 
-#include "analysis/statistics/variance/mixed_anova.h"
-#include "analysis/statistics/variance/repeated_anova.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis {
@@ -86,31 +84,6 @@ TEST(MultifactorAnovaTest, TwoFactorsBetweenAndOneWithinAgreeWithCar) {
   EXPECT_NEAR(found["A"].p, 0.1293617, 1e-6);
   EXPECT_EQ(found["A"].df_error, 14.0);
   EXPECT_EQ(found["G"].df_error, 7.0);
-}
-
-TEST(MultifactorAnovaTest, OfTwoFactorsItIsTheAnalysisOfTwoFactors) {
-  MultifactorTable within{{2, 3}, {}, {}, std::vector<std::vector<std::size_t>>(5)};
-  MultifactorTable mixed{{3}, {2}, {}, {}};
-  std::vector<within::Table> groups(2);
-  for (int s = 0; s < 5; ++s) {
-    auto& row = within.values.emplace_back();
-    for (int cell = 0; cell < 6; ++cell) {
-      row.push_back(scattered(6 * s + cell));
-    }
-    const std::size_t group = s < 2 ? 0 : 1;
-    mixed.values.emplace_back(row.begin(), row.begin() + 3);
-    mixed.groups.push_back({group});
-    groups[group].push_back(mixed.values.back());
-  }
-  auto two = effects_of(within);
-  const auto both = two_way_repeated_measures_anova(within.values, 2);
-  EXPECT_NEAR(two["AB"].f, both->interaction->f, 1e-10);
-  EXPECT_NEAR(two["B"].p_greenhouse_geisser, both->b->p_greenhouse_geisser, 1e-10);
-  auto one = effects_of(mixed);
-  const auto marginal = mixed_anova(groups, Squares::kMarginal);
-  EXPECT_NEAR(one["G"].f, marginal->group->f, 1e-10);
-  EXPECT_NEAR(one["A"].f, marginal->condition->f, 1e-10);
-  EXPECT_NEAR(one["GA"].p_greenhouse_geisser, marginal->interaction->p_greenhouse_geisser, 1e-10);
 }
 
 /// 2,000 studies of people who do not differ: two groups of five and seven, 2 x 3 conditions.

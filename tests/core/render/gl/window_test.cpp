@@ -123,6 +123,20 @@ TEST_F(WindowTest, KeysMouseAndCloseButtonArrive) {
   polled([&] { return window.close_asked(); });
 }
 
+TEST_F(WindowTest, AClickShorterThanAPictureIsSeen) {
+  Window window(small());
+  display_->press_button("small", 3);
+  display_->release_button("small", 3);
+  test::wait_until([&] {
+    window.poll();
+    return window.pointer().buttons == 2u;
+  });
+  test::wait_until([&] {
+    window.poll();
+    return window.pointer().buttons == 0u;
+  });
+}
+
 TEST_F(WindowTest, OneAtATimeAndAgainAfterwards) {
   {
     const Window first(small());
