@@ -105,7 +105,7 @@ if [ "$study" = calibration ]; then  # springs that follow elements, and a real 
       build/haptrial deform calibrate "$folder"/$arguments --out "$out/$name"
       cp "$out/$name/calibration.json" "$folder/$name.json"
       cp "$out/$name/evaluations.csv" "$folder/$name.csv"
-      for report in gear-grid-descent cube-grid-descent; do
+      for report in gear cube-made; do
         [ "$name" != "$report" ] || cp "$out/$name/report.html" "$folder/$name.html"
       done
     done
@@ -115,6 +115,7 @@ if [ "$study" = calibration ]; then  # springs that follow elements, and a real 
   else
     echo "regenerate.sh: no data of the real cube; $folder/truth_cube.csv stays as it is" >&2
   fi
+  HAPTRIAL_WRITE_RESULTS=1 build/test_deformable --gtest_filter='GearScanTest.TheScan*'
   python3 "$folder/runs.py" tables "$(program)"
   exit
 fi

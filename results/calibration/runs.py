@@ -10,17 +10,18 @@ import sys
 
 HERE = pathlib.Path(__file__).parent
 RUNS = {
-    "gear-descent": "gear.toml --evaluations 100",
-    "gear-annealing-1": "gear.toml --method annealing --seed 1 --evaluations 300",
-    "gear-annealing-2": "gear.toml --method annealing --seed 2 --evaluations 300",
-    "gear-annealing-3": "gear.toml --method annealing --seed 3 --evaluations 300",
-    "gear-grid-descent": "gear.toml --constants grid --evaluations 150",
-    "gear-grid-annealing": "gear.toml --constants grid --method annealing --evaluations 400",
-    "gear-elements-descent": "gear.toml --constants elements --evaluations 100",
-    "gear-both-descent": "gear-both.toml --evaluations 100",
-    "gear-both-grid-descent": "gear-both.toml --constants grid --evaluations 150",
-    "cube-descent": "cube.toml --evaluations 100",
-    "cube-grid-descent": "cube.toml --constants grid --grid 5 5 5 --evaluations 150",
+    "gear-equal": "gear.toml --share equal --evaluations 100",
+    "gear": "gear.toml --evaluations 100",
+    "gear-made": "gear.toml --made 4 --evaluations 60",
+    "gear-grid-made": "gear.toml --made 4 --constants grid --evaluations 100",
+    "pad-equal": "../../experiments/deformable/pad.toml --share equal --evaluations 100",
+    "pad": "../../experiments/deformable/pad.toml --evaluations 100",
+    "pad-made": "../../experiments/deformable/pad.toml --made 6 --evaluations 100",
+    "cube-equal": "cube.toml --share equal --evaluations 100",
+    "cube": "cube.toml --evaluations 100",
+    "cube-made": "cube.toml --made 4 --evaluations 40",
+    "cube-volume-grid": "cube.toml --share volume --constants grid --grid 5 5 5 --evaluations 100",
+    "gear-annealing": "gear.toml --share equal --method annealing --evaluations 300",
 }
 
 
@@ -28,22 +29,30 @@ def millimetres(metres):
     return "unstable" if metres is None else f"{1e3 * metres:.3f}"
 
 
+def percent(share):
+    return "" if share is None else f"{100 * share:.1f}"
+
+
 def summary():
     rows = []
     for name in RUNS:
         run = json.loads((HERE / f"{name}.json").read_text())
-        seen = [load for load in run["loads"] if not load["unseen"]]
         unseen = [load for load in run["loads"] if load["unseen"]]
         rows.append({
-            "run": name, "parameters": run["parameters"], "evaluations": run["evaluations"],
+            "run": name, "share": run["share"], "parameters": run["parameters"],
+            "loads_seen": sum(not load["unseen"] and not load["held_out"] for load in run["loads"]),
+            "loads_held_out": sum(load["held_out"] for load in run["loads"]),
+            "evaluations": run["evaluations"],
             "within_5_percent": run["evaluations_to_5_percent"], "unstable": run["unstable"],
             "seconds": f"{run['seconds']:.0f}",
-            "moved_mm": millimetres(sum(load["moved_m"] for load in seen) / len(seen)),
             "by_hand_mm": millimetres(run["hand_error_m"]),
             "calibrated_mm": millimetres(run["error_m"]),
+            "seen_left_percent": percent(run["seen_share_left"]),
             "unseen_moved_mm": millimetres(unseen[0]["moved_m"]),
             "unseen_by_hand_mm": millimetres(unseen[0]["hand_error_m"]),
             "unseen_calibrated_mm": millimetres(unseen[0]["error_m"]),
+            "unseen_left_percent": percent(run["unseen_share_left"]),
+            "unseen_force_at_tool_percent": percent(unseen[0]["tool_force_error"]),
         })
     with open(HERE / "summary.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
@@ -55,15 +64,13 @@ def figure():
     """Least error so far over evaluations (the source's Figure 36)."""
     lines, data = [], []
     for number, (name, label) in enumerate({
-            "gear-descent": "three constants, descent",
-            "gear-annealing-1": "three constants, annealing, seed 1",
-            "gear-annealing-2": "seed 2", "gear-annealing-3": "seed 3",
-            "gear-grid-descent": "grid, descent", "gear-grid-annealing": "grid, annealing"}.items()):
+            "gear-annealing": "equal shares, annealing", "gear-equal": "equal shares, descent",
+            "gear": "by material, descent"}.items()):
         with open(HERE / f"{name}.csv") as file:
             points = [(row["evaluation"], row["best_mm"]) for row in csv.DictReader(file)
                       if row["best_mm"]]
         data.append("\n".join(f"{x} {y}" for x, y in points) + "\ne\n")
-        colour = ["#0072b2", "#d55e00", "#e69f00", "#cc79a7", "#009e73", "#7d4fa0"][number]
+        colour = ["#e69f00", "#d55e00", "#0072b2"][number]
         lines.append(f"'-' with steps lw 2 lc rgb '{colour}' title '{label}'")
     script = f"""set terminal svg size 760,420 font 'DejaVu Sans,12' background rgb 'white'
 set output '{HERE / "error-by-evaluation.svg"}'

@@ -105,6 +105,29 @@ TEST_F(DeformCommandTest, CalibrateFindsWhatFollowsTheReference) {
   EXPECT_FALSE(fs::exists(folder_ / "cal.evaluations")) << "the journal is not needed any more";
 }
 
+/// Made loads are followed and held out by turns; shared out by material the constants hold for a
+/// load that they never saw, better than equal ones.
+TEST_F(DeformCommandTest, MadeLoadsAndSharesHoldForAnUnseenLoad) {
+  const auto left = [&](const std::string& options, const std::string& part) {
+    const auto found = run("haptrial deform calibrate bar.toml --evaluations 40 " + options);
+    EXPECT_EQ(found.status, 0) << found.errors;
+    EXPECT_THAT(found.output, HasSubstr("left of the motion"));
+    const std::string folder = options.substr(options.rfind(' ') + 1);
+    return json(folder + "/calibration.json")[part + "_share_left"].get<double>();
+  };
+  const double made = left("--made 4 --out made", "unseen");
+  EXPECT_LT(made, 1.3 * json("made/calibration.json")["seen_share_left"].get<double>());
+  EXPECT_LT(made, left("--share equal --out equal", "unseen"));
+  int held_out = 0;
+  const auto loads = json("made/calibration.json")["loads"];
+  for (const auto& load : loads) {
+    held_out += load["held_out"].get<bool>() ? 1 : 0;
+  }
+  EXPECT_EQ(loads.size(), 6u);
+  EXPECT_EQ(held_out, 2);
+  EXPECT_EQ(loads[3]["name"], "made 2");
+}
+
 /// Displacements of another program are the reference: those of our own elements give the same.
 TEST_F(DeformCommandTest, AReferenceFromAFileIsTaken) {
   ASSERT_EQ(run("haptrial deform reference bar.toml --out ref").status, 0);
@@ -249,6 +272,9 @@ TEST_F(DeformCommandTest, OptionsThatDoNothingAreRefused) {
     EXPECT_THAT(result.errors, HasSubstr(sentence)) << line;
   };
   refused("calibrate bar.toml --grid 3 3 3", "--grid is for --constants grid");
+  refused("calibrate bar.toml --share mass", "--share is 'mass'");
+  refused("calibrate bar.toml --measure force", "--measure is 'force'");
+  refused("calibrate bar.toml --made 31", "--made is 31");
   refused("calibrate bar.toml --samples 10", "--samples is for --method annealing");
   refused("calibrate bar.toml --method annealing --evaluations 20 --samples 50",
           "--samples is 50; allowed: up to --evaluations, 20");

@@ -259,7 +259,7 @@ TEST(CalibrationResults, BeginAsTheyAreShipped) {
                                      folder + "'");
   ASSERT_EQ(run.status, 0) << run.errors;
   std::istringstream found(test::read_text(folder + "/evaluations.csv"));
-  std::istringstream shipped(test::read_text(kSource / "results/calibration/gear-descent.csv"));
+  std::istringstream shipped(test::read_text(kSource / "results/calibration/gear.csv"));
   std::string a, b;
   for (std::size_t row = 0; row <= kRows; ++row) {
     ASSERT_TRUE(std::getline(found, a) && std::getline(shipped, b)) << row;
@@ -270,7 +270,7 @@ TEST(CalibrationResults, BeginAsTheyAreShipped) {
   }
   const auto manifest =
       nlohmann::json::parse(test::read_text(kSource / "results/calibration/manifest.json"));
-  for (const char* name : {"gear.toml", "cube.toml", "gear.ply", "summary.csv"}) {
+  for (const char* name : {"gear.toml", "cube.toml", "gear.ply", "summary.csv", "scan.csv"}) {
     EXPECT_EQ(sum_of(kSource / "results/calibration" / name), manifest["sha256"][name]) << name;
   }
 }

@@ -55,34 +55,12 @@ void add_to(std::vector<double>& sum, const std::vector<double>& more, double sc
   }
 }
 
-/// The gradient of a load's error by the vertices' places.
-Positions by_place(const CalibrationLoad& load, const Positions& at, double error) {
-  Positions gradient(at.size(), Vector3d::Zero());
-  if (load.markers.empty()) {
-    const double scale = 1.0 / (error * static_cast<double>(at.size()));
-    for (std::size_t v = 0; v < at.size(); ++v) {
-      gradient[v] = scale * (at[v] - load.reference[v]);
-    }
-    return gradient;
-  }
-  const double scale = 1.0 / (error * static_cast<double>(load.markers.size()));
-  for (const Marker& marker : load.markers) {
-    const Vector3d pull = scale * (place_of(marker, at) - marker.moved);
-    for (std::size_t i = 0; i < marker.vertices.size(); ++i) {
-      gradient[static_cast<std::size_t>(marker.vertices[i])] +=
-          marker.weights[static_cast<Eigen::Index>(i)] * pull;
-    }
-  }
-  return gradient;
-}
-
 /// Adds the gradient of one load's error. At rest f(x, k) + f_ext = 0 with df/dx = -K, so that
 /// dx/dk = K^-1 df/dk and de/dk = λ · df/dk with K λ = de/dx.
 bool add_gradient(const SpringBody& body, const CalibrationLoad& load, const Positions& at,
-                  double error, double share, SpringConstants& gradient) {
+                  ErrorMeasure measure, double share, SpringConstants& gradient) {
   const auto lambda =
-      error == 0.0 ? std::optional(Positions(at.size(), Vector3d::Zero()))
-                   : small_displacements(body, load.load.holds, at, by_place(load, at, error));
+      small_displacements(body, load.load.holds, at, load_error_gradient(load, at, measure));
   if (!lambda) {
     return false;
   }
@@ -114,27 +92,9 @@ std::string why_unstable(const LoadCase& load, const Equilibrium& found) {
 
 }  // namespace
 
-double distance_error(const Positions& a, const Positions& b) {
-  double sum = 0.0;
-  for (std::size_t v = 0; v < a.size(); ++v) {
-    sum += (a[v] - b[v]).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
-double load_error(const CalibrationLoad& load, const Positions& positions) {
-  if (load.markers.empty()) {
-    return distance_error(positions, load.reference);
-  }
-  double sum = 0.0;
-  for (const Marker& marker : load.markers) {
-    sum += (place_of(marker, positions) - marker.moved).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(load.markers.size()));
-}
-
-CalibrationProblem::CalibrationProblem(SpringBody body, std::vector<CalibrationLoad> loads)
-    : body_(std::move(body)), loads_(std::move(loads)) {
+CalibrationProblem::CalibrationProblem(SpringBody body, std::vector<CalibrationLoad> loads,
+                                       ErrorMeasure measure)
+    : body_(std::move(body)), loads_(std::move(loads)), measure_(measure) {
   if (loads_.empty()) {
     throw InputError("calibration: there is no load");
   }
@@ -144,6 +104,7 @@ CalibrationProblem::CalibrationProblem(SpringBody body, std::vector<CalibrationL
   for (const CalibrationLoad& load : loads_) {
     check_load(mesh, load.load);
     check_reference(body_, load);
+    check_measure(load, measure_);
   }
 }
 
@@ -156,8 +117,8 @@ struct LoadAnswer {
   std::string unstable;
 };
 
-LoadAnswer answer_of(const SpringBody& body, const CalibrationLoad& load, bool with_gradient,
-                     double share) {
+LoadAnswer answer_of(const SpringBody& body, const CalibrationLoad& load, ErrorMeasure measure,
+                     bool with_gradient, double share) {
   LoadAnswer answer;
   const Equilibrium found =
       equilibrium(body, load.load, {.iterations = kIterations}, load.reference);
@@ -165,9 +126,9 @@ LoadAnswer answer_of(const SpringBody& body, const CalibrationLoad& load, bool w
     answer.unstable = why_unstable(load.load, found);
     return answer;
   }
-  answer.error = load_error(load, found.positions);
+  answer.error = load_error(load, found.positions, measure);
   if (with_gradient &&
-      !add_gradient(body, load, found.positions, answer.error, share, answer.gradient)) {
+      !add_gradient(body, load, found.positions, measure, share, answer.gradient)) {
     answer.unstable = fmt::format("load '{}' is not stable", load.load.name);
   }
   return answer;
@@ -183,7 +144,7 @@ CalibrationError CalibrationProblem::error(const SpringConstants& constants, boo
   const double share = 1.0 / static_cast<double>(loads_.size());
   std::vector<LoadAnswer> answers(loads_.size());
   parallel_for(loads_.size(), std::max(threads, 1), [&](std::size_t i) {
-    answers[i] = answer_of(body, loads_[i], with_gradient, share);
+    answers[i] = answer_of(body, loads_[i], measure_, with_gradient, share);
   });
   CalibrationError result;
   double sum = 0.0;

@@ -5,23 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "core/deformable/body/load_case.h"
-#include "core/deformable/calibration/marker.h"
+#include "core/deformable/calibration/load_error.h"
 #include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
 
-/// A load, and where the body is under it by a model that is trusted, or as it was measured.
-struct CalibrationLoad {
-  LoadCase load;
-  /// (vertices) [m]. Where there are markers this is only where the search for rest begins.
-  std::vector<Eigen::Vector3d> reference;
-  std::vector<Marker> markers{};  // if any, they alone are compared
-};
-
 /// How far springs are from the reference.
 struct CalibrationError {
-  /// Root mean squares over the vertices or markers, their mean over the loads [m]. Infinite where
+  /// Errors of the loads by the problem's measure, their mean over the loads [m]. Infinite where
   /// a load finds no rest or turns a tetrahedron inside out: such constants are unstable and are
   /// never averaged in.
   double mean{std::numeric_limits<double>::infinity()};
@@ -35,8 +26,9 @@ struct CalibrationError {
 class CalibrationProblem {
  public:
   /// @throws InputError as check_load(), for no load, or a reference of another length than the
-  /// body's vertices or not finite.
-  CalibrationProblem(SpringBody body, std::vector<CalibrationLoad> loads);
+  /// body's vertices or not finite, and as check_measure().
+  CalibrationProblem(SpringBody body, std::vector<CalibrationLoad> loads,
+                     ErrorMeasure measure = ErrorMeasure::kVertices);
 
   const SpringBody& body() const { return body_; }
   const std::vector<CalibrationLoad>& loads() const { return loads_; }
@@ -54,12 +46,7 @@ class CalibrationProblem {
  private:
   SpringBody body_;
   std::vector<CalibrationLoad> loads_;
+  ErrorMeasure measure_;
 };
-
-/// How far vertices at `positions` are from what a load's vertices or markers should be [m].
-double load_error(const CalibrationLoad& load, const std::vector<Eigen::Vector3d>& positions);
-
-/// The root mean square of the distances between equally many points [m].
-double distance_error(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b);
 
 }  // namespace haptrial::deformable

@@ -1,8 +1,11 @@
 #include "core/deformable/calibration/spring_parameters.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "core/deformable/springs/spring_grid.h"
 
@@ -84,11 +87,80 @@ SpringParameters SpringParameters::by_element(const SpringBody& body) {
   return parameters;
 }
 
+namespace {
+
+/// Calls take(corners) for every choice of n corners of a tetrahedron, ascending.
+template <std::size_t n, class Take>
+void for_each_choice(geometry::Tetrahedron corners, Take take) {
+  std::sort(corners.begin(), corners.end());
+  for (unsigned chosen = 0; chosen < 1u << corners.size(); ++chosen) {
+    if (std::popcount(chosen) != static_cast<int>(n)) {
+      continue;
+    }
+    std::array<std::int32_t, n> choice{};
+    for (std::size_t i = 0, at = 0; i < corners.size(); ++i) {
+      if ((chosen >> i & 1u) != 0) {
+        choice[at++] = corners[i];
+      }
+    }
+    take(choice);
+  }
+}
+
+/// Weight of the tetrahedra that have each edge or face.
+template <std::size_t n>
+std::vector<double> weight_around(const SpringBody& body,
+                                  const std::vector<std::array<std::int32_t, n>>& springs,
+                                  std::span<const double> weights) {
+  std::map<std::array<std::int32_t, n>, double> around;
+  for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+    for_each_choice<n>(body.tetrahedra[t],
+                       [&](const auto& corners) { around[corners] += weights[t]; });
+  }
+  std::vector<double> result;
+  for (auto corners : springs) {
+    std::sort(corners.begin(), corners.end());
+    result.push_back(around.at(corners));
+  }
+  return result;
+}
+
+}  // namespace
+
+SpringParameters SpringParameters::weighted(const SpringBody& body,
+                                            std::span<const double> weights) const {
+  const std::array<std::vector<double>, kSpringKinds.size()> around{
+      weight_around(body, body.parts.edges, weights),
+      weight_around(body, body.parts.faces, weights),
+      {weights.begin(), weights.end()}};
+  SpringParameters result = *this;
+  for (std::size_t kind = 0; kind < around.size(); ++kind) {
+    const std::vector<double>& w = around[kind];
+    const double mean = std::accumulate(w.begin(), w.end(), 0.0) / static_cast<double>(w.size());
+    Rows& rows = result.rows_[kind];
+    for (std::size_t s = 0; s < w.size(); ++s) {
+      for (std::size_t i = rows.start[s]; i < rows.start[s + 1]; ++i) {
+        rows.share[i].weight *= w[s] / mean;
+      }
+    }
+  }
+  return result;
+}
+
 std::span<const ParameterShare> SpringParameters::shares(SpringKind kind,
                                                          std::size_t spring) const {
   const Rows& rows = rows_[static_cast<std::size_t>(kind)];
   return std::span(rows.share)
       .subspan(rows.start[spring], rows.start[spring + 1] - rows.start[spring]);
+}
+
+std::vector<double> SpringParameters::even(std::span<const double, 3> logarithms) const {
+  std::vector<double> result;
+  for (const SpringKind kind : kSpringKinds) {
+    const auto k = static_cast<std::size_t>(kind);
+    result.insert(result.end(), first_[k + 1] - first_[k], logarithms[k]);
+  }
+  return result;
 }
 
 SpringConstants SpringParameters::constants(std::span<const double> logarithms) const {

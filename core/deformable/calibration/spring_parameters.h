@@ -33,9 +33,18 @@ class SpringParameters {
   /// One for every edge, face and tetrahedron.
   static SpringParameters by_element(const SpringBody& body);
 
+  /// The same parameters, each spring's constant multiplied by what the tetrahedra that have the
+  /// spring weigh in sum, relative to the mean of its kind. With volumes as weights even parameters
+  /// are an even density of energy; without them a spring on the surface, in one tetrahedron,
+  /// resists like one inside, in many, and even parameters are no even body.
+  /// @param weights  of the tetrahedra, each above 0
+  SpringParameters weighted(const SpringBody& body, std::span<const double> weights) const;
+
   std::size_t size() const { return first_[kSpringKinds.size()]; }
   /// The number of the first parameter of a kind, which are together.
   std::size_t first(SpringKind kind) const { return first_[static_cast<std::size_t>(kind)]; }
+  /// One value for all parameters of a kind: lengths, areas and volumes.
+  std::vector<double> even(std::span<const double, 3> logarithms) const;
   /// @param logarithms  size() of them
   SpringConstants constants(std::span<const double> logarithms) const;
   /// Gradient by the logarithms from the gradient `by_constant` by the springs' constants.

@@ -15,9 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 using deformable::CalibrationStep;
 
-/// error, logarithms ... , why unstable; numbers so that they come back to the bit
+/// error, that of held-out loads, logarithms ... , why unstable; numbers so that they come back to
+/// the bit
 std::string line_of(const CalibrationStep& step) {
-  std::string line = fmt::format("{}", step.error);
+  std::string line = fmt::format("{},{}", step.error, step.held_out);
   for (const double x : step.logarithms) {
     fmt::format_to(std::back_inserter(line), ",{}", x);
   }
@@ -28,7 +29,7 @@ std::string line_of(const CalibrationStep& step) {
 bool read_line(std::string_view line, std::size_t parameters, CalibrationStep& step) {
   const char* at = line.data();
   const char* const end = at + line.size();
-  for (std::size_t i = 0; i <= parameters; ++i) {
+  for (std::size_t i = 0; i < parameters + 2; ++i) {
     double value = 0.0;
     const auto [next, error] = std::from_chars(at, end, value);
     if (error != std::errc() || next == end || *next != ',') {
@@ -36,6 +37,8 @@ bool read_line(std::string_view line, std::size_t parameters, CalibrationStep& s
     }
     if (i == 0) {
       step.error = value;
+    } else if (i == 1) {
+      step.held_out = value;
     } else {
       step.logarithms.push_back(value);
     }
@@ -98,7 +101,7 @@ std::string evaluations_csv(const std::vector<CalibrationStep>& steps) {
   constexpr std::size_t kMostColumns = 30;  // more parameters stay out
   constexpr double kMilli = 1e3;
   const bool wide = !steps.empty() && steps[0].logarithms.size() <= kMostColumns;
-  std::string text = "evaluation,error_mm,best_mm,unstable";
+  std::string text = "evaluation,error_mm,best_mm,held_out_mm,unstable";
   for (std::size_t i = 0; wide && i < steps[0].logarithms.size(); ++i) {
     fmt::format_to(std::back_inserter(text), ",log10_constant_{}", i + 1);
   }
@@ -109,8 +112,9 @@ std::string evaluations_csv(const std::vector<CalibrationStep>& steps) {
   };
   for (std::size_t i = 0; i < steps.size(); ++i) {
     best = std::min(best, steps[i].error);
-    fmt::format_to(std::back_inserter(text), "{},{},{},{}", i + 1, number(steps[i].error),
-                   number(best), steps[i].unstable.empty() ? "" : "\"" + steps[i].unstable + "\"");
+    fmt::format_to(std::back_inserter(text), "{},{},{},{},{}", i + 1, number(steps[i].error),
+                   number(best), number(steps[i].held_out),
+                   steps[i].unstable.empty() ? "" : "\"" + steps[i].unstable + "\"");
     for (std::size_t k = 0; wide && k < steps[i].logarithms.size(); ++k) {
       fmt::format_to(std::back_inserter(text), ",{:.6g}", steps[i].logarithms[k]);
     }

@@ -26,8 +26,16 @@ constexpr double kMillimetres = 1e3;
 constexpr std::size_t kShownSets = 20;  // unstable ones, in the report
 constexpr std::size_t kDrawnLoads = 4;
 
-std::string millimetres(double metres) {
-  return std::isfinite(metres) ? fmt::format("{:.4g}", kMillimetres * metres) : "unstable";
+std::string millimetres(double metres, const char* otherwise = "unstable") {
+  return std::isfinite(metres) ? fmt::format("{:.4g}", kMillimetres * metres) : otherwise;
+}
+
+const char* word_of(LoadPart part) {
+  return part == LoadPart::kSeen ? "seen" : part == LoadPart::kHeldOut ? "held out" : "unseen";
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:+.1f} %", 100.0 * share) : "-";
 }
 
 std::string with_unit(double metres) {
@@ -61,6 +69,8 @@ std::string json_of(const DeformBody& body, const deformable::SpringBody& spring
            {"simulated", run.simulated},
            {"method", run.method},
            {"constants", run.constants},
+           {"share", run.share},
+           {"measure", run.measure},
            {"parameters", run.result.logarithms.size()},
            {"range_log10_J", {run.range.low, run.range.high}},
            {"seed", run.seed},
@@ -72,6 +82,8 @@ std::string json_of(const DeformBody& body, const deformable::SpringBody& spring
            {"hand_J", run.hand},
            {"hand_error_m", number(seen_error(run, true))},
            {"error_m", number(seen_error(run, false))},
+           {"seen_share_left", number(share_left(run, LoadPart::kSeen))},
+           {"unseen_share_left", number(share_left(run, LoadPart::kUnseen))},
            {"change_by_tighter_rest_m", run.tighter},
            {"loads", Json::array()}};
   constexpr std::size_t kListed = 300;
@@ -80,11 +92,14 @@ std::string json_of(const DeformBody& body, const deformable::SpringBody& spring
   }
   for (const JudgedLoad& load : run.loads) {
     Json one{{"name", load.name},
-             {"unseen", load.unseen},
+             {"unseen", load.part == LoadPart::kUnseen},
+             {"held_out", load.part == LoadPart::kHeldOut},
              {"reference", load.reference},
              {"moved_m", load.moved},
              {"hand_error_m", number(load.hand)},
-             {"error_m", number(load.found)}};
+             {"error_m", number(load.found)},
+             {"shape_error_m", number(load.shape)},
+             {"tool_force_error", number(load.force)}};
     if (!load.unstable.empty()) {
       one["unstable"] = load.unstable;
     }
@@ -135,20 +150,24 @@ analysis::Figure error_figure(const CalibrationRun& run) {
 void add_loads(analysis::Document& page, const CalibrationRun& run) {
   std::vector<std::vector<std::string>> rows;
   for (const JudgedLoad& load : run.loads) {
-    rows.push_back({load.name, load.unseen ? "unseen" : "seen",
-                    load.reference + (load.markers ? " (places)" : ""), millimetres(load.moved),
-                    millimetres(load.hand), millimetres(load.found),
-                    std::isfinite(load.found)
-                        ? fmt::format("{:.1f} %", 100.0 * load.found / load.moved)
-                        : load.unstable});
+    rows.push_back(
+        {load.name, word_of(load.part), load.reference + (load.markers ? " (places)" : ""),
+         millimetres(load.moved), millimetres(load.hand), millimetres(load.found),
+         std::isfinite(load.found) ? fmt::format("{:.1f} %", 100.0 * load.found / load.moved)
+                                   : load.unstable,
+         millimetres(load.shape, "-"), percent(load.force)});
   }
   page.heading("Loads");
   page.table({"load", "calibration", "reference", "moved [mm]", "set by hand [mm]",
-              "calibrated [mm]", "of the motion"},
+              "calibrated [mm]", "of the motion", "shape alone [mm]", "force at the tool"},
              rows);
   page.paragraph(
       "Errors are root mean squares over the vertices, or over the places that were measured. An "
-      "unseen load had no part in the calibration.");
+      "unseen load had no part in the calibration; one that was held out only decided which "
+      "constants "
+      "are kept. Shape alone: what is left after the best rigid motion. Force at the tool: how "
+      "much "
+      "more force than the reference's moves the places where it acts as far.");
 }
 
 void add_unstable(analysis::Document& page, const CalibrationRun& run) {
@@ -205,14 +224,22 @@ std::vector<std::string> calibration_lines(const CalibrationRun& run) {
   lines.push_back(fmt::format("error {} set by hand, {} calibrated",
                               with_unit(seen_error(run, true)), with_unit(seen_error(run, false))));
   for (const JudgedLoad& load : run.loads) {
-    lines.push_back(fmt::format("load '{}'{}: moved {}, error {} set by hand, {} calibrated",
-                                load.name, load.unseen ? ", unseen" : "", with_unit(load.moved),
-                                with_unit(load.hand), with_unit(load.found)));
+    lines.push_back(
+        fmt::format("load '{}'{}: moved {}, error {} set by hand, {} calibrated", load.name,
+                    load.part == LoadPart::kSeen ? "" : fmt::format(", {}", word_of(load.part)),
+                    with_unit(load.moved), with_unit(load.hand), with_unit(load.found)));
+  }
+  const double unseen = share_left(run, LoadPart::kUnseen);
+  if (std::isfinite(unseen)) {
+    const double seen = share_left(run, LoadPart::kSeen);
+    lines.push_back(fmt::format("left of the motion: {:.1f} % seen, {:.1f} % unseen, {:.2f} times",
+                                100.0 * seen, 100.0 * unseen, unseen / seen));
   }
   for (const JudgedLoad& load : run.loads) {
     if (load.found > load.hand) {
-      lines.push_back(fmt::format("load '{}': worse than with constants set by hand{}", load.name,
-                                  load.unseen ? "; calibrate with loads like it" : ""));
+      lines.push_back(
+          fmt::format("load '{}': worse than with constants set by hand{}", load.name,
+                      load.part == LoadPart::kUnseen ? "; calibrate with loads like it" : ""));
     }
   }
   if (seen_error(run, false) > seen_error(run, true)) {

@@ -1,30 +1,35 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "core/deformable/calibration/calibrate.h"
+#include "experiments/command/deform/calibration_loads.h"
+
 namespace haptrial::experiments {
 
 /// Measures of a calibration under one load.
 struct JudgedLoad {
   std::string name;
-  bool unseen{false};
+  LoadPart part{LoadPart::kSeen};
   std::string reference;  // who said where the body is: "elements", or a file
   bool markers{false};    // compared at measured places instead of vertices
   double moved{};         // root mean square of the reference's displacements [m]
   double hand{};          // error of the constants set by hand; infinite: unstable [m]
   double found{};         // error of those found [m]
+  double shape{NAN};      // error of those found after the best rigid motion [m]
+  double force{NAN};      // error of the force at the tool for its way, relative
   std::string unstable;   // why those found are not, if so
   std::vector<Eigen::Vector3d> at_reference, at_hand, at_found;  // vertices; empty: no rest
 };
 
 /// A calibration and what it was made of.
 struct CalibrationRun {
-  std::string method, constants;  // as the options say
-  std::array<double, 3> hand{};   // set by hand [J]
-  deformable::SearchRange range;  // of the common logarithms
+  std::string method, constants, share, measure;  // as the options say
+  std::array<double, 3> hand{};                   // set by hand [J]
+  deformable::SearchRange range;                  // of the common logarithms
   std::uint64_t seed{};
   deformable::CalibrationResult result;
   deformable::SpringConstants springs;  // found
@@ -37,5 +42,9 @@ struct CalibrationRun {
 
 /// The errors before and after, over the loads that calibration saw [m]; infinite: unstable.
 double seen_error(const CalibrationRun& run, bool by_hand);
+
+/// The error found as a share of the motion, the mean over the loads of one part; NaN without any,
+/// infinite: unstable.
+double share_left(const CalibrationRun& run, LoadPart part);
 
 }  // namespace haptrial::experiments

@@ -14,8 +14,8 @@
 #include "core/deformable/springs/equilibrium.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/calibration_journal.h"
+#include "experiments/command/deform/calibration_loads.h"
 #include "experiments/command/deform/calibration_report.h"
-#include "experiments/command/deform/deform_files.h"
 #include "experiments/command/deform/deform_loads.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
@@ -28,6 +28,9 @@ struct DeformCalibrateOptions {
   std::string out;
   std::string constants{"homogeneous"};
   std::vector<int> grid;
+  std::string share{"material"};
+  std::string measure{"vertices"};
+  int made{0};
   std::string method{"descent"};
   std::optional<int> evaluations;
   std::optional<int> samples;
@@ -44,6 +47,7 @@ constexpr std::array kNodes{5, 5, 3};  // of --grid
 constexpr int kSamples = 100;
 constexpr int kDescent = 200;  // evaluations
 constexpr int kAnnealing = 1000;
+constexpr int kMostMade = 30;  // loads
 
 namespace fs = std::filesystem;
 using deformable::CalibrationLoad;
@@ -80,7 +84,7 @@ std::array<int, 3> grid_of(const DeformCalibrateOptions& o) {
   return o.grid.empty() ? kNodes : std::array{o.grid[0], o.grid[1], o.grid[2]};
 }
 
-SpringParameters parameters_of(const DeformCalibrateOptions& o, const SpringBody& springs) {
+SpringParameters unshared_parameters(const DeformCalibrateOptions& o, const SpringBody& springs) {
   if (o.constants == "homogeneous") {
     return SpringParameters::uniform(springs);
   }
@@ -93,6 +97,45 @@ SpringParameters parameters_of(const DeformCalibrateOptions& o, const SpringBody
   }
   throw InputError(not_allowed("--constants", fmt::format("'{}'", o.constants),
                                {"homogeneous", "grid", "elements"}));
+}
+
+/// The volume of each tetrahedron times Young's modulus.
+std::vector<double> stiffness_of(const DeformBody& body, const SpringBody& springs) {
+  std::vector<double> stiffness = springs.volumes;
+  const auto& elasticity = body.elasticity;
+  for (std::size_t t = 0; t < stiffness.size(); ++t) {
+    const std::size_t material = elasticity.material_of.empty() ? 0 : elasticity.material_of[t];
+    stiffness[t] *= elasticity.materials[material].young;
+  }
+  return stiffness;
+}
+
+SpringParameters parameters_of(const DeformCalibrateOptions& o, const DeformBody& body,
+                               const SpringBody& springs) {
+  const SpringParameters parameters = unshared_parameters(o, springs);
+  if (o.share == "equal") {
+    return parameters;
+  }
+  if (o.share == "volume") {
+    return parameters.weighted(springs, springs.volumes);
+  }
+  if (o.share == "material") {
+    return parameters.weighted(springs, stiffness_of(body, springs));
+  }
+  throw InputError(
+      not_allowed("--share", fmt::format("'{}'", o.share), {"equal", "volume", "material"}));
+}
+
+deformable::ErrorMeasure measure_of(const std::string& name) {
+  std::vector<std::string> allowed;
+  for (const auto measure : {deformable::ErrorMeasure::kVertices, deformable::ErrorMeasure::kShape,
+                             deformable::ErrorMeasure::kTool}) {
+    if (name == name_of(measure)) {
+      return measure;
+    }
+    allowed.emplace_back(name_of(measure));
+  }
+  throw InputError(not_allowed("--measure", fmt::format("'{}'", name), allowed));
 }
 
 deformable::CalibrationMethod method_of(const std::string& name) {
@@ -120,56 +163,15 @@ void check_together(const DeformCalibrateOptions& o) {
   }
 }
 
-/// Positions of the body under each load, by elements or by a file.
-std::vector<CalibrationLoad> answered(const DeformBody& body, const std::vector<NamedLoad>& loads,
-                                      const MemoryBudget& budget) {
-  const deformable::ElasticBody elastic(body.mesh, body.elasticity);
-  std::optional<deformable::StaticSolver> solver;
-  std::vector<CalibrationLoad> answers;
-  Progress progress("reference", static_cast<double>(loads.size()));
-  for (const NamedLoad& load : loads) {
-    const auto file = body.setup.path_of(load.setup.reference);
-    const bool given = !load.setup.reference.empty();
-    CalibrationLoad answer{load.load, {}, {}};
-    if (given && has_markers(file)) {
-      answer.markers = read_markers(file, body.mesh);
-    } else if (given) {
-      answer.reference = moved_by(body.mesh, read_displacements(file, body.mesh));
-    }
-    if (answer.reference.empty()) {
-      if (!solver) {
-        solver.emplace(static_solver(body, elastic, budget));
-      }
-      answer.reference = moved_by(body.mesh, solver->solve(load.load).displacement);
-    }
-    answers.push_back(std::move(answer));
-    progress.update(static_cast<double>(answers.size()), load.load.name, 0.0);
-    check_interrupt();
-  }
-  return answers;
-}
-
-std::vector<CalibrationLoad> seen_of(const std::vector<NamedLoad>& loads,
-                                     const std::vector<CalibrationLoad>& answers) {
-  std::vector<CalibrationLoad> seen;
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    if (!loads[i].setup.unseen) {
-      seen.push_back(answers[i]);
-    }
-  }
-  if (seen.empty()) {
-    throw InputError("calibration: every load is unseen; one at least must be seen");
-  }
-  return seen;
-}
-
 /// Another number for another body, reference or search; evaluations at most may grow.
 std::uint64_t fingerprint(const DeformCalibrateOptions& o, const DeformBody& body,
                           const CalibrationRun& run, const std::vector<CalibrationLoad>& seen) {
   Fnv1a hash;
-  hash.add(body.setup.text).add(o.method).add(o.constants).add(run.seed);
+  hash.add(body.setup.text).add(o.method).add(o.constants).add(o.share).add(o.measure);
+  hash.add(run.seed);
   const auto nodes = grid_of(o);
-  for (const int n : {nodes[0], nodes[1], nodes[2], o.samples.value_or(kSamples), o.batch}) {
+  for (const int n :
+       {nodes[0], nodes[1], nodes[2], o.samples.value_or(kSamples), o.batch, o.made}) {
     hash.add(static_cast<std::uint64_t>(n));
   }
   const auto add = [&](std::span<const double> values) {
@@ -186,7 +188,8 @@ std::uint64_t fingerprint(const DeformCalibrateOptions& o, const DeformBody& bod
 }
 
 void search(const DeformCalibrateOptions& o, const CalibrationProblem& problem,
-            const SpringParameters& parameters, CalibrationJournal& journal, CalibrationRun& run) {
+            const CalibrationProblem* held_out, const SpringParameters& parameters,
+            CalibrationJournal& journal, CalibrationRun& run) {
   constexpr int kMost = 10000000;
   constexpr double kMilli = 1e-3;
   deformable::CalibrationSettings settings;
@@ -199,6 +202,7 @@ void search(const DeformCalibrateOptions& o, const CalibrationProblem& problem,
   settings.annealing.batch = checked_number("--batch", o.batch, 1, 1000);
   settings.enough = kMilli * checked_real("--enough", o.enough, 0.0, 1e9);
   settings.seed = run.seed;
+  settings.held_out = held_out;
   settings.threads = checked_jobs(o.jobs);
   settings.known = journal.known();
   run.earlier = settings.known.size();
@@ -218,27 +222,37 @@ void search(const DeformCalibrateOptions& o, const CalibrationProblem& problem,
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The errors of all loads with the constants set by hand and those found.
-void judge(const std::vector<NamedLoad>& loads, const std::vector<CalibrationLoad>& answers,
-           const SpringBody& springs, const deformable::SpringConstants& hand, int threads,
-           CalibrationRun& run) {
+/// Measures of one load with the constants set by hand and those found.
+JudgedLoad judged(const AnsweredLoad& given, const SpringBody& springs,
+                  const deformable::SpringConstants& hand,
+                  const deformable::SpringConstants& constants) {
+  const CalibrationProblem alone(springs, {given.answer});
+  JudgedLoad load;
+  load.name = given.named.load.name;
+  load.part = given.part;
+  load.reference = given.named.setup.reference.empty() ? "elements" : given.named.setup.reference;
+  load.markers = !given.answer.markers.empty();
+  load.moved = load_error(given.answer, springs.rest);
+  load.at_reference = given.answer.reference;
+  load.hand = alone.error(hand, false).mean;
+  load.at_hand = alone.rest(hand, 0);
+  const auto found = alone.error(constants, false);
+  load.found = found.mean;
+  load.unstable = found.unstable;
+  load.at_found = alone.rest(constants, 0);
+  if (load.unstable.empty()) {
+    load.shape = load_error(given.answer, load.at_found, deformable::ErrorMeasure::kShape);
+    const double wanted = way_of_tool(given.answer.load, springs.rest, given.answer.reference);
+    load.force = wanted / way_of_tool(given.answer.load, springs.rest, load.at_found) - 1.0;
+  }
+  return load;
+}
+
+void judge(const std::vector<AnsweredLoad>& loads, const SpringBody& springs,
+           const deformable::SpringConstants& hand, int threads, CalibrationRun& run) {
   run.loads.resize(loads.size());
-  parallel_for(loads.size(), threads, [&](std::size_t i) {
-    const CalibrationProblem alone(springs, {answers[i]});
-    JudgedLoad& load = run.loads[i];
-    load.name = loads[i].load.name;
-    load.unseen = loads[i].setup.unseen;
-    load.reference = loads[i].setup.reference.empty() ? "elements" : loads[i].setup.reference;
-    load.markers = !answers[i].markers.empty();
-    load.moved = load_error(answers[i], springs.rest);
-    load.at_reference = answers[i].reference;
-    load.hand = alone.error(hand, false).mean;
-    load.at_hand = alone.rest(hand, 0);
-    const auto found = alone.error(run.springs, false);
-    load.found = found.mean;
-    load.unstable = found.unstable;
-    load.at_found = alone.rest(run.springs, 0);
-  });
+  parallel_for(loads.size(), threads,
+               [&](std::size_t i) { run.loads[i] = judged(loads[i], springs, hand, run.springs); });
 }
 
 /// How far the error changes if rest is asked for a hundred times tighter.
@@ -270,6 +284,7 @@ std::array<double, 3> hand_of(const DeformCalibrateOptions& o, double material) 
 
 int deform_calibrate(const DeformCalibrateOptions& options) {
   check_together(options);
+  measure_of(options.measure);
   const MemoryBudget budget(options.input.max_memory);
   const DeformBody body = load_deform_body(options.input);
   if (!options.out.empty() && fs::exists(options.out) && !fs::is_empty(options.out)) {
@@ -277,8 +292,10 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   }
   watch_for_interrupt();
   const std::vector<NamedLoad> loads = loads_of(body);
-  const std::vector<CalibrationLoad> answers = answered(body, loads, budget);
-  const std::vector<CalibrationLoad> seen = seen_of(loads, answers);
+  const std::vector<AnsweredLoad> answered =
+      answered_loads(body, loads, checked_number("--made", options.made, 0, kMostMade), budget);
+  const std::vector<CalibrationLoad> seen = answers_of(answered, LoadPart::kSeen);
+  const std::vector<CalibrationLoad> held_out = answers_of(answered, LoadPart::kHeldOut);
   check_memory_of(body, kBySpring, budget);
   const SpringBody springs = springs_of(body, {1.0, 1.0, 1.0});
   const double material = log_of_material(body, springs);
@@ -291,14 +308,20 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   for (const NamedLoad& load : loads) {
     run.simulated = run.simulated || load.simulated;
   }
-  const SpringParameters parameters = parameters_of(options, springs);
-  const CalibrationProblem problem(springs, seen);
+  run.share = options.share;
+  run.measure = options.measure;
+  const SpringParameters parameters = parameters_of(options, body, springs);
+  const CalibrationProblem problem(springs, seen, measure_of(options.measure));
+  std::optional<CalibrationProblem> judges;
+  if (!held_out.empty()) {
+    judges.emplace(springs, held_out, measure_of(options.measure));
+  }
   const std::string out = fs::path(options.out).lexically_normal().string();
   const std::string kept =
       (out.ends_with('/') ? out.substr(0, out.size() - 1) : out) + ".evaluations";
   CalibrationJournal journal(kept, fingerprint(options, body, run, seen), parameters.size());
   try {
-    search(options, problem, parameters, journal, run);
+    search(options, problem, judges ? &*judges : nullptr, parameters, journal, run);
   } catch (const geometry::Cancelled&) {
     fmt::print(stderr, "haptrial: {} keeps the evaluations; the same command goes on from there\n",
                kept);
@@ -312,7 +335,7 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   }
   run.springs = parameters.constants(run.result.logarithms);
   run.tighter = tighter_change(springs, run.springs, seen);
-  judge(loads, answers, springs, spread(springs, {run.hand[0], run.hand[1], run.hand[2]}),
+  judge(answered, springs, spread(springs, {run.hand[0], run.hand[1], run.hand[2]}),
         checked_jobs(options.jobs), run);
   write_calibration(body, springs, run, options.out);
   journal.remove();
@@ -344,6 +367,20 @@ void add_deform_calibrate(CLI::App& deform, int& status) {
                   with_default("Nodes of the grid along x, y and z",
                                fmt::format("{}", fmt::join(kNodes, " "))))
       ->expected(3);
+  sub->add_option(
+      "--share", o.share,
+      with_default("Share of a spring in its number: equal, by the volume around it, or "
+                   "by that volume's material (equal, volume, material)",
+                   o.share));
+  sub->add_option("--made", o.made,
+                  with_default("Loads to make where the body is least known; every second one is "
+                               "held out and decides which constants are kept",
+                               o.made));
+  sub->add_option(
+      "--measure", o.measure,
+      with_default("Error that is minimised: vertices, shape (rigid motion may pass) or "
+                   "tool (the way of the forces)",
+                   o.measure));
   sub->add_option("--method", o.method, with_default("Search: descent or annealing", o.method));
   sub->add_option(
       "--evaluations", o.evaluations,
