@@ -16,7 +16,7 @@ export TSAN_OPTIONS=suppressions=$root/tests/support/tsan.supp
 data=${HAPTRIAL_DATA:-$root/../shared/data}
 [ -d "$data" ] || say "no folder $data: tests on real data will skip"
 
-# Of the places of a test: haptrial_discover in cmake/Modules.cmake.
+# How many places a test takes stands at haptrial_discover in cmake/Modules.cmake.
 run_tests() {
   ctest --test-dir "$root/$1" --output-on-failure --no-tests=error -j $((7 * $(nproc)))
 }
