@@ -163,7 +163,8 @@ TEST_F(JudgingTest, TheReportShowsNoSharesOfDice) {
 
 /// What `judge fit` writes is what `analyze --shares` scores by.
 TEST_F(JudgingTest, WrittenSharesAreReadBackIntoTheScore) {
-  SkillFit skill{40, 5, 0.6, 0.4, 0.8, 0.01, {{{0.5, 0.4, 0.6}, {0.3, 0.2, 0.4}, {0.2, 0.1, 0.3}}}};
+  SkillFit skill;
+  skill.shares = {JudgedShare{0.5, 0.4, 0.6}, {0.3, 0.2, 0.4}, {0.2, 0.1, 0.3}};
   ScoreParameters own;
   own.samples = 321;
   const ScoreParameters read = with_shares_of(file("shares.toml", judged_weights(skill)), own);
