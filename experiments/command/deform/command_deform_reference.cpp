@@ -118,7 +118,7 @@ Answer motion_of(const DeformBody& body, const deformable::ElasticBody& elastic,
   return answer;
 }
 
-void print_springs(const Answer& answer) {
+void print_damping(const Answer& answer) {
   if (!answer.numbers.contains("springs_damping_per_s")) {
     return;
   }
@@ -222,7 +222,7 @@ int deform_reference(const DeformReferenceOptions& options) {
   for (const Answer& answer : answers) {
     fmt::print("{}: {:.6g} mm (root mean square), {:.6g} mm at most\n", answer.load,
                1e3 * root_mean_square(answer.displacement), 1e3 * largest(answer.displacement));
-    print_springs(answer);
+    print_damping(answer);
   }
   fmt::print("wrote       {}\n", options.out);
   return 0;

@@ -134,7 +134,7 @@ TEST_F(ReferenceMotionTest, VerletConvergesToIt) {
   }
   EXPECT_GT(off(coarse) / off(fine), 1.8);
   EXPECT_LT(off(coarse) / off(fine), 2.2);
-  EXPECT_LT(off(extrapolated), 0.05 * off(fine));
+  EXPECT_LT(off(extrapolated), 0.1 * off(fine));
 }
 
 TEST_F(ReferenceMotionTest, DampingIsFoundFromTheMotion) {
