@@ -128,6 +128,32 @@ TEST_F(DeformCommandTest, MadeLoadsAndSharesHoldForAnUnseenLoad) {
   EXPECT_EQ(loads[3]["name"], "made 2");
 }
 
+/// The motion by CVODE ends where the static solution is, and passes where implicit midpoint steps
+/// do; springs are told the damping with which they follow it.
+TEST_F(DeformCommandTest, AMotionIsToldToATolerance) {
+  ASSERT_EQ(run("haptrial deform calibrate bar.toml --evaluations 30 --out cal").status, 0);
+  const auto motion =
+      run("haptrial deform reference bar.toml --load pull --motion --seconds 0.2 --frames 10 "
+          "--damping 20 --constants cal/constants.csv --out motion");
+  ASSERT_EQ(motion.status, 0) << motion.errors;
+  EXPECT_THAT(motion.output, HasSubstr("springs come nearest with --damping"));
+  ASSERT_EQ(run("haptrial deform reference bar.toml --load pull --model dynamic --seconds 0.2 "
+                "--step 2e-4 --damping 20 --out steps")
+                .status,
+            0);
+  const auto exact = json("motion/reference.json")["loads"][0];
+  const double largest = exact["largest_m"].get<double>();
+  EXPECT_NEAR(json("steps/reference.json")["loads"][0]["largest_m"].get<double>(), largest,
+              0.02 * largest);
+  EXPECT_LE(exact["springs_distance_m"].get<double>(),
+            1.001 * exact["springs_distance_same_damping_m"].get<double>());
+  EXPECT_LT(exact["springs_distance_m"].get<double>(), 0.5 * exact["motion_rms_m"].get<double>());
+  EXPECT_TRUE(fs::exists(folder_ / "motion/pull-motion.csv"));
+  EXPECT_THAT(
+      run("haptrial deform reference bar.toml --constants cal/constants.csv --out no").errors,
+      HasSubstr("--constants is for --motion"));
+}
+
 /// Displacements of another program are the reference: those of our own elements give the same.
 TEST_F(DeformCommandTest, AReferenceFromAFileIsTaken) {
   ASSERT_EQ(run("haptrial deform reference bar.toml --out ref").status, 0);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/deformable/calibration/calibrate.h"
+#include "core/deformable/calibration/calibration_settings.h"
 
 namespace haptrial::deformable {
 

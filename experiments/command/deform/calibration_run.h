@@ -40,6 +40,10 @@ struct CalibrationRun {
   bool simulated{false};
 };
 
+/// Sets the measures of all loads with the constants set by hand and those found.
+void judge_loads(const std::vector<AnsweredLoad>& loads, const deformable::SpringBody& springs,
+                 const deformable::SpringConstants& hand, int threads, CalibrationRun& run);
+
 /// The errors before and after, over the loads that calibration saw [m]; infinite: unstable.
 double seen_error(const CalibrationRun& run, bool by_hand);
 

@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/fnv.h"
 #include "core/base/nearest.h"
-#include "core/base/parallel.h"
 #include "core/deformable/springs/equilibrium.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/calibration_journal.h"
@@ -222,39 +221,6 @@ void search(const DeformCalibrateOptions& o, const CalibrationProblem& problem,
   run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Measures of one load with the constants set by hand and those found.
-JudgedLoad judged(const AnsweredLoad& given, const SpringBody& springs,
-                  const deformable::SpringConstants& hand,
-                  const deformable::SpringConstants& constants) {
-  const CalibrationProblem alone(springs, {given.answer});
-  JudgedLoad load;
-  load.name = given.named.load.name;
-  load.part = given.part;
-  load.reference = given.named.setup.reference.empty() ? "elements" : given.named.setup.reference;
-  load.markers = !given.answer.markers.empty();
-  load.moved = load_error(given.answer, springs.rest);
-  load.at_reference = given.answer.reference;
-  load.hand = alone.error(hand, false).mean;
-  load.at_hand = alone.rest(hand, 0);
-  const auto found = alone.error(constants, false);
-  load.found = found.mean;
-  load.unstable = found.unstable;
-  load.at_found = alone.rest(constants, 0);
-  if (load.unstable.empty()) {
-    load.shape = load_error(given.answer, load.at_found, deformable::ErrorMeasure::kShape);
-    const double wanted = way_of_tool(given.answer.load, springs.rest, given.answer.reference);
-    load.force = wanted / way_of_tool(given.answer.load, springs.rest, load.at_found) - 1.0;
-  }
-  return load;
-}
-
-void judge(const std::vector<AnsweredLoad>& loads, const SpringBody& springs,
-           const deformable::SpringConstants& hand, int threads, CalibrationRun& run) {
-  run.loads.resize(loads.size());
-  parallel_for(loads.size(), threads,
-               [&](std::size_t i) { run.loads[i] = judged(loads[i], springs, hand, run.springs); });
-}
-
 /// How far the error changes if rest is asked for a hundred times tighter.
 double tighter_change(const SpringBody& springs, const deformable::SpringConstants& constants,
                       const std::vector<CalibrationLoad>& seen) {
@@ -335,8 +301,8 @@ int deform_calibrate(const DeformCalibrateOptions& options) {
   }
   run.springs = parameters.constants(run.result.logarithms);
   run.tighter = tighter_change(springs, run.springs, seen);
-  judge(answered, springs, spread(springs, {run.hand[0], run.hand[1], run.hand[2]}),
-        checked_jobs(options.jobs), run);
+  judge_loads(answered, springs, spread(springs, {run.hand[0], run.hand[1], run.hand[2]}),
+              checked_jobs(options.jobs), run);
   write_calibration(body, springs, run, options.out);
   journal.remove();
   if (run.simulated) {

@@ -14,6 +14,7 @@
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/deform/deform_files.h"
 #include "experiments/command/deform/deform_loads.h"
+#include "experiments/command/deform/recorded_motion.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 
@@ -28,6 +29,10 @@ struct DeformReferenceOptions {
   double seconds{1.0};
   double step{1e-3};
   double damping{0.0};
+  bool motion{false};
+  int frames{20};
+  double tolerance{1e-8};
+  std::string constants;
 };
 
 using Eigen::Vector3d;
@@ -80,6 +85,62 @@ Answer dynamics(const DeformBody& body, const deformable::ElasticBody& elastic,
           {{"time_s", solver.time()}, {"energy_J", solver.energy()}}};
 }
 
+/// The motion of elements by CVODE, and of springs with the constants of a file beside it.
+Answer motion_of(const DeformBody& body, const deformable::ElasticBody& elastic,
+                 const NamedLoad& load, const DeformReferenceOptions& o, exchange::NewFolder& out) {
+  constexpr int kMostFrames = 100000;
+  RecordedMotionOptions options;
+  options.seconds = checked_real("--seconds", o.seconds, 1e-6, 1e6);
+  options.frames = checked_number("--frames", o.frames, 1, kMostFrames);
+  options.damping = checked_real("--damping", o.damping, 0.0, 1e6);
+  options.tolerance = checked_real("--tolerance", o.tolerance, 1e-13, 1e-2);
+  std::optional<deformable::SpringBody> springs;
+  if (!o.constants.empty()) {
+    springs = springs_of(body, {1.0, 1.0, 1.0});
+    springs->constants = read_constants(o.constants, *springs);
+  }
+  const RecordedMotion motion =
+      recorded_motion(elastic, load.load, springs ? &*springs : nullptr, options);
+  out.write(load.load.name + "-motion.csv", motion_csv(motion));
+  const auto& last = motion.displacement.back();
+  Answer answer{load.load.name,
+                last,
+                {{"time_s", motion.times.back()},
+                 {"frames", motion.times.size()},
+                 {"tolerance", options.tolerance},
+                 {"motion_rms_m", motion.moved},
+                 {"energy_J", elastic.energy(last)}}};
+  if (motion.springs) {
+    answer.numbers["springs_damping_per_s"] = motion.springs->damping;
+    answer.numbers["springs_distance_m"] = motion.springs->distance;
+    answer.numbers["springs_distance_same_damping_m"] = motion.springs->same;
+  }
+  return answer;
+}
+
+void print_damping(const Answer& answer) {
+  if (!answer.numbers.contains("springs_damping_per_s")) {
+    return;
+  }
+  fmt::print(
+      "{}: springs come nearest with --damping {:.4g}: {:.4g} mm of {:.4g} mm of motion; {:.4g} mm "
+      "with that of the elements\n",
+      answer.load, answer.numbers["springs_damping_per_s"].get<double>(),
+      1e3 * answer.numbers["springs_distance_m"].get<double>(),
+      1e3 * answer.numbers["motion_rms_m"].get<double>(),
+      1e3 * answer.numbers["springs_distance_same_damping_m"].get<double>());
+}
+
+/// Options that would be without effect.
+void check_motion_options(const DeformReferenceOptions& o) {
+  if (o.motion && o.model != "static") {
+    throw InputError("--motion chooses its own steps; leave --model out");
+  }
+  if (!o.motion && !o.constants.empty()) {
+    throw InputError("--constants is for --motion");
+  }
+}
+
 std::string reference_report(const DeformBody& body, const std::vector<Answer>& answers,
                              bool simulated) {
   analysis::Document page;
@@ -120,13 +181,14 @@ int deform_reference(const DeformReferenceOptions& options) {
     throw InputError(
         not_allowed("--model", fmt::format("'{}'", options.model), {"static", "dynamic"}));
   }
+  check_motion_options(options);
   const MemoryBudget budget(options.input.max_memory);
   const DeformBody body = load_deform_body(options.input);
   const auto loads = loads_of(body, options.loads);
   exchange::NewFolder out(options.out);
   const deformable::ElasticBody elastic(body.mesh, body.elasticity);
   std::optional<deformable::StaticSolver> solver;
-  if (options.model == "static") {
+  if (options.model == "static" && !options.motion) {
     solver.emplace(static_solver(body, elastic, budget));
   } else {
     check_memory_of(body, kByMovingElement, budget);
@@ -139,7 +201,8 @@ int deform_reference(const DeformReferenceOptions& options) {
     for (const NamedLoad& load : loads) {
       const auto done = static_cast<double>(answers.size());
       progress.update(done, load.load.name, 0.0);
-      answers.push_back(options.model == "static"
+      answers.push_back(options.motion ? motion_of(body, elastic, load, options, out)
+                        : options.model == "static"
                             ? statics(*solver, load)
                             : dynamics(body, elastic, load, options, progress, done));
       simulated = simulated || load.simulated;
@@ -159,6 +222,7 @@ int deform_reference(const DeformReferenceOptions& options) {
   for (const Answer& answer : answers) {
     fmt::print("{}: {:.6g} mm (root mean square), {:.6g} mm at most\n", answer.load,
                1e3 * root_mean_square(answer.displacement), 1e3 * largest(answer.displacement));
+    print_damping(answer);
   }
   fmt::print("wrote       {}\n", options.out);
   return 0;
@@ -182,6 +246,14 @@ void add_deform_reference(CLI::App& deform, int& status) {
                   with_default("Duration of a dynamic model [s]", o.seconds));
   sub->add_option("--step", o.step, with_default("Step of a dynamic model [s]", o.step));
   sub->add_option("--damping", o.damping, with_default("Damping by mass [1/s]", o.damping));
+  sub->add_flag("--motion", o.motion,
+                "Motion from rest under the load by SUNDIALS CVODE, to a stated tolerance");
+  sub->add_option("--frames", o.frames, with_default("Number of frames of a motion", o.frames));
+  sub->add_option("--tolerance", o.tolerance,
+                  with_default("Relative tolerance of a motion", o.tolerance));
+  sub->add_option("--constants", o.constants,
+                  "Constants of springs from a calibration (.csv), whose damping is calibrated "
+                  "against the motion");
 }
 
 }  // namespace haptrial::experiments
