@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/bone/data/ear_side.h"
+#include "core/bone/data/ear_variants.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/data/mandible.h"
 #include "core/bone/data/temporal_bone.h"
@@ -22,39 +24,56 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kMadeEar = "procedural temporal";
+
 /// A procedural bone; one of the last few if it is the same, as a definition is read many times.
 template <class Options>
 std::shared_ptr<const bone::BoneModel> procedural(
-    bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d) {
+    bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d,
+    Options options = {}) {
   struct Kept {
-    std::uint64_t seed{0};
-    double spacing{0.0};
+    Options options;
     std::shared_ptr<const bone::BoneModel> model;
   };
-  constexpr std::size_t kKept = 2;
+  constexpr std::size_t kKept = 6;  // an ear and its variants
   static std::mutex mutex;
   static std::array<Kept, kKept> kept;
   static std::size_t next = 0;
-  Options options;
   options.seed = d.bone_seed;
   options.spacing = d.spacing.value_or(options.spacing);
   const std::scoped_lock lock(mutex);
   for (const Kept& each : kept) {
-    if (each.model && each.seed == options.seed && each.spacing == options.spacing) {
+    if (each.model && each.options == options) {
       return each.model;
     }
   }
   Kept& fresh = kept[std::exchange(next, (next + 1) % kKept)];
-  fresh = {options.seed, options.spacing,
-           std::make_shared<const bone::BoneModel>(make(options, {}))};
+  fresh = {options, std::make_shared<const bone::BoneModel>(make(options, {}))};
   return fresh.model;
+}
+
+/// @param variant  what follows the name of the made ear: nothing, or a comma and a variant
+std::shared_ptr<const bone::BoneModel> made_ear(std::string_view variant, const BoneDefinition& d) {
+  constexpr std::string_view kBefore = ", ";
+  if (!variant.empty() && !variant.starts_with(kBefore)) {
+    throw InputError(fmt::format(
+        "{}: \"{}{}\" among the bones; write \"{}\", or a variant after a comma: \"{}, {}\"",
+        d.file_name, kMadeEar, variant, kMadeEar, kMadeEar, bone::ear_variants().front()));
+  }
+  bone::TemporalBoneOptions options;
+  options.variant = variant.empty() ? "" : variant.substr(kBefore.size());
+  try {
+    return procedural<bone::TemporalBoneOptions>(bone::make_temporal_bone, d, std::move(options));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: bones: {}", d.file_name, error.what()));
+  }
 }
 
 std::shared_ptr<const bone::BoneModel> load_source(const std::string& source,
                                                    const BoneDefinition& d,
                                                    const fs::path& folder) {
-  if (source == "procedural temporal") {
-    return procedural<bone::TemporalBoneOptions>(bone::make_temporal_bone, d);
+  if (source.starts_with(kMadeEar)) {
+    return made_ear(std::string_view(source).substr(kMadeEar.size()), d);
   }
   if (source == "procedural mandible") {
     return procedural<bone::MandibleOptions>(bone::make_mandible, d);
