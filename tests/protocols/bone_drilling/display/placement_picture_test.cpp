@@ -1,5 +1,5 @@
-#include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/placement_picture.h"
+#include "protocols/bone_drilling/display/placement_legend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
