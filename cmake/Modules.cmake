@@ -293,7 +293,7 @@ function(haptrial_tests)
   add_library(haptrial_test_support STATIC ${support})
   target_include_directories(haptrial_test_support PUBLIC ${CMAKE_SOURCE_DIR})
   haptrial_stand_ins()
-  haptrial_together(bone_data MandibleTest TemporalBoneTest)
+  haptrial_together(bone_data EarVariantsTest MandibleTest TemporalBoneTest)
   haptrial_together(deformable BallTouchTest)
   haptrial_together(experiments BoneSessionTest DesignReportsTest HintSessionTest NerveSessionTest RateTest
                                 SoftTissueSessionTest TwoHandsTest)

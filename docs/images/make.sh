@@ -10,6 +10,8 @@
 #   docs/algorithms/tutoring.sh                              a led hand beside its tutor's
 #   docs/images/folders.py                                   folders.svg, from CMakeLists.txt
 #   tests/benchmarks/stops.py, every_hand.gp                 stops.svg, every-hand.svg
+#   docs/images/ear-variants.py                              ear-variants.png, from made ears
+#   docs/ct-slices.sh                                        ct-slices.png, by a dry run
 #   docs/images/scan.sh                                      scan-*.png, by a test
 #   docs/images/validity-live.sh                             validity-live.jpg
 #   HAPTRIAL_KEEP_PICTURES=FOLDER build/test_experiments --gtest_filter=LiveMouseDrilling*

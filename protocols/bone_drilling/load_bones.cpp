@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/kept.h"
 #include "core/bone/data/ear_side.h"
+#include "core/bone/data/ear_variants.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/data/mandible.h"
 #include "core/bone/data/temporal_bone.h"
@@ -21,12 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kMadeEar = "procedural temporal";
+
 /// A procedural bone; one of the last few if it is the same, as a definition is read many times.
 template <class Options>
 std::shared_ptr<const bone::BoneModel> procedural(
-    bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d) {
-  static Kept<Options, bone::BoneModel> kept(2);
-  Options options;
+    bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d,
+    Options options = {}) {
+  static Kept<Options, bone::BoneModel> kept(6);  // an ear and its variants
   options.seed = d.bone_seed;
   options.spacing = d.spacing.value_or(options.spacing);
   return kept.get(options,
@@ -52,11 +56,28 @@ std::shared_ptr<const subject::DrillingChart> chart_of(
   });
 }
 
+/// @param variant  what follows the name of the made ear: nothing, or a comma and a variant
+std::shared_ptr<const bone::BoneModel> made_ear(std::string_view variant, const BoneDefinition& d) {
+  constexpr std::string_view kBefore = ", ";
+  if (!variant.empty() && !variant.starts_with(kBefore)) {
+    throw InputError(fmt::format(
+        "{}: \"{}{}\" among the bones; write \"{}\", or a variant after a comma: \"{}, {}\"",
+        d.file_name, kMadeEar, variant, kMadeEar, kMadeEar, bone::ear_variants().front()));
+  }
+  bone::TemporalBoneOptions options;
+  options.variant = variant.empty() ? "" : variant.substr(kBefore.size());
+  try {
+    return procedural<bone::TemporalBoneOptions>(bone::make_temporal_bone, d, std::move(options));
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: bones: {}", d.file_name, error.what()));
+  }
+}
+
 std::shared_ptr<const bone::BoneModel> load_source(const std::string& source,
                                                    const BoneDefinition& d,
                                                    const fs::path& folder) {
-  if (source == "procedural temporal") {
-    return procedural<bone::TemporalBoneOptions>(bone::make_temporal_bone, d);
+  if (source.starts_with(kMadeEar)) {
+    return made_ear(std::string_view(source).substr(kMadeEar.size()), d);
   }
   if (source == "procedural mandible") {
     return procedural<bone::MandibleOptions>(bone::make_mandible, d);

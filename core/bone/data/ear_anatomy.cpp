@@ -222,6 +222,17 @@ EarAnatomy::Material EarAnatomy::lining(const Point& p, double canal) const {
   return canal > -lining_ && p.x() > kBony ? Material{Anatomy::kEarCanal, 1.0} : Material{};
 }
 
+/// The canal of the facial nerve and the capsule of the labyrinth bulge into the middle ear.
+bool EarAnatomy::walled(const Point& p) const {
+  constexpr double kWall = 0.55;
+  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+    const bool bare = part.label == Anatomy::kFacialNerve && niche(p) < 0.0;
+    const bool has_wall = part.label == Anatomy::kFacialNerve ||
+                          part.label == Anatomy::kLabyrinth || part.label == Anatomy::kCarotid;
+    return has_wall && !bare && part.worm.distance(p) < kWall;
+  });
+}
+
 EarAnatomy::Material EarAnatomy::at(const Point& p) const {
   constexpr double kDura = 2.5;  // what is kept of the inside of the skull
   const double depth = hull(p);
@@ -278,22 +289,14 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
     if (plate) {
       return {Anatomy::kBone, 1.0};
     }
-    // The canal of the facial nerve and the capsule of the labyrinth bulge into the cavity.
-    for (const Part& part : parts_) {
-      const bool walled = part.label == Anatomy::kFacialNerve ||
-                          part.label == Anatomy::kLabyrinth || part.label == Anatomy::kCarotid;
-      if (walled && part.worm.distance(p) < 0.55) {
-        return {Anatomy::kBone, 1.0};
-      }
-    }
-    return {};
+    return walled(p) ? Material{Anatomy::kBone, 1.0} : Material{};
   }
   if (air_cell(p, depth, middle)) {
     return {};
   }
   const double cortex = std::min({-depth, inside, middle + 0.5});
   const double capsule = (p - kVestibule).norm();
-  return {Anatomy::kBone, cortex < 1.8 || capsule < 9.0 ? 1.0 : 0.75};
+  return {Anatomy::kBone, cortex < 1.8 || capsule < 9.0 ? 1.0 : v_.spongy};
 }
 
 }  // namespace haptrial::bone

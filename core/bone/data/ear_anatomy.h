@@ -10,16 +10,20 @@ namespace haptrial::bone {
 
 /// Differences from one temporal bone to the next; lengths in millimetres.
 struct EarVariation {
-  double scale{1.0};        // of everything
-  double cells{15.0};       // how far they reach from the antrum
-  double cell_fill{0.85};   // 0 to 1
-  double sinus{0.0};        // forward, towards the ear canal
-  double tegmen{0.0};       // up
-  double nerve{0.0};        // the second genu of the facial nerve, to the back
-  double mastoid_tip{0.0};  // down
-  double canal{4.1};        // radius of the ear canal
-  double bulb{0.0};         // the jugular bulb, up
-  std::uint64_t noise{1};   // seed of cells and unevenness
+  double scale{1.0};         // of everything
+  double cells{15.0};        // how far they reach from the antrum
+  double cell_fill{0.85};    // 0 to 1
+  double sinus{0.0};         // forward, towards the ear canal
+  double tegmen{0.0};        // up
+  double nerve{0.0};         // the second genu of the facial nerve, to the back
+  double mastoid_tip{0.0};   // down
+  double canal{4.1};         // radius of the ear canal
+  double bulb{0.0};          // the jugular bulb, up
+  double mastoid_roof{0.0};  // a dip of the tegmen over the mastoid, down
+  double antrum{1.0};        // width of antrum and aditus, as a share
+  bool bare_nerve{false};    // the tympanic part of the facial nerve lies bare above the stapes
+  double spongy{0.75};       // density of bone deep in the mastoid, 0 to 1
+  std::uint64_t noise{1};    // seed of cells and unevenness
 };
 EarVariation ear_variation(std::uint64_t seed);
 
@@ -64,7 +68,9 @@ class EarAnatomy {
   double sinus(const Point& p) const;
   double ear_canal(const Point& p) const;
   double drum(const Point& p) const;  // below 0 on the canal's side of the ear drum
+  double niche(const Point& p) const;
   double middle_ear(const Point& p) const;
+  bool walled(const Point& p) const;
   bool air_cell(const Point& p, double depth, double middle) const;
   Material jaw(const Point& p) const;
   Material lining(const Point& p, double canal) const;

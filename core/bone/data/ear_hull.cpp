@@ -19,6 +19,14 @@ double upright_ellipse(const Point& p, double y, double z, double along_y, doubl
   return ellipsoid({0.0, p.y(), p.z()}, {0.0, y, z}, {along_y, along_y, along_z});
 }
 
+/// 1 over the middle of the mastoid, and little over the ossicles and the labyrinth.
+double over_mastoid(const Point& p) {
+  const double dx = (p.x() - 13.0) / 10.0;
+  const double dy = (p.y() - 33.0) / 10.0;
+  const double bump = 1.0 + dx * dx + dy * dy;
+  return 1.0 / (bump * bump);
+}
+
 }  // namespace
 
 double EarAnatomy::sinus(const Point& p) const { return sinus_.distance(p, 6.0); }
@@ -53,7 +61,8 @@ double EarAnatomy::tegmen(const Point& p) const {
   const double dy = (p.y() - 25.0) / 5.0;
   const double bump = 1.0 + dx * dx + dy * dy;
   return 31.2 + v_.tegmen + 3.6 / (bump * bump) + 0.26 * std::min(0.0, p.y() - 24.0) -
-         0.10 * std::max(0.0, 22.0 - p.x()) + 0.5 * noise(v_.noise + 9, p / 5.0);
+         0.10 * std::max(0.0, 22.0 - p.x()) + 0.5 * noise(v_.noise + 9, p / 5.0) -
+         v_.mastoid_roof * over_mastoid(p);
 }
 
 double EarAnatomy::behind(const Point& p) const {
@@ -130,14 +139,21 @@ double EarAnatomy::ear_canal(const Point& p) const {
   return std::max(tube, drum(p));
 }
 
+/// The space through which a bare facial nerve is seen from the tympanum.
+double EarAnatomy::niche(const Point& p) const {
+  constexpr double kFar = 1e3;  // there is none
+  return v_.bare_nerve ? round_cone(p, {26.4, 22.2, 25.2}, kBareNerve, 1.4, 1.4) : kFar;
+}
+
 double EarAnatomy::middle_ear(const Point& p) const {
   const double tympanum =
       std::max(ellipsoid(p, {26.6, 20.6, 21.6}, {3.0, 4.8, 5.4}), 0.3 - drum(p));
   const double attic = ellipsoid(p, {24.6, 21.2, 26.8}, {2.8, 4.0, 2.7});
-  const double antrum = ellipsoid(p, kAntrum, {3.6, 4.4, 3.2});
-  const double aditus = round_cone(p, {24.0, 23.0, 27.0}, kAntrum, 2.0, 2.2);
-  return std::min(smooth_union(smooth_union(tympanum, attic, 1.0), std::min(antrum, aditus), 1.0),
-                  tube_.distance(p));
+  const double antrum = ellipsoid(p, kAntrum, v_.antrum * Point(3.6, 4.4, 3.2));
+  const double aditus =
+      round_cone(p, {24.0, 23.0, 27.0}, kAntrum, 2.0 * v_.antrum, 2.2 * v_.antrum);
+  return std::min({smooth_union(smooth_union(tympanum, attic, 1.0), std::min(antrum, aditus), 1.0),
+                   tube_.distance(p), niche(p)});
 }
 
 }  // namespace haptrial::bone

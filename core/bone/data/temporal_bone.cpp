@@ -4,6 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/bone/data/ear_anatomy.h"
+#include "core/bone/data/ear_variants.h"
 #include "core/bone/data/procedural_bone.h"
 
 namespace haptrial::bone {
@@ -14,7 +15,8 @@ BoneModel make_temporal_bone(const TemporalBoneOptions& options,
     throw InputError(
         fmt::format("the spacing is {:.4g} mm; allowed: 0.1 to 2 mm", 1e3 * options.spacing));
   }
-  const EarVariation variation = ear_variation(options.seed);
+  EarVariation variation = ear_variation(options.seed);
+  apply_ear_variant(options.variant, variation);
   // A tube whose radius is more than half a voxel's diagonal has no gaps.
   const double least = 0.9 * 1e3 * options.spacing / variation.scale;
   const EarAnatomy anatomy(variation, least);
@@ -26,7 +28,8 @@ BoneModel make_temporal_bone(const TemporalBoneOptions& options,
                       options.threads, "temporal bone"};
   BoneModel model = fill(
       made, [&](const Point& p) { return anatomy.at(p); }, report);
-  model.source = fmt::format("made by haptrial: right temporal bone, seed {}, {:.4g} mm",
+  const std::string variant = options.variant.empty() ? "" : options.variant + ", ";
+  model.source = fmt::format("made by haptrial: right temporal bone, {}seed {}, {:.4g} mm", variant,
                              options.seed, 1e3 * options.spacing);
   return model;
 }

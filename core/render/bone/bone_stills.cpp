@@ -40,8 +40,9 @@ void main() {
 
 }  // namespace
 
-BoneStills::BoneStills(const Gl& gl, std::shared_ptr<const std::vector<Image>> stills)
-    : gl_(gl), stills_(std::move(stills)), quads_(gl, 1) {
+BoneStills::BoneStills(const Gl& gl, std::shared_ptr<const std::vector<Image>> stills,
+                       StillSide side)
+    : gl_(gl), stills_(std::move(stills)), side_(side), quads_(gl, 1) {
   program_ = build_program(gl_, "the stills", kStillVertexShader, kStillFragmentShader);
   gl_.gen_textures(1, &texture_);
   gl_.bind_texture(GL_TEXTURE_2D, texture_);
@@ -61,12 +62,13 @@ void BoneStills::replace(std::shared_ptr<const std::vector<Image>> stills) {
   uploaded_ = static_cast<std::size_t>(-1);
 }
 
-Eigen::Vector4d BoneStills::place_of(const Image& still, int width, int height) {
+Eigen::Vector4d BoneStills::place_of(const Image& still, int width, int height, StillSide side) {
+  const bool left = side == StillSide::kLeft;
   const double margin = kMargin * width;
-  const double wide =
-      std::min(kShare * width, (height - 2.0 * margin) * still.width / std::max(1, still.height));
+  const double most = (left ? kLeftHeight : 1.0) * height - 2.0 * margin;
+  const double wide = std::min(kShare * width, most * still.width / std::max(1, still.height));
   const double high = wide * still.height / std::max(1, still.width);
-  return {std::round(width - margin - wide), std::round(margin), std::round(wide),
+  return {std::round(left ? margin : width - margin - wide), std::round(margin), std::round(wide),
           std::round(high)};
 }
 
@@ -92,7 +94,7 @@ void BoneStills::draw(std::size_t number, int left, int width, int height) {
   gl_.uniform2f(gl_.get_uniform_location(program_, "screen"), static_cast<float>(width),
                 static_cast<float>(height));
   quads_.bind();
-  const Eigen::Vector4f place = place_of((*stills_)[number], width, height).cast<float>();
+  const Eigen::Vector4f place = place_of((*stills_)[number], width, height, side_).cast<float>();
   quads_.draw(place.data(), 1);
   gl_.bind_vertex_array(0);
   gl_.use_program(0);

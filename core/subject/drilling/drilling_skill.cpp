@@ -17,11 +17,12 @@ DrillingSkill drilling_skill(double skill) noexcept {
   k.near_distance = line(0.0, 0.5e-3);
   k.far_distance = line(1.0e-3, 3.0e-3);
   k.stroke_rate = line(1.0, 1.4);
+  k.near_pace = line(1.0, 0.7);
   k.stroke_length = line(4e-3, 8e-3);
   k.pause = line(0.30, 0.05);
   k.force_noise = line(0.20, 0.05);
   k.tremor = line(0.06, 0.03);
-  k.misjudgement = line(1.4e-3, 0.2e-3);
+  k.misjudgement = line(1.4e-3, 0.1e-3);
   k.extra_margin = line(0.0, 0.3e-3);
   k.region_error = line(2.5e-3, 0.4e-3);
   k.saucer = line(0.60, 1.0);

@@ -12,7 +12,8 @@ struct DrillingSkill {
   double far_force;      // and far from any [N]
   double near_distance;  // up to here it is close > 0 [m]
   double far_distance;   // from here on far > near_distance [m]
-  double stroke_rate;    // [1/s]
+  double stroke_rate;    // far from structures [1/s]
+  double near_pace;      // share of that rate close to a structure > 0
   double stroke_length;  // [m]
   double pause;          // between bouts of strokes [s]
   double force_noise;    // share of the press

@@ -39,6 +39,8 @@ constexpr double kWithdrawn = 4e-3;      // after a tone of the nerve monitor [m
 constexpr double kQuiet = 1.0;           // that it waits then [s]
 constexpr double kCortexDepth = 3e-3;    // below the surface that the bone had [m]
 constexpr double kMiddleDepth = 8e-3;    // likewise [m]
+constexpr double kUnderBite = 0.5e-3;    // of strokes under an edge [m]
+constexpr double kUnderStep = 0.25e-3;   // along them, from one look at the chart to the next [m]
 constexpr int kSweeps = 6;               // of a bout
 constexpr int kSweepsUnder = 4;
 
@@ -230,6 +232,11 @@ void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
     }
     return;
   }
+  if (strokes_.under && !end_before_margin()) {
+    StrokeChoice open = choice;
+    open.undercut = 0.0;
+    p.memory.choose(open, last_.head<2>(), p.random, strokes_);
+  }
   if (work_ != nullptr) {
     work_->note(seen.progress * seen.time_limit, work());
   }
@@ -239,6 +246,26 @@ void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
     lift_to_ = std::min(lift_to_, p.memory.opening().z() - kRoomToLook);
   }
   begin(Doing::kLift);
+}
+
+/// Ends strokes under an edge before the burr would enter a margin, if the structures are where
+/// they are believed.
+/// @returns false if what is left of them is not worth a stroke.
+bool DrillingSurgeon::end_before_margin() noexcept {
+  const Procedure& p = now();
+  const Eigen::Vector2d way = strokes_.to - strokes_.from;
+  const double depth = p.memory.touch(strokes_.from) + kUnderBite;
+  const double least = burr().radius + p.view.extra;
+  const int steps = static_cast<int>(way.norm() / kUnderStep);
+  for (int s = 0; s <= steps; ++s) {
+    const Eigen::Vector2d at = strokes_.from + way * s / std::max(1, steps);
+    const Eigen::Vector3d place(at.x(), at.y(), depth);
+    if (static_cast<double>(p.chart->clearance_at(place - p.view.offset)) < least) {
+      strokes_.to = strokes_.from + way * std::max(0, s - 1) / std::max(1, steps);
+      break;
+    }
+  }
+  return (strokes_.to - strokes_.from).norm() > burr().radius;
 }
 
 /// The bout that was chosen is for this work.
@@ -277,7 +304,7 @@ void DrillingSurgeon::decide(const bone::DrillingView& seen,
         stroke_depth_ = place.z();
         idle_ = 0.0;
         ++series_;
-        stroke_rate_ = p.skill.stroke_rate * p.heeding.pace();
+        stroke_rate_ = pace(place);
         begin(Doing::kStrokes);
       }
       break;
@@ -393,8 +420,9 @@ void DrillingSurgeon::move_goal(const bone::DrillingView& seen, double dt) noexc
   }
 }
 
-/// Lighter the nearer a structure is believed, by its distance from the burr's underside and sides.
-double DrillingSurgeon::press(const Eigen::Vector3d& place) noexcept {
+/// 0 close to where a structure is believed to be, 1 far from any, by the distance from the burr's
+/// underside and sides.
+double DrillingSurgeon::far_share(const Eigen::Vector3d& place) const noexcept {
   const Procedure& p = now();
   const double r = burr().radius;
   float nearest = 1.0F;
@@ -404,17 +432,29 @@ double DrillingSurgeon::press(const Eigen::Vector3d& place) noexcept {
     nearest = std::min(nearest, p.chart->clearance_at(place + side - p.view.offset));
   }
   const DrillingSkill& k = p.skill;
-  const double light = p.heeding.lightness();
-  const double far = std::clamp(
+  return std::clamp(
       (static_cast<double>(nearest) - k.near_distance) / (k.far_distance - k.near_distance), 0.0,
       1.0);
-  return light * (k.near_force + far * (k.far_force - k.near_force));
+}
+
+/// Lighter the nearer a structure is believed.
+double DrillingSurgeon::press(const Eigen::Vector3d& place) const noexcept {
+  const DrillingSkill& k = now().skill;
+  return now().heeding.lightness() *
+         (k.near_force + far_share(place) * (k.far_force - k.near_force));
+}
+
+/// Strokes at a place, per second: slower near a structure. [1/s]
+double DrillingSurgeon::pace(const Eigen::Vector3d& place) const noexcept {
+  const DrillingSkill& k = now().skill;
+  return k.stroke_rate * (k.near_pace + far_share(place) * (1.0 - k.near_pace)) *
+         now().heeding.pace();
 }
 
 double DrillingSurgeon::depth_limit(const Eigen::Vector3d& place) const noexcept {
   const Procedure& p = now();
   if (strokes_.under) {
-    return p.memory.touch(strokes_.from) + 0.5e-3;
+    return p.memory.touch(strokes_.from) + kUnderBite;
   }
   // Beside the bone there is nothing to stop at.
   const double begun =

@@ -98,6 +98,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   void listen(const bone::DrillingView& seen, const Eigen::Vector3d& place, double dt) noexcept;
   void heed(const bone::DrillingView& seen, double dt) noexcept;
   void next_strokes(const bone::DrillingView& seen) noexcept;
+  bool end_before_margin() noexcept;
   SurgeonWork work() const noexcept;
   bool wants_to_look(const bone::DrillingView& seen) noexcept;
   void decide(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
@@ -106,7 +107,9 @@ class DrillingSurgeon final : public stimulus::Observer {
   void follow_strokes() noexcept;
   void go_to(const Eigen::Vector3d& place, double speed, double dt) noexcept;
   Eigen::Vector3d push(const bone::DrillingView& seen, const Eigen::Vector3d& place) noexcept;
-  double press(const Eigen::Vector3d& place) noexcept;
+  double far_share(const Eigen::Vector3d& place) const noexcept;
+  double press(const Eigen::Vector3d& place) const noexcept;
+  double pace(const Eigen::Vector3d& place) const noexcept;
   double depth_limit(const Eigen::Vector3d& place) const noexcept;
   std::uint32_t fingers(const bone::DrillingView& seen) const noexcept;
   const SurgeonBurr& burr() const noexcept { return fine_ ? parameters_.fine : parameters_.rough; }

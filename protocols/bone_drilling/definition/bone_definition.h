@@ -26,6 +26,7 @@
 #include "core/subject/drilling/osteotomy_hand.h"
 #include "protocols/bone_drilling/definition/drilling_parameters.h"
 #include "protocols/bone_drilling/definition/placement.h"
+#include "protocols/bone_drilling/definition/slice_window.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::protocols {
@@ -82,6 +83,8 @@ struct BoneDefinition : Definition {
   std::string time_text{"{time} left"};
   std::string plan_text{
       "green: planned, removed   blue: planned, left   orange: beyond the plan   red: vital"};
+  bool slices{false};  // as of a scan stand beside the picture
+  SliceWindow slice_window;
   bool stereo{false};
   double eye_distance{0.02};  // between the eyes, in the scene >= 0 [m]
   int stills{0};              // of stages of the cavity, which can be called up; 0: none

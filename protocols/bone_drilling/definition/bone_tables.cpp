@@ -115,8 +115,9 @@ const Schema<D>& bone_schema() {
   static const auto schema =
       Schema<D>()
           .texts("bones", &D::sources,
-                 "Bones to drill: procedural temporal, procedural mandible, files, or recorded "
-                 "sessions (.h5), whose bone is drilled on; procedures use them in turn")
+                 "Bones to drill: procedural temporal, also as a variant (procedural temporal, low "
+                 "tegmen), procedural mandible, files, or recorded sessions (.h5), whose bone is "
+                 "drilled on; procedures use them in turn")
           .required()
           .check([](Table& table, D& d) {
             if (d.sources.empty()) {
@@ -160,6 +161,21 @@ const Schema<D>& bone_practice_schema() {
 
 constexpr std::size_t kLongestLine = 200;  // over a picture
 
+const Schema<SliceWindow>& slice_window_schema() {
+  static const auto schema =
+      Schema<SliceWindow>()
+          .number("slice_low", &SliceWindow::low, {-10.0, 10.0}, "",
+                  "Density that slices show black, and below")
+          .number("slice_high", &SliceWindow::high, {-10.0, 10.0}, "",
+                  "Density that slices show white, and above")
+          .check([](Table& table, SliceWindow& w) {
+            if (!(w.high > w.low)) {
+              table.reject("slice_high", "is not above slice_low; exchange them");
+            }
+          });
+  return schema;
+}
+
 const Schema<D>& bone_display_schema() {
   using render::Quality;
   static const auto schema =
@@ -177,6 +193,10 @@ const Schema<D>& bone_display_schema() {
                       "Words in a corner of the picture for the time that is left, {time}")
           .shown_text("plan_text", &D::plan_text, kLongestLine,
                       "Legend of the section by the plan, which the key P shows")
+          .flag("slices", &D::slices,
+                "Whether slices through the tip, as of a scan, stand beside the picture; the key C "
+                "shows and hides them")
+          .keys_of(&D::slice_window, slice_window_schema())
           .choice("quality", &D::quality,
                   {{"auto", std::nullopt},
                    {"plain", Quality::kPlain},

@@ -99,12 +99,16 @@ class BoneDrawing final : public Drawing {
     display_.draw(seen_);
   }
   /// V: all that can be drawn, with less and with least, and then by time again. P: the plan.
+  /// C: slices as of a scan.
   void pressed(int key) override {
     if (definition_.bits_of({key}) != 0) {
       return;
     }
     if (key == 'P') {
       display_.toggle_plan();
+    }
+    if (key == 'C') {
+      display_.toggle_slices();
     }
     if (key != 'V' || definition_.quality) {
       return;
@@ -175,7 +179,10 @@ BoneDisplay::BoneDisplay(const render::Gl& gl, const BoneDefinition& definition,
       hints_(definition.hints),
       vital_(definition.hints ? bone::vital_structures(*stage_->model)
                               : std::vector<std::string>{}),
-      definition_(definition) {
+      definition_(definition),
+      slices_(stage_->model, pose_of(definition.placement, stage_->model->grid).inverse(),
+              definition.slice_window),
+      slices_shown_(definition.slices) {
   for (std::size_t tool = 0; tool < stage_->simulator->tools().size(); ++tool) {
     meshes_.push_back(mesh_of(static_cast<int>(tool)));
     const auto* driver = stage_->simulator->tools()[tool].as<bone::ScrewTool>();
@@ -290,6 +297,7 @@ void BoneDisplay::draw(const bone::DrillingView& seen) {
   }
   draw_still(seen.stills_asked);
   draw_plan(seen);
+  draw_slices(seen);
 }
 
 /// Screws in plates that are on, with their heads on the plates. @param plates  their poses, X_WP
@@ -396,6 +404,22 @@ void BoneDisplay::draw_plan(const bone::DrillingView& seen) {
       plan_picture_->draw(0, left, width(), height_);
       labels_.legend(definition_.plan_text, place.y() + place.w(), {left, width()});
     }
+  }
+}
+
+void BoneDisplay::draw_slices(const bone::DrillingView& seen) {
+  if (!slices_shown_) {
+    return;
+  }
+  const auto& volume = std::as_const(*stage_->simulator).world().volume(0);
+  const auto picture = slices_.at(volume, seen.shown ? seen.tip : stage_->start_view.target);
+  if (!slices_picture_) {
+    slices_picture_ = std::make_unique<render::BoneStills>(gl_, picture, render::StillSide::kLeft);
+  } else {
+    slices_picture_->replace(picture);
+  }
+  for (int left = 0; left < width_; left += width()) {
+    slices_picture_->draw(0, left, width(), height_);
   }
 }
 

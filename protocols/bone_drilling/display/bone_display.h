@@ -12,6 +12,7 @@
 #include "core/render/gl/image.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
+#include "protocols/bone_drilling/display/ct_slices.h"
 #include "protocols/bone_drilling/display/picture_labels.h"
 #include "protocols/bone_drilling/display/plan_section.h"
 #include "protocols/interface/drawing.h"
@@ -40,6 +41,8 @@ class BoneDisplay {
   void set_stills(std::shared_ptr<const std::vector<render::Image>> stills);
   /// Shows the section by the plan of the cavity, or hides it; without [cavity] there is none.
   void toggle_plan();
+  /// Shows slices through the tip as of a scan, or hides them.
+  void toggle_slices() { slices_shown_ = !slices_shown_; }
   /// The camera of the last picture, or of one of its two.
   const Camera& camera() const { return frame_.camera; }
   int width() const { return frame_.stereo ? width_ / 2 : width_; }
@@ -54,6 +57,7 @@ class BoneDisplay {
   std::vector<std::string> hints_in(const bone::DrillingView& seen) const;
   void draw_still(std::int32_t asked);
   void draw_plan(const bone::DrillingView& seen);
+  void draw_slices(const bone::DrillingView& seen);
 
   render::Gl gl_;
 
@@ -77,6 +81,9 @@ class BoneDisplay {
   std::unique_ptr<render::BoneStills> plan_picture_;
   bool plan_shown_{false};
   int plan_age_{0};  // of its picture [frames]
+  CtSlices slices_;
+  std::unique_ptr<render::BoneStills> slices_picture_;  // null until they are shown
+  bool slices_shown_;
 };
 
 /// The surface of a stage's bone as it is now, on all processors: what a first picture waits for.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/subject/hand.h"
 #include "tests/support/allocation_guard.h"
@@ -32,11 +33,29 @@ std::shared_ptr<const DrillingChart> flat() {
   return chart;
 }
 
+constexpr double kWall = 14e-3;  // (u) where a structure beside a deep cavity begins [m]
+
+/// Flat bone as above; a structure stands upright beside the cavity, with a margin of 1 mm.
+std::shared_ptr<const DrillingChart> walled() {
+  auto chart = std::make_shared<DrillingChart>(*flat());
+  chart->end.z() = 19e-3;
+  for (int k = 0; k < 41; ++k) {
+    for (int j = 0; j < 41; ++j) {
+      for (int i = 0; i < 41; ++i) {
+        chart->clearance[chart->columns() * static_cast<std::size_t>(k) + chart->column(i, j)] =
+            static_cast<float>(kWall - 1e-3 - i * chart->cell);
+      }
+    }
+  }
+  return chart;
+}
+
 /// A world with a plane of bone that gives way where a burr turns on it.
 class Scene {
  public:
-  explicit Scene(double skill, std::uint64_t seed = 1)
-      : chart_(flat()),
+  explicit Scene(double skill, std::uint64_t seed = 1,
+                 std::shared_ptr<const DrillingChart> chart = flat())
+      : chart_(std::move(chart)),
         hand_(HandParameters{}, kStep, {0.0, 25e-3, 0.0}),
         device_({}, hand_, 1.0 / kStep),
         surgeon_(parameters(skill), {chart_, chart_}, hand_, device_, 1.0, seed, kStep) {
@@ -133,6 +152,23 @@ TEST(DrillingSurgeonTest, AnExpertDrillsTheCavityStopsShortOfTheStructureAndSays
   EXPECT_GT(middle, 12.5e-3F);
   EXPECT_LT(scene.deepest_, 16e-3);
   EXPECT_EQ(scene.heights_[scene.chart_->column(0, 0)], 10e-3F);
+}
+
+TEST(DrillingSurgeonTest, WorkUnderAnEdgeEndsBeforeAStructureBesideTheCavity) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Scene scene(0.85, seed, walled());
+    for (int n = 0; n < 150000 && !scene.finish_; ++n) {
+      scene.tick();
+    }
+    float lost = 0.0F;  // of the structure's height
+    for (int j = 0; j < 41; ++j) {
+      for (int i = static_cast<int>(kWall / scene.chart_->cell); i < 41; ++i) {
+        lost = std::max(lost, scene.heights_[scene.chart_->column(i, j)] - 10e-3F);
+      }
+    }
+    EXPECT_LT(lost, 0.35e-3F) << seed;  // strokes into it take 0.8 mm
+    EXPECT_GT(scene.heights_[scene.chart_->column(20, 20)], 13e-3F) << seed << ": it drills";
+  }
 }
 
 TEST(DrillingSurgeonTest, NobodyWorksUnlessToldTo) {

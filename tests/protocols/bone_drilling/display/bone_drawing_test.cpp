@@ -66,6 +66,28 @@ TEST(BoneDrawingTest, VStepsThroughTheQualitiesAndAFixedOneStays) {
   EXPECT_EQ(other.picture(), shaded);
 }
 
+TEST(BoneDrawingTest, CShowsSlicesAtTheLeftAndHidesThemAndADefinitionMayBeginWithThem) {
+  const BoneDefinition without;
+  View view(without);
+  const auto plain = view.picture();
+  view.drawing->pressed('C');
+  const auto sliced = view.picture();
+  int left = 0;
+  int right = 0;
+  for (std::size_t at = 0; at < plain.size(); ++at) {
+    const bool differs = plain[at] != sliced[at];
+    (at / 3 % kWidth < kWidth / 3 ? left : right) += differs ? 1 : 0;
+  }
+  EXPECT_GT(left, 1000);
+  EXPECT_EQ(right, 0);
+  view.drawing->pressed('C');
+  EXPECT_EQ(view.picture(), plain);
+
+  BoneDefinition with;
+  with.slices = true;
+  EXPECT_EQ(View(with).picture(), sliced);
+}
+
 bool is_red(const std::uint8_t* pixel) { return pixel[0] > 150 && pixel[1] < 60 && pixel[2] < 60; }
 
 TEST(BoneDrawingTest, AnInjuryHasARedFrameAtOnceAndWordsForAWhile) {
