@@ -149,9 +149,13 @@ TEST_F(DeformCommandTest, AMotionIsToldToATolerance) {
             1.001 * exact["springs_distance_same_damping_m"].get<double>());
   EXPECT_LT(exact["springs_distance_m"].get<double>(), 0.5 * exact["motion_rms_m"].get<double>());
   EXPECT_TRUE(fs::exists(folder_ / "motion/pull-motion.csv"));
-  EXPECT_THAT(
-      run("haptrial deform reference bar.toml --constants cal/constants.csv --out no").errors,
-      HasSubstr("--constants is for --motion"));
+  for (const std::string option :
+       {"--constants cal/constants.csv", "--frames 5", "--tolerance 1e-6"}) {
+    const auto without = run("haptrial deform reference bar.toml --out no " + option);
+    EXPECT_EQ(without.status, 2);
+    EXPECT_THAT(without.errors,
+                HasSubstr(option.substr(0, option.find(' ')) + " requires --motion"));
+  }
 }
 
 /// Displacements of another program are the reference: those of our own elements give the same.

@@ -136,9 +136,6 @@ void check_motion_options(const DeformReferenceOptions& o) {
   if (o.motion && o.model != "static") {
     throw InputError("--motion chooses its own steps; leave --model out");
   }
-  if (!o.motion && !o.constants.empty()) {
-    throw InputError("--constants is for --motion");
-  }
 }
 
 std::string reference_report(const DeformBody& body, const std::vector<Answer>& answers,
@@ -246,14 +243,18 @@ void add_deform_reference(CLI::App& deform, int& status) {
                   with_default("Duration of a dynamic model [s]", o.seconds));
   sub->add_option("--step", o.step, with_default("Step of a dynamic model [s]", o.step));
   sub->add_option("--damping", o.damping, with_default("Damping by mass [1/s]", o.damping));
-  sub->add_flag("--motion", o.motion,
-                "Motion from rest under the load by SUNDIALS CVODE, to a stated tolerance");
-  sub->add_option("--frames", o.frames, with_default("Number of frames of a motion", o.frames));
+  CLI::Option* motion =
+      sub->add_flag("--motion", o.motion,
+                    "Motion from rest under the load by SUNDIALS CVODE, to a stated tolerance");
+  sub->add_option("--frames", o.frames, with_default("Number of frames of a motion", o.frames))
+      ->needs(motion);
   sub->add_option("--tolerance", o.tolerance,
-                  with_default("Relative tolerance of a motion", o.tolerance));
+                  with_default("Relative tolerance of a motion", o.tolerance))
+      ->needs(motion);
   sub->add_option("--constants", o.constants,
                   "Constants of springs from a calibration (.csv), whose damping is calibrated "
-                  "against the motion");
+                  "against the motion")
+      ->needs(motion);
 }
 
 }  // namespace haptrial::experiments
