@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 #include "core/base/counted.h"
 #include "core/questions/question_kind.h"
@@ -274,11 +275,14 @@ void add_trials_parts(const protocols::StudiedDefinition& definition, const Prev
   constexpr int kMostParticipants = 200;  // that are counted
   const PreviewedTrial trial =
       protocols::previewed_trial(definition, previewed_session(request.seed), request.trial);
+  auto felt = std::async(std::launch::async, [&] {  // while pictures are drawn
+    return protocols::felt_stages(definition, trial, request.look);
+  });
   add_timeline(definition, trial, preview);
   add_seen(trial, protocols::seen_stages(definition, trial, kPictureWidth), preview);
   preview.objects = objects_of(trial);
   add_objects(preview);
-  add_felt(definition, trial, protocols::felt_stages(definition, trial, request.look), preview);
+  add_felt(definition, trial, felt.get(), preview);
   add_planned(definition, protocols::planned_trials(definition, request.seed, kMostParticipants),
               preview.document);
 }
