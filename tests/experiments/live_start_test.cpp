@@ -124,6 +124,8 @@ TEST_F(LiveStartTest, ARunWhoseBackupFailsIsWholeAndSaysSo) {
   EXPECT_THAT(done.errors, HasSubstr("WARNING: THE SESSION HAS NO BACKUP"));
   EXPECT_THAT(done.errors, HasSubstr("is its disk plugged in?"));
   EXPECT_EQ(run_command("haptrial info '" + (folder_ / "out/P02.h5").string() + "'").status, 0);
+  EXPECT_THAT(check_of(start("--check --json"), "duration")["found"].get<std::string>(),
+              testing::ContainsRegex("; before, it took .* minutes .* in 1 session"));
   EXPECT_FALSE(fs::exists(folder_ / "unplugged"));
 }
 
