@@ -106,7 +106,7 @@ std::vector<PowerLine> lines_over(const PowerResult& result, std::size_t key) {
   return all;
 }
 
-/// ", 12.5 hours of sessions": the time of so many participants in the lab.
+/// Says how long so many participants are in the lab, as ", 12.5 hours of sessions".
 static std::string hours_words(const PowerLine& line, const std::optional<double>& participants) {
   const double each = line.cells.back()->counts.hours.mean / line.x.back();
   return participants && each > 0.0

@@ -35,7 +35,7 @@ struct ScoreParameters {
 /// The keys of [analysis] that say how a recall is scored.
 const Schema<ScoreParameters>& score_schema();
 
-/// The same parameters with the shares that a file states in its table [analysis], as
+/// Takes the shares that a file states in its table [analysis] into the parameters, as
 /// `haptrial judge fit` writes it. @throws InputError for a file without them, or with other keys
 ScoreParameters with_shares_of(const std::filesystem::path& file, ScoreParameters parameters);
 

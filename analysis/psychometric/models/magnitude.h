@@ -13,7 +13,7 @@ struct MagnitudeTrial {
   std::size_t participant{0};  // any numbers
   double level{0.0};           // > 0 [unit of the stimulus]
   double estimate{0.0};        // > 0, in the participant's own modulus
-  /// What the stimulus measured in this trial, > 0 [unit of the stimulus]; NaN: it was the level.
+  /// The stimulus as it was measured in this trial, > 0 [its unit]; NaN: it was the level.
   double measured{std::numeric_limits<double>::quiet_NaN()};
 };
 

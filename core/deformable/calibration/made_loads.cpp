@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/longest_of.h"
 #include "core/deformable/body/mesh_parts.h"
 
 namespace haptrial::deformable {
@@ -91,21 +92,12 @@ VectorXd stacked(const std::vector<Vector3d>& vectors) {
                                     3 * static_cast<Eigen::Index>(vectors.size()));
 }
 
-/// What of a field lies beside the span of an orthonormal basis.
+/// The part of a field that lies beside the span of an orthonormal basis.
 VectorXd beside(VectorXd field, const std::vector<VectorXd>& basis) {
   for (const VectorXd& direction : basis) {
     field -= direction.dot(field) * direction;
   }
   return field;
-}
-
-/// How far the vertex that moves farthest is moved [m].
-double largest_of(const std::vector<Vector3d>& displacement) {
-  double largest = 0.0;
-  for (const Vector3d& u : displacement) {
-    largest = std::max(largest, u.norm());
-  }
-  return largest;
 }
 
 /// A push and its response, of length 1.
@@ -131,7 +123,7 @@ std::vector<Candidate> candidates_of(const geometry::TetMesh& body, const std::v
       candidate.load = push_on(body, surface, holds, middle, axis, radius);
       const std::vector<Vector3d> displacement = response(candidate.load);
       candidate.response = stacked(displacement).normalized();
-      scale(candidate.load, farthest / largest_of(displacement));
+      scale(candidate.load, farthest / longest_of(displacement));
     }
   }
   return result;
@@ -165,7 +157,7 @@ std::vector<LoadCase> made_loads(const geometry::TetMesh& body, const std::vecto
     }
   };
   for (const auto& displacement : given) {
-    farthest += largest_of(displacement) / static_cast<double>(given.size());
+    farthest += longest_of(displacement) / static_cast<double>(given.size());
     extend(stacked(displacement));
   }
   std::vector<Candidate> candidates = candidates_of(body, holds, farthest, response);

@@ -11,11 +11,10 @@ namespace haptrial::deformable {
 /// The displacement of the vertices under a load by the model that is trusted, taken as linear [m].
 using Response = std::function<std::vector<Eigen::Vector3d>(const LoadCase&)>;
 
-/// Loads made where the body is least known: pushes along x, y and z on round patches that are
-/// spread over the free surface. Each time that push is taken whose response is least a sum of the
-/// responses to the loads that are there (the largest part beside their span), scaled so that the
-/// vertex that it moves farthest goes as far as under them on average. The k-th made load is named
-/// "made k".
+/// Makes loads where the body is least known: pushes along x, y and z on round patches that are
+/// spread over the free surface. Each step takes the push whose response has the largest part
+/// outside the span of the responses so far. The push is scaled so that the vertex that moves
+/// farthest goes as far as under the given loads on average. The k-th made load is named "made k".
 /// @param given  displacements under the loads that are there, each (vertices) [m]
 /// @param holds  vertices that stay
 /// @returns `count` loads, or fewer if the pushes run out

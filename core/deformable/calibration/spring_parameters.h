@@ -33,10 +33,10 @@ class SpringParameters {
   /// One for every edge, face and tetrahedron.
   static SpringParameters by_element(const SpringBody& body);
 
-  /// The same parameters, each spring's constant multiplied by what the tetrahedra that have the
-  /// spring weigh in sum, relative to the mean of its kind. With volumes as weights even parameters
-  /// are an even density of energy; without them a spring on the surface, in one tetrahedron,
-  /// resists like one inside, in many, and even parameters are no even body.
+  /// Returns these parameters with each spring's constant multiplied by the sum of the weights of
+  /// the tetrahedra that have the spring, relative to the mean of its kind. With volumes as weights
+  /// even parameters are an even density of energy; without them a spring on the surface, in one
+  /// tetrahedron, resists like one inside, in many, and even parameters are no even body.
   /// @param weights  of the tetrahedra, each above 0
   SpringParameters weighted(const SpringBody& body, std::span<const double> weights) const;
 

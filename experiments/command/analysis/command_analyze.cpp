@@ -59,7 +59,7 @@ int paper_width(const AnalyzeOptions& options) {
   return options.paper ? checked_number("--paper", *options.paper, kNarrowest, kWidest) : 0;
 }
 
-/// What replaces parts of the definition.
+/// The options that replace parts of the definition.
 std::vector<std::string> given_instead(const AnalyzeOptions& options) {
   std::vector<std::string> given = options.planned;
   if (!options.reference.empty()) {

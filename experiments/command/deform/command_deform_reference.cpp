@@ -8,6 +8,7 @@
 #include "analysis/document/document.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
+#include "core/base/longest_of.h"
 #include "core/base/nearest.h"
 #include "core/deformable/elements/dynamic_solver.h"
 #include "experiments/command/arguments.h"
@@ -44,14 +45,6 @@ struct Answer {
   std::vector<Vector3d> displacement;
   Json numbers;
 };
-
-double largest(const std::vector<Vector3d>& vectors) {
-  double most = 0.0;
-  for (const Vector3d& v : vectors) {
-    most = std::max(most, v.norm());
-  }
-  return most;
-}
 
 Answer statics(deformable::StaticSolver& solver, const NamedLoad& load) {
   const deformable::StaticResult found = solver.solve(load.load);
@@ -149,7 +142,7 @@ std::string reference_report(const DeformBody& body, const std::vector<Answer>& 
   std::vector<std::vector<std::string>> rows;
   for (const Answer& answer : answers) {
     rows.push_back({answer.load, fmt::format("{:.6g}", 1e3 * root_mean_square(answer.displacement)),
-                    fmt::format("{:.6g}", 1e3 * largest(answer.displacement)),
+                    fmt::format("{:.6g}", 1e3 * longest_of(answer.displacement)),
                     fmt::format("{:.6g}", answer.numbers["energy_J"].get<double>())});
   }
   page.table({"load", "root mean square of the vertices [mm]", "largest [mm]", "energy [J]"}, rows);
@@ -166,7 +159,7 @@ std::string reference_json(const DeformBody& body, const std::vector<Answer>& an
   for (const Answer& answer : answers) {
     Json load{{"name", answer.load},
               {"rms_m", root_mean_square(answer.displacement)},
-              {"largest_m", largest(answer.displacement)}};
+              {"largest_m", longest_of(answer.displacement)}};
     load.update(answer.numbers);
     all["loads"].push_back(load);
   }
@@ -218,7 +211,7 @@ int deform_reference(const DeformReferenceOptions& options) {
   }
   for (const Answer& answer : answers) {
     fmt::print("{}: {:.6g} mm (root mean square), {:.6g} mm at most\n", answer.load,
-               1e3 * root_mean_square(answer.displacement), 1e3 * largest(answer.displacement));
+               1e3 * root_mean_square(answer.displacement), 1e3 * longest_of(answer.displacement));
     print_damping(answer);
   }
   fmt::print("wrote       {}\n", options.out);

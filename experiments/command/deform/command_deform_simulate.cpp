@@ -7,6 +7,7 @@
 
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
+#include "core/base/longest_of.h"
 #include "core/base/nearest.h"
 #include "core/deformable/body/mesh_parts.h"
 #include "core/deformable/elements/dynamic_solver.h"
@@ -91,13 +92,7 @@ class ElementStepper : public Stepper {
   }
   void step() override { solver_.step(force_); }
   double time() const override { return solver_.time(); }
-  double fastest() const override {
-    double most = 0.0;
-    for (const Vector3d& v : solver_.motion().velocity) {
-      most = std::max(most, v.norm());
-    }
-    return most;
-  }
+  double fastest() const override { return longest_of(solver_.motion().velocity); }
   Places displacement() const override { return solver_.motion().displacement; }
   std::vector<deformable::TetState> states() const override {
     return elastic_.states(solver_.motion().displacement);

@@ -8,6 +8,7 @@
 
 #include "analysis/contact/recording/session_contact.h"
 #include "core/base/error.h"
+#include "core/base/longest_of.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::experiments {
@@ -46,10 +47,7 @@ std::int32_t nearest_outside(const geometry::TetMesh& mesh, const Vector3d& plac
 
 /// Samples in which the tool is felt, evenly over them.
 std::vector<std::size_t> moments(const evaluation::ForceStream& force, int count) {
-  double most = 0.0;
-  for (const Vector3d& f : force.force) {
-    most = std::max(most, f.norm());
-  }
+  const double most = longest_of(force.force);
   std::vector<std::size_t> felt;
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (most > 0.0 && force.force[i].norm() >= kFelt * most) {

@@ -192,7 +192,7 @@ class TrialsStudySimulation final : public StudySimulation {
     }
   }
 
-  /// What looks at movements needs a hand, and two cues need every trial's intervals.
+  /// Analyses of movements need a hand, and those of two cues every trial's intervals.
   void check_responses() const {
     using trials::AnalysisKind;
     const AnalysisKind kind = plan_.kind;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/definition/table.h"
+#include "core/base/longest_of.h"
 #include "core/base/parallel.h"
 #include "core/scene/needed_damping.h"
 #include "core/scene/scene.h"
@@ -78,21 +79,13 @@ std::array<ForceLine, 3> lines_to(const FeltStage& stage, const std::array<Part,
   return lines;
 }
 
-double largest(const std::vector<Vector3d>& forces) {
-  double most = 0.0;
-  for (const Vector3d& force : forces) {
-    most = std::max(most, force.norm());
-  }
-  return most;
-}
-
 /// The part of a line over which the force changes, with some room; a tenth of the reach where it
 /// does not.
 Part part_that_matters(const ForceLine& line, double reach) {
   constexpr double kChange = 0.01;  // of the largest force
   constexpr double kRoom = 0.15;
   double low = 0.0, high = 0.0;
-  const double least = std::max(kFelt, kChange * largest(line.forces));
+  const double least = std::max(kFelt, kChange * longest_of(line.forces));
   Vector3d before = line.forces.front();
   for (std::size_t i = 1; i < line.forces.size(); ++i) {
     if ((line.forces[i] - before).norm() > least) {
@@ -125,7 +118,7 @@ std::array<Part, 3> draw_lines(FeltStage& stage, double reach) {
 Vector3d place_that_touches(const FeltStage& stage) {
   double most = 0.0;
   for (const ForceLine& line : stage.lines) {
-    most = std::max(most, largest(line.forces));
+    most = std::max(most, longest_of(line.forces));
   }
   Vector3d place = stage.origin;
   double nearest = most > kFelt ? most : -1.0;
@@ -170,7 +163,7 @@ void draw_speeds(FeltStage& stage, double fastest) {
 void draw_course(FeltStage& stage, double duration) {
   const auto ticks = static_cast<std::size_t>(std::lround(duration * stage.felt.rate));
   std::vector<Vector3d> course = forces_over_time(stage.felt, stage.touched, ticks);
-  const double least = std::max(kFelt, 0.01 * largest(course));
+  const double least = std::max(kFelt, 0.01 * longest_of(course));
   const bool changes = std::ranges::any_of(
       course, [&](const Vector3d& force) { return (force - course.front()).norm() > least; });
   stage.course = changes ? std::move(course) : std::vector<Vector3d>();
@@ -355,13 +348,13 @@ std::vector<Vector3d> forces_over_time(const FeltFields& felt, const Vector3d& p
 
 bool FeltStage::is_felt() const {
   return std::ranges::any_of(lines,
-                             [](const auto& line) { return largest(line.forces) > kFelt; }) ||
-         resists_motion() || largest(course) > kFelt;
+                             [](const auto& line) { return longest_of(line.forces) > kFelt; }) ||
+         resists_motion() || longest_of(course) > kFelt;
 }
 
 bool FeltStage::resists_motion() const {
   return std::ranges::any_of(speeds,
-                             [](const auto& curve) { return largest(curve.forces) > kFelt; });
+                             [](const auto& curve) { return longest_of(curve.forces) > kFelt; });
 }
 
 std::vector<FeltStage> felt_stages(const TrialsDefinition& d, const PreviewedTrial& trial,

@@ -161,7 +161,7 @@ TEST_F(JudgingTest, TheReportShowsNoSharesOfDice) {
   EXPECT_THAT(report, Not(HasSubstr("| share |")));
 }
 
-/// What `judge fit` writes is what `analyze --shares` scores by.
+/// The shares that `judge fit` writes are those that `analyze --shares` scores by.
 TEST_F(JudgingTest, WrittenSharesAreReadBackIntoTheScore) {
   SkillFit skill;
   skill.shares = {JudgedShare{0.5, 0.4, 0.6}, {0.3, 0.2, 0.4}, {0.2, 0.1, 0.3}};

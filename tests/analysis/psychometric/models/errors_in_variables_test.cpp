@@ -130,7 +130,7 @@ void add_person(std::size_t person, double exponent, RandomStream& random,
   }
 }
 
-/// Of one person each, how often the interval holds the exponent; and the mean slope of both ways.
+/// Each set is of one person. Counted is how often the interval holds the exponent.
 TEST(ErrorsInVariablesTest, IntervalsHoldTheExponentAndItIsNotTooSmall) {
   constexpr int kSets = 1000;
   constexpr double kExponent = 1.4;

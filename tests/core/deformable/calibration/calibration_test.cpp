@@ -235,8 +235,8 @@ TEST_F(CalibrationTest, TheGlobalStartFindsRatiosAndScale) {
   }
 }
 
-/// Of all constants that came nearer to the followed load, those are kept that follow the others
-/// best.
+/// The search keeps those constants, among all that came nearer to the followed load, that follow
+/// the other loads best.
 TEST_F(CalibrationTest, HeldOutLoadsDecideWhichConstantsAreKept) {
   const auto parameters = SpringParameters::on_grid(body_, {2, 2, 2});
   SpringBody uneven = body_;
