@@ -20,19 +20,12 @@ namespace {
 using Eigen::Vector3d;
 using nlohmann::json;
 
-device::MouseParameters mouse_of(const protocols::StudiedDefinition& d, const Vector3d& start) {
-  device::MouseParameters mouse = d.mouse;
-  mouse.in_space = true;  // the page moves the hand along all three axes
-  mouse.start = start;
-  return mouse;
-}
-
 class TriedScenes final : public TriedTrial {
  public:
   TriedScenes(const protocols::StudiedDefinition& d, const PreviewRequest& request)
       : d_(d),
         trial_(protocols::previewed_trial(d, previewed_session(request.seed), request.trial)),
-        mouse_(mouse_of(d, trial_.intervals.front().start), d.rate) {
+        mouse_(page_hand(d, trial_.intervals.front().start)) {
     for (protocols::PreviewedInterval& interval : trial_.intervals) {
       protocols::prepare_bodies(interval.presented.fields, d.rate);
     }
@@ -64,7 +57,9 @@ class TriedScenes final : public TriedTrial {
       interval_ = place.interval;
     }
     scene_->switch_to(presented.stages[place.stage].stage.fields & presented.felt.front());
+    chosen_ = stage;
   }
+  std::string now() const override { return stage_name(trial_, places_[chosen_]); }
 
   Moment tick(const Vector3d& pointer) override {
     mouse_.reach({pointer, Eigen::Quaterniond::Identity()});
@@ -82,6 +77,7 @@ class TriedScenes final : public TriedTrial {
   std::vector<protocols::StagePlace> places_;
   std::optional<scene::Scene> scene_;
   std::size_t interval_{0};
+  std::size_t chosen_{0};
 };
 
 std::string head_of(const TriedTrial& trial) {
@@ -140,7 +136,8 @@ class LineLoop {
     time_ = std::max(time_, time);
     const Vector3d& p = moment_.hand.position;
     const Vector3d& f = moment_.force;
-    return fmt::format("{} {} {} {} {} {} {}", time, p.x(), p.y(), p.z(), f.x(), f.y(), f.z());
+    return fmt::format("{} {} {} {} {} {} {} {}", time, p.x(), p.y(), p.z(), f.x(), f.y(), f.z(),
+                       trial_.now());
   }
 
   TriedTrial& trial_;
@@ -150,6 +147,13 @@ class LineLoop {
 };
 
 }  // namespace
+
+device::MouseDevice page_hand(const protocols::Definition& definition, const Vector3d& start) {
+  device::MouseParameters mouse = definition.mouse;
+  mouse.in_space = true;
+  mouse.start = start;
+  return {mouse, definition.rate};
+}
 
 std::shared_ptr<TriedTrial> tried_scenes(const protocols::StudiedDefinition& definition,
                                          const PreviewRequest& request) {

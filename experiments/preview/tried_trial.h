@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/point_state.h"
+#include "core/device/mouse.h"
 #include "experiments/preview/preview.h"
 #include "experiments/preview/space_objects.h"
 #include "protocols/psychophysics/studied_definition.h"
@@ -34,7 +35,13 @@ class TriedTrial {
   virtual void choose(std::size_t stage) = 0;
   /// One tick of the servo loop. @param pointer  in W [m]
   virtual Moment tick(const Eigen::Vector3d& pointer) = 0;
+  /// Says what went on in the last tick, in one line.
+  virtual std::string now() const = 0;
 };
+
+/// The device "mouse" as the hand of a page, which moves it along all three axes.
+device::MouseDevice page_hand(const protocols::Definition& definition,
+                              const Eigen::Vector3d& start);
 
 /// The stages of a trial that a definition states whole, by the mouse device and the scenes of
 /// sessions. @param definition  outlives it  @throws InputError for a trial beyond the session
@@ -45,7 +52,8 @@ std::shared_ptr<TriedTrial> tried_scenes(const protocols::StudiedDefinition& def
 /// rate, start, reach, stages and objects. Then each line of the input is answered by one:
 ///
 ///     stage N      begins the stage N, from 1            -> "stage N"
-///     to T X Y Z   the pointer is at X Y Z [m] until T [s] -> "T X Y Z FX FY FZ", hand and force
+///     to T X Y Z   the pointer is at X Y Z [m] until T [s] -> "T X Y Z FX FY FZ NOW", hand, force,
+///                  and what goes on in words
 ///
 /// The loop ticks at its own rate up to T; T that lies 0.5 s or more ahead counts as 0.5 s ahead.
 /// Any other line is answered by "? " and a sentence that says what is allowed.

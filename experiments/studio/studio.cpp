@@ -212,6 +212,8 @@ class Studio::Implementation {
                            ? std::optional(number_in(body, "setup", 0, kMostMinutes))
                            : std::nullopt);
                  }),
+            post("/plan",
+                 [this](const json& body) { return views_.plan(string_in(body, "file")); }),
             post("/power",
                  [this](const json& body) { return views_.power(string_in(body, "file")); }),
             post("/analyze",

@@ -298,6 +298,14 @@ json StudioViews::rehearse(const std::string& file, int subjects, std::optional<
   return {{"command", shown_command(words)}, {"job", commands_.start(words, about)}};
 }
 
+json StudioViews::plan(const std::string& file) const {
+  folder_.definition(file);
+  JobState about;
+  about.study = file;
+  const CommandWords words{"plan", file};
+  return {{"command", shown_command(words)}, {"job", commands_.start(words, about)}};
+}
+
 json StudioViews::power(const std::string& file) const {
   folder_.definition(file);
   JobState about;

@@ -58,6 +58,8 @@ class StudioViews {
 
   // Rehearsal, sessions, results
   nlohmann::json rehearse(const std::string& file, int subjects, std::optional<int> setup) const;
+  /// Writes the study's preregistration beside its definition.
+  nlohmann::json plan(const std::string& file) const;
   /// Simulates the study many times, as its table [power] says.
   nlohmann::json power(const std::string& file) const;
   nlohmann::json analyze(const std::string& file, const std::string& folder) const;

@@ -65,7 +65,7 @@ int try_trial(const ShowOptions& options) {
   const auto trial = experiment.study->tried_trial(*experiment.definition, request);
   if (!trial) {
     throw InputError(fmt::format(
-        "trials of the protocol {} cannot be tried in a page; in a window: haptrial run {} --pilot "
+        "trials of the protocol {} cannot be tried so; in a window: haptrial run {} --pilot "
         "--device mouse --window",
         experiment.definition->protocol, options.definition));
   }

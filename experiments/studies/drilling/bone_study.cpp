@@ -12,6 +12,7 @@
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/live_drilling.h"
 #include "experiments/studies/drilling/trainee_pages.h"
+#include "experiments/studies/drilling/tried_drilling.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
@@ -107,6 +108,10 @@ class BoneStudy final : public Study {
                    Preview& preview) const override {
     add_drilling_preview(dynamic_cast<const protocols::BoneDefinition&>(definition), request,
                          preview);
+  }
+  std::shared_ptr<TriedTrial> tried_trial(const protocols::Definition& definition,
+                                          const PreviewRequest& request) const override {
+    return tried_drilling(dynamic_cast<const protocols::BoneDefinition&>(definition), request);
   }
   void add_methods(const protocols::Definition& definition, std::uint64_t seed,
                    analysis::Document& document) const override {

@@ -25,18 +25,6 @@ namespace {
 using protocols::BoneDefinition;
 using protocols::BurrForce;
 
-/// The procedure that is shown. @throws InputError for a number beyond the session
-protocols::PlannedTrial procedure_of(const BoneDefinition& d, const PreviewRequest& request) {
-  const auto plan = protocols::procedures_of(d, previewed_session(request.seed));
-  const auto most = static_cast<int>(plan.size());
-  if (request.trial < 1 || request.trial > most) {
-    throw InputError(
-        fmt::format("--trial is {}; allowed: 1 to {}, the procedures of a session of {}",
-                    request.trial, most, d.file_name));
-  }
-  return plan[static_cast<std::size_t>(request.trial - 1)];
-}
-
 void add_timeline(const BoneDefinition& d, const protocols::PlannedTrial& trial, Preview& preview) {
   const double limit = d.drilling.time_limit;
   preview.document.heading("One trial, stage by stage");
@@ -135,6 +123,21 @@ void add_plan(const BoneDefinition& d, std::uint64_t seed, analysis::Document& d
 
 }  // namespace
 
+protocols::PlannedTrial procedure_of(const BoneDefinition& d, const PreviewRequest& request) {
+  const auto plan = protocols::procedures_of(d, previewed_session(request.seed));
+  const auto most = static_cast<int>(plan.size());
+  if (request.trial < 1 || request.trial > most) {
+    throw InputError(
+        fmt::format("--trial is {}; allowed: 1 to {}, the procedures of a session of {}",
+                    request.trial, most, d.file_name));
+  }
+  return plan[static_cast<std::size_t>(request.trial - 1)];
+}
+
+std::size_t bone_of(const BoneDefinition& d, const protocols::PlannedTrial& trial) {
+  return static_cast<std::size_t>(trial.trial - 1) % d.bones.size();
+}
+
 void add_drilling_methods(const BoneDefinition& d, std::uint64_t seed,
                           analysis::Document& document) {
   std::vector<std::string> tools;
@@ -167,7 +170,7 @@ void add_drilling_preview(const BoneDefinition& d, const PreviewRequest& request
                           Preview& preview) {
   const protocols::PlannedTrial trial = procedure_of(d, request);
   add_timeline(d, trial, preview);
-  const std::size_t bone = static_cast<std::size_t>(trial.trial - 1) % d.bones.size();
+  const std::size_t bone = bone_of(d, trial);
   add_seen(d, bone, preview);
   preview.objects = *objects_of(protocols::placed_bone(d, bone), d.drilling.scale);
   add_objects(preview);

@@ -5,6 +5,13 @@
 
 namespace haptrial::experiments {
 
+/// The procedure that is shown. @throws InputError for a number beyond the session
+protocols::PlannedTrial procedure_of(const protocols::BoneDefinition& definition,
+                                     const PreviewRequest& request);
+/// Its bone, of definition.bones.
+std::size_t bone_of(const protocols::BoneDefinition& definition,
+                    const protocols::PlannedTrial& trial);
+
 /// The parts of a drilling on the page that shows an experiment before anybody runs it.
 /// @throws InputError for a trial beyond the session; RunError where a picture cannot be made
 void add_drilling_preview(const protocols::BoneDefinition& definition,

@@ -15,6 +15,7 @@
 #include "core/base/error.h"
 #include "experiments/studies/force/force_preview.h"
 #include "experiments/studies/force/force_study_simulation.h"
+#include "experiments/studies/force/tried_training.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 
@@ -103,6 +104,10 @@ class ForceStudy final : public Study {
                    Preview& preview) const override {
     add_force_preview(dynamic_cast<const protocols::ForceDefinition&>(definition), request,
                       preview);
+  }
+  std::shared_ptr<TriedTrial> tried_trial(const protocols::Definition& definition,
+                                          const PreviewRequest& request) const override {
+    return tried_training(dynamic_cast<const protocols::ForceDefinition&>(definition), request);
   }
   void add_methods(const protocols::Definition& definition, std::uint64_t seed,
                    analysis::Document& document) const override {

@@ -34,7 +34,7 @@ function try_part(file, trial) {
     if (!made.try) return;
     stages.replaceChildren(...made.head.stages.map((name, i) => make("option", {value: String(i + 1)}, name)));
     const objects = made.head.objects.map((object) => object.lines.split(";").map((line) => line.split(",").map((each) => Number(each) / 1e4)));
-    run = {number: made.try, pointer: [...made.head.start], hand: [...made.head.start], force: [0, 0, 0], objects, reach: made.head.reach, began: performance.now(), busy: false};
+    run = {number: made.try, pointer: [...made.head.start], hand: [...made.head.start], force: [0, 0, 0], now: "", objects, reach: made.head.reach, began: performance.now(), busy: false};
     waiting = [];
     live.hidden = false;
     canvas.focus({preventScroll: true});
@@ -77,7 +77,7 @@ function try_part(file, trial) {
       pen.stroke();
       pen.restore();
     });
-    said.textContent = word("try_said", {force: Math.hypot(...run.force).toFixed(2), x: run.force[0].toFixed(2), y: run.force[1].toFixed(2), z: run.force[2].toFixed(2)});
+    said.textContent = word("try_said", {force: Math.hypot(...run.force).toFixed(2), x: run.force[0].toFixed(2), y: run.force[1].toFixed(2), z: run.force[2].toFixed(2), now: run.now});
     canvas.setAttribute("aria-label", said.textContent);
   };
   const tick = () => {
@@ -97,9 +97,10 @@ function try_part(file, trial) {
     if (!answer) { end(); return; }
     const numbers = answer.lines.filter((line) => /^[-\d]/.test(line)).pop();
     if (!numbers) return;
-    const [, x, y, z, fx, fy, fz] = numbers.split(" ").map(Number);
-    mine.hand = [x, y, z];
-    mine.force = [fx, fy, fz];
+    const words = numbers.split(" ");
+    mine.hand = words.slice(1, 4).map(Number);
+    mine.force = words.slice(4, 7).map(Number);
+    mine.now = words.slice(7).join(" ");
     canvas.dataset.answered = String(Number(canvas.dataset.answered || 0) + 1);
   };
 

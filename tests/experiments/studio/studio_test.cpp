@@ -409,6 +409,13 @@ TEST_F(StudioTest, APowerAnalysisIsAJob) {
   EXPECT_THAT(std::string(get("/job", "job=1")["output"]), HasSubstr("has no table [power]"));
 }
 
+TEST_F(StudioTest, APlanIsWrittenBesideItsDefinition) {
+  const json started = post("/plan", {{"file", "mine.toml"}});
+  EXPECT_EQ(started["command"], "haptrial plan mine.toml");
+  EXPECT_EQ(ended(started["job"])["state"], "done");
+  EXPECT_TRUE(fs::exists(folder_ / "mine.plan.html"));
+}
+
 TEST_F(StudioTest, HomeCountsWhoIsDone) {
   const test::CommandResult run =
       test::run_command("cd '" + folder_.path().string() +
