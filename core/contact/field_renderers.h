@@ -4,6 +4,7 @@
 
 #include "core/contact/normal_spring.h"
 #include "core/contact/renderer.h"
+#include "core/contact/sampled_distance.h"
 #include "core/contact/signed_distance.h"
 
 namespace haptrial::contact {
@@ -25,17 +26,6 @@ class PenaltyRenderer final : public Renderer {
   std::int32_t hint_{-1};
   Contact contact_;
   Operations operations_;
-};
-
-/// The cells of a cubic grid around a mesh.
-struct CellGrid {
-  Eigen::Vector3d origin;  // of cell 0, its corner [m]
-  double side;             // of a cell [m]
-  Eigen::Array3i count;
-
-  /// Two cells wider than the mesh's box. @param resolution  cells along the longest side
-  CellGrid(const geometry::Mesh& mesh, int resolution);
-  std::size_t size() const { return static_cast<std::size_t>(count[0]) * count[1] * count[2]; }
 };
 
 /// A grid of voxels, each of which has stored the triangle nearest to its centre; the tool is
@@ -72,8 +62,7 @@ class DistanceFieldRenderer final : public Renderer {
   const Operations& operations() const noexcept override { return operations_; }
 
  private:
-  CellGrid grid_;
-  std::vector<double> distance_;  // by corner of cells, x fastest [m]
+  SampledDistance distance_;
   NormalSpring spring_;
   Contact contact_;
   Operations operations_;

@@ -17,18 +17,28 @@ struct SurfacePoint {
   std::int32_t triangle{-1};
 };
 
+/// The distance from a body, by whatever stands for its surface.
+class BodyDistance {
+ public:
+  virtual ~BodyDistance() = default;
+  /// Servo thread: no allocation, lock, I/O or throw. @param hint  a triangle that may be near; -1:
+  /// none
+  virtual SurfacePoint operator()(const Eigen::Vector3d& point,
+                                  std::int32_t hint) const noexcept = 0;
+};
+
 /// Signed distances by the normals of faces, edges and corners, those of corners weighted by angle:
 /// their sign is right for closed, oriented meshes that do not cut themselves.
 /// Source: Baerentzen and Aanaes 2005.
-class SignedDistance {
+class SignedDistance final : public BodyDistance {
  public:
   /// @param surface  of the same mesh; it must outlive this
   SignedDistance(const geometry::Mesh& mesh, const ContactSurface& surface);
 
   const ContactSurface& surface() const noexcept { return *surface_; }
 
-  /// Servo thread. @param hint  a triangle that may be near; -1: none
-  SurfacePoint operator()(const Eigen::Vector3d& point, std::int32_t hint = -1) const noexcept;
+  SurfacePoint operator()(const Eigen::Vector3d& point,
+                          std::int32_t hint = -1) const noexcept override;
   /// The surface point of the triangle alone: the distance from its plane.
   SurfacePoint of_plane(const Eigen::Vector3d& point, std::int32_t triangle) const noexcept;
 

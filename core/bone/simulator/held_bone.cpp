@@ -1,9 +1,6 @@
 #include "core/bone/simulator/held_bone.h"
 
-#include <Eigen/Cholesky>
-#include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "core/bone/simulator/plate.h"
 
@@ -16,11 +13,6 @@ constexpr int kFirstEvery = 4;        // of surface voxels
 constexpr int kBricksPerTick = 24;    // with bone, that are looked at
 constexpr int kPlacesPerTick = 4096;  // of the grid's bricks, with bone or without
 constexpr double kRayReach = 4e-3;    // deeper samples say nothing [m]
-constexpr double kLeastSlip = 1e-4;   // friction below this speed is viscous [m/s]
-constexpr double kMostStep = 2e-4;    // of what touches, in a tick [m]
-constexpr double kMostTurn = 0.01;    // likewise [rad]
-constexpr double kFreeStep = 1e-3;    // of what touches nothing, towards a hand that went ahead [m]
-constexpr double kFreeTurn = 0.05;    // likewise [rad]
 
 bool holds(const BoneWorld& world, PieceSet pieces, const Voxel& voxel) noexcept {
   for (; pieces != 0; pieces &= pieces - 1) {
@@ -56,31 +48,25 @@ Vector3d outward(const BoneWorld& world, PieceSet pieces, const Voxel& voxel) no
   return length > 0.5 ? Vector3d(sum / length) : Vector3d(Vector3d::Zero());
 }
 
-Vector3d shortened(const Vector3d& v, double most) noexcept {
-  const double length = v.norm();
-  return length > most ? Vector3d(v * (most / length)) : v;
-}
-
-/// The turn from one orientation to another as a vector, in W [rad].
-Vector3d turn_between(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) noexcept {
-  Eigen::Quaterniond q(to * from.transpose());
-  q.coeffs() *= q.w() < 0.0 ? -1.0 : 1.0;
-  const double sine = q.vec().norm();
-  return sine > 0.0 ? Vector3d(q.vec() * (2.0 * std::atan2(sine, q.w()) / sine))
-                    : Vector3d(Vector3d::Zero());
+contact::Coupling coupling() {
+  contact::Coupling coupling;
+  coupling.stiffness = HeldBone::kHandStiffness;
+  coupling.turning_stiffness = HeldBone::kHandTurning;
+  coupling.contact_stiffness = HeldBone::kContactStiffness;
+  coupling.friction = HeldBone::kFriction;
+  return coupling;
 }
 
 }  // namespace
 
-HeldBone::HeldBone() {
+HeldBone::HeldBone() : tool_(coupling()) {
   samples_.reserve(kMostSamples + BoneVolume::kBrickVoxels);
   touching_.reserve(kMostSamples + BoneVolume::kBrickVoxels);
 }
 
 void HeldBone::begin(const Eigen::Isometry3d& hand) noexcept {
   begin_samples(0);
-  tool_ = hand;
-  slip_.setZero();
+  tool_.begin(hand);
 }
 
 void HeldBone::begin_samples(PieceSet group) noexcept {
@@ -170,71 +156,21 @@ void HeldBone::find_touching(const BoneWorld& world) noexcept {
       if (holder >= 0 && ((group >> holder) & 1U) != 0) {
         const Eigen::Isometry3d& pose = world.pose(holder);
         touching_.push_back(
-            {pose * at - tool_.translation(), -(pose.linear() * sample.normal_B), *depth});
+            {pose * at - tool_.pose().translation(), -(pose.linear() * sample.normal_B), *depth});
       }
     }
   }
 }
 
-/// Friction of a contact: a damping that gives the limit μ k d at the slip of the last tick.
-void HeldBone::rub(const Touching& at, double dt, Matrix6& stiffness) const noexcept {
-  Eigen::Matrix<double, 3, 6> slip;  // of the contact, by the step
-  slip.leftCols<3>().setIdentity();
-  slip.rightCols<3>() << 0.0, at.lever.z(), -at.lever.y(), -at.lever.z(), 0.0, at.lever.x(),
-      at.lever.y(), -at.lever.x(), 0.0;
-  slip -= at.back * (at.back.transpose() * slip).eval();
-  const double speed = std::max((slip * slip_).norm() / dt, kLeastSlip);
-  const double limit = kFriction * kContactStiffness * at.depth;
-  stiffness.noalias() += limit / (speed * dt) * (slip.transpose() * slip);
-}
-
-/// The step to where the energy is least, as far as the contacts of now tell.
-HeldBone::Vector6 HeldBone::step_to_rest(const Eigen::Isometry3d& hand, double dt) const noexcept {
-  Matrix6 stiffness = Matrix6::Zero();
-  stiffness.diagonal() << Vector3d::Constant(kHandStiffness), Vector3d::Constant(kHandTurning);
-  Vector6 push;
-  push << kHandStiffness * (hand.translation() - tool_.translation()),
-      kHandTurning * turn_between(tool_.linear(), hand.linear());
-  for (const Touching& at : touching_) {
-    Vector6 along;
-    along << at.back, at.lever.cross(at.back);
-    stiffness.noalias() += kContactStiffness * along * along.transpose();
-    push += kContactStiffness * at.depth * along;
-    rub(at, dt, stiffness);
-  }
-  return stiffness.ldlt().solve(push);
-}
-
-void HeldBone::move(const Vector6& step) noexcept {
-  const Vector3d turn = step.tail<3>();
-  const double angle = turn.norm();
-  if (angle > 0.0) {
-    const Eigen::AngleAxisd about(angle, turn / angle);
-    tool_.linear() = Eigen::Quaterniond(about * tool_.linear()).normalized().toRotationMatrix();
-  }
-  tool_.translation() += step.head<3>();
-}
-
 HeldBone::Followed HeldBone::follow(const BoneWorld& world, const Eigen::Isometry3d& hand,
                                     double dt) noexcept {
   if (!hand.matrix().allFinite()) {
-    return {tool_, Vector3d::Zero(), 0};
+    return {tool_.pose(), Vector3d::Zero(), 0};
   }
   look_for_samples(world);
   find_touching(world);
-  const Vector6 step = step_to_rest(hand, dt);
-  const bool touches = !touching_.empty();
-  const Vector3d way = shortened(step.head<3>(), touches ? kMostStep : kFreeStep);
-  const Vector3d turn = shortened(step.tail<3>(), touches ? kMostTurn : kFreeTurn);
-  const bool with_hand = !touches && way == step.head<3>() && turn == step.tail<3>();
-  slip_ << way, turn;
-  if (with_hand) {
-    tool_ = hand;  // and no rounding in between
-  } else {
-    move(slip_);
-  }
-  const Vector3d spring = kHandStiffness * (tool_.translation() - hand.translation());
-  return {tool_, touches ? spring : Vector3d(Vector3d::Zero()), static_cast<int>(touching_.size())};
+  const Vector3d force = tool_.follow(hand, touching_, dt).force;
+  return {tool_.pose(), force, static_cast<int>(touching_.size())};
 }
 
 }  // namespace haptrial::bone
