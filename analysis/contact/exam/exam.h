@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,20 +11,22 @@
 
 namespace haptrial::evaluation {
 
-/// A tool that is led along a body, and the forces that are right.
+/// A tool that is led along a body, and what is right.
 struct ExamCase {
   std::string name;  // "thin-plate-friction"
   ContactTask task;
-  std::vector<Eigen::Vector3d>
-      tool;  // (n), the first one in the air, the last one at the same place
-  std::vector<Eigen::Vector3d> truth;  // (n) on the tool [N]
+  std::vector<Eigen::Isometry3d>
+      tool;  // (n), the first one in the air, the last one the same; a point is not turned
+  std::vector<Answer> truth;  // (n)
 };
 
-/// Writes the exam as plain files: exam.json, README.md, LICENCE, and for each case its body (.obj)
-/// and its path with the true forces (.csv). The bodies are exam_bodies(), each without friction
-/// and with 0.3, at 500 N/m and 1 kHz. Nothing in it is random: every exam is the same.
+/// Writes the exam of a point as plain files: exam.json, README.md, LICENCE, and for each case its
+/// body (.obj) and its path with the true forces (.csv). The bodies are exam_bodies(), each without
+/// friction and with 0.3, at 500 N/m and 1 kHz. Nothing in it is random: every exam is the same.
 /// @throws InputError when `folder` holds anything or cannot be made. Source: Morris 2006, §7.5.
 void write_exam(const std::filesystem::path& folder);
+/// The same of rigid tools, exam_tools(), at 500 N/m, 0.3 N·m/rad and 1 kHz, with true torques.
+void write_rigid_exam(const std::filesystem::path& folder);
 
 /// @throws InputError for a file that is missing or does not hold what it should.
 std::vector<ExamCase> read_exam(const std::filesystem::path& folder);
@@ -32,7 +35,7 @@ std::vector<ExamCase> read_exam(const std::filesystem::path& folder);
 struct ExamAnswers {
   std::string renderer;
   struct Case {
-    std::vector<Eigen::Vector3d> force;        // (n) on the tool [N]
+    std::vector<Answer> answer;                // (n)
     double preparation{0.0};                   // of the body [s]
     double median_tick{0.0}, worst_tick{0.0};  // with the way to a program and back [s]
   };
@@ -45,8 +48,9 @@ ExamAnswers sit_exam(Candidate& candidate, const std::string& renderer,
                      const std::vector<ExamCase>& exam);
 
 /// Writes answers.json, CASE.csv with the forces of each case, and failures.csv.
+/// @param ridges  none: no failures.csv
 /// @throws InputError when `folder` holds anything or cannot be made.
-void write_answers(const ExamAnswers& answers, const FailureMap& ridges,
+void write_answers(const ExamAnswers& answers, const std::optional<FailureMap>& ridges,
                    const std::vector<ExamCase>& exam, const std::filesystem::path& folder);
 /// Answers that this or another program wrote. Without answers.json the renderer is called as the
 /// folder, and its costs are not known.

@@ -46,11 +46,13 @@ class RidgeCandidate final : public contact::Renderer {
 
   void start(const Eigen::Vector3d& tool) noexcept override {
     time_ = 0.0;
-    guarded([&] { candidate_.start(tool); });
+    guarded([&] { candidate_.start(Eigen::Isometry3d(Eigen::Translation3d(tool))); });
   }
   const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override {
     contact_ = {};
-    guarded([&] { contact_.force = candidate_.tick(time_, tool); });
+    guarded([&] {
+      contact_.force = candidate_.tick(time_, Eigen::Isometry3d(Eigen::Translation3d(tool))).force;
+    });
     time_ += period;
     const double size = contact_.force.norm();
     contact_.proxy = tool + contact_.force / task_.stiffness;

@@ -59,6 +59,11 @@ FindingRow row_of(const ExamScore& score, std::size_t i, const ExamCase& one) {
       number("energy_given_by_truth", "by the truth", s.true_energy, "J"),
       count("ticks_lost", "ticks lost", s.lost),
       count("ticks_stuck", "ticks stuck", s.stuck)};
+  if (one.task.is_rigid()) {
+    row.push_back(
+        number("torque_error_rms", "torque error, RMS", s.torque.root_mean_square, "N·m"));
+    row.push_back(number("torque_mean", "mean torque", s.torque.mean_force, "N·m"));
+  }
   return row;
 }
 
@@ -123,17 +128,24 @@ void add_summary(Document& document, const std::vector<ExamScore>& scores) {
   document.table(heading, rows);
 }
 
-constexpr const char* kMethod =
+constexpr const char* kRigidMethod =
+    "A rigid tool hangs on the hand by springs of 500 N/m and 0.3 N·m/rad and is led into bodies "
+    "that leave a convex space free, there and back at 1 kHz, without friction. The truth is the "
+    "place of least energy in the springs, exact to a nanometre. Energy counts force and torque. ";
+
+constexpr const char* kPointMethod =
     "A tool, a point, is led along eight bodies, without friction and with 0.3, at 500 N/m and "
     "1 kHz, there and back. The truth is the god object with Coulomb's friction, exact on plane "
-    "faces, spheres and cylinders. A case pops through if a force of more than 0.2 N is missing or "
+    "faces, spheres and cylinders. Ridges are the source's Figure 65 as a map. ";
+
+constexpr const char* kVerdicts =
+    "A case pops through if a force of more than 0.2 N is missing or "
     "points into the body on a tick, sticks if there is a force of more than 0.2 N in the air, "
     "gives "
     "energy if the hand gains more than a hundredth of the energy that it stored on the way, and "
     "is "
     "noticeable if more than a twentieth of the samples are off by more than 7 % of the force. The "
-    "first of these that holds is the verdict. Ridges are the source's Figure 65 as a map. Times "
-    "of "
+    "first of these that holds is the verdict. Times of "
     "ticks are those of the computer that ran the renderer; another program's include its pipe.";
 
 }  // namespace
@@ -172,7 +184,8 @@ void write_scores(const std::vector<ExamScore>& scores, const std::vector<ExamCa
   Document document;
   document.title = "Exam of renderers";
   add_summary(document, scores);
-  document.paragraph(kMethod);
+  document.paragraph(std::string(exam.front().task.is_rigid() ? kRigidMethod : kPointMethod) +
+                     kVerdicts);
   analysis::add_findings(document, lists, drawings);
   out.write("report.html", analysis::to_html(document));
   out.publish();

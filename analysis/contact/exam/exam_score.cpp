@@ -1,23 +1,42 @@
 #include "analysis/contact/exam/exam_score.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
 namespace haptrial::evaluation {
 namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
-using Forces = std::vector<Vector3d>;
+using Vectors = std::vector<Vector3d>;
 
 constexpr double kFelt = 0.2;            // [N]
 constexpr double kShareOfTruth = 0.1;    // below it a force is lost
 constexpr double kShareOfEnergy = 0.01;  // of what goes in and out
 constexpr double kNoticed = 0.05;        // of the samples
 
-/// Energy that a force gives to a tool on a step of its way [J]: the mean of both ends.
-double given_on(const Forces& force, const Forces& tool, std::size_t i) {
-  return 0.5 * (force[i] + force[i + 1]).dot(tool[i + 1] - tool[i]);
+Vectors forces_of(const std::vector<Answer>& answers) {
+  Vectors forces;
+  std::ranges::transform(answers, std::back_inserter(forces), &Answer::force);
+  return forces;
+}
+
+Vectors torques_of(const std::vector<Answer>& answers) {
+  Vectors torques;
+  std::ranges::transform(answers, std::back_inserter(torques), &Answer::torque);
+  return torques;
+}
+
+/// Energy that the hand is given on a step of its way [J]: the mean of both ends.
+double given_on(const std::vector<Answer>& answers, const ExamCase& one, std::size_t i) {
+  const Eigen::Isometry3d &from = one.tool[i], &to = one.tool[i + 1];
+  const Answer &before = answers[i], &after = answers[i + 1];
+  double given = 0.5 * (before.force + after.force).dot(to.translation() - from.translation());
+  if (one.task.is_rigid()) {
+    const Eigen::AngleAxisd turn(to.linear() * from.linear().transpose());
+    given += 0.5 * turn.angle() * (before.torque + after.torque).dot(turn.axis());
+  }
+  return given;
 }
 
 struct Energy {
@@ -25,10 +44,10 @@ struct Energy {
   double taken{0.0};  // from the tool, and given back later [J]
 };
 
-Energy energy_of(const Forces& force, const Forces& tool) {
+Energy energy_of(const std::vector<Answer>& answers, const ExamCase& one) {
   Energy energy;
-  for (std::size_t i = 0; i + 1 < tool.size(); ++i) {
-    const double given = given_on(force, tool, i);
+  for (std::size_t i = 0; i + 1 < one.tool.size(); ++i) {
+    const double given = given_on(answers, one, i);
     energy.given += given;
     energy.taken += std::max(0.0, -given);
   }
@@ -70,17 +89,21 @@ const char* name_of(ExamVerdict verdict) {
   return "";
 }
 
-CaseScore score_case(const ExamCase& one, const Forces& force) {
+CaseScore score_case(const ExamCase& one, const std::vector<Answer>& answers) {
   CaseScore score;
-  score.force = force_error(one.truth, force);
-  score.bands = band_error(one.truth, force, one.task.rate);
-  score.noticeable = noticeable_error(one.truth, force);
-  const Energy truth = energy_of(one.truth, one.tool);
-  score.energy = energy_of(force, one.tool).given;
+  const Vectors right = forces_of(one.truth), force = forces_of(answers);
+  score.force = force_error(right, force);
+  if (one.task.is_rigid()) {
+    score.torque = force_error(torques_of(one.truth), torques_of(answers));
+  }
+  score.bands = band_error(right, force, one.task.rate);
+  score.noticeable = noticeable_error(right, force);
+  const Energy truth = energy_of(one.truth, one);
+  score.energy = energy_of(answers, one).given;
   score.true_energy = truth.given;
   for (std::size_t i = 0; i < force.size(); ++i) {
-    score.lost += is_lost(one.truth[i], force[i]) ? 1 : 0;
-    score.stuck += one.truth[i].isZero(0.0) && force[i].norm() > kFelt ? 1 : 0;
+    score.lost += is_lost(right[i], force[i]) ? 1 : 0;
+    score.stuck += right[i].isZero(0.0) && force[i].norm() > kFelt ? 1 : 0;
   }
   score.verdict = verdict_of(score, truth);
   return score;
@@ -93,7 +116,7 @@ std::size_t ExamScore::count(ExamVerdict verdict) const {
 ExamScore score_answers(const fs::path& folder, const std::vector<ExamCase>& exam) {
   ExamScore score{read_answers(folder, exam), {}, {}};
   for (std::size_t i = 0; i < exam.size(); ++i) {
-    score.cases.push_back(score_case(exam[i], score.answers.cases[i].force));
+    score.cases.push_back(score_case(exam[i], score.answers.cases[i].answer));
   }
   if (const fs::path failures = folder / "failures.csv"; fs::exists(failures)) {
     score.ridge = read_failures(failures);

@@ -27,6 +27,7 @@ const char* name_of(ExamVerdict verdict);
 
 struct CaseScore {
   ForceError force;
+  ForceError torque;  // likewise, of a rigid tool [N·m]
   BandError bands;
   NoticeableError noticeable;
   double energy{0.0};       // that the tool was given on the closed path [J]
@@ -38,8 +39,8 @@ struct CaseScore {
 
 /// Compares the answers to a case with the truth. Forces below 0.2 N count as none where popping
 /// through and sticking are judged; energy counts from a hundredth of what the truth takes in.
-/// @param force  (n), as long as the path [N]
-CaseScore score_case(const ExamCase& one, const std::vector<Eigen::Vector3d>& force);
+/// @param answers  (n), as long as the path
+CaseScore score_case(const ExamCase& one, const std::vector<Answer>& answers);
 
 struct ExamScore {
   ExamAnswers answers;

@@ -47,25 +47,42 @@ ProgramRenderer::ProgramRenderer(const std::vector<std::string>& words)
 }
 
 void ProgramRenderer::begin(const ContactTask& task) {
+  rigid_ = task.is_rigid();
   expect_ready(fmt::format("body stiffness {} friction {} rate {} {}", task.stiffness,
                            task.friction, task.rate, task.body.string()));
-}
-
-void ProgramRenderer::start(const Eigen::Vector3d& tool) {
-  expect_ready(fmt::format("start {} {} {}", tool.x(), tool.y(), tool.z()));
-}
-
-Eigen::Vector3d ProgramRenderer::tick(double time, const Eigen::Vector3d& tool) {
-  const std::string line = fmt::format("tick {} {} {} {}", time, tool.x(), tool.y(), tool.z());
-  const std::string answer = ask(line);
-  std::istringstream words(answer);
-  words.imbue(std::locale::classic());
-  Eigen::Vector3d force;
-  std::string more;
-  if (!(words >> force.x() >> force.y() >> force.z()) || words >> more || !force.allFinite()) {
-    refuse(line, answer);
+  if (rigid_) {
+    expect_ready(fmt::format("tool turning {} {}", task.turning_stiffness, task.tool.string()));
   }
-  return force;
+}
+
+std::string ProgramRenderer::words_of(const Eigen::Isometry3d& tool) const {
+  const Eigen::Vector3d p = tool.translation();
+  const std::string place = fmt::format("{} {} {}", p.x(), p.y(), p.z());
+  if (!rigid_) {
+    return place;
+  }
+  const Eigen::Quaterniond q(tool.linear());
+  return fmt::format("{} {} {} {} {}", place, q.w(), q.x(), q.y(), q.z());
+}
+
+void ProgramRenderer::start(const Eigen::Isometry3d& tool) {
+  expect_ready("start " + words_of(tool));
+}
+
+Answer ProgramRenderer::tick(double time, const Eigen::Isometry3d& tool) {
+  const std::string line = fmt::format("tick {} {}", time, words_of(tool));
+  const std::string said = ask(line);
+  std::istringstream words(said);
+  words.imbue(std::locale::classic());
+  Answer answer;
+  const auto read = [&](Eigen::Vector3d& v) {
+    return words >> v.x() >> v.y() >> v.z() && v.allFinite();
+  };
+  std::string more;
+  if (!read(answer.force) || (rigid_ && !read(answer.torque)) || words >> more) {
+    refuse(line, said);
+  }
+  return answer;
 }
 
 void ProgramRenderer::expect_ready(const std::string& line) {
@@ -99,7 +116,10 @@ std::string ProgramRenderer::ask(const std::string& line) {
 
 void ProgramRenderer::refuse(const std::string& line, const std::string& found) const {
   throw InputError(fmt::format("--program: {} answers '{}' to '{}'; allowed: {}", name_, found,
-                               line, line.starts_with("tick") ? "three finite numbers" : "ready"));
+                               line,
+                               !line.starts_with("tick") ? "ready"
+                               : rigid_                  ? "six finite numbers"
+                                                         : "three finite numbers"));
 }
 
 }  // namespace haptrial::evaluation

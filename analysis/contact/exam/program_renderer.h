@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,7 +17,15 @@ namespace haptrial::evaluation {
 ///     start X Y Z                                     ready
 ///     tick TIME X Y Z                                 FX FY FZ
 ///
-/// with positions in metres in the frame of the mesh and forces on the tool in newtons. A task
+/// or, of a rigid tool, whose turns are unit quaternions,
+///
+///     body stiffness N/m friction MU rate HZ FILE     ready
+///     tool turning N·m/rad FILE                       ready
+///     start X Y Z QW QX QY QZ                         ready
+///     tick TIME X Y Z QW QX QY QZ                     FX FY FZ TX TY TZ
+///
+/// with positions in metres in the frame of the body's mesh, forces on the tool in newtons and
+/// torques about its origin in newton metres. A task
 /// begins with "body", a path with "start", whose place is in the air; there may be several paths
 /// in a task and several tasks in a run. The program ends with its input.
 ///
@@ -30,17 +38,19 @@ class ProgramRenderer final : public Candidate {
   /// Begins a task. @throws InputError for an answer other than "ready", or none within a minute.
   void begin(const ContactTask& task) override;
   /// Puts the tool to a place in the air. @throws InputError as begin()
-  void start(const Eigen::Vector3d& tool) override;
-  /// One tick. @returns the force on the tool [N]
-  /// @throws InputError for an answer that is no three finite numbers, or none within a minute.
-  Eigen::Vector3d tick(double time, const Eigen::Vector3d& tool) override;
+  void start(const Eigen::Isometry3d& tool) override;
+  /// @throws InputError for an answer that is no three finite numbers, six of a rigid tool, or none
+  /// within a minute.
+  Answer tick(double time, const Eigen::Isometry3d& tool) override;
 
  private:
+  std::string words_of(const Eigen::Isometry3d& tool) const;
   std::string ask(const std::string& line);
   void expect_ready(const std::string& line);
   [[noreturn]] void refuse(const std::string& line, const std::string& found) const;
 
   std::string name_;
+  bool rigid_{false};
   Pipe to_, from_;
   std::unique_ptr<ChildProcess> program_;
   std::string rest_;  // that was read beyond a line

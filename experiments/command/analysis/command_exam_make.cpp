@@ -11,10 +11,15 @@ namespace {
 
 struct ExamMakeOptions {
   std::string folder;
+  bool rigid{false};
 };
 
 int make_exam(const ExamMakeOptions& options) {
-  evaluation::write_exam(options.folder);
+  if (options.rigid) {
+    evaluation::write_rigid_exam(options.folder);
+  } else {
+    evaluation::write_exam(options.folder);
+  }
   fmt::print("wrote {}: {} cases\n", options.folder, evaluation::read_exam(options.folder).size());
   return 0;
 }
@@ -28,6 +33,7 @@ void add_exam_make(CLI::App& exam, int& status) {
                  {"exam.json, README.md, bodies and cases in FOLDER", "algorithms/exam.md"});
   auto& o = options_of<ExamMakeOptions>(*sub, status, make_exam);
   sub->add_option("FOLDER", o.folder, "New folder of the exam")->required();
+  sub->add_flag("--rigid", o.rigid, "Rigid tools with force and torque, in place of a point");
 }
 
 }  // namespace haptrial::experiments

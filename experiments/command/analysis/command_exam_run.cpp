@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,9 +45,13 @@ int run_exam(const ExamRunOptions& options) {
   const auto candidate = candidate_of(options);
   const std::string name = name_of(options);
   const evaluation::ExamAnswers answers = evaluation::sit_exam(*candidate, name, exam);
-  evaluation::write_answers(answers, evaluation::failure_map_of(*candidate, name), exam,
-                            options.out);
-  fmt::print("wrote {}: {} cases and a map of ridges\n", options.out, exam.size());
+  std::optional<evaluation::FailureMap> ridges;
+  if (!exam.front().task.is_rigid()) {
+    ridges = evaluation::failure_map_of(*candidate, name);
+  }
+  evaluation::write_answers(answers, ridges, exam, options.out);
+  fmt::print("wrote {}: {} cases{}\n", options.out, exam.size(),
+             ridges ? " and a map of ridges" : "");
   return 0;
 }
 
@@ -60,8 +65,10 @@ void add_exam_run(CLI::App& exam, int& status) {
        "algorithms/exam.md"});
   auto& o = options_of<ExamRunOptions>(*sub, status, run_exam);
   sub->add_option("EXAM", o.folder, "Folder of the exam")->required();
-  sub->add_option("RENDERER", o.renderer,
-                  "Renderer of this program: proxy, penalty, voxel or distance-field");
+  sub->add_option(
+      "RENDERER", o.renderer,
+      "Renderer of this program: proxy, penalty, voxel or distance-field; rigid-tool in "
+      "an exam of rigid tools");
   sub->add_option("--program", o.program,
                   "Another program and its arguments, which answers lines on its standard input "
                   "(to the end of the line)")

@@ -3,10 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "analysis/contact/exam/exam_bodies.h"
+#include "analysis/contact/exam/exam_tools.h"
 #include "analysis/contact/truth/true_contact.h"
 #include "core/base/error.h"
 #include "core/contact/felt_body.h"
+#include "core/contact/signed_distance.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -14,13 +18,17 @@ namespace haptrial::evaluation::exam_score_test {
 namespace {
 
 using Eigen::Vector3d;
-using Forces = std::vector<Vector3d>;
+using Answers = std::vector<Answer>;
 
 ExamCase sphere_case(double friction) {
   const ExamBody& sphere = exam_bodies()[1];
-  ExamCase one{"sphere", {.friction = friction}, there_and_back(sphere), {}};
-  for (const TrueContact& c : true_contacts(sphere.body, one.tool, one.task.stiffness, friction)) {
-    one.truth.push_back(c.force);
+  ExamCase one{"sphere", {.friction = friction}, {}, {}};
+  const std::vector<Vector3d> places = there_and_back(sphere);
+  for (const TrueContact& c : true_contacts(sphere.body, places, one.task.stiffness, friction)) {
+    one.truth.push_back({c.force, Vector3d::Zero()});
+  }
+  for (const Vector3d& place : places) {
+    one.tool.emplace_back(Eigen::Translation3d(place));
   }
   return one;
 }
@@ -42,11 +50,12 @@ TEST(ExamScoreTest, TheTruthIsRight) {
 
 TEST(ExamScoreTest, AMissingOrTurnedForceOnASingleTickPopsThrough) {
   const ExamCase one = sphere_case(0.0);
-  Forces force = one.truth;
-  const auto felt = std::ranges::find_if(force, [](const Vector3d& f) { return f.norm() > 1.0; });
+  Answers force = one.truth;
+  const auto felt =
+      std::ranges::find_if(force, [](const Answer& a) { return a.force.norm() > 1.0; });
   for (const double share : {0.0, -1.0}) {
     force = one.truth;
-    force[static_cast<std::size_t>(felt - force.begin())] *= share;
+    force[static_cast<std::size_t>(felt - force.begin())].force *= share;
     const CaseScore score = score_case(one, force);
     EXPECT_EQ(score.lost, 1u);
     EXPECT_EQ(score.verdict, ExamVerdict::kPopsThrough);
@@ -55,8 +64,8 @@ TEST(ExamScoreTest, AMissingOrTurnedForceOnASingleTickPopsThrough) {
 
 TEST(ExamScoreTest, AForceInTheAirSticks) {
   const ExamCase one = sphere_case(0.0);
-  Forces force = one.truth;
-  force.front() = {0.0, 0.3, 0.0};
+  Answers force = one.truth;
+  force.front().force = {0.0, 0.3, 0.0};
   EXPECT_EQ(score_case(one, force).verdict, ExamVerdict::kSticks);
 }
 
@@ -65,14 +74,14 @@ TEST(ExamScoreTest, AForceInTheAirSticks) {
 TEST(ExamScoreTest, ANegativeDamperGivesEnergy) {
   constexpr double kDamping = 1.0;  // [N·s/m]
   const ExamCase one = sphere_case(0.0);
-  Forces force = one.truth;
+  Answers force = one.truth;
   double energy = 0.0;
   for (std::size_t i = 0; i + 1 < force.size(); ++i) {
-    if (one.truth[i].isZero(0.0)) {
+    if (one.truth[i].force.isZero(0.0)) {
       continue;
     }
-    const Vector3d v = (one.tool[i + 1] - one.tool[i]) * one.task.rate;
-    force[i] += kDamping * v;
+    const Vector3d v = (one.tool[i + 1].translation() - one.tool[i].translation()) * one.task.rate;
+    force[i].force += kDamping * v;
     energy += kDamping * v.squaredNorm() / one.task.rate;
   }
   const CaseScore score = score_case(one, force);
@@ -82,13 +91,58 @@ TEST(ExamScoreTest, ANegativeDamperGivesEnergy) {
 
 TEST(ExamScoreTest, AForceThatIsATenthTooLargeIsNoticeable) {
   const ExamCase one = sphere_case(0.0);
-  Forces force = one.truth;
-  for (Vector3d& f : force) {
-    f *= 1.1;
+  Answers force = one.truth;
+  for (Answer& answer : force) {
+    answer.force *= 1.1;
   }
   const CaseScore score = score_case(one, force);
   EXPECT_EQ(score.noticeable.beyond_low, 1.0);
   EXPECT_EQ(score.verdict, ExamVerdict::kNoticeable);
+}
+
+TEST(ExamTest, EveryToolAndItsBodyHaveAnInside) {
+  for (const ExamTool& one : exam_tools()) {
+    for (const geometry::Mesh& mesh : {one.tool, one.body}) {
+      const contact::FeltBody felt(mesh);
+      EXPECT_TRUE(felt.closed) << one.name;
+      EXPECT_TRUE(felt.outwards) << one.name;
+    }
+  }
+}
+
+/// The half-spaces are the body's faces: where they leave space the mesh is not, and the other way.
+TEST(ExamTest, TheFreeSpaceOfAToolIsThatOfItsBody) {
+  for (const ExamTool& one : exam_tools()) {
+    const contact::FeltBody felt(one.body);
+    const contact::SignedDistance distance(felt.mesh, felt.surface);
+    for (int i = 0; i < 1000; ++i) {
+      const Vector3d p = 0.03 * Vector3d(std::sin(1.1 * i), std::sin(1.7 * i), std::sin(2.3 * i));
+      double spare = 1.0;
+      for (const HalfSpace& half : one.free) {
+        spare = std::min(spare, half.normal.dot(p) - half.offset);
+      }
+      if (std::abs(spare) > 1e-9) {
+        EXPECT_EQ(spare > 0.0, distance(p, -1).distance > 0.0) << one.name << " " << p.transpose();
+      }
+    }
+  }
+}
+
+TEST(ExamTest, TheRigidToolPasses) {
+  const test::TemporaryFolder folder;
+  write_rigid_exam(folder / "exam");
+  const auto exam = read_exam(folder / "exam");
+  ASSERT_EQ(exam.size(), exam_tools().size());
+  const auto candidate = own_candidate("rigid-tool");
+  const ExamAnswers answers = sit_exam(*candidate, "rigid-tool", exam);
+  for (std::size_t i = 0; i < exam.size(); ++i) {
+    const CaseScore score = score_case(exam[i], answers.cases[i].answer);
+    EXPECT_EQ(score.verdict, ExamVerdict::kRight) << exam[i].name;
+    EXPECT_GT(score.torque.mean_force, 0.01) << exam[i].name << " turns against what it touches";
+    EXPECT_LT(score.torque.root_mean_square, 0.1 * score.torque.mean_force) << exam[i].name;
+  }
+  EXPECT_THAT(test::message_of<InputError>([&] { own_candidate("proxy")->begin(exam[0].task); }),
+              testing::HasSubstr("proxy renders a point"));
 }
 
 TEST(ExamTest, EveryBodyHasAnInside) {
@@ -120,7 +174,7 @@ TEST_F(WrittenExamTest, TheProxyPassesAndThePenaltyPopsThroughTheThinPlate) {
     const ExamAnswers answers = sit_exam(*candidate, renderer, exam);
     ExamScore score{answers, {}, {}};
     for (std::size_t i = 0; i < exam.size(); ++i) {
-      score.cases.push_back(score_case(exam[i], answers.cases[i].force));
+      score.cases.push_back(score_case(exam[i], answers.cases[i].answer));
     }
     return score;
   };
@@ -135,11 +189,11 @@ TEST_F(WrittenExamTest, AnswersComeBackAndAMissingRowGetsASentence) {
   auto exam = read_exam(path("exam"));
   exam.resize(1);
   ExamAnswers answers{"mine", {{exam[0].truth, 0.5, 1e-6, 2e-6}}, true};
-  write_answers(answers, {"mine", 0.0, 0.0, {}}, exam, path("answers"));
+  write_answers(answers, FailureMap{"mine", 0.0, 0.0, {}}, exam, path("answers"));
   const ExamAnswers again = read_answers(path("answers"), exam);
   EXPECT_EQ(again.renderer, "mine");
   EXPECT_EQ(again.cases[0].worst_tick, 2e-6);
-  EXPECT_LT(score_case(exam[0], again.cases[0].force).force.worst, 1e-6);  // the files' grain
+  EXPECT_LT(score_case(exam[0], again.cases[0].answer).force.worst, 1e-6);  // the files' grain
   exam[0].tool.pop_back();
   EXPECT_THAT(test::message_of<InputError>([&] { read_answers(path("answers"), exam); }),
               testing::HasSubstr("4001 forces; allowed: 4000, one for each row of the path"));
