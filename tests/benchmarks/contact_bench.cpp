@@ -21,6 +21,8 @@
 #include "core/contact/make_renderer.h"
 #include "core/contact/moving_objects.h"
 #include "core/contact/proxy.h"
+#include "core/contact/rigid_tool.h"
+#include "core/contact/signed_distance.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/mesh/procedural.h"
@@ -133,6 +135,36 @@ void rays(const Mesh& mesh, const ContactSurface& surface, const Path& path,
 void rays(const Mesh&, const ContactSurface&, const Path&, const Vector3d&) {}
 #endif
 
+/// A cube of 10 mm that turns at 1 rad/s while it is pressed 1 mm into the surface.
+void press_cube(const Mesh& mesh, const ContactSurface& surface, const Path& path) {
+  using namespace haptrial::contact;
+  constexpr double kSide = 0.01;  // [m]
+  const SignedDistance body(mesh, surface);
+  RigidTool tool(points_on(haptrial::geometry::make_box(Vector3d::Constant(kSide)), kSide / 9),
+                 {});
+  const auto hand = [&](std::size_t i) {
+    Eigen::Isometry3d pose(Eigen::AngleAxisd(1e-3 * i, Vector3d(0.6, 0.0, 0.8)));
+    const auto nearest = surface.bvh().closest(path[i]);
+    const Vector3d normal = surface.normal(surface.slot(nearest.triangle));
+    pose.translation() = nearest.point + (0.5 * kSide - 0.001) * normal;
+    return pose;
+  };
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    poses.push_back(hand(i));
+  }
+  std::size_t touching = 0;
+  measure(
+      "  rigid cube", path.size(),
+      [&] {
+        tool.begin(poses.front());
+        touching = 0;
+      },
+      [&](std::size_t i) { touching += tool.tick(body, poses[i], 1e-3).touching; });
+  std::printf("  (%zu points, of which %.1f touch)\n", tool.points(),
+              static_cast<double>(touching) / static_cast<double>(path.size()));
+}
+
 void scanned(const char* file) {
   const char* folder = std::getenv("HAPTRIAL_DATA");
   const auto path = std::filesystem::path(folder ? folder : "../shared/data") / "meshes" / file;
@@ -152,6 +184,7 @@ void scanned(const char* file) {
   follow("  point", surface, way, 0.0, start);
   follow("  sphere of 1 mm", surface, way, 0.001, start);
   rays(mesh, surface, way, start);
+  press_cube(mesh, surface, way);
 }
 
 /// Ten spheres in one place, all touched.
