@@ -18,8 +18,8 @@ std::vector<Eigen::Vector3d> points_on(const geometry::Mesh& mesh, double spacin
 /// are close passes between them. A point is looked up only where the way since it was looked up
 /// last may have brought it near, so that points far from the body cost nothing.
 ///
-/// All poses, forces and torques are in the body's frame. Source of the idea: McNeely, Puterbaugh
-/// and Troy 1999.
+/// All poses, forces and torques are in the body's frame. Source: Morris 2006, §7.4.1, for points;
+/// McNeely, Puterbaugh and Troy 1999, for tools.
 class RigidTool {
  public:
   /// @param points  of the tool's surface, in T [m]
