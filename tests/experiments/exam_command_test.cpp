@@ -45,6 +45,23 @@ TEST_F(ExamCommandTest, AnotherProgramSitsIt) {
   EXPECT_THAT(test::read_text(folder_ / "scores/report.html"), HasSubstr("ridges right"));
 }
 
+/// A program without any force: it is told of tools and their turns, and its tools go through all.
+TEST_F(ExamCommandTest, AnotherProgramSitsTheExamOfRigidTools) {
+  ASSERT_EQ(run("make 'rigid exam' --rigid").status, 0);
+  const auto sat = run(
+      "run 'rigid exam' --out answers --name nothing --program "
+      "awk '/^tick/ && NF == 9 { print 0, 0, 0, 0, 0, 0; fflush(); next } "
+      "/^body|^tool|^start/ { print \"ready\"; fflush() }'");
+  ASSERT_EQ(sat.status, 0) << sat.errors;
+  const auto scored = run("score 'rigid exam' answers --out scores");
+  ASSERT_EQ(scored.status, 0) << scored.errors;
+  EXPECT_THAT(scored.output, HasSubstr("nothing: 0 of 3 cases right"));
+  EXPECT_THAT(test::read_text(folder_ / "scores/report.html"), HasSubstr("torque error"));
+  const auto point = run("run 'rigid exam' proxy --out more");
+  EXPECT_EQ(point.status, 2);
+  EXPECT_THAT(point.errors, HasSubstr("proxy renders a point; allowed in an exam of rigid tools"));
+}
+
 /// The rows of a renderer in a table of scores.
 std::string rows_of(const std::string& renderer, const std::filesystem::path& table) {
   std::istringstream lines(test::read_text(table));

@@ -53,8 +53,8 @@ class OwnCandidate final : public Candidate {
   double period_{1e-3};  // [s]
 };
 
-/// Points a twentieth of the tool's longest side apart; each touches with a stiffness that gives way
-/// by a few hundredths of a millimetre.
+/// Points a twentieth of the tool's longest side apart; each touches with a stiffness that gives
+/// way by a few hundredths of a millimetre.
 class RigidCandidate final : public Candidate {
  public:
   void begin(const ContactTask& task) override {
