@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -48,10 +49,14 @@ TEST_F(ExamCommandTest, AnotherProgramSitsIt) {
 /// A program without any force: it is told of tools and their turns, and its tools go through all.
 TEST_F(ExamCommandTest, AnotherProgramSitsTheExamOfRigidTools) {
   ASSERT_EQ(run("make 'rigid exam' --rigid").status, 0);
-  const auto sat = run(
-      "run 'rigid exam' --out answers --name nothing --program "
-      "sh -c 'while read -r word rest; do case $word in "
-      "tick) set -- $rest; [ $# = 8 ] && echo 0 0 0 0 0 0;; *) echo ready;; esac; done'");
+  std::ofstream(folder_ / "nothing.sh") << R"(while read -r word rest; do
+  case $word in
+    tick) set -- $rest; [ $# = 8 ] && echo 0 0 0 0 0 0;;
+    *) echo ready;;
+  esac
+done
+)";
+  const auto sat = run("run 'rigid exam' --out answers --name nothing --program sh nothing.sh");
   ASSERT_EQ(sat.status, 0) << sat.errors;
   const auto scored = run("score 'rigid exam' answers --out scores");
   ASSERT_EQ(scored.status, 0) << scored.errors;
