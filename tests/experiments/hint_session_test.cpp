@@ -289,8 +289,11 @@ TEST_F(HintSessionTest, WhoHeedsHintsGetsFewerOfThem) {
 }
 
 TEST_F(HintSessionTest, HintsThatAreOnlyRecordedChangeNothing) {
-  write("none.toml", trainee_text("file = \"safe.toml\"\nshown_in = \"none\"\n", "1.0"));
-  write("plain.toml", with(trainee_text("", "1.0"), "[hints]\n", ""));
+  const auto briefly = [](const std::string& text) {
+    return with(text, "time_limit = 30.", "time_limit = 10.");
+  };
+  write("none.toml", briefly(trainee_text("file = \"safe.toml\"\nshown_in = \"none\"\n", "1.0")));
+  write("plain.toml", briefly(with(trainee_text("", "1.0"), "[hints]\n", "")));
   good("dry-run none.toml --subjects 1 --out none");
   good("dry-run plain.toml --subjects 1 --out plain");
   const record::SessionReader none(*folder_ / "none/S01.h5");

@@ -24,12 +24,20 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-TEST(KeysTest, EveryKeyIsDescribedByItsReader) { EXPECT_THAT(keys_without_words(), IsEmpty()); }
+/// All tests of this suite share one list, which takes seconds to make.
+const std::vector<KeySection>& every_section() {
+  static const auto sections = key_sections("");
+  return sections;
+}
+
+TEST(KeysTest, EveryKeyIsDescribedByItsReader) {
+  EXPECT_THAT(keys_without_words(every_section()), IsEmpty());
+}
 
 /// With HAPTRIAL_WRITE_PAGES=1 in the environment the page is written anew.
 TEST(KeysTest, ThePageIsWhatTheProgramPrints) {
   const fs::path page = HAPTRIAL_SOURCE_DIR "/docs/keys.md";
-  const std::string text = key_page(key_sections(""));
+  const std::string text = key_page(every_section());
   if (std::getenv("HAPTRIAL_WRITE_PAGES") != nullptr) {
     write_text(page, text);
   }
@@ -107,7 +115,7 @@ std::string replaced(std::string path, const std::string& what, const std::strin
 
 TEST(KeysTest, EveryKeyOfTheShippedDefinitionsIsListed) {
   std::map<std::string, std::vector<ListedPath>> listed;  // of each protocol; "": of all
-  for (const KeySection& section : key_sections("")) {
+  for (const KeySection& section : every_section()) {
     for (const KnownKey& each : section.keys) {
       listed[section.protocol].emplace_back(each);
     }
@@ -138,16 +146,24 @@ TEST(KeysTest, EveryKeyOfTheShippedDefinitionsIsListed) {
   EXPECT_GT(checked, 500);
 }
 
+/// What the command prints, once for each protocol.
+const std::string& schema_of(const std::string& protocol) {
+  static std::map<std::string, std::string> schemas;
+  const auto [at, is_new] = schemas.try_emplace(protocol);
+  if (is_new) {
+    const auto printed = test::run_command("haptrial keys " + protocol + " --json-schema");
+    EXPECT_EQ(printed.status, 0) << printed.errors;
+    at->second = printed.output;
+  }
+  return at->second;
+}
+
 /// Errors that Debian's python3-jsonschema finds in a definition; empty: it keeps the schema.
 std::string schema_errors(const test::TemporaryFolder& folder, const std::string& definition) {
   const std::string protocol =
       toml::parse(definition)["experiment"]["protocol"].value_or(std::string("force_training"));
   const fs::path schema = folder / (protocol + ".json");
-  if (!fs::exists(schema)) {
-    const auto printed = test::run_command("haptrial keys " + protocol + " --json-schema");
-    EXPECT_EQ(printed.status, 0) << printed.errors;
-    write_text(schema, printed.output);
-  }
+  write_text(schema, schema_of(protocol));
   write_text(folder / "definition.toml", definition);
   const auto checked = test::run_command(
       "/usr/bin/python3 -B " HAPTRIAL_SOURCE_DIR "/tests/experiments/check_json_schema.py '" +

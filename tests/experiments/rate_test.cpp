@@ -56,6 +56,8 @@ class RateTest : public testing::Test {
     };
     replace("participants = 1", "participants = 2");
     replace("time_limit = 60.0", "time_limit = 4.0");
+    replace("seed = 1 ", "spacing = 0.0006\nseed = 1 ");
+    text.erase(text.find("[dust]"), text.find("[sound]") - text.find("[dust]"));  // it takes time
     std::ofstream(*folder_ / "short.toml") << text;
     const protocols::BoneDefinition definition =
         protocols::load_bone_definition(*folder_ / "short.toml");
@@ -67,14 +69,12 @@ class RateTest : public testing::Test {
   static void TearDownTestSuite() { folder_.reset(); }
 
   static fs::path study() { return *folder_ / "study"; }
-  /// The same sessions under other names, in another order.
-  static fs::path renamed() {
-    const fs::path other = *folder_ / "renamed";
-    if (!fs::exists(other)) {
-      fs::create_directories(other);
-      fs::copy_file(study() / "S01.h5", other / "zoe.h5");
-      fs::copy_file(study() / "S02.h5", other / "anna.h5");
-    }
+  /// The same sessions under other names in a new folder.
+  static fs::path copied(const char* folder, const char* first, const char* second) {
+    const fs::path other = *folder_ / folder;
+    fs::create_directories(other);
+    fs::copy_file(study() / "S01.h5", other / first);
+    fs::copy_file(study() / "S02.h5", other / second);
     return other;
   }
   /// Runs a subcommand of haptrial rate.
@@ -82,18 +82,25 @@ class RateTest : public testing::Test {
     return test::run_command("haptrial rate " + words);
   }
   static void prepare(const fs::path& sessions, const fs::path& out, bool sheets = true) {
-    fs::remove(sessions / "ratings.key");
     const test::CommandResult made =
         rate(fmt::format("prepare '{}' --out '{}' --frames 4 --speed 2{}", sessions.string(),
                          out.string(), sheets ? " --sheets" : ""));
     EXPECT_EQ(made.status, 0) << made.errors;
   }
 
-  /// Folder with the films, made once.
+  /// Folder with the sheets of the study, made once.
+  static fs::path sheets() {
+    const fs::path made = *folder_ / "sheets";
+    if (!fs::exists(made)) {
+      prepare(study(), made);
+    }
+    return made;
+  }
+  /// Folder with the films, made once, of a copy of the study: each preparation has its own key.
   static fs::path films() {
     const fs::path made = *folder_ / "films";
     if (!fs::exists(made)) {
-      prepare(study(), made, false);
+      prepare(copied("filmed", "S01.h5", "S02.h5"), made, false);
     }
     return made;
   }
@@ -103,13 +110,12 @@ class RateTest : public testing::Test {
 std::unique_ptr<test::TemporaryFolder> RateTest::folder_;
 
 TEST_F(RateTest, WhatRatersGetDoesNotDependOnNames) {
-  prepare(study(), *folder_ / "a");
-  prepare(renamed(), *folder_ / "b");
-  const auto a = files_in(*folder_ / "a"), b = files_in(*folder_ / "b");
+  prepare(copied("renamed", "zoe.h5", "anna.h5"), *folder_ / "b");  // in another order
+  const auto a = files_in(sheets()), b = files_in(*folder_ / "b");
   EXPECT_EQ(a.size(), 4u);
   EXPECT_TRUE(a == b);
   std::vector<fs::file_time_type> times;
-  for (const auto& entry : fs::directory_iterator(*folder_ / "a")) {
+  for (const auto& entry : fs::directory_iterator(sheets())) {
     times.push_back(entry.last_write_time());
     EXPECT_EQ(times.back(), times.front()) << entry.path();
   }
@@ -129,8 +135,9 @@ std::string probed(const fs::path& film, const std::string& entries) {
 }
 
 TEST_F(RateTest, FilmsAreOfOneKindAndTellNothingElse) {
-  prepare(renamed(), *folder_ / "others", false);
-  EXPECT_TRUE(files_in(films()) == files_in(*folder_ / "others")) << "names of participants enter";
+  prepare(copied("others", "zoe.h5", "anna.h5"), *folder_ / "others-films", false);
+  EXPECT_TRUE(files_in(films()) == files_in(*folder_ / "others-films"))
+      << "names of participants enter";
   std::vector<std::string> kinds;
   for (const auto& [name, bytes] : files_in(films())) {
     if (!name.ends_with(".mp4")) {
@@ -184,8 +191,7 @@ TEST_F(RateTest, TheEndOfAFilmStandsStillAndItsBeginningMoves) {
 }
 
 TEST_F(RateTest, ScoresComeBackUnderTheirSession) {
-  prepare(study(), *folder_ / "c");
-  std::string sheet = file_text(*folder_ / "c" / "rating-sheet.csv");
+  std::string sheet = file_text(sheets() / "rating-sheet.csv");
   int score = 2;
   for (std::size_t at; (at = sheet.find(",,\n")) != std::string::npos;) {
     sheet.replace(at, 3, "," + std::to_string(score++) + ",\n");
@@ -212,9 +218,9 @@ TEST_F(RateTest, ScoresComeBackUnderTheirSession) {
 }
 
 TEST_F(RateTest, NothingIsOverwritten) {
-  prepare(study(), *folder_ / "d");
+  const fs::path made = sheets();
   const std::string words = fmt::format("prepare '{}' --out ", study().string());
-  const test::CommandResult full = rate(words + "'" + (*folder_ / "d").string() + "'");
+  const test::CommandResult full = rate(words + "'" + made.string() + "'");
   EXPECT_EQ(full.status, 2);
   EXPECT_THAT(full.errors, HasSubstr("a new folder"));
   const test::CommandResult again = rate(words + "'" + (*folder_ / "e").string() + "'");

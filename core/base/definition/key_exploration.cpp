@@ -12,11 +12,18 @@ namespace haptrial {
 namespace {
 
 std::string path_of(std::string_view table, std::string_view key) {
-  return table.empty() ? std::string(key) : fmt::format("{}.{}", table, key);
+  std::string path(table);
+  if (!path.empty()) {
+    path += '.';
+  }
+  return path += key;
 }
 
 /// Adds what is asked for another way. Bounds that follow from other keys have no end of ways.
 void join(std::string& all, const std::string& another) {
+  if (all == another) {
+    return;
+  }
   constexpr const char* kDepends = ", or as other keys say";
   constexpr std::size_t kMost = 2;
   std::size_t ways = 1;
@@ -45,6 +52,9 @@ void join(std::vector<KeyForm>& all, const KeyForm& another) {
     return;
   }
   same->bounds = widest(same->bounds, another.bounds);
+  if (same->words == another.words) {
+    return;
+  }
   std::copy_if(another.words.begin(), another.words.end(), std::back_inserter(same->words),
                [&](const std::string& word) {
                  return std::find(same->words.begin(), same->words.end(), word) ==
@@ -104,9 +114,9 @@ std::vector<KeyExploration::Plan> KeyExploration::further() {
   return plans;
 }
 
-std::size_t KeyExploration::take(const std::string& name, std::size_t ways) {
-  taken_.emplace_back(name, ways);
+std::size_t KeyExploration::take(std::string name, std::size_t ways) {
   const auto at = plan_.find(name);
+  taken_.emplace_back(std::move(name), ways);
   return at != plan_.end() ? std::min(at->second, ways - 1) : 0;
 }
 
@@ -115,7 +125,9 @@ bool KeyExploration::is_there(std::string_view table, std::string_view key, std:
   if (what == "there") {
     optional_.insert(path_of(table, key));
   }
-  const std::size_t way = take(fmt::format("{} is {}", path_of(table, key), what), 2);
+  std::string name = path_of(table, key);
+  (name += " is ") += what;
+  const std::size_t way = take(std::move(name), 2);
   return (way == 0) == first;
 }
 
@@ -133,12 +145,10 @@ std::string KeyExploration::choose(std::string_view table, std::string_view key,
   return word;
 }
 
-void KeyExploration::ask(KnownKey key) {
-  const std::string table = key.table;
-  const std::string own = key.key;
+void KeyExploration::ask(const KnownKey& key) {
   Known& known = known_[key.path()];
   if (known.askings == 0) {
-    known.key = std::move(key);
+    known.key = key;
     known.order = known_.size();
   } else {
     join(known.key.type, key.type);
@@ -147,8 +157,8 @@ void KeyExploration::ask(KnownKey key) {
     join(known.key.forms, key.forms.at(0));
   }
   ++known.askings;
-  for (const auto& [choice, word] : chosen_[table]) {
-    if (choice != own) {
+  for (const auto& [choice, word] : chosen_[key.table]) {
+    if (choice != key.key) {
       known.with[choice].insert(word);
       ++known.with_count[choice];
     }

@@ -54,7 +54,7 @@ class KeyExploration {
   bool is_there(std::string_view table, std::string_view key, std::string_view what, bool first);
   std::string choose(std::string_view table, std::string_view key,
                      const std::vector<std::string>& allowed, const std::string& first);
-  void ask(KnownKey key);
+  void ask(const KnownKey& key);
   void describe(std::string_view table, const KeyDescription& key);
   void note_default(std::string_view table, std::string_view key, const std::string& value);
   /// What note_default() said in any reading, if it is a number.
@@ -67,7 +67,7 @@ class KeyExploration {
 
  private:
   using Choices = std::map<std::string, std::string>;  // word by key
-  std::size_t take(const std::string& name, std::size_t ways);
+  std::size_t take(std::string name, std::size_t ways);
   void keep_chosen();
 
   Plan plan_;

@@ -41,6 +41,7 @@ void Dust::step(double dt) {
     throw std::invalid_argument("Dust: time must not run backwards");
   }
   DustState& state = *state_;
+  state.forget_reach();  // tools and bones may have changed since the last call, and do not in this
   if (state.held >= kWorthPlacing) {
     state.place_held();
   }

@@ -38,8 +38,13 @@ struct DustState {
   static constexpr std::uint32_t kOutside = 1U << 3;     // of the region
   static constexpr std::uint32_t kSolidKnown = 1U << 4;  // kSolid says whether
   static constexpr std::uint32_t kSolid = 1U << 5;       // its centre lies in bone
-  static constexpr std::uint32_t known(int step) { return 1U << (8 + step); }
-  static constexpr std::uint32_t open(int step) { return 1U << (17 + step); }
+  static constexpr std::uint32_t known(int step) { return 1U << (6 + step); }
+  static constexpr std::uint32_t open(int step) { return 1U << (15 + step); }
+  // Whether a straight line leads to the tip of a tool, until forget_reach().
+  static constexpr std::uint32_t reach_known(std::size_t tool) { return 1U << (24 + tool); }
+  static constexpr std::uint32_t reached(std::size_t tool) { return 1U << (28 + tool); }
+  static_assert(DustTools::kMost <= 4, "a cell has four bits for what is known of each tool");
+  static constexpr std::uint32_t kOfReach = ~0U << 24;
   static constexpr std::uint32_t kOfBone = ~0U << 4;  // all that bone decides
 
   /// A cell as dust finds it that might go there; it need not have a block.
@@ -91,7 +96,9 @@ struct DustState {
   void wake_in(const DustWater& water);
   void expel();
   void suck();
-  void take_near(const Eigen::Vector3d& place_W, double reach, double rate);
+  void take_near(std::size_t tool, double reach, double rate);
+  bool reaches(std::size_t tool, Ref ref);
+  void forget_reach();
   void set_free(Ref ref);
   void place_held();
   struct Placed {
@@ -118,7 +125,8 @@ struct DustState {
 
   DustTools tools;
   std::vector<Ref> tool_cells;
-  DustDeposit pending;  // where what is held waits
+  std::vector<Ref> reach_cells;  // of which it is known whether a tool reaches them
+  DustDeposit pending;           // where what is held waits
 
   double time{0.0};
   std::size_t cells{0};

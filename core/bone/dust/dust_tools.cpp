@@ -116,8 +116,8 @@ void Dust::place(const DustTools& tools) {
 
 /// Dust within a tool goes to where the tool is less deep, and up.
 void DustState::expel() {
-  constexpr std::array<std::array<int, 3>, 6> kFaces{
-      {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+  constexpr int kUp = -1;                                       // no step that dust takes by itself
+  constexpr std::array<int, 6> kFaces{1, 2, 3, 4, kUp, kDown};  // in kDustSteps
   const double upwards = 0.1 * parameters.cell;
   for (const Ref ref : tool_cells) {
     if (grid.at(ref).amount == 0) {
@@ -129,12 +129,14 @@ void DustState::expel() {
     std::array<double, 6> weights{};
     std::size_t count = 0;
     double sum = 0.0;
-    for (const auto& face : kFaces) {
-      const Look to = look_beside(here, DustGrid::direction(face[0], face[1], face[2]));
+    for (const int face : kFaces) {
+      const bool up = face == kUp;
+      const auto& by = kDustSteps[up ? kDown : static_cast<std::size_t>(face)];
+      const Look to = look_beside(here, DustGrid::direction(by[0], by[1], up ? 1 : by[2]));
       const double out_by = outside_tools(centre(to.cell)) - depth;
-      const double gain = face[2] > 0 ? std::max(0.0, out_by) + upwards : out_by;
+      const double gain = up ? std::max(0.0, out_by) + upwards : out_by;
       const std::int32_t room = (capacity - to.amount) / static_cast<int>(kFaces.size());
-      if (gain > 0.0 && room > least && passage(here, to)) {
+      if (gain > 0.0 && room > least && (up ? passage(here, to) : passage(ref, face))) {
         out[count] = {ref, to, room};
         weights[count++] = gain;
         sum += gain;
@@ -153,22 +155,43 @@ void DustState::expel() {
 
 /// Takes dust near the mouth of each sucking tool, and near each tool with water.
 void DustState::suck() {
-  for (const DustTool& tool : tools.tools) {
+  for (std::size_t t = 0; t < tools.tools.size(); ++t) {
+    const DustTool& tool = tools.tools[t];
     if (!(tool.radius > 0.0) || cells == 0) {
       continue;
     }
     if (tool.sucks) {
-      take_near(tool.tip, parameters.suction_reach, parameters.suction_rate);
+      take_near(t, parameters.suction_reach, parameters.suction_rate);
     }
     if (tool.rinses && parameters.water_rate > 0.0) {
-      take_near(tool.tip, tool.radius + parameters.water_reach, parameters.water_rate);
+      take_near(t, tool.radius + parameters.water_reach, parameters.water_rate);
     }
   }
 }
 
-/// Takes dust that a straight line from a place reaches, from every cell the same part of what is
-/// there. @param rate  solid volume a second [m3/s]
-void DustState::take_near(const Eigen::Vector3d& place_W, double reach, double rate) {
+/// Whether no bone lies between a tool's tip and a cell. The answer is kept, because lines are what
+/// suction costs, while neither tools nor bone change.
+bool DustState::reaches(std::size_t tool, Ref ref) {
+  DustGrid::Cell& cell = grid.at(ref);
+  if ((cell.flags & reach_known(tool)) == 0) {
+    const bool free = !bones.cross(centre(grid.cell(ref)), tools.tools[tool].tip);
+    cell.flags |= reach_known(tool) | (free ? reached(tool) : 0U);
+    reach_cells.push_back(ref);
+  }
+  return (cell.flags & reached(tool)) != 0;
+}
+
+void DustState::forget_reach() {
+  for (const Ref ref : reach_cells) {
+    grid.at(ref).flags &= ~kOfReach;
+  }
+  reach_cells.clear();
+}
+
+/// Takes dust that a straight line from a tool's tip reaches, from every cell the same part of what
+/// is there. @param rate  solid volume a second [m3/s]
+void DustState::take_near(std::size_t tool, double reach, double rate) {
+  const Eigen::Vector3d& place_W = tools.tools[tool].tip;
   const double voxel = parameters.voxel * parameters.voxel * parameters.voxel;
   std::vector<Ref> reached;
   std::int64_t there = 0;
@@ -176,9 +199,8 @@ void DustState::take_near(const Eigen::Vector3d& place_W, double reach, double r
   const DustCell extent =
       DustCell::Constant(static_cast<int>(std::ceil(reach / parameters.cell)) + 1);
   grid.for_each_in(middle - extent, middle + extent, [&](Ref ref) {
-    const Eigen::Vector3d at = centre(grid.cell(ref));
-    if (grid.at(ref).amount > 0 && (at - place_W).squaredNorm() <= reach * reach &&
-        !bones.cross(at, place_W)) {
+    if (grid.at(ref).amount > 0 &&
+        (centre(grid.cell(ref)) - place_W).squaredNorm() <= reach * reach && reaches(tool, ref)) {
       reached.push_back(ref);
       there += grid.at(ref).amount;
     }

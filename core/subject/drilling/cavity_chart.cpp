@@ -126,6 +126,39 @@ std::optional<double> distance_at(const bone::DistanceField& field, const geomet
   return sum;
 }
 
+/// The voxels that may have a distance to a structure: those that are no farther than `reach`.
+Eigen::AlignedBox3d voxels_near(const bone::BoneModel& model, std::size_t label, double reach) {
+  Eigen::AlignedBox3d box;
+  std::size_t at = 0;
+  for (int k = 0; k < model.grid.size[2]; ++k) {
+    for (int j = 0; j < model.grid.size[1]; ++j) {
+      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
+        if (model.labels[at] == label) {
+          box.extend(Eigen::Vector3d(i, j, k));
+        }
+      }
+    }
+  }
+  const double around = reach / model.grid.spacing + 1.0;
+  return {box.min().array() - around, box.max().array() + around};
+}
+
+/// The chart's entries that such voxels are around; one more on each side, so that rounding leaves
+/// none out.
+Eigen::AlignedBox3i entries_near(const DrillingChart& chart, const Eigen::AlignedBox3d& voxels,
+                                 const geometry::VoxelGrid& grid, const Eigen::Isometry3d& X_BW) {
+  const Eigen::Isometry3d X_WB = X_BW.inverse();
+  Eigen::AlignedBox3d places;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+    const Eigen::Vector3d p_B = grid.origin + grid.spacing * voxels.corner(type);
+    places.extend(chart.place(X_WB * p_B) / chart.cell);
+  }
+  const Eigen::Array3i last = Eigen::Array3i(chart.size[0], chart.size[1], chart.size[2]) - 1;
+  return {(places.min().array().floor().cast<int>() - 1).max(0).matrix(),
+          (places.max().array().ceil().cast<int>() + 1).min(last).matrix()};
+}
+
 /// Lowers every entry to the distance from one structure, less its margin.
 void keep_away(DrillingChart& chart, const bone::BoneModel& model, const Eigen::Isometry3d& X_BW,
                std::size_t label, double margin) {
@@ -136,15 +169,17 @@ void keep_away(DrillingChart& chart, const bone::BoneModel& model, const Eigen::
   if (field.empty()) {
     return;
   }
-  std::size_t at = 0;
-  for (int k = 0; k < chart.size[2]; ++k) {
-    for (int j = 0; j < chart.size[1]; ++j) {
-      for (int i = 0; i < chart.size[0]; ++i, ++at) {
+  const Eigen::AlignedBox3i near =
+      entries_near(chart, voxels_near(model, label, reach), model.grid, X_BW);
+  for (int k = near.min().z(); k <= near.max().z(); ++k) {
+    for (int j = near.min().y(); j <= near.max().y(); ++j) {
+      for (int i = near.min().x(); i <= near.max().x(); ++i) {
         const Eigen::Vector3d place = chart.cell * Eigen::Vector3d(i, j, k);
         const auto distance = distance_at(field, model.grid, X_BW * chart.world(place));
         if (distance) {
-          chart.clearance[at] =
-              std::min(chart.clearance[at], static_cast<float>(*distance - margin));
+          float& clearance =
+              chart.clearance[chart.column(i, j) + chart.columns() * static_cast<std::size_t>(k)];
+          clearance = std::min(clearance, static_cast<float>(*distance - margin));
         }
       }
     }

@@ -19,7 +19,6 @@
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {
-namespace {}  // namespace
 
 const std::map<std::string, std::string>& shared_tables() {
   static const std::map<std::string, std::string> tables{
@@ -229,9 +228,9 @@ std::vector<KeySection> sections_with(const std::string& word) {
   return sections;
 }
 
-std::vector<std::string> keys_without_words() {
+std::vector<std::string> keys_without_words(const std::vector<KeySection>& sections) {
   std::vector<std::string> mistakes;
-  for (const KeySection& section : sections_of_all()) {
+  for (const KeySection& section : sections) {
     for (const KnownKey& key : section.keys) {
       if (key.words.empty()) {
         mistakes.push_back(fmt::format("{}:{} has no description", section.protocol, key.path()));

@@ -41,6 +41,6 @@ std::string key_json_schema(const std::vector<KnownKey>& keys, std::string_view 
 
 /// A sentence for each key without a description, or that may be left out without a word on what
 /// then holds: its reader has to say so.
-std::vector<std::string> keys_without_words();
+std::vector<std::string> keys_without_words(const std::vector<KeySection>& sections);
 
 }  // namespace haptrial::experiments
