@@ -23,6 +23,7 @@ struct ProcedurePage {
   std::string started;    // of the session, UTC
   std::string score;      // score_section(); empty: none is asked for
   std::string checklist;  // checklist_section(); likewise
+  std::string curriculum;  // curriculum_section(); empty: there is none
   std::string overview;   // name of the trainee's page beside this one; empty: none
 };
 

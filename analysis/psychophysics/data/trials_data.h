@@ -26,6 +26,7 @@ struct StudySession {
   double rate{1000.0};                          // ticks a second [Hz]
   std::size_t planned{0};                       // trials, at most; 0: the file does not say it
   std::string ended_early{};                    // why trials are left; empty: none are
+  std::string name{};  // of the session in the definition; empty: it has none
 };
 
 /// An answer to one question of a trial.

@@ -38,6 +38,9 @@ enum class AnalysisKind {
   kPaired,          // which of two items was chosen: their worths
 };
 
+/// The factor whose levels are the sessions of a participant, by name or number.
+inline constexpr const char* kSession = "session";
+
 /// Levels by the name of their factor, as tables show them.
 using StatedLevels = std::map<std::string, std::vector<std::string>>;
 
@@ -63,6 +66,7 @@ struct PlanDefaults {
   CueNames cues;                            // that the comparison of cues may name
   std::vector<std::string> pages;           // whose scores may be the covariate
   StatedLevels levels;  // of names of `by`, where the definition states all of them
+  std::vector<std::string> sessions;  // their names, in their order
 };
 
 /// The highest lapse rate, and guess rate without catch trials, unless stated: with lapses up to
@@ -73,6 +77,8 @@ inline constexpr double kMostLapses = 0.2;
 struct TrialsPlan {
   AnalysisKind kind{AnalysisKind::kNone};
   std::vector<std::string> by;  // factors whose levels are told apart
+  std::string baseline;  // session from which changes are compared in place of values; empty: none
+  std::vector<std::string> sessions;  // their names, in their order
   AnalysisPlan plan;            // tests that were planned
   std::string question;         // whose answer counts; empty: the first
   std::string yes;              // the answer that counts 1; empty: what the procedure learnt, else

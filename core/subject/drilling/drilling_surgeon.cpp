@@ -106,7 +106,8 @@ DrillingSurgeon::DrillingSurgeon(const SurgeonParameters& parameters,
   }
   for (auto& chart : charts) {
     procedures_.push_back(
-        plan(parameters_, std::move(chart), seed, static_cast<int>(procedures_.size()), step));
+        plan(parameters_, std::move(chart), seed,
+             parameters_.earlier + static_cast<int>(procedures_.size()), step));
   }
 }
 

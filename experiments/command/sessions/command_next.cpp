@@ -48,6 +48,7 @@ int next(const NextOptions& options) {
   request.definition = experiment.definition.get();
   request.definition_file = options.definition;
   request.folder = options.folder;
+  request.find_case = find_case_of(experiment, options.definition);
   const Roster roster = make_roster(request);
   const auto result = standing(options);
   if (result) {

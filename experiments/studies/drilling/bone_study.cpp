@@ -8,6 +8,8 @@
 #include "core/base/exception_words.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/drilling_curriculum.h"
+#include "experiments/studies/drilling/drilling_learning.h"
 #include "experiments/studies/drilling/drilling_preview.h"
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/live_drilling.h"
@@ -92,6 +94,16 @@ std::shared_ptr<const Procedure> DrillingFigures::of_earlier_run(const record::P
 class BoneStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::bone_drilling(); }
+  void read_analysis(Table& root, bool) const override {
+    read_drilling_learning(root);
+    check_curriculum(root);
+  }
+  std::optional<NextCase> next_case(const protocols::Definition& definition,
+                                    const fs::path& folder,
+                                    const std::vector<fs::path>& sessions) const override {
+    const auto& d = dynamic_cast<const protocols::BoneDefinition&>(definition);
+    return d.curriculum ? std::optional(next_case_of(d, folder, sessions)) : std::nullopt;
+  }
   std::unique_ptr<record::LiveFigures> live_figures(const protocols::Definition& definition,
                                                     const fs::path& resumed) const override {
     return std::make_unique<DrillingFigures>(
