@@ -255,8 +255,9 @@ class RosterMaker {
     for (const RosterGroup* group : open) {
       for (int number = 1; number <= planned(); ++number) {
         if (!taken_.contains(number) && group_of(number) == group->name) {
-          add_next({subject_for(number), number, group->name, first_of(group->name), true, false, {},
-                  request_.find_case ? request_.find_case({}) : NextCase{}, ""});
+          RosterNext next{subject_for(number), number, group->name, first_of(group->name)};
+        next.next_case = request_.find_case ? request_.find_case({}) : NextCase{};
+        add_next(std::move(next));
           break;
         }
       }
@@ -264,8 +265,9 @@ class RosterMaker {
     for (const RosterPerson& person : roster_.persons) {
       if (!person.pilot && person.next > 0) {
         const bool resume = person.session(person.next) != nullptr;
-        add_next({person.subject, person.number, person.group, person.next, false, resume, {},
-                  person.next_case, ""});
+        RosterNext next{person.subject, person.number, person.group, person.next, false, resume};
+        next.next_case = person.next_case;
+        add_next(std::move(next));
       }
     }
   }
@@ -309,6 +311,7 @@ class RosterMaker {
     } catch (const InputError& error) {
       roster_.remarks.push_back(error.what());
     }
+    next.session_name = d_.session_plan(next.session).name;
     next.command =
         fmt::format("haptrial run {} --subject {}", typed(request_.definition_file), next.subject);
     next.command += roster_.sessions > 1 ? fmt::format(" --session {}", next.session) : "";

@@ -28,7 +28,7 @@ int sessions_to_come(const Roster& roster) {
     if (person.pilot || person.excluded || person.never_took_part()) {
       continue;
     }
-    if (person.declined()) {
+    if (person.declined() || person.next == 0) {
       had += sessions_of(roster, person.group);  // nothing more is to be run
       continue;
     }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/record/recorded_bone.h"
+#include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"

@@ -254,10 +254,12 @@ void add_learning_section(Document& document, const LearnedStudy& study,
 
 std::vector<std::string> learning_lines(const LearnedStudy& study) {
   std::vector<std::string> lines;
-  for (const LearnedOutcome& outcome : study.outcomes) {
+  if (!study.outcomes.empty()) {
+    const LearnedOutcome& outcome = study.outcomes.front();
     for (const auto& found : {effect_lines(outcome.tests), planned_lines(outcome.tests)}) {
       for (const std::string& line : found) {
-        lines.push_back(fmt::format("change of {}: {}", outcome.title, line));
+        const std::size_t end = line.ends_with('.') ? line.size() - 1 : line.size();
+        lines.push_back(fmt::format("change of {}: {}", outcome.title, line.substr(0, end)));
       }
     }
   }

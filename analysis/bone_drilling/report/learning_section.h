@@ -48,7 +48,8 @@ std::vector<Figure> learning_figures(const LearnedStudy& study, bool simulated);
 void add_learning_section(Document& document, const LearnedStudy& study,
                           const std::vector<Drawing>& drawings, bool simulated);
 
-/// Lines for the end of the command, without "Simulated": effects and planned tests of each outcome.
+/// Lines for the end of the command, without "Simulated": effects and planned tests of the outcome
+/// that decides.
 std::vector<std::string> learning_lines(const LearnedStudy& study);
 
 }  // namespace haptrial::analysis::drilling

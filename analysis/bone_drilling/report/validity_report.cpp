@@ -129,8 +129,11 @@ void Report::add_design() {
     }
     const bool expert =
         std::count(v_.plan.expert_groups.begin(), v_.plan.expert_groups.end(), group) > 0;
-    rows.push_back({group, expert ? "with experience" : "novices", std::to_string(people.size()),
-                    std::to_string(procedures)});
+    rows.push_back({group,
+                    expert                 ? "with experience"
+                    : compares_experts() ? "novices"
+                                           : "–",
+                    std::to_string(people.size()), std::to_string(procedures)});
   }
   document_.table({"group", "counted among", "participants", "procedures"}, rows);
   for (const std::string& remark : result_.remarks) {

@@ -16,9 +16,6 @@ GivenIn read_given_in(Table& table, std::string_view key) {
   }
   if (table.is_array(key)) {
     in.groups = table.texts(key);
-    if (in.groups.empty()) {
-      table.reject(key, "an empty array", "groups of participants, or \"none\"");
-    }
     return in;
   }
   const std::string word = table.choice(key, {"all", "none", "every other"});

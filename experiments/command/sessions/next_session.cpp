@@ -156,6 +156,7 @@ std::string words_of(const RosterNext& next, int sessions) {
   std::string words = next.subject;
   words += next.group.empty() ? "" : fmt::format(" (group {})", next.group);
   words += sessions > 1 ? fmt::format(", session {} of {}", next.session, sessions) : "";
+  words += next.session_name.empty() ? "" : fmt::format(", {}", next.session_name);
   words += next.resume ? ", to be resumed" : "";
   words += next.blocks.empty() ? "" : fmt::format(": {}", fmt::join(next.blocks, ", "));
   words += next.next_case.name.empty() ? "" : ": case " + words_of(next.next_case);

@@ -14,6 +14,7 @@
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/live_drilling.h"
 #include "experiments/studies/drilling/trainee_pages.h"
+#include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
@@ -129,7 +130,7 @@ class BoneStudy final : public Study {
     return analyze_drillings(request);
   }
   std::string next_step(const fs::path& folder) const override {
-    return "haptrial replay " + (folder / "S01.h5").string();
+    return "haptrial replay " + session_files(folder).front().string();
   }
 };
 

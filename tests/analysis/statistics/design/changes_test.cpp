@@ -28,10 +28,16 @@ std::vector<Observation> study(std::uint64_t seed, int in_each_group, double eff
   return all;
 }
 
+Resampling no_resampling() {
+  Resampling none;
+  none.count = 0;
+  return none;
+}
+
 SideTest planned_test(const std::vector<Observation>& all) {
   const DesignTable table = design_table(changes_from(all, 1, "pre"), {"group", "change"});
   const AnalysisPlan plan = parse_analysis_plan({"trained != control"}, "", "test");
-  return design_tests(table, plan, Resampling{.count = 0}).planned.tests.front();
+  return design_tests(table, plan, no_resampling()).planned.tests.front();
 }
 
 TEST(ChangesTest, AreOfMeansAndOfThoseWhoHaveTheBaseline) {

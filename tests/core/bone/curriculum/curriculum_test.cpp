@@ -68,9 +68,9 @@ TEST(CurriculumTest, AMistakeGetsASentence) {
               AllOf(HasSubstr("removed > 80"), HasSubstr(">= 80")));
   EXPECT_THAT(refusal("pass = [\"removed >= many\"]"), HasSubstr("removed >= many"));
   EXPECT_THAT(refusal("pass = [\"removed >= inf\"]"), HasSubstr("removed >= inf"));
-  EXPECT_THAT(refusal("pass = []\nbone = \"third\""), HasSubstr("allowed: one of bone.bones: first"));
-  EXPECT_THAT(refusal("pass = []\nrepeat = \"b\""), HasSubstr("the first case has none before it"));
-  EXPECT_THAT(refusal("pass = []\n[[curriculum.cases]]\nname = \"a\"\npass = []"),
+  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\nbone = \"third\""), HasSubstr("allowed: one of bone.bones: first"));
+  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\nrepeat = \"b\""), HasSubstr("the first case has none before it"));
+  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\n[[curriculum.cases]]\nname = \"a\"\npass = [\"removed >= 1\"]"),
               HasSubstr("a name of its own"));
 }
 
