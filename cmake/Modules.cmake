@@ -295,7 +295,8 @@ function(haptrial_tests)
   haptrial_stand_ins()
   haptrial_together(bone_data EarVariantsTest MandibleTest TemporalBoneTest)
   haptrial_together(deformable BallTouchTest)
-  haptrial_together(experiments BoneSessionTest DesignReportsTest HintSessionTest NerveSessionTest RateTest
+  haptrial_together(experiments BoneSessionTest CurriculumSessionTest DesignReportsTest HintSessionTest
+                                LearningSessionTest NerveSessionTest RateTest
                                 SoftTissueSessionTest TwoHandsTest)
   haptrial_together(protocols BeginningTest BoneRestoreTest ReplayTest)
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
