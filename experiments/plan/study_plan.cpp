@@ -28,9 +28,8 @@ constexpr const char* kEnding = ".plan.json";
 PlanJson to_json(const StudyPlan& plan) {
   PlanJson groups = PlanJson::array();
   for (const PlannedGroup& group : plan.groups) {
-    groups.push_back({{"name", group.name},
-                      {"participants", group.participants},
-                      {"sessions", group.sessions}});
+    groups.push_back(
+        {{"name", group.name}, {"participants", group.participants}, {"sessions", group.sessions}});
   }
   return {{"format", kFormat},
           {"name", plan.name},

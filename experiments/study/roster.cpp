@@ -256,8 +256,8 @@ class RosterMaker {
       for (int number = 1; number <= planned(); ++number) {
         if (!taken_.contains(number) && group_of(number) == group->name) {
           RosterNext next{subject_for(number), number, group->name, first_of(group->name)};
-        next.next_case = request_.find_case ? request_.find_case({}) : NextCase{};
-        add_next(std::move(next));
+          next.next_case = request_.find_case ? request_.find_case({}) : NextCase{};
+          add_next(std::move(next));
           break;
         }
       }

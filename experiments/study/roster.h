@@ -56,9 +56,10 @@ struct RosterNext {
   int session{1};
   bool fresh{true};  // somebody who has no session yet
   bool resume{false};
-  std::vector<std::string> blocks{};  // in their order; none where the protocol has no words for them
-  std::string session_name{};       // in the definition's words; empty: it has none
-  NextCase next_case{};             // of a curriculum; without a name: the study has none
+  std::vector<std::string>
+      blocks{};                // in their order; none where the protocol has no words for them
+  std::string session_name{};  // in the definition's words; empty: it has none
+  NextCase next_case{};        // of a curriculum; without a name: the study has none
   std::string command{};
 };
 

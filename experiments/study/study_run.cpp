@@ -124,9 +124,8 @@ class SessionWorkers {
   void run_cases(int participant) {
     std::vector<fs::path> done;
     for (const PlannedSession& unit : units_) {
-      const NextCase next = unit.participant == participant && !cancel_
-                                ? dry_run_.find_case(done)
-                                : NextCase{};
+      const NextCase next =
+          unit.participant == participant && !cancel_ ? dry_run_.find_case(done) : NextCase{};
       if (next.name.empty()) {
         continue;
       }

@@ -53,8 +53,8 @@ std::vector<PlannedTrial> procedures_of(const BoneDefinition& d, const SessionPl
   }
   for (int trial = 1; trial <= d.procedures_in(place.session); ++trial) {
     const std::uint64_t seed = derived_seed(place.session_seed, fmt::format("procedure {}", trial));
-    plan.push_back({trial, trial, 1, d.condition({trial, place.participant, place.session}), seed,
-                    false});
+    plan.push_back(
+        {trial, trial, 1, d.condition({trial, place.participant, place.session}), seed, false});
   }
   return plan;
 }

@@ -65,16 +65,15 @@ class DrillingRig::BothHands final : public stimulus::Observer {
   stimulus::Observer& second_;
 };
 
-DrillingRig::DrillingRig(const BoneDefinition& d, const SessionPlace& place,
-                         subject::WorkLog* work)
+DrillingRig::DrillingRig(const BoneDefinition& d, const SessionPlace& place, subject::WorkLog* work)
     : hand_(d.hand, 1.0 / d.rate, start_of(d)), device_(d.device, hand_, d.rate) {
   const std::uint64_t seed = derived_seed(place.hand_session_seed, "subject");
   if (d.surgeon && !d.charts.empty()) {
     subject::SurgeonParameters person = *d.surgeon;
     const ParticipantGroup* group = group_of(d, place.participant);
     person.skill = group != nullptr ? group->skill : person.skill;
-    person.earlier = d.procedures_before(
-        place.session, group != nullptr ? group->name : std::string_view());
+    person.earlier =
+        d.procedures_before(place.session, group != nullptr ? group->name : std::string_view());
     subject_ = std::make_unique<subject::DrillingSurgeon>(
         person, charts_of(d), hand_, device_, d.drilling.scale,
         derived_seed(place.hand_person_seed, "subject"), 1.0 / d.rate, work);

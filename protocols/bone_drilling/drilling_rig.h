@@ -13,7 +13,8 @@ namespace haptrial::protocols {
 /// A virtual device with a virtual hand that drills, or a virtual surgeon.
 class DrillingRig final : public Rig {
  public:
-  /// @param place  of the session. A virtual surgeon is the same person on every day, and has learned
+  /// @param place  of the session. A virtual surgeon is the same person on every day, and has
+  /// learned
   ///               from the procedures of earlier days; other hands follow from the session's seed
   /// @param work   of a virtual surgeon, as subject::DrillingSurgeon has it
   DrillingRig(const BoneDefinition& definition, const SessionPlace& place,

@@ -31,8 +31,9 @@ void check_names(Table& design, const std::vector<SessionPlan>& plans) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const std::string name = plans[i].name.empty() ? std::to_string(i + 1) : plans[i].name;
     if (!names.insert(name).second) {
-      design.reject("session",
-                    fmt::format("has two sessions called \"{}\"; give each a name of its own", name));
+      design.reject(
+          "session",
+          fmt::format("has two sessions called \"{}\"; give each a name of its own", name));
     }
   }
 }

@@ -27,7 +27,7 @@ struct TutoringNetwork {
 
 /// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
-  GivenIn led;                     // trials that a tutor leads, of sessions that give anything
+  GivenIn led;  // trials that a tutor leads, of sessions that give anything
   tutoring::TutoringGains gains;
   double ramp{0.5};                // from no lead to all of it, and back [s]
   double speed{1.0};               // of a playback, 0.5 to 1 of the original

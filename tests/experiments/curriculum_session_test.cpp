@@ -31,11 +31,10 @@ class CurriculumSessionTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<test::TemporaryFolder>();
-    test::write_small_drilling(
-        folder_->path(), 2.0,
-        {{"procedures", "procedures = 1\nsessions = 6"},
-         {"participants", "participants = 2"},
-         {"break_after", "break_after = 0"}});
+    test::write_small_drilling(folder_->path(), 2.0,
+                               {{"procedures", "procedures = 1\nsessions = 6"},
+                                {"participants", "participants = 2"},
+                                {"break_after", "break_after = 0"}});
     bone::BoneModel other = test::two_slabs();
     other.labels[other.grid.index(0, 0, 0)] = 0;
     bone::save_bone(*folder_ / "other.nrrd", other);
@@ -134,7 +133,8 @@ TEST_F(CurriculumSessionTest, PagesSayHowEverybodyStands) {
                     HasSubstr("S02")));
   EXPECT_THAT(refused("bone class study.toml out --out class.html"), HasSubstr("exists already"));
   test::write_text(*folder_ / "none.toml", whole_);
-  EXPECT_THAT(refused("bone class none.toml out --out none.html"), HasSubstr("has no [curriculum]"));
+  EXPECT_THAT(refused("bone class none.toml out --out none.html"),
+              HasSubstr("has no [curriculum]"));
 }
 
 TEST_F(CurriculumSessionTest, MistakesGetASentence) {

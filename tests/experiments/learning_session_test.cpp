@@ -103,12 +103,13 @@ class LearningSessionTest : public testing::Test {
     return result.errors;
   }
   static fs::path session(int participant, int number) {
-    return fs::path(*folder_ / "out") / ("S0" + std::to_string(participant) + "-session-" +
-                                         std::to_string(number) + ".h5");
+    return fs::path(*folder_ / "out") /
+           ("S0" + std::to_string(participant) + "-session-" + std::to_string(number) + ".h5");
   }
   static std::vector<std::string> conditions(int participant, int number) {
     std::vector<std::string> all;
-    for (const record::PassRow& pass : record::SessionReader(session(participant, number)).passes()) {
+    for (const record::PassRow& pass :
+         record::SessionReader(session(participant, number)).passes()) {
       all.push_back(pass.condition);
     }
     return all;
@@ -234,8 +235,7 @@ TEST_F(LearningSessionTest, AMistakeInThePlanGetsASentence) {
               HasSubstr("did you mean visible_share?"));
   EXPECT_THAT(refusal("\"led, post-test > alone, post-test\"", "\"led > nobody\""),
               HasSubstr("names 'nobody'"));
-  EXPECT_THAT(refusal("sessions = 5 ", "sessions = 6 "),
-              HasSubstr("says nothing of session 6"));
+  EXPECT_THAT(refusal("sessions = 5 ", "sessions = 6 "), HasSubstr("says nothing of session 6"));
 }
 
 /// Virtual surgeons learn from the procedures of the sessions to which they come.

@@ -69,9 +69,9 @@ Rows trainee_rows(const CurriculumClass& of) {
       row.push_back(state_of(standing, place));
     }
     const std::string why = why_next(of.curriculum, standing);
-    row.push_back(!standing.next ? "every case is done"
-                                 : of.curriculum.cases[*standing.next].name +
-                                       (why.empty() ? "" : ": " + why));
+    row.push_back(!standing.next
+                      ? "every case is done"
+                      : of.curriculum.cases[*standing.next].name + (why.empty() ? "" : ": " + why));
     rows.push_back(std::move(row));
   }
   return rows;
@@ -90,8 +90,8 @@ Rows missed_rows(const CurriculumClass& of) {
           missed += check(own, *last)[i].met ? 0 : 1;
         }
       }
-      rows.push_back({own.name, criterion_text(own.pass[i]), std::to_string(tried),
-                      std::to_string(missed)});
+      rows.push_back(
+          {own.name, criterion_text(own.pass[i]), std::to_string(tried), std::to_string(missed)});
     }
   }
   return rows;
@@ -103,14 +103,14 @@ std::string curriculum_section(const Curriculum& curriculum, const CurriculumSta
   Rows rows;
   for (std::size_t place = 0; place < curriculum.cases.size(); ++place) {
     const CurriculumCase& own = curriculum.cases[place];
-    rows.push_back({own.name, state_of(standing, place), asked_of(own),
-                    last_of(own, standing.cases[place])});
+    rows.push_back(
+        {own.name, state_of(standing, place), asked_of(own), last_of(own, standing.cases[place])});
   }
   const std::string why = why_next(curriculum, standing);
-  const std::string next =
-      standing.next ? fmt::format("Next: {}{}.", curriculum.cases[*standing.next].name,
-                                  why.empty() ? "" : " (" + why + ")")
-                    : "Every case is done.";
+  const std::string next = standing.next
+                               ? fmt::format("Next: {}{}.", curriculum.cases[*standing.next].name,
+                                             why.empty() ? "" : " (" + why + ")")
+                               : "Every case is done.";
   return heading("Curriculum") + paragraph(next) +
          html_table({"case", "state", "to pass", "last procedure"}, rows);
 }
@@ -122,13 +122,15 @@ std::string class_page(const CurriculumClass& of) {
     names.push_back(each.name);
   }
   names.emplace_back("next");
-  std::string body = simulated ? banner("SIMULATED: some trainees are programs. This page proves "
-                                        "nothing about people.")
+  std::string body = simulated ? banner(
+                                     "SIMULATED: some trainees are programs. This page proves "
+                                     "nothing about people.")
                                : "";
   body += html_table(names, trainee_rows(of));
   body += heading("What is missed") +
-          paragraph("Of the trainees who tried a case, how many miss each criterion in their last "
-                    "procedure of it.") +
+          paragraph(
+              "Of the trainees who tried a case, how many miss each criterion in their last "
+              "procedure of it.") +
           html_table({"case", "to pass", "tried", "missed last"}, missed_rows(of));
   return whole_page("Class of " + of.name, simulated, body);
 }

@@ -37,9 +37,9 @@ void describe(std::span<const ProcedureSummary> procedures, LearnedOutcome& outc
     }
   }
   if (outcome.title.empty()) {
-    throw InputError(fmt::format("analysis.outcomes names '{}', which no procedure has; allowed: {}",
-                                 outcome.name,
-                                 fmt::join(quantity_names(procedures.front()), ", ")));
+    throw InputError(
+        fmt::format("analysis.outcomes names '{}', which no procedure has; allowed: {}",
+                    outcome.name, fmt::join(quantity_names(procedures.front()), ", ")));
   }
 }
 
@@ -65,9 +65,9 @@ std::vector<std::string> joined(std::vector<std::string> first,
 void add_means(const DesignTable& table, LearnedOutcome& outcome) {
   outcome.groups = table.factors[kGroup].levels;
   outcome.sessions = table.factors[kSession].levels;
-  outcome.means.assign(outcome.groups.size(),
-                       std::vector<Defined<MeanInterval>>(outcome.sessions.size(),
-                                                          Undefined{"nobody came"}));
+  outcome.means.assign(
+      outcome.groups.size(),
+      std::vector<Defined<MeanInterval>>(outcome.sessions.size(), Undefined{"nobody came"}));
   for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
     std::vector<double> values;
     for (const auto& row : table.means) {
@@ -154,9 +154,10 @@ Figure figure_of(const LearnedOutcome& outcome, bool simulated) {
   }
   figure.caption =
       "Means of participants' means with 95 % confidence intervals between participants. What "
-      "groups learned is compared by changes within participants, whose intervals are in the table.";
-  figure.alt = fmt::format("A line for each group over the sessions {}.",
-                           fmt::join(outcome.sessions, ", "));
+      "groups learned is compared by changes within participants, whose intervals are in the "
+      "table.";
+  figure.alt =
+      fmt::format("A line for each group over the sessions {}.", fmt::join(outcome.sessions, ", "));
   return figure;
 }
 
@@ -230,7 +231,8 @@ void add_learning_section(Document& document, const LearnedStudy& study,
   }
   document.heading(simulated ? "Learning (simulated)" : "Learning");
   document.paragraph(fmt::format(
-      "A change is a participant's mean in a test less the mean in {}. Groups are compared in their "
+      "A change is a participant's mean in a test less the mean in {}. Groups are compared in "
+      "their "
       "changes, so that a test of two groups is one of group by session. Holm's adjustment covers "
       "the planned tests of one outcome, and the first outcome decides{}.",
       study.plan.baseline,

@@ -14,9 +14,9 @@ namespace haptrial::analysis::drilling {
 
 /// A quantity over the sessions of a study, participants as the unit.
 struct LearnedOutcome {
-  std::string name;   // of the quantity, as in metrics.csv without its unit
-  std::string title;  // "planned cavity removed"
-  std::string unit;   // "1": a pure number
+  std::string name;                   // of the quantity, as in metrics.csv without its unit
+  std::string title;                  // "planned cavity removed"
+  std::string unit;                   // "1": a pure number
   std::vector<std::string> groups;    // that have values, in the definition's order
   std::vector<std::string> sessions;  // likewise, tests and trainings
   /// (groups x sessions) over participants' means; undefined where nobody came.
@@ -44,7 +44,8 @@ Defined<MeanInterval> mean_change(const LearnedOutcome& outcome, const std::stri
 /// A figure of each outcome over the sessions, by group.
 std::vector<Figure> learning_figures(const LearnedStudy& study, bool simulated);
 
-/// Learning in a report; nothing without outcomes. @param drawings  with those of learning_figures()
+/// Learning in a report; nothing without outcomes. @param drawings  with those of
+/// learning_figures()
 void add_learning_section(Document& document, const LearnedStudy& study,
                           const std::vector<Drawing>& drawings, bool simulated);
 

@@ -130,9 +130,9 @@ void Report::add_design() {
     const bool expert =
         std::count(v_.plan.expert_groups.begin(), v_.plan.expert_groups.end(), group) > 0;
     rows.push_back({group,
-                    expert                 ? "with experience"
+                    expert               ? "with experience"
                     : compares_experts() ? "novices"
-                                           : "–",
+                                         : "–",
                     std::to_string(people.size()), std::to_string(procedures)});
   }
   document_.table({"group", "counted among", "participants", "procedures"}, rows);

@@ -126,8 +126,8 @@ const GivenAnswer* answer_to(const StudyTrial& trial, const std::string& questio
 const GivenVariable* variable_of(const StudyTrial& trial, const std::string& name,
                                  int interval = 0);
 
-/// The last pass of a stage: an interval that was repeated has others before it; null: the trial has
-/// none.
+/// The last pass of a stage: an interval that was repeated has others before it; null: the trial
+/// has none.
 const StageTime* last_stage(const StudyTrial& trial, const std::string& stage);
 
 /// The level of a trial under a factor, as a word: of "group", "condition", "block", "track" and

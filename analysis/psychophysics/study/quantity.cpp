@@ -67,8 +67,8 @@ Quantity quantity(std::string name, std::string title, std::string unit,
     }
   }
   if (!plan.baseline.empty()) {
-    const auto session = static_cast<std::size_t>(std::ranges::find(plan.by, kSession) -
-                                                  plan.by.begin());
+    const auto session =
+        static_cast<std::size_t>(std::ranges::find(plan.by, kSession) - plan.by.begin());
     observations = changes_from(observations, session, plan.baseline);
     result.title = "change of " + result.title;
     range = ValueRange::kAny;

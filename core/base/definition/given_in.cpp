@@ -35,8 +35,8 @@ bool is_given(const GivenIn& in, const GivenPlace& place) noexcept {
 
 std::string given_text(const GivenIn& in, std::string_view trial) {
   if (!in.groups.empty()) {
-    return fmt::format("in every {} of the {} {}", trial, in.groups.size() == 1 ? "group" : "groups",
-                       fmt::join(in.groups, ", "));
+    return fmt::format("in every {} of the {} {}", trial,
+                       in.groups.size() == 1 ? "group" : "groups", fmt::join(in.groups, ", "));
   }
   return in.trials == GivenIn::kAll          ? fmt::format("in every {}", trial)
          : in.trials == GivenIn::kEveryOther ? "in every other one"

@@ -24,9 +24,9 @@ GivenIn read_given_in(Table& table, std::string_view key);
 
 /// A trial as far as it matters for what is given in it.
 struct GivenPlace {
-  int trial{1};                 // from 1; practice: 0
-  int participant{0};           // from 0
-  std::string_view group{};     // of the participant; empty: none
+  int trial{1};              // from 1; practice: 0
+  int participant{0};        // from 0
+  std::string_view group{};  // of the participant; empty: none
 };
 
 /// Whether a trial has it. With every other trial, the first participant is given it in the first,

@@ -82,8 +82,8 @@ class Walk {
 }  // namespace
 
 const CurriculumCase* Curriculum::case_of(std::string_view condition) const noexcept {
-  const auto at = std::ranges::find(cases, condition.substr(0, condition.find(", ")),
-                                    &CurriculumCase::name);
+  const auto at =
+      std::ranges::find(cases, condition.substr(0, condition.find(", ")), &CurriculumCase::name);
   return at != cases.end() ? &*at : nullptr;
 }
 
@@ -93,8 +93,7 @@ std::vector<CheckedCriterion> check(const CurriculumCase& of, const CaseAttempt&
     CheckedCriterion checked{criterion, std::nullopt, false};
     if (const auto at = attempt.values.find(criterion.quantity); at != attempt.values.end()) {
       checked.value = at->second;
-      checked.met =
-          criterion.least ? at->second >= criterion.value : at->second <= criterion.value;
+      checked.met = criterion.least ? at->second >= criterion.value : at->second <= criterion.value;
     }
     all.push_back(std::move(checked));
   }

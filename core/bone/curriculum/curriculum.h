@@ -46,8 +46,8 @@ Curriculum read_curriculum(Table& table, const std::vector<std::string>& bones);
 
 /// A procedure that a trainee did, from its start to its end.
 struct CaseAttempt {
-  std::string name;                     // of the case
-  std::string date;                     // for people
+  std::string name;                        // of the case
+  std::string date;                        // for people
   std::map<std::string, double> values{};  // of the quantities that its case asks for and it has
 };
 
@@ -66,7 +66,7 @@ struct CaseStanding {
   std::size_t passed{0};  // of them
   int in_a_row{0};        // passed last
   bool done{false};
-  std::string date{};                   // when it was done, or tried last
+  std::string date{};                 // when it was done, or tried last
   std::optional<CaseAttempt> last{};  // attempt
 };
 

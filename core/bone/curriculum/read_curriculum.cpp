@@ -2,8 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <set>
 
 #include "core/base/definition/schema.h"
@@ -12,12 +12,14 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr const char* kForm = "texts as \"cavity_removed_percent >= 80\" or \"injured_voxels <= 0\"";
+constexpr const char* kForm =
+    "texts as \"cavity_removed_percent >= 80\" or \"injured_voxels <= 0\"";
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(' ');
-  return first == std::string_view::npos ? std::string_view()
-                                         : text.substr(first, text.find_last_not_of(' ') - first + 1);
+  return first == std::string_view::npos
+             ? std::string_view()
+             : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }
 
 std::optional<Criterion> parsed(std::string_view text) {

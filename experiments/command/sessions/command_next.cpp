@@ -63,9 +63,9 @@ int next(const NextOptions& options) {
 }  // namespace
 
 void add_next(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "next", "Show whether a study goes on, and who is next",
-                             "haptrial next curl_field out/curl_field",
-                             {"nothing", "guide-experimenter.md"});
+  CLI::App* sub =
+      subcommand(app, "next", "Show whether a study goes on, and who is next",
+                 "haptrial next curl_field out/curl_field", {"nothing", "guide-experimenter.md"});
   auto& o = options_of<NextOptions>(*sub, status, next);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
   sub->add_option("FOLDER", o.folder, "Folder of the session files; need not be there yet")

@@ -183,17 +183,20 @@ void check_place(const RunOptions& options, const protocols::Definition& d) {
   const auto groups = protocols::study_groups(d.text, d.file_name);
   const std::string group = protocols::group_of(groups, number - 1);
   if (!options.pilot && !d.comes(session, group)) {
-    throw InputError(fmt::format("{}: session {} is for {}, and {} is of {}; choose another "
-                                 "--session",
-                                 options.definition, d.session_name(session),
-                                 fmt::join(d.session_plan(session).groups, ", "), options.subject,
-                                 group.empty() ? "no group" : group));
+    throw InputError(
+        fmt::format("{}: session {} is for {}, and {} is of {}; choose another "
+                    "--session",
+                    options.definition, d.session_name(session),
+                    fmt::join(d.session_plan(session).groups, ", "), options.subject,
+                    group.empty() ? "no group" : group));
   }
   const bool led = !d.tutoring.led.groups.empty() && d.is_led(session, {1, number - 1, group});
-  if (led && !options.pilot && options.tutor.empty() && options.learn_from.empty() && !options.teach) {
-    throw InputError(fmt::format("{}: a tutor leads {} in session {} (tutoring.led_in); add "
-                                 "--tutor FILE:TRIAL, or --learn-from",
-                                 options.definition, options.subject, d.session_name(session)));
+  if (led && !options.pilot && options.tutor.empty() && options.learn_from.empty() &&
+      !options.teach) {
+    throw InputError(
+        fmt::format("{}: a tutor leads {} in session {} (tutoring.led_in); add "
+                    "--tutor FILE:TRIAL, or --learn-from",
+                    options.definition, options.subject, d.session_name(session)));
   }
 }
 
@@ -209,7 +212,8 @@ std::string choose_session(RunOptions& options, const Experiment& experiment) {
   if (options.case_name.empty() && has_cases(experiment)) {
     choose_case(options, experiment);
   }
-  words += options.case_name.empty() ? "" : (words.empty() ? "case " : ", case ") + options.case_name;
+  words +=
+      options.case_name.empty() ? "" : (words.empty() ? "case " : ", case ") + options.case_name;
   return words;
 }
 

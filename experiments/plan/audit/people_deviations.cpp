@@ -44,8 +44,8 @@ void add_sessions(const PlannedStudy& study, std::vector<Deviation>& deviations)
   for (const auto& [subject, had] : sessions_had(study.sessions)) {
     const int planned = sessions_of(study.plan, subject);
     if (static_cast<int>(had.size()) < planned) {
-      deviations.push_back({"sessions_missing", fmt::format("{} has {} of {} sessions", subject,
-                                                            had.size(), planned)});
+      deviations.push_back({"sessions_missing",
+                            fmt::format("{} has {} of {} sessions", subject, had.size(), planned)});
     }
   }
 }

@@ -99,8 +99,7 @@ class BoneStudy final : public Study {
     read_drilling_learning(root);
     check_curriculum(root);
   }
-  std::optional<NextCase> next_case(const protocols::Definition& definition,
-                                    const fs::path& folder,
+  std::optional<NextCase> next_case(const protocols::Definition& definition, const fs::path& folder,
                                     const std::vector<fs::path>& sessions) const override {
     const auto& d = dynamic_cast<const protocols::BoneDefinition&>(definition);
     return d.curriculum ? std::optional(next_case_of(d, folder, sessions)) : std::nullopt;

@@ -46,10 +46,9 @@ class CaseSession {
 
   void add_attempts(const bone::Curriculum& curriculum, std::vector<bone::CaseAttempt>& all) {
     const record::SessionInfo& info = reader_.info();
-    const auto definition =
-        protocols::parse_bone_definition(info.definition, info.definition_name);
-    const auto setup = procedure_setup(
-        reader_, protocols::study_groups(info.definition, info.definition_name));
+    const auto definition = protocols::parse_bone_definition(info.definition, info.definition_name);
+    const auto setup =
+        procedure_setup(reader_, protocols::study_groups(info.definition, info.definition_name));
     drilling::StudyBones bones;
     for (const drilling::Procedure& procedure : load_procedures(reader_, setup, &bones)) {
       const bone::CurriculumCase* of = curriculum.case_of(conditions_[procedure.number]);
@@ -68,8 +67,7 @@ class CaseSession {
   }
 
  private:
-  std::optional<double> value_of(const std::string& name,
-                                 const drilling::ProcedureSummary& summary,
+  std::optional<double> value_of(const std::string& name, const drilling::ProcedureSummary& summary,
                                  const protocols::BoneDefinition& definition) const {
     if (name != bone::kScoreQuantity) {
       return quantity(summary, name);
@@ -110,8 +108,9 @@ NextCase next_case_of(const protocols::BoneDefinition& d, const fs::path& folder
   const auto score = sessions.empty() ? std::nullopt : score_for(d, folder);
   const auto attempts = case_attempts(*d.curriculum, sessions, score ? &*score : nullptr);
   const bone::CurriculumStanding found = standing(*d.curriculum, attempts);
-  return found.next ? NextCase{d.curriculum->cases[*found.next].name, why_next(*d.curriculum, found)}
-                    : NextCase{};
+  return found.next
+             ? NextCase{d.curriculum->cases[*found.next].name, why_next(*d.curriculum, found)}
+             : NextCase{};
 }
 
 void check_curriculum(Table& root) {
@@ -137,9 +136,8 @@ void check_curriculum(Table& root) {
   const std::vector<std::string> known = drilling::quantity_names();
   for (const std::string& name : bad) {
     const std::string hint = did_you_mean(name, known);
-    curriculum.reject("cases",
-                      fmt::format("asks for '{}'{} allowed: score, {}", name,
-                                  hint.empty() ? ";" : hint, fmt::join(known, ", ")));
+    curriculum.reject("cases", fmt::format("asks for '{}'{} allowed: score, {}", name,
+                                           hint.empty() ? ";" : hint, fmt::join(known, ", ")));
   }
 }
 

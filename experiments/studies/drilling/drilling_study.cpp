@@ -109,7 +109,7 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
   study.learning_names = learning_names(definition);
   const bool learns = !study.learning.outcomes.empty();
   study.title = learns                 ? "Learning in drillings"
-                : definition.nerves      ? "Drilling beside watched nerves"
+                : definition.nerves    ? "Drilling beside watched nerves"
                 : definition.hints     ? "Drilling with hints"
                 : definition.forbidden ? "Drilling beside forbidden regions"
                                        : "Construct validity of simulated bone surgery";

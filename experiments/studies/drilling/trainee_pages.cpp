@@ -281,9 +281,8 @@ std::string Pages::curriculum_section() const {
     return "";
   }
   std::map<std::uint64_t, fs::path> files;  // by number of the session
-  for (const fs::path& file : session_files(last.path.parent_path().empty()
-                                                ? fs::path(".")
-                                                : last.path.parent_path())) {
+  for (const fs::path& file :
+       session_files(last.path.parent_path().empty() ? fs::path(".") : last.path.parent_path())) {
     const record::SessionReader reader(file);
     const record::SessionInfo& info = reader.info();
     if (info.subject == participant_ && info.pilot == last.reader.info().pilot) {

@@ -46,7 +46,8 @@ void read_sessions(Table& root, BoneDefinition& d) {
   const int usual = d.design.trials;
   d.session_plans = read_session_plans(
       root, d.design.sessions, "a name at least", [&](Table& session, int number) {
-        session.describe({"procedures", "Number of procedures of the session", "design.procedures"});
+        session.describe(
+            {"procedures", "Number of procedures of the session", "design.procedures"});
         d.procedures.resize(static_cast<std::size_t>(number), usual);
         d.procedures.back() = session.integer_or("procedures", usual, 1, 1000);
       });
@@ -348,8 +349,8 @@ BoneDefinition of_case(const BoneDefinition& d, const std::string& name) {
   }
   BoneDefinition narrow = d;
   narrow.case_name = name;
-  const auto bone = static_cast<std::size_t>(std::ranges::find(d.sources, own->bone) -
-                                             d.sources.begin());
+  const auto bone =
+      static_cast<std::size_t>(std::ranges::find(d.sources, own->bone) - d.sources.begin());
   const auto keep = [&](auto& by_bone) {
     if (bone < by_bone.size()) {
       by_bone = {by_bone[bone]};

@@ -34,7 +34,7 @@ namespace haptrial::protocols {
 
 inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [experiment]
 inline constexpr const char* kMonitor = "monitor";  // in conditions: "monitor on", "monitor off"
-inline constexpr const char* kTutor = "tutor";      // likewise, where the definition says who is led
+inline constexpr const char* kTutor = "tutor";  // likewise, where the definition says who is led
 
 /// Participants of one kind. The first ones belong to the first group, and so on.
 struct ParticipantGroup {
@@ -77,7 +77,7 @@ struct BoneDefinition : Definition {
   std::vector<int> procedures;  // of each session, where the definition describes sessions
   std::optional<bone::Curriculum> curriculum;  // nothing: bones come in turn
   std::string case_name;                       // of it, which the session is of; empty: none
-  double practice{0.0};                       // before the first procedure, of people only [s]
+  double practice{0.0};                        // before the first procedure, of people only [s]
   std::optional<subject::CavityParameters> cavity;  // that is asked for
   std::optional<subject::FragmentPlan> osteotomy;   // likewise, of a cut and its fragment
   std::optional<subject::OsteotomyHandParameters> osteotomy_hand;  // of the virtual hand, with it

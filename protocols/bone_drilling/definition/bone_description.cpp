@@ -175,9 +175,10 @@ std::vector<std::string> BoneDefinition::description() const {
     for (const bone::CurriculumCase& each : curriculum->cases) {
       names.push_back(each.name);
     }
-    lines.push_back(fmt::format("curriculum: {}; which case a session is of follows from the "
-                                "sessions before it",
-                                fmt::join(names, ", ")));
+    lines.push_back(
+        fmt::format("curriculum: {}; which case a session is of follows from the "
+                    "sessions before it",
+                    fmt::join(names, ", ")));
   }
   if (nerves) {
     lines.push_back(describe_nerves(*this));

@@ -61,9 +61,10 @@ void check_room(Table& root, const BoneDefinition& d) {
       const std::string whole = in_case(each.name, condition);
       if (whole.size() >= record::kConditionBytes) {
         root.table("curriculum")
-            .reject("cases", fmt::format("has a name so long that \"{}\" is over {} bytes; choose a "
-                                         "shorter one",
-                                         whole, record::kConditionBytes - 1));
+            .reject("cases",
+                    fmt::format("has a name so long that \"{}\" is over {} bytes; choose a "
+                                "shorter one",
+                                whole, record::kConditionBytes - 1));
       }
     }
   }

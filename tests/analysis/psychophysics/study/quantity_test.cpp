@@ -65,7 +65,8 @@ TEST(QuantityTest, WithABaselineChangesAreCompared) {
     const std::string name = "P" + std::to_string(person);
     const std::string group = person < 3 ? "taught" : "alone";
     values.push_back({name, {group, "before"}, 10.0 * person});
-    values.push_back({name, {group, "after"}, 10.0 * person + 0.1 * person + (person < 3 ? 4.0 : 1.0)});
+    values.push_back(
+        {name, {group, "after"}, 10.0 * person + 0.1 * person + (person < 3 ? 4.0 : 1.0)});
   }
   const Quantity changed = quantity("force", "force", "N", values, plan);
   EXPECT_EQ(changed.title, "change of force");

@@ -46,8 +46,8 @@ TEST(ChangesTest, AreOfMeansAndOfThoseWhoHaveTheBaseline) {
                                      {"B", {"y", "post"}, 9.0}, {"C", {"y", "pre"}, 9.0}};
   std::vector<std::string> found;
   for (const Observation& each : changes_from(all, 1, "pre")) {
-    found.push_back(fmt::format("{} {} {} {:g}", each.subject, each.levels[0], each.levels[1],
-                                each.value));
+    found.push_back(
+        fmt::format("{} {} {} {:g}", each.subject, each.levels[0], each.levels[1], each.value));
   }
   EXPECT_THAT(found, ElementsAre("A x later 0", "A x post 5"));
 }

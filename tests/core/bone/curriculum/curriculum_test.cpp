@@ -68,9 +68,12 @@ TEST(CurriculumTest, AMistakeGetsASentence) {
               AllOf(HasSubstr("removed > 80"), HasSubstr(">= 80")));
   EXPECT_THAT(refusal("pass = [\"removed >= many\"]"), HasSubstr("removed >= many"));
   EXPECT_THAT(refusal("pass = [\"removed >= inf\"]"), HasSubstr("removed >= inf"));
-  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\nbone = \"third\""), HasSubstr("allowed: one of bone.bones: first"));
-  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\nrepeat = \"b\""), HasSubstr("the first case has none before it"));
-  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\n[[curriculum.cases]]\nname = \"a\"\npass = [\"removed >= 1\"]"),
+  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\nbone = \"third\""),
+              HasSubstr("allowed: one of bone.bones: first"));
+  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\nrepeat = \"b\""),
+              HasSubstr("the first case has none before it"));
+  EXPECT_THAT(refusal("pass = [\"removed >= 1\"]\n[[curriculum.cases]]\nname = \"a\"\npass = "
+                      "[\"removed >= 1\"]"),
               HasSubstr("a name of its own"));
 }
 
@@ -122,8 +125,9 @@ TEST(CurriculumTest, SaysWhatWasMissed) {
   };
   EXPECT_EQ(why({}), "");
   EXPECT_EQ(why({plain(90.0, 0.0)}), "passed 1 of 2 in a row");
-  EXPECT_EQ(why({plain(72.125, 3.0)}), "missed last: removed 72.12 (at least 80); injured 3 (at "
-                                       "most 0)");
+  EXPECT_EQ(why({plain(72.125, 3.0)}),
+            "missed last: removed 72.12 (at least 80); injured 3 (at "
+            "most 0)");
 }
 
 }  // namespace
