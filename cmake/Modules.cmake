@@ -295,8 +295,9 @@ function(haptrial_tests)
   haptrial_stand_ins()
   haptrial_together(bone_data EarVariantsTest MandibleTest TemporalBoneTest)
   haptrial_together(deformable BallTouchTest)
-  haptrial_together(experiments BoneSessionTest DesignReportsTest HintSessionTest KeysTest NerveSessionTest
-                                RateTest SoftTissueSessionTest TwoHandsTest)
+  haptrial_together(experiments BoneSessionTest CurriculumSessionTest DesignReportsTest HintSessionTest
+                                KeysTest LearningSessionTest NerveSessionTest RateTest
+                                SoftTissueSessionTest TwoHandsTest)
   haptrial_together(protocols BeginningTest BoneRestoreTest ReplayTest)
   get_property(modules GLOBAL PROPERTY HAPTRIAL_MODULES)
   get_property(groups GLOBAL PROPERTY HAPTRIAL_GROUPS)

@@ -28,7 +28,8 @@ constexpr const char* kEnding = ".plan.json";
 PlanJson to_json(const StudyPlan& plan) {
   PlanJson groups = PlanJson::array();
   for (const PlannedGroup& group : plan.groups) {
-    groups.push_back({{"name", group.name}, {"participants", group.participants}});
+    groups.push_back(
+        {{"name", group.name}, {"participants", group.participants}, {"sessions", group.sessions}});
   }
   return {{"format", kFormat},
           {"name", plan.name},
@@ -58,7 +59,8 @@ StudyPlan from_json(const PlanJson& json) {
   json.at("login").get_to(plan.login);
   json.at("program").get_to(plan.program);
   for (const PlanJson& group : json.at("groups")) {
-    plan.groups.push_back({group.at("name").get<std::string>(), group.at("participants")});
+    plan.groups.push_back({group.at("name").get<std::string>(), group.at("participants"),
+                           group.value("sessions", json.at("sessions").get<int>())});
   }
   json.at("sessions").get_to(plan.sessions);
   json.at("hypotheses").get_to(plan.hypotheses);

@@ -12,6 +12,7 @@ namespace haptrial::experiments {
 struct PlannedGroup {
   std::string name;
   int participants{0};
+  int sessions{1};  // to which each of them comes
 
   bool operator==(const PlannedGroup&) const = default;
 };

@@ -29,6 +29,7 @@
 #include "experiments/runner/session_record.h"
 #include "experiments/screen/screen_mirror.h"
 #include "experiments/screen/speaker.h"
+#include "protocols/definition/groups.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/definition/speech_options.h"
 #include "protocols/interface/session_task.h"
@@ -131,7 +132,12 @@ std::unique_ptr<protocols::Trials> trials_of(const SessionRequest& request,
   auto trials = request.protocol->trials(*request.definition, place);
   const protocols::TutoringOptions& options = request.definition->tutoring;
   if (request.tutor) {
-    return protocols::tutored(std::move(trials), options, *request.tutor);
+    const auto led = [&d = *request.definition, participant = place.participant,
+                      session = place.session](int trial) {
+      const auto groups = protocols::study_groups(d.text, d.file_name);
+      return d.is_led(session, {trial, participant, protocols::group_of(groups, participant)});
+    };
+    return protocols::tutored(std::move(trials), options, *request.tutor, led);
   }
   return request.link ? protocols::linked(std::move(trials), options, *request.link, place)
                       : std::move(trials);

@@ -148,6 +148,18 @@ std::vector<std::string> warnings_of(const Experiment& experiment) {
   return warnings;
 }
 
+FindCase find_case_of(const Experiment& experiment, const std::filesystem::path& file) {
+  const protocols::Definition& definition = *experiment.definition;
+  const Study& study = *experiment.study;
+  const std::filesystem::path folder = file.parent_path();
+  if (!study.next_case(definition, folder, {})) {
+    return {};
+  }
+  return [&study, &definition, folder](const std::vector<std::filesystem::path>& sessions) {
+    return *study.next_case(definition, folder, sessions);
+  };
+}
+
 std::vector<std::string> undrawable_texts(const Experiment& experiment) {
   std::vector<std::string> sentences;
   for (const ShownText& text : experiment.shown) {

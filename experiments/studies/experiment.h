@@ -33,6 +33,10 @@ Experiment parse_experiment(std::string_view text, std::string_view file_name);
 /// the first.
 Experiment parse_experiment(const std::vector<NamedText>& parts);
 
+/// How to find the case that comes next; an empty function if the definition has no curriculum.
+/// @param experiment  with its definition outlives what comes back  @param file  of the definition
+FindCase find_case_of(const Experiment& experiment, const std::filesystem::path& file);
+
 /// Sentences on what a definition allows but what spoils its data without a word: what was found,
 /// and what will happen. None where all is well.
 std::vector<std::string> warnings_of(const Experiment& experiment);

@@ -11,6 +11,7 @@
 #include "core/record/rows/live_figures.h"
 #include "experiments/studies/curve_analysis.h"
 #include "experiments/studies/study_simulation.h"
+#include "experiments/study/next_case.h"
 #include "experiments/study/study_files.h"
 #include "protocols/interface/protocol.h"
 
@@ -72,6 +73,16 @@ class Study {
     static_cast<void>(folder);
     static_cast<void>(file);
     return {};
+  }
+  /// The case that comes next for a participant; nothing: the definition has no curriculum.
+  /// @param folder  of the definition  @param sessions  finished, in their order
+  virtual std::optional<NextCase> next_case(
+      const protocols::Definition& definition, const std::filesystem::path& folder,
+      const std::vector<std::filesystem::path>& sessions) const {
+    static_cast<void>(definition);
+    static_cast<void>(folder);
+    static_cast<void>(sessions);
+    return std::nullopt;
   }
   /// Adds the protocol's own parts of the page that shows an experiment before anybody runs it:
   /// what is seen and felt, how long stages last, how trials are distributed (experiments/preview).

@@ -116,7 +116,8 @@ class RosterMaker {
                                    excluded,
                                    info.simulated,
                                    {},
-                                   0});
+                                   0,
+                                   {}});
         at = roster_.persons.end() - 1;
       }
       if (at->session(found.session.session) != nullptr) {
@@ -173,16 +174,34 @@ class RosterMaker {
     for (int session = roster_.sessions; session >= 1 && !person.excluded && !person.declined();
          --session) {
       const RosterSession* there = person.session(session);
-      if (there == nullptr || there->state == SessionState::kUnfinished) {
+      const bool open = there == nullptr ? d_.comes(session, person.group)
+                                         : there->state == SessionState::kUnfinished;
+      if (open) {
         person.next = session;
       }
     }
+    if (request_.find_case && person.next > 0) {
+      person.next_case = case_of(person);
+      person.next = person.next_case.name.empty() ? 0 : person.next;
+    }
+  }
+
+  /// The case of a person's next session, by the sessions before it that came to their end.
+  NextCase case_of(const RosterPerson& person) const {
+    std::vector<fs::path> files;
+    for (const RosterSession& each : person.sessions) {
+      if (each.state == SessionState::kDone && each.session < person.next) {
+        files.push_back(request_.folder / each.file);
+      }
+    }
+    return request_.find_case(files);
   }
 
   void add_groups() {
     for (const StudyGroup& group : groups_) {
-      roster_.groups.push_back({groups_.size() > 1 ? group.name : "",
-                                group.participants > 0 ? group.participants : planned(), 0, 0});
+      const std::string name = groups_.size() > 1 ? group.name : "";
+      roster_.groups.push_back({name, group.participants > 0 ? group.participants : planned(), 0, 0,
+                                d_.sessions_of(name)});
     }
     std::map<int, std::string> holders;
     for (const RosterPerson& person : roster_.persons) {
@@ -207,6 +226,15 @@ class RosterMaker {
     }
   }
 
+  /// The first session to which participants of a group come.
+  int first_of(const std::string& group) const {
+    int session = 1;
+    while (session < roster_.sessions && !d_.comes(session, group)) {
+      ++session;
+    }
+    return session;
+  }
+
   RosterGroup& of(const std::string& name) {
     return *std::find_if(roster_.groups.begin(), roster_.groups.end(),
                          [&](const RosterGroup& group) { return group.name == name; });
@@ -227,7 +255,9 @@ class RosterMaker {
     for (const RosterGroup* group : open) {
       for (int number = 1; number <= planned(); ++number) {
         if (!taken_.contains(number) && group_of(number) == group->name) {
-          add_next({subject_for(number), number, group->name, 1, true, false, {}, ""});
+          RosterNext next{subject_for(number), number, group->name, first_of(group->name)};
+          next.next_case = request_.find_case ? request_.find_case({}) : NextCase{};
+          add_next(std::move(next));
           break;
         }
       }
@@ -235,7 +265,9 @@ class RosterMaker {
     for (const RosterPerson& person : roster_.persons) {
       if (!person.pilot && person.next > 0) {
         const bool resume = person.session(person.next) != nullptr;
-        add_next({person.subject, person.number, person.group, person.next, false, resume, {}, ""});
+        RosterNext next{person.subject, person.number, person.group, person.next, false, resume};
+        next.next_case = person.next_case;
+        add_next(std::move(next));
       }
     }
   }
@@ -279,6 +311,7 @@ class RosterMaker {
     } catch (const InputError& error) {
       roster_.remarks.push_back(error.what());
     }
+    next.session_name = d_.session_plan(next.session).name;
     next.command =
         fmt::format("haptrial run {} --subject {}", typed(request_.definition_file), next.subject);
     next.command += roster_.sessions > 1 ? fmt::format(" --session {}", next.session) : "";

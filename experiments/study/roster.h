@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/study/next_case.h"
 #include "protocols/interface/protocol.h"
 
 namespace haptrial::experiments {
@@ -38,6 +39,7 @@ struct RosterPerson {
   bool simulated{false};
   std::vector<RosterSession> sessions;  // in their order
   int next{0};                          // session; 0: none is left
+  NextCase next_case;                   // of it
 
   const RosterSession* session(int number) const;
   /// Did not consent, so nothing more is to be run.
@@ -54,8 +56,11 @@ struct RosterNext {
   int session{1};
   bool fresh{true};  // somebody who has no session yet
   bool resume{false};
-  std::vector<std::string> blocks;  // in their order; none where the protocol has no words for them
-  std::string command;
+  std::vector<std::string>
+      blocks{};                // in their order; none where the protocol has no words for them
+  std::string session_name{};  // in the definition's words; empty: it has none
+  NextCase next_case{};        // of a curriculum; without a name: the study has none
+  std::string command{};
 };
 
 struct RosterGroup {
@@ -63,6 +68,7 @@ struct RosterGroup {
   int planned{0};   // participants
   int begun{0};     // of them; no pilots, excluded ones or ones who never took part
   int finished{0};  // with every session
+  int sessions{1};  // to which each of them comes
 };
 
 /// Participants of a study with their sessions, and the next session. It is read from the session
@@ -86,6 +92,7 @@ struct RosterRequest {
   std::string definition_file;          // as the command line of the next session has it
   std::filesystem::path folder;         // of session files; need not exist yet
   std::optional<std::uint64_t> seed{};  // default: that of the sessions, else 1
+  FindCase find_case{};                 // of a study with a curriculum
 };
 
 /// Numbers 1 to n are the participants that the definition plans, and a number says the group

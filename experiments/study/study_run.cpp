@@ -10,6 +10,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/fnv.h"
 #include "core/base/parallel.h"
@@ -21,6 +22,7 @@
 #include "experiments/study/dry_parts.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/taught_session.h"
+#include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -71,6 +73,7 @@ class SessionWorkers {
         setup_(*first.definition),
         ticks_each_(ticks_each),
         dry_run_(dry_run),
+        units_(planned_sessions(*first.definition, dry_run.participants, dry_run.session)),
         parts_(parts) {}
 
   DryRunSummary run() {
@@ -99,7 +102,9 @@ class SessionWorkers {
       return;
     }
     try {
-      if (parts_ != nullptr) {
+      if (dry_run_.find_case) {
+        run_cases(place);
+      } else if (parts_ != nullptr) {
         parts_->run(static_cast<std::size_t>(place), request(place).file,
                     [&] { run_one(request(place)); });
       } else {
@@ -113,6 +118,23 @@ class SessionWorkers {
       cancel_ = true;
     }
     ++finished_;
+  }
+
+  /// A participant's sessions one after the other, each of the case that follows from those before.
+  void run_cases(int participant) {
+    std::vector<fs::path> done;
+    for (const PlannedSession& unit : units_) {
+      const NextCase next =
+          unit.participant == participant && !cancel_ ? dry_run_.find_case(done) : NextCase{};
+      if (next.name.empty()) {
+        continue;
+      }
+      SessionRequest one = request(unit);
+      const auto definition = one.protocol->of_case(setup_, next.name);
+      one.definition = definition.get();
+      run_one(one);
+      done.push_back(one.file);
+    }
   }
 
   void run_one(const SessionRequest& request) {
@@ -141,14 +163,18 @@ class SessionWorkers {
     }
   }
 
-  int sessions_each() const { return dry_run_.session > 0 ? 1 : setup_.sessions(); }
-  int count() const { return dry_run_.participants * sessions_each(); }
+  /// Units of work: sessions, or with a curriculum participants.
+  int count() const {
+    return dry_run_.find_case ? dry_run_.participants : static_cast<int>(units_.size());
+  }
 
   /// @param place  participant after participant, each with the sessions in their order
-  SessionRequest request(int place) {
-    const int participant = place / sessions_each();
+  SessionRequest request(int place) { return request(units_[static_cast<std::size_t>(place)]); }
+
+  SessionRequest request(const PlannedSession& unit) {
+    const auto [participant, session] = unit;
     SessionRequest r = first_;
-    r.session = dry_run_.session > 0 ? dry_run_.session : 1 + place % sessions_each();
+    r.session = session;
     r.subject = participant_name(participant);
     r.participant = participant;
     r.seed = dry_run_.seed;
@@ -176,6 +202,7 @@ class SessionWorkers {
   const protocols::Definition& setup_;
   double ticks_each_;
   const DryRun& dry_run_;
+  std::vector<PlannedSession> units_;
   DryParts* parts_;
   std::atomic<int> finished_{0};
   std::atomic<std::uint64_t> ticks_{0};
@@ -213,7 +240,17 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   first.protocol = &protocol;
   first.definition = &definition;
   const int trials = dry_run.max_trials > 0 ? dry_run.max_trials : definition.design.trials;
+  if (planned_sessions(definition, dry_run.participants, dry_run.session).empty()) {
+    throw InputError(fmt::format("none of the first {} comes to session {}; give more --subjects",
+                                 counted(dry_run.participants, "participant", "participants"),
+                                 dry_run.session));
+  }
   const double ticks_each = definition.rate * definition.longest(trials);
+  if (dry_run.parts && dry_run.find_case) {
+    throw InputError(
+        "--parts shares sessions out, and those of a curriculum follow from each other; leave it "
+        "out");
+  }
   if (dry_run.parts) {
     DryParts parts(dry_run.folder, facts_of(definition, dry_run));
     take_plan(dry_run);
@@ -230,6 +267,21 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   const DryRunSummary summary = SessionWorkers(first, ticks_each, dry_run).run();
   folder.keep();
   return summary;
+}
+
+std::vector<PlannedSession> planned_sessions(const protocols::Definition& definition,
+                                             int participants, int session) {
+  const auto groups = protocols::study_groups(definition.text, definition.file_name);
+  std::vector<PlannedSession> all;
+  for (int participant = 0; participant < participants; ++participant) {
+    const std::string group = protocols::group_of(groups, participant);
+    for (int each = 1; each <= definition.sessions(); ++each) {
+      if ((session == 0 || each == session) && definition.comes(each, group)) {
+        all.push_back({participant, each});
+      }
+    }
+  }
+  return all;
 }
 
 std::string participant_name(int participant) { return fmt::format("S{:02}", participant + 1); }

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
+#include "experiments/study/next_case.h"
 #include "protocols/interface/protocol.h"
 #include "protocols/tutoring/model_motion.h"
 
@@ -24,6 +26,8 @@ struct DryRun {
   /// The folder is the state: finished sessions stay and are not run again. Without frames, tutor
   /// and teachers.
   bool parts{false};
+  /// Cases of a study with a curriculum: each participant's sessions follow from those before.
+  FindCase find_case{};
   double start{0.0};  // of parts: share of the sessions that comes last
 };
 
@@ -42,6 +46,16 @@ struct DryRunSummary {
 /// @throws InputError when the folder exists, or is of other parts, or cannot be made.
 DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Definition& definition,
                       const DryRun& dry_run);
+
+/// One session of a study.
+struct PlannedSession {
+  int participant{0};  // from 0
+  int session{1};      // of the participant, from 1
+};
+/// The sessions to which participants come, participant after participant.
+/// @param session  that one alone; 0: all
+std::vector<PlannedSession> planned_sessions(const protocols::Definition& definition,
+                                             int participants, int session = 0);
 
 /// "S01" for participant 0.
 std::string participant_name(int participant);

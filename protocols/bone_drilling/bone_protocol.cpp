@@ -168,6 +168,11 @@ class BoneDrilling final : public Protocol {
     tables.push_back(&record::table_of<record::CrossingRow>());
     return tables;
   }
+  std::unique_ptr<Definition> of_case(const Definition& definition,
+                                      const std::string& name) const override {
+    return std::make_unique<BoneDefinition>(
+        protocols::of_case(dynamic_cast<const BoneDefinition&>(definition), name));
+  }
   AuxiliaryPages auxiliary_pages(const Definition& definition) const override {
     const bool watched = dynamic_cast<const BoneDefinition&>(definition).nerves.has_value();
     return watched ? AuxiliaryPages{std::make_shared<NervePage>()} : AuxiliaryPages{};

@@ -48,12 +48,13 @@ std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
 
 std::vector<PlannedTrial> procedures_of(const BoneDefinition& d, const SessionPlace& place) {
   std::vector<PlannedTrial> plan;
-  if (d.practice > 0.0 && place.real) {
+  if (d.practice > 0.0 && place.real && place.session == 1) {
     plan.push_back({0, 0, 1, "practice", derived_seed(place.session_seed, "practice"), true});
   }
-  for (int trial = 1; trial <= d.design.trials; ++trial) {
+  for (int trial = 1; trial <= d.procedures_in(place.session); ++trial) {
     const std::uint64_t seed = derived_seed(place.session_seed, fmt::format("procedure {}", trial));
-    plan.push_back({trial, trial, 1, d.condition(trial, place.participant), seed, false});
+    plan.push_back(
+        {trial, trial, 1, d.condition({trial, place.participant, place.session}), seed, false});
   }
   return plan;
 }
@@ -229,8 +230,7 @@ std::vector<record::Rows> BoneTrials::first_rows() const {
 }
 
 std::unique_ptr<Rig> BoneTrials::virtual_rig() const {
-  return std::make_unique<DrillingRig>(d_, place_.hand_session_seed, place_.participant,
-                                       work_.get());
+  return std::make_unique<DrillingRig>(d_, place_, work_.get());
 }
 
 void BoneTrials::empty_logs(SessionFile& file) {
@@ -507,10 +507,10 @@ Pass& BoneTrials::make_pass(PlannedTrial& trial, const record::Phase&) {
     shared_->prepare_pass(trial.trial);
   }
   if (nerves_) {
-    nerves_->beside().let_hear(d_.hears_nerves(trial.trial, place_.participant));
+    nerves_->beside().let_hear(d_.hears_nerves(place_of(trial)));
   }
   if (hints_) {
-    hints_->beside().let_show(d_.sees_hints(trial.trial, place_.participant));
+    hints_->beside().let_show(d_.sees_hints(place_of(trial)));
   }
   if (pictures_) {
     pictures_->watch(stage_);
@@ -531,7 +531,7 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
     pass_->give(hints_->beside());
   }
   if (guard_) {
-    guard_->begin_pass(d_.has_regions(trial.trial, place_.participant));
+    guard_->begin_pass(d_.has_regions(place_of(trial)));
     pass_->keep_out(*guard_);
   }
   return *pass_;

@@ -20,8 +20,8 @@
 
 namespace haptrial::protocols {
 
-/// The procedures of a session. People practise before the first; whoever is virtual has nothing to
-/// learn from it.
+/// The procedures of a session. People practise before the first of their first session; whoever is
+/// virtual has nothing to learn from it.
 std::vector<PlannedTrial> procedures_of(const BoneDefinition& definition,
                                         const SessionPlace& place);
 
@@ -72,6 +72,9 @@ class BoneTrials final : public Trials {
   void restore(const PlannedTrial& trial, SessionFile& file);
   static void begin_again(const PlannedTrial& trial, SessionFile& file);
   nerve::NerveExposures* exposures() { return nerves_ ? nerves_->exposures() : nullptr; }
+  ProcedurePlace place_of(const PlannedTrial& trial) const {
+    return {trial.trial, place_.participant, place_.session};
+  }
   bool is_led() const { return shared_ && !shared_->leads(); }
   Pass& make_drilling_pass(const PlannedTrial& trial);
   Pass& make_led_pass(const PlannedTrial& trial);

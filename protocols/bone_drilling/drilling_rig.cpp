@@ -65,17 +65,18 @@ class DrillingRig::BothHands final : public stimulus::Observer {
   stimulus::Observer& second_;
 };
 
-DrillingRig::DrillingRig(const BoneDefinition& d, std::uint64_t session_seed, int participant,
-                         subject::WorkLog* work)
+DrillingRig::DrillingRig(const BoneDefinition& d, const SessionPlace& place, subject::WorkLog* work)
     : hand_(d.hand, 1.0 / d.rate, start_of(d)), device_(d.device, hand_, d.rate) {
-  const std::uint64_t seed = derived_seed(session_seed, "subject");
+  const std::uint64_t seed = derived_seed(place.hand_session_seed, "subject");
   if (d.surgeon && !d.charts.empty()) {
     subject::SurgeonParameters person = *d.surgeon;
-    if (const ParticipantGroup* group = group_of(d, participant)) {
-      person.skill = group->skill;
-    }
+    const ParticipantGroup* group = group_of(d, place.participant);
+    person.skill = group != nullptr ? group->skill : person.skill;
+    person.earlier =
+        d.procedures_before(place.session, group != nullptr ? group->name : std::string_view());
     subject_ = std::make_unique<subject::DrillingSurgeon>(
-        person, charts_of(d), hand_, device_, d.drilling.scale, seed, 1.0 / d.rate, work);
+        person, charts_of(d), hand_, device_, d.drilling.scale,
+        derived_seed(place.hand_person_seed, "subject"), 1.0 / d.rate, work);
   } else if (d.osteotomy_hand && d.osteotomy) {
     const subject::OsteotomyTools tools = subject::osteotomy_tools(d.simulator.tools);
     subject_ = std::make_unique<subject::OsteotomyHand>(

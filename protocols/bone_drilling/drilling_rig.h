@@ -6,16 +6,18 @@
 #include "core/subject/hand.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/interface/rig.h"
+#include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {
 
 /// A virtual device with a virtual hand that drills, or a virtual surgeon.
 class DrillingRig final : public Rig {
  public:
-  /// @param session_seed  whatever is drawn for the person follows from it
-  /// @param participant   from 0; says the group
-  /// @param work          of a virtual surgeon, as subject::DrillingSurgeon has it
-  DrillingRig(const BoneDefinition& definition, std::uint64_t session_seed, int participant = 0,
+  /// @param place  of the session. A virtual surgeon is the same person on every day, and has
+  /// learned
+  ///               from the procedures of earlier days; other hands follow from the session's seed
+  /// @param work   of a virtual surgeon, as subject::DrillingSurgeon has it
+  DrillingRig(const BoneDefinition& definition, const SessionPlace& place,
               subject::WorkLog* work = nullptr);
   ~DrillingRig() override;
 

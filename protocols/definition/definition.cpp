@@ -125,6 +125,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   if (root.has("tutoring")) {
     Table tutoring = root.table("tutoring");
     definition.tutoring = tutoring_schema().read(tutoring);
+    check_groups(root, tutoring, "led_in", definition.tutoring.led.groups);
   }
   definition.tutoring.most_force = definition.envelope.max_force;
   if (definition.screen.photodiode == Photodiode::kOnset) {
@@ -133,6 +134,34 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
 }
 
 Table Definition::root() const { return document->unread(); }
+
+const SessionPlan& Definition::session_plan(int session) const {
+  static const SessionPlan plain;
+  const auto at = static_cast<std::size_t>(session - 1);
+  return session >= 1 && at < session_plans.size() ? session_plans[at] : plain;
+}
+
+std::string Definition::session_name(int session) const {
+  const std::string& stated = session_plan(session).name;
+  return stated.empty() ? std::to_string(session) : stated;
+}
+
+bool Definition::comes(int session, std::string_view group) const {
+  const std::vector<std::string>& groups = session_plan(session).groups;
+  return groups.empty() || std::ranges::find(groups, group) != groups.end();
+}
+
+int Definition::sessions_of(std::string_view group) const {
+  int all = 0;
+  for (int session = 1; session <= sessions(); ++session) {
+    all += comes(session, group) ? 1 : 0;
+  }
+  return all;
+}
+
+bool Definition::is_led(int session, const GivenPlace& place) const {
+  return session_plan(session).gives && is_given(tutoring.led, place);
+}
 
 void check_common(Table& root, const Definition& definition) {
   Table envelope = root.table("envelope");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/given_in.h"
 #include "core/channel/channel_options.h"
 #include "core/device/certificate.h"
 #include "core/device/envelope.h"
@@ -24,6 +25,7 @@
 #include "protocols/definition/device_arm.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/definition/screen_options.h"
+#include "protocols/definition/session_plan.h"
 #include "protocols/definition/tutoring_options.h"
 
 namespace haptrial {
@@ -55,6 +57,7 @@ struct Definition {
   std::string name;
   double rate{1000.0};  // of the servo loop [Hz]
   Design design;
+  std::vector<SessionPlan> session_plans{};  // (sessions()) or none: nothing is said of them
   bool mirror_left_handed{false};  // left-handed participants have the mirror image at x = 0
   double recovery{3.0};            // without force after an abort [s]
   device::EnvelopeLimits envelope;
@@ -83,6 +86,14 @@ struct Definition {
   Table root() const;
   /// How many sessions each participant comes to, on days of their own; at least 1.
   virtual int sessions() const { return 1; }
+  /// What the definition says of a session, from 1; the default where it says nothing.
+  const SessionPlan& session_plan(int session) const;
+  std::string session_name(int session) const;  // its number if it has none
+  /// Whether participants of a group come to a session. @param group  empty: of none
+  bool comes(int session, std::string_view group) const;
+  int sessions_of(std::string_view group) const;  // to which they come
+  /// Whether a tutor leads the hand in a trial of a session, if there is one (--tutor).
+  bool is_led(int session, const GivenPlace& place) const;
   /// A session drives these parts of devices, 1 to kMostDevices of them; the first is a tip.
   virtual std::vector<DeviceArm> arms() const { return {{envelope}}; }
   int devices() const { return static_cast<int>(arms().size()); }  // these parts

@@ -71,4 +71,14 @@ std::string group_of(const std::vector<StudyGroup>& groups, const std::string& s
                   subject, last));
 }
 
+std::string group_of(const std::vector<StudyGroup>& groups, int participant) {
+  for (const StudyGroup& group : groups) {
+    if (groups.size() > 1 && participant >= 0 && participant < group.participants) {
+      return group.name;
+    }
+    participant -= group.participants;
+  }
+  return "";
+}
+
 }  // namespace haptrial::protocols

@@ -24,4 +24,8 @@ std::vector<StudyGroup> study_groups(std::string_view definition, std::string_vi
 /// @throws InputError for a number beyond the last group, or none where there are several groups.
 std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject);
 
+/// The group of a participant; empty where the study has none for that number.
+/// @param participant  from 0
+std::string group_of(const std::vector<StudyGroup>& groups, int participant);
+
 }  // namespace haptrial::protocols

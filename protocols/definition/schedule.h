@@ -15,6 +15,7 @@ namespace haptrial::protocols {
 /// The plan of a study. Source: Morris 2006, §4.2.5.
 struct Design {
   int participants{12};
+  int sessions{1};               // of each participant
   int trials{72};                // per participant; a trial is a training pass and a test pass
   int repetitions{3};            // trials of a block: same stimulus, same condition
   int break_after{36};           // trials; 0 for no break

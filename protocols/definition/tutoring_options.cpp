@@ -60,6 +60,13 @@ const Schema<TutoringOptions>& tutoring_schema() {
   using O = TutoringOptions;
   static const auto schema =
       Schema<O>()
+          .custom(
+              "led_in",
+              "Trials that a recorded run leads, with --tutor; every other: the first "
+              "participant from the first on, the second from the second on; or the groups "
+              "that alone are led, in every trial",
+              [](Table& table, const std::string& key, O& o) { o.led = read_given_in(table, key); })
+          .otherwise("all")
           .keys_of(&O::gains, gains_schema())
           .number("ramp", &O::ramp, {0.05, 10.0}, "s",
                   "Time over which the tutor takes the lead, and gives it back")

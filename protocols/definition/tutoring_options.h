@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/given_in.h"
 #include "core/tutoring/channel_conditions.h"
 #include "core/tutoring/side_parameters.h"
 #include "core/tutoring/tutoring_law.h"
@@ -26,6 +27,7 @@ struct TutoringNetwork {
 
 /// How a tutor leads, the table [tutoring] of a definition: in a recorded run or over a link.
 struct TutoringOptions {
+  GivenIn led;  // trials that a tutor leads, of sessions that give anything
   tutoring::TutoringGains gains;
   double ramp{0.5};                // from no lead to all of it, and back [s]
   double speed{1.0};               // of a playback, 0.5 to 1 of the original

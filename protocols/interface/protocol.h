@@ -46,6 +46,10 @@ class Protocol {
     static_cast<void>(definition);
     return {};
   }
+  /// The definition of a session of one case, for definitions whose sessions are of cases.
+  /// @throws InputError if it has no such case, by default always
+  virtual std::unique_ptr<Definition> of_case(const Definition& definition,
+                                              const std::string& name) const;
   /// The trials of one session. @param definition  of this protocol; it and the place outlive them
   virtual std::unique_ptr<Trials> trials(const Definition& definition,
                                          const SessionPlace& place) const = 0;

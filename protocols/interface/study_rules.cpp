@@ -30,6 +30,7 @@ DefinitionRules of_every_study() {
                 "sounds.device",
                 "power",
                 "plan",
+                "curriculum",
                 "design.participants",
                 "analysis.planned",
                 "analysis.reference"};

@@ -16,8 +16,9 @@ namespace {
 class TutoredTrials final : public Trials {
  public:
   TutoredTrials(std::unique_ptr<Trials> inner, const TutoringOptions& options,
-                const TutorChoice& tutor)
+                const TutorChoice& tutor, std::function<bool(int)> led)
       : inner_(std::move(inner)),
+        led_(std::move(led)),
         options_(options),
         from_(tutor.from),
         file_(tutor.file.filename().string()),
@@ -61,7 +62,7 @@ class TutoredTrials final : public Trials {
   std::vector<sound::Cue> varied_cues() const override { return inner_->varied_cues(); }
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override {
     Pass& pass = inner_->make_pass(trial, phase);
-    if (!(phase == phases().front())) {
+    if (!(phase == phases().front()) || !led_(trial.practice ? 0 : trial.trial)) {
       return pass;
     }
     pass_.emplace(pass, options_, motion_, from_, log_);
@@ -85,6 +86,7 @@ class TutoredTrials final : public Trials {
 
  private:
   std::unique_ptr<Trials> inner_;
+  std::function<bool(int)> led_;
   TutoringOptions options_;
   double from_;
   std::string file_;
@@ -96,8 +98,8 @@ class TutoredTrials final : public Trials {
 }  // namespace
 
 std::unique_ptr<Trials> tutored(std::unique_ptr<Trials> trials, const TutoringOptions& options,
-                                const TutorChoice& tutor) {
-  return std::make_unique<TutoredTrials>(std::move(trials), options, tutor);
+                                const TutorChoice& tutor, std::function<bool(int)> led) {
+  return std::make_unique<TutoredTrials>(std::move(trials), options, tutor, std::move(led));
 }
 
 }  // namespace haptrial::protocols

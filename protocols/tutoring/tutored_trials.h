@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "protocols/definition/tutoring_options.h"
@@ -13,7 +14,8 @@ namespace haptrial::protocols {
 /// tutor's by a spring of low gain, and the tutor's forces are played. What the own pass would give
 /// is faded out meanwhile, and comes back at the end of the recording. What the tutor did is
 /// recorded in /tutoring, tick by tick.
+/// @param led  whether a trial is led, by its number; practice has 0
 std::unique_ptr<Trials> tutored(std::unique_ptr<Trials> trials, const TutoringOptions& options,
-                                const TutorChoice& tutor);
+                                const TutorChoice& tutor, std::function<bool(int trial)> led);
 
 }  // namespace haptrial::protocols

@@ -84,7 +84,8 @@ std::string procedure_page(const ProcedurePage& page) {
         "all-clear.");
   }
   body += summary_points(f, experts) + view(page) + experts_sentence(experts);
-  body += page.score + page.checklist + achieved_section(f, experts) + phase_section(f, experts);
+  body += page.curriculum + page.score + page.checklist + achieved_section(f, experts) +
+          phase_section(f, experts);
   body += heading("Near vital structures");
   body += f.structures.empty()
               ? paragraph("Vital structures of this bone are unknown.")

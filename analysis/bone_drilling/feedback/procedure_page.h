@@ -19,11 +19,12 @@ struct ProcedurePage {
   std::string scene;         // scene_json()
   std::string expert_scene;  // likewise, of a procedure on the same bone; empty: none
   std::string expert_name;   // for people: whose and which that is
-  std::string picture;    // PNG file of the result, for browsers that cannot turn it; may be empty
-  std::string started;    // of the session, UTC
-  std::string score;      // score_section(); empty: none is asked for
-  std::string checklist;  // checklist_section(); likewise
-  std::string overview;   // name of the trainee's page beside this one; empty: none
+  std::string picture;     // PNG file of the result, for browsers that cannot turn it; may be empty
+  std::string started;     // of the session, UTC
+  std::string score;       // score_section(); empty: none is asked for
+  std::string checklist;   // checklist_section(); likewise
+  std::string curriculum;  // curriculum_section(); empty: there is none
+  std::string overview;    // name of the trainee's page beside this one; empty: none
 };
 
 /// One HTML file that needs nothing else.

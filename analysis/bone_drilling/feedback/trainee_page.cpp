@@ -143,12 +143,14 @@ std::string values_table(const std::vector<TraineeProcedure>& procedures,
 }  // namespace
 
 std::string trainee_page(const std::string& participant,
-                         const std::vector<TraineeProcedure>& procedures, const Experts& experts) {
+                         const std::vector<TraineeProcedure>& procedures, const Experts& experts,
+                         const std::string& curriculum) {
   const bool simulated = std::any_of(procedures.begin(), procedures.end(),
                                      [](const TraineeProcedure& p) { return p.summary.simulated; });
   const std::vector<Line> lines = lines_of(procedures, experts);
   std::string body = simulated_banner(simulated, experts.simulated);
   body += links(procedures);
+  body += curriculum;
   body += heading("Learning");
   body += paragraph(experts.summaries.empty()
                         ? "There are no experts to compare with."

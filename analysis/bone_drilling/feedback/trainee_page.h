@@ -19,8 +19,9 @@ struct TraineeProcedure {
 
 /// Learning: each metric over the procedures of one trainee, in their order, in front of the
 /// experts' range, with links to the pages of the procedures. One HTML file that needs nothing
-/// else.
+/// else. @param curriculum  as curriculum_section() has it; empty: there is none
 std::string trainee_page(const std::string& participant,
-                         const std::vector<TraineeProcedure>& procedures, const Experts& experts);
+                         const std::vector<TraineeProcedure>& procedures, const Experts& experts,
+                         const std::string& curriculum = "");
 
 }  // namespace haptrial::analysis::drilling

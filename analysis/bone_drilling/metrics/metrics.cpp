@@ -272,6 +272,8 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
   summary.session = procedure.session;
   summary.participant = procedure.participant;
   summary.group = procedure.group;
+  summary.session_number = procedure.session_number;
+  summary.session_name = procedure.session_name;
   summary.number = procedure.number;
   summary.simulated = procedure.simulated;
   summary.completed = procedure.completed;
@@ -362,6 +364,11 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
        {"session", "participant", "group", "procedure", "simulated", "completed"}) {
     row.add(std::string_view(name));
   }
+  const bool several = std::ranges::any_of(
+      procedures, [](const ProcedureSummary& p) { return p.session_number > 1; });
+  if (several) {
+    row.add("session_number").add("session_name");
+  }
   for (const Definition& definition : kDefinitions) {
     row.add(std::string_view(column_name(definition)));
   }
@@ -381,6 +388,9 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
     row.add(std::string_view(p.session)).add(std::string_view(p.participant));
     row.add(std::string_view(p.group)).add(p.number);
     row.add(p.simulated ? 1 : 0).add(p.completed ? 1 : 0);
+    if (several) {
+      row.add(p.session_number).add(std::string_view(p.session_name));
+    }
     for (const std::optional<double>& value : p.values) {
       value ? row.add(*value) : row.add_missing();
     }

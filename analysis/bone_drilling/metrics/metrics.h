@@ -55,6 +55,8 @@ struct ProcedureSummary {
   std::string session;
   std::string participant;
   std::string group;
+  int session_number{1};       // of the participant's sessions, from 1
+  std::string session_name{};  // in the definition's words; empty: it has none
   int number{1};
   bool simulated{true};
   bool completed{true};
@@ -106,6 +108,7 @@ std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummar
                                                  const RegionParameters& parameters = {});
 
 /// A tidy table (RFC 4180 with LF): session, participant, group, procedure, simulated, completed,
+/// and where participants come several times session_number and session_name;
 /// then a column for each metric, named NAME_UNIT, for each of figures_of() and, where procedures
 /// are divided, the time in each phase and the number of changes; empty where it is not defined.
 std::string metrics_csv(std::span<const ProcedureSummary> procedures);

@@ -101,6 +101,8 @@ class Loader {
     Procedure procedure;
     procedure.session = file_.path().filename().string();
     procedure.participant = file_.info().subject;
+    procedure.session_number = static_cast<int>(file_.info().session);
+    procedure.session_name = setup_.session_name;
     procedure.group = setup_.group;
     procedure.number = trial;
     procedure.simulated = file_.info().simulated;

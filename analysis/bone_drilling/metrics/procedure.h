@@ -43,7 +43,8 @@ struct ProcedurePlans {
 
 /// Facts of a session that its definition has and its tables do not.
 struct ProcedureSetup {
-  std::string group;  // of the participant
+  std::string group;           // of the participant
+  std::string session_name{};  // empty: the definition names none
   /// X_WB, how a bone lies in the scene; null: B is W.
   std::function<Eigen::Isometry3d(const geometry::VoxelGrid&)> pose_WB;
   double scale{1.0};  // the device's motions are this many times the scene's > 0
@@ -119,10 +120,12 @@ struct Procedure {
   std::string session;  // name of the file
   std::string participant;
   std::string group;
-  int number{1};         // of this participant's procedures: the trial, from 1
-  bool simulated{true};  // the participant is a virtual subject
-  bool completed{true};  // its last pass came to its end
-  double rate{1000.0};   // of ticks [Hz]
+  int session_number{1};       // of the participant's sessions, from 1
+  std::string session_name{};  // in the definition's words; empty: it has none
+  int number{1};               // of the session's procedures: the trial, from 1
+  bool simulated{true};        // the participant is a virtual subject
+  bool completed{true};        // its last pass came to its end
+  double rate{1000.0};         // of ticks [Hz]
   std::shared_ptr<const bone::BoneModel> bone;
   Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};
   std::vector<ProcedureTool> tools;
@@ -137,7 +140,7 @@ struct Procedure {
   std::vector<record::PieceRow> pieces;  // none where the definition has no [osteotomy]
   std::vector<record::ScrewRow> screws;  // likewise
   ProcedurePlans plans;
-  std::vector<BegunWork> work;                      // of a virtual surgeon; none: nobody knows
+  std::vector<BegunWork> work;  // of a virtual surgeon; none: nobody knows
 
   /// Null out of range.
   const ProcedureTool* tool(std::int32_t tool) const noexcept;

@@ -7,6 +7,7 @@
 
 #include "analysis/bone_drilling/report/achieved_section.h"
 #include "analysis/bone_drilling/report/field_section.h"
+#include "analysis/bone_drilling/report/learning_section.h"
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
@@ -39,28 +40,39 @@ class Report {
     add_simulation_alarm();
     document_.points(summary_lines(result_));
     add_design();
+    add_learning_section(document_, result_.learned, drawings_, v_.simulated);
     add_nerve_section(document_, result_.nerves, v_.simulated);
     add_hint_section(document_, result_.hints, result_.hint_effects, v_.simulated);
     add_crossing_section(document_, result_.crossings, v_.simulated);
     add_achieved_section(document_, result_);
     add_phase_section(document_, result_);
-    add_ratings();
+    if (compares_experts() || v_.rated > 0) {
+      add_ratings();
+    }
     add_checklist_section(document_, result_.checked, result_.procedures, v_.plan.groups,
                           v_.simulated);
-    add_metrics();
+    if (compares_experts()) {
+      add_metrics();
+    }
     add_forces();
-    add_regions();
-    add_combined();
+    if (compares_experts()) {
+      add_regions();
+      add_combined();
+    }
     add_unknown();
     add_tears();
     add_field_section(document_, result_.procedures, v_.simulated);
     add_quality();
-    add_published();
-    add_methods();
+    if (compares_experts()) {
+      add_published();
+      add_methods();
+    }
     return std::move(document_);
   }
 
  private:
+  /// A study of learning compares what groups learned, and nobody's experience.
+  bool compares_experts() const { return result_.learned.outcomes.empty(); }
   std::size_t count_of(std::string ProcedureSummary::*name) const {
     std::set<std::string> names;
     for (const ProcedureSummary& p : result_.procedures) {
@@ -117,8 +129,11 @@ void Report::add_design() {
     }
     const bool expert =
         std::count(v_.plan.expert_groups.begin(), v_.plan.expert_groups.end(), group) > 0;
-    rows.push_back({group, expert ? "with experience" : "novices", std::to_string(people.size()),
-                    std::to_string(procedures)});
+    rows.push_back({group,
+                    expert               ? "with experience"
+                    : compares_experts() ? "novices"
+                                         : "–",
+                    std::to_string(people.size()), std::to_string(procedures)});
   }
   document_.table({"group", "counted among", "participants", "procedures"}, rows);
   for (const std::string& remark : result_.remarks) {

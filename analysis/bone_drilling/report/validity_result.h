@@ -9,6 +9,7 @@
 #include "analysis/bone_drilling/report/crossing_section.h"
 #include "analysis/bone_drilling/report/hint_findings.h"
 #include "analysis/bone_drilling/report/hint_section.h"
+#include "analysis/bone_drilling/report/learning_section.h"
 #include "analysis/bone_drilling/report/nerve_findings.h"
 #include "analysis/bone_drilling/report/validity_findings.h"
 
@@ -37,6 +38,7 @@ struct ValidityResult {
   std::vector<HintEffect> hint_effects{};
   CheckedStudy checked{};                      // without rows: nobody filled in a checklist
   std::vector<CrossingProcedure> crossings{};  // of sessions with forbidden regions
+  LearnedStudy learned{};                      // without outcomes: the definition asks for none
 };
 
 }  // namespace haptrial::analysis::drilling

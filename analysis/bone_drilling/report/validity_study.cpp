@@ -124,6 +124,7 @@ ValidityResult analyze(const ValidityStudy& study) {
       region_label_test(result.procedures, study.plan.expert_groups, study.region);
   result.validity = validity(result.procedures, regions, ratings, study.plan, region_test);
   result.structure = structure_of(study, result.procedures);
+  result.learned = learned_study(result.procedures, study.learning, study.learning_names);
   return result;
 }
 
@@ -148,6 +149,8 @@ void write_validity(const ValidityResult& result, const fs::path& folder, int pa
     staging.write("phases.csv", phases_csv(result.procedures));
   }
   std::vector<Figure> figures = validity_figures(result);
+  std::ranges::move(learning_figures(result.learned, result.validity.simulated),
+                    std::back_inserter(figures));
   write_findings(own, staging, figures);
   draw_figures(figures, staging.path(), paper);
   std::vector<Drawing> drawings;

@@ -23,6 +23,8 @@ struct ValidityStudy {
   /// Reads a session's definition; called from several threads at once.
   std::function<ProcedureSetup(const record::SessionReader&)> setup;
   ValidityPlan plan;
+  LearningPlan learning{};         // without outcomes: nobody asks what was learned
+  LearningNames learning_names{};  // with outcomes
   MetricOptions metrics;
   RegionParameters region;
   /// Structure whose force profile is drawn (Figure 20); empty: the chorda tympani if there are

@@ -70,6 +70,9 @@ std::vector<std::string> summary_lines(const ValidityResult& result) {
   } else {
     lines = rating_lines(v);
   }
+  for (std::string& line : learning_lines(result.learned)) {
+    lines.push_back(std::move(line));
+  }
   if (contrasts_of(v) > 0) {
     lines.push_back(contrast_line(v));
   }

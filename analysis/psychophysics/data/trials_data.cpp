@@ -40,6 +40,10 @@ std::string factor_level(const TrialsData& data, const StudyTrial& trial,
   if (factor == "group") {
     return data.session_of(trial).group;
   }
+  if (factor == "session") {
+    const StudySession& session = data.session_of(trial);
+    return session.name.empty() ? fmt::format("{}", session.session) : session.name;
+  }
   if (factor == "condition") {
     return trial.condition;
   }

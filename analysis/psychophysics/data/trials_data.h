@@ -26,6 +26,7 @@ struct StudySession {
   double rate{1000.0};                          // ticks a second [Hz]
   std::size_t planned{0};                       // trials, at most; 0: the file does not say it
   std::string ended_early{};                    // why trials are left; empty: none are
+  std::string name{};  // of the session in the definition; empty: it has none
 };
 
 /// An answer to one question of a trial.
@@ -125,8 +126,8 @@ const GivenAnswer* answer_to(const StudyTrial& trial, const std::string& questio
 const GivenVariable* variable_of(const StudyTrial& trial, const std::string& name,
                                  int interval = 0);
 
-/// The last pass of a stage: an interval that was repeated has others before it; null: the trial has
-/// none.
+/// The last pass of a stage: an interval that was repeated has others before it; null: the trial
+/// has none.
 const StageTime* last_stage(const StudyTrial& trial, const std::string& stage);
 
 /// The level of a trial under a factor, as a word: of "group", "condition", "block", "track" and

@@ -64,6 +64,15 @@ void check_by(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan
   }
 }
 
+void check_baseline(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan) {
+  if (!has_name(defaults.sessions, plan.baseline)) {
+    table.reject("baseline", fmt::format("\"{}\"", plan.baseline),
+                 fmt::format("a session: {}", fmt::join(defaults.sessions, ", ")));
+  } else if (!has_name(plan.by, kSession)) {
+    table.reject("baseline", "stands alone; add \"session\" to `by`");
+  }
+}
+
 void check_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   if (!has_name(defaults.factors, plan.stimulus) && !has_name(defaults.names, plan.stimulus)) {
     table.reject("stimulus", fmt::format("\"{}\"", plan.stimulus),
@@ -491,6 +500,14 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
           plan.by.emplace_back(kItem);
         }
       })
+      .custom("baseline",
+              "Session from which changes are compared in place of values, by its name; `by` has "
+              "\"session\" then, and tests compare changes",
+              [&](Table& table, const std::string& key, P& plan) {
+                plan.baseline = table.text(key);
+                check_baseline(table, defaults, plan);
+              })
+      .otherwise("none")
       .custom(
           "tests",
           "Tests that were planned before the data: \"a < b\", \"a > b\" or \"a != b\" of levels "
@@ -532,6 +549,7 @@ PlannedTest with_short_numbers(PlannedTest test) {
 TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   TrialsPlan plan;
   plan.kind = defaults.kind;
+  plan.sessions = defaults.sessions;
   const bool detects = plan.kind == AnalysisKind::kDetection;
   plan.by = detects ? std::vector<std::string>{} : defaults.factors;
   plan.rating = detects ? defaults.rating : "";

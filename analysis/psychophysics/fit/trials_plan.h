@@ -38,6 +38,9 @@ enum class AnalysisKind {
   kPaired,          // which of two items was chosen: their worths
 };
 
+/// The factor whose levels are the sessions of a participant, by name or number.
+inline constexpr const char* kSession = "session";
+
 /// Levels by the name of their factor, as tables show them.
 using StatedLevels = std::map<std::string, std::vector<std::string>>;
 
@@ -62,7 +65,8 @@ struct PlanDefaults {
   ProducedNames produced;                   // that the analysis of what is produced may name
   CueNames cues;                            // that the comparison of cues may name
   std::vector<std::string> pages;           // whose scores may be the covariate
-  StatedLevels levels;  // of names of `by`, where the definition states all of them
+  StatedLevels levels;                // of names of `by`, where the definition states all of them
+  std::vector<std::string> sessions;  // their names, in their order
 };
 
 /// The highest lapse rate, and guess rate without catch trials, unless stated: with lapses up to
@@ -73,17 +77,19 @@ inline constexpr double kMostLapses = 0.2;
 struct TrialsPlan {
   AnalysisKind kind{AnalysisKind::kNone};
   std::vector<std::string> by;  // factors whose levels are told apart
-  AnalysisPlan plan;            // tests that were planned
-  std::string question;         // whose answer counts; empty: the first
-  std::string yes;              // the answer that counts 1; empty: what the procedure learnt, else
-                                // the right one
-  std::string level;            // variable for the level; empty: the one that the procedure set
-  bool level_is_set{false};     // `level` is one that procedures set; trials in which another
-                                // procedure set another one have none
-  bool level_assumed{false};    // procedures set several variables, and `level` is the first
-  std::string measured;         // measure of the stimulus, of magnitudes; empty: it is the level
-  std::string rating;           // question with a number: how sure; empty: none
-  std::string stimulus;         // factor that says what was presented, of an identification
+  std::string baseline;  // session from which changes are compared in place of values; empty: none
+  std::vector<std::string> sessions;  // their names, in their order
+  AnalysisPlan plan;                  // tests that were planned
+  std::string question;               // whose answer counts; empty: the first
+  std::string yes;            // the answer that counts 1; empty: what the procedure learnt, else
+                              // the right one
+  std::string level;          // variable for the level; empty: the one that the procedure set
+  bool level_is_set{false};   // `level` is one that procedures set; trials in which another
+                              // procedure set another one have none
+  bool level_assumed{false};  // procedures set several variables, and `level` is the first
+  std::string measured;       // measure of the stimulus, of magnitudes; empty: it is the level
+  std::string rating;         // question with a number: how sure; empty: none
+  std::string stimulus;       // factor that says what was presented, of an identification
   std::vector<std::string> choices;  // of the question, likewise
   DiscriminationTask discrimination{DiscriminationTask::kForcedChoice};  // likewise
   bool metacognition{false};  // whether ratings give meta-d' and the M-ratio

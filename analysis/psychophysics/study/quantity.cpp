@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "analysis/statistics/design/changes.h"
+
 namespace haptrial::analysis::trials {
 
 TrialsPlan without_directions(TrialsPlan plan) {
@@ -63,6 +65,13 @@ Quantity quantity(std::string name, std::string title, std::string unit,
       observations.push_back(
           {each.participant, one ? std::vector<std::string>{"all"} : each.levels, each.value});
     }
+  }
+  if (!plan.baseline.empty()) {
+    const auto session =
+        static_cast<std::size_t>(std::ranges::find(plan.by, kSession) - plan.by.begin());
+    observations = changes_from(observations, session, plan.baseline);
+    result.title = "change of " + result.title;
+    range = ValueRange::kAny;
   }
   if (observations.empty()) {
     return result;

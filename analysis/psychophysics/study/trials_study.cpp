@@ -409,11 +409,20 @@ void add_tests(const CueStudy& cues, std::vector<NamedTest>& tests) {
 
 }  // namespace
 
+/// The sessions by the names that the definition gives them.
+static void name_sessions(const TrialsPlan& plan, TrialsData& data) {
+  for (StudySession& session : data.sessions) {
+    const auto at = static_cast<std::size_t>(session.session - 1);
+    session.name = at < plan.sessions.size() ? plan.sessions[at] : std::string();
+  }
+}
+
 TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf& procedure_of,
                      int threads) {
   TrialsResult result;
   result.plan = plan;
   result.data = std::move(data);
+  name_sessions(plan, result.data);
   if (std::none_of(result.data.trials.begin(), result.data.trials.end(),
                    [](const StudyTrial& trial) { return trial.counts(); })) {
     throw InputError("no session holds a completed trial of the study, so nothing can be analysed");

@@ -155,11 +155,12 @@ const PlannedTest& decisive_test(const AnalysisPlan& plan) {
   return found != plan.tests.end() ? *found : plan.tests.front();
 }
 
-AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions) {
+AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions,
+                                std::string_view stated_in) {
   const auto check = [&](Table& table, const std::string& key, const std::string& name) {
     if (std::find(conditions.begin(), conditions.end(), name) == conditions.end()) {
       const std::string hint = did_you_mean(name, conditions);
-      table.reject(key, fmt::format("names '{}', which design.conditions lacks{} allowed: {}", name,
+      table.reject(key, fmt::format("names '{}', which {} lacks{} allowed: {}", name, stated_in,
                                     hint.empty() ? ";" : hint, fmt::join(conditions, ", ")));
     }
   };

@@ -64,6 +64,8 @@ const PlannedTest& decisive_test(const AnalysisPlan& plan);
 
 /// The optional keys `planned` and `reference` of an [analysis] table, and those of
 /// tests_beside_schema(). Names that are not of `conditions` are noted as problems of the table.
-AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions);
+/// @param stated_in  what lists the conditions, for sentences
+AnalysisPlan read_analysis_plan(Table& analysis, const std::vector<std::string>& conditions,
+                                std::string_view stated_in = "design.conditions");
 
 }  // namespace haptrial::analysis

@@ -1,33 +1,58 @@
 #include "core/base/definition/given_in.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "core/base/definition/table.h"
 
 namespace haptrial {
 
 GivenIn read_given_in(Table& table, std::string_view key) {
+  GivenIn in;
   if (!table.has(key)) {
-    return GivenIn::kAll;
+    return in;
+  }
+  if (table.is_array(key)) {
+    in.groups = table.texts(key);
+    return in;
   }
   const std::string word = table.choice(key, {"all", "none", "every other"});
-  return word == "none"          ? GivenIn::kNone
-         : word == "every other" ? GivenIn::kEveryOther
-                                 : GivenIn::kAll;
+  in.trials = word == "none"          ? GivenIn::kNone
+              : word == "every other" ? GivenIn::kEveryOther
+                                      : GivenIn::kAll;
+  return in;
 }
 
-bool is_given(GivenIn in, int trial, int participant) noexcept {
-  return in == GivenIn::kAll || (in == GivenIn::kEveryOther && (trial + participant) % 2 == 1);
+bool is_given(const GivenIn& in, const GivenPlace& place) noexcept {
+  if (!in.groups.empty()) {
+    return std::ranges::find(in.groups, place.group) != in.groups.end();
+  }
+  return in.trials == GivenIn::kAll ||
+         (in.trials == GivenIn::kEveryOther && (place.trial + place.participant) % 2 == 1);
+}
+
+std::string given_text(const GivenIn& in, std::string_view trial) {
+  if (!in.groups.empty()) {
+    return fmt::format("in every {} of the {} {}", trial,
+                       in.groups.size() == 1 ? "group" : "groups", fmt::join(in.groups, ", "));
+  }
+  return in.trials == GivenIn::kAll          ? fmt::format("in every {}", trial)
+         : in.trials == GivenIn::kEveryOther ? "in every other one"
+                                             : "";
 }
 
 std::string given_word(std::string_view what, bool given) {
   return std::string(what) + (given ? " on" : " off");
 }
 
-std::vector<std::string> given_words(std::string_view what, GivenIn in) {
+std::vector<std::string> given_words(std::string_view what, const GivenIn& in, bool paused) {
   std::vector<std::string> words;
-  if (in != GivenIn::kNone) {
+  if (in.trials != GivenIn::kNone) {
     words.push_back(given_word(what, true));
   }
-  if (in != GivenIn::kAll) {
+  if (in.trials != GivenIn::kAll || !in.groups.empty() || paused) {
     words.push_back(given_word(what, false));
   }
   return words;

@@ -67,7 +67,8 @@ const Schema<HintSetup>& hint_schema() {
           .otherwise("all three")
           .custom("shown_in",
                   "Procedures in which the participant sees hints; every other: the first "
-                  "participant from the first on, the second from the second on",
+                  "participant from the first on, the second from the second on; or the groups "
+                  "that alone do so, in every procedure",
                   [](Table& table, const std::string& key, S& s) {
                     s.shown = read_given_in(table, key);
                   })

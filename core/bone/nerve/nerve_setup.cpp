@@ -181,7 +181,8 @@ const Schema<NerveSetup>& nerve_schema() {
           .number("stimuli", &S::pulses, {0.5, 5.0}, "1/s", "Pulses of the probe in a second")
           .custom("heard_in",
                   "Procedures in which the participant hears the monitor; every other: the first "
-                  "participant from the first on, the second from the second on",
+                  "participant from the first on, the second from the second on; or the groups "
+                  "that alone do so, in every procedure",
                   [](Table& table, const std::string& key, S& s) {
                     s.heard = read_given_in(table, key);
                   })

@@ -59,7 +59,9 @@ const Schema<RegionSetup>& region_schema() {
           .custom(
               "given_in",
               "Procedures in which the participant feels or hears the regions; every other: the "
-              "first participant from the first on, the second from the second on",
+              "first participant from the first on, the second from the second on; or the groups "
+              "that "
+              "alone do so, in every procedure",
               [](Table& table, const std::string& key, S& s) {
                 s.given = read_given_in(table, key);
               })

@@ -105,8 +105,8 @@ DrillingSurgeon::DrillingSurgeon(const SurgeonParameters& parameters,
     throw std::invalid_argument("DrillingSurgeon: there must be a chart");
   }
   for (auto& chart : charts) {
-    procedures_.push_back(
-        plan(parameters_, std::move(chart), seed, static_cast<int>(procedures_.size()), step));
+    procedures_.push_back(plan(parameters_, std::move(chart), seed,
+                               parameters_.earlier + static_cast<int>(procedures_.size()), step));
   }
 }
 

@@ -28,6 +28,7 @@ struct SurgeonBurr {
 /// Parameters of a virtual surgeon.
 struct SurgeonParameters {
   double skill{0.5};  // of the group, 0 to 1
+  int earlier{0};     // procedures that it did on days before >= 0
   SkillSpread spread;
   SurgeonBurr rough;     // for most of it
   SurgeonBurr fine;      // for what is near a structure

@@ -21,6 +21,7 @@ void add_bone(CLI::App& app, int& status) {
   add_bone_safe(*bone, status);
   add_bone_score(*bone, status);
   add_bone_phases(*bone, status);
+  add_bone_class(*bone, status);
 }
 
 }  // namespace haptrial::experiments

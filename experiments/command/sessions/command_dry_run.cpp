@@ -130,8 +130,8 @@ static std::string pictures_in(const fs::path& folder) {
 static void print_lab_time(const protocols::Definition& d, const fs::path& folder,
                            std::optional<double> setup) {
   if (const auto times = session_times(session_files(folder), d)) {
-    fmt::print("lab time: {}; pages not counted\n",
-               lab_time(*times, d.design.participants * d.sessions(), setup));
+    const auto all = static_cast<int>(planned_sessions(d, d.design.participants).size());
+    fmt::print("lab time: {}; pages not counted\n", lab_time(*times, all, setup));
   }
 }
 
@@ -159,6 +159,7 @@ int dry_run(const DryRunOptions& options) {
     throw InputError("--tutor and --taught are both given; leave out one of them");
   }
   dry.taught = options.taught;
+  dry.find_case = find_case_of(experiment, options.definition);
   const int rank = take_parts(options, dry);
   if (interrupted()) {  // while the definition was read, which makes its bones
     throw RunError("interrupted; no session was begun");
@@ -172,6 +173,9 @@ int dry_run(const DryRunOptions& options) {
   }
   for (const std::string& line : setup.left_out_of_dry_runs()) {
     fmt::print("{}\n", line);
+  }
+  if (!setup.tutoring.led.groups.empty() && !dry.tutor && !dry.taught) {
+    fmt::print("nobody is led, though tutoring.led_in names groups: add --tutor FILE:TRIAL\n");
   }
   const DryRunSummary done = run_until_interrupt(experiment.study->protocol(), setup, dry);
   if (rank > 0) {

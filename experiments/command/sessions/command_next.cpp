@@ -48,6 +48,7 @@ int next(const NextOptions& options) {
   request.definition = experiment.definition.get();
   request.definition_file = options.definition;
   request.folder = options.folder;
+  request.find_case = find_case_of(experiment, options.definition);
   const Roster roster = make_roster(request);
   const auto result = standing(options);
   if (result) {
@@ -62,9 +63,9 @@ int next(const NextOptions& options) {
 }  // namespace
 
 void add_next(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "next", "Show whether a study goes on, and who is next",
-                             "haptrial next curl_field out/curl_field",
-                             {"nothing", "guide-experimenter.md"});
+  CLI::App* sub =
+      subcommand(app, "next", "Show whether a study goes on, and who is next",
+                 "haptrial next curl_field out/curl_field", {"nothing", "guide-experimenter.md"});
   auto& o = options_of<NextOptions>(*sub, status, next);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
   sub->add_option("FOLDER", o.folder, "Folder of the session files; need not be there yet")

@@ -182,6 +182,8 @@ std::string json_of(const Roster& roster) {
                             {"new", next.fresh},
                             {"resume", next.resume},
                             {"blocks", next.blocks},
+                            {"case", next.next_case.name},
+                            {"why", next.next_case.why},
                             {"command", next.command}});
   }
   json["remarks"] = roster.remarks;
@@ -225,6 +227,7 @@ int roster(const RosterOptions& options) {
   request.definition = experiment.definition.get();
   request.definition_file = options.definition;
   request.folder = options.folder;
+  request.find_case = find_case_of(experiment, options.definition);
   if (options.seed) {
     request.seed = checked_seed(*options.seed);
   }

@@ -181,12 +181,16 @@ RunEnd run_command(const RunOptions& asked) {
   if (::isatty(STDERR_FILENO) != 0) {
     fmt::print(stderr, "preparing {}\n", options.definition);  // bones take seconds
   }
-  const Experiment experiment = load_experiment(options.definition, options.language);
-  const protocols::Definition& setup = *experiment.definition;
+  Experiment experiment = load_experiment(options.definition, options.language);
   if (const std::string chosen = choose_session(options, experiment); !chosen.empty()) {
     fmt::print("{}\n", chosen);
     std::fflush(stdout);
   }
+  if (!options.case_name.empty()) {
+    experiment.definition =
+        experiment.study->protocol().of_case(*experiment.definition, options.case_name);
+  }
+  const protocols::Definition& setup = *experiment.definition;
   check_recording(options, experiment.study->protocol(), setup);
   check_pages(options, setup);
   for (const std::string& sentence : protocols::button_warnings(setup, options.devices)) {
@@ -309,6 +313,8 @@ void declare_run_options(CLI::App& app, RunOptions& o) {
   sub->add_option("--session", o.session,
                   "Number of the participant's session, of a study on several days (default: the "
                   "first that is left)");
+  sub->add_option("--case", o.case_name,
+                  "Case of the definition's curriculum (default: the one that comes next)");
   sub->add_option("--device", o.devices,
                   with_default(fmt::format("Device: {} or replay:FILE",
                                            fmt::join(device::device_names(), ", ")),

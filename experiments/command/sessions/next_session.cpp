@@ -14,6 +14,7 @@
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/study/session_name.h"
+#include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -25,6 +26,7 @@ Roster roster_of(const RunOptions& options, const Experiment& experiment) {
   request.definition_file = options.definition;
   request.folder = options.out;
   request.seed = checked_seed(options.seed);
+  request.find_case = find_case_of(experiment, options.definition);
   return make_roster(request);
 }
 
@@ -34,6 +36,30 @@ const RosterNext* next_of(const Roster& roster, const RunOptions& options) {
     return next.resume == options.resume && next.session == options.session.value_or(next.session);
   });
   return at != roster.next.end() ? &*at : nullptr;
+}
+
+void choose_case(RunOptions& options, const NextCase& next) {
+  options.case_name = options.case_name.empty() ? next.name : options.case_name;
+}
+
+/// The case of a session that was named, by the participant's sessions before it.
+void choose_case(RunOptions& options, const Experiment& experiment) {
+  const Roster roster = roster_of(options, experiment);
+  std::vector<std::filesystem::path> files;
+  for (const RosterPerson& person : roster.persons) {
+    for (const RosterSession& each : person.sessions) {
+      if (person.subject == options.subject && person.pilot == options.pilot && !person.excluded &&
+          each.state == SessionState::kDone && each.session < options.session.value_or(1)) {
+        files.push_back(std::filesystem::path(options.out) / each.file);
+      }
+    }
+  }
+  const NextCase next = find_case_of(experiment, options.definition)(files);
+  if (next.name.empty()) {
+    throw InputError(fmt::format("{}: {} has done every case; add --case for one of them",
+                                 options.out, options.subject));
+  }
+  choose_case(options, next);
 }
 
 std::string choose_subject(RunOptions& options, const Experiment& experiment) {
@@ -53,10 +79,15 @@ std::string choose_subject(RunOptions& options, const Experiment& experiment) {
   }
   options.subject = next->subject;
   options.session = next->session;
+  choose_case(options, next->next_case);
   if (!options.participant && next->number > 0) {
     options.participant = next->number;
   }
   return "next: " + words_of(*next, roster.sessions);
+}
+
+bool has_cases(const Experiment& experiment) {
+  return static_cast<bool>(find_case_of(experiment, ""));
 }
 
 /// A pilot is left out of the analysis: not to be given to a participant by mistake.
@@ -95,8 +126,12 @@ std::string choose_number(RunOptions& options, const Experiment& experiment) {
       });
   const int session = at != roster.persons.end() ? at->next : 1;
   if (session == 0) {
-    throw InputError(fmt::format("{}: {} has had {}", options.out, options.subject,
-                                 counted(roster.sessions, "session", "sessions")));
+    throw InputError(
+        at->sessions.size() < static_cast<std::size_t>(roster.sessions) && has_cases(experiment)
+            ? fmt::format("{}: {} has done every case; add --session and --case for more",
+                          options.out, options.subject)
+            : fmt::format("{}: {} has had {}", options.out, options.subject,
+                          counted(roster.sessions, "session", "sessions")));
   }
   options.session = session;
   return fmt::format("next of {}: session {} of {}", options.subject, session, roster.sessions);
@@ -113,27 +148,73 @@ int checked_session(int session, const protocols::Definition& setup) {
   return checked_number("--session", session, 1, setup.sessions());
 }
 
+std::string words_of(const NextCase& next) {
+  return next.name + (next.why.empty() ? "" : fmt::format(" ({})", next.why));
+}
+
 std::string words_of(const RosterNext& next, int sessions) {
   std::string words = next.subject;
   words += next.group.empty() ? "" : fmt::format(" (group {})", next.group);
   words += sessions > 1 ? fmt::format(", session {} of {}", next.session, sessions) : "";
+  words += next.session_name.empty() ? "" : fmt::format(", {}", next.session_name);
   words += next.resume ? ", to be resumed" : "";
   words += next.blocks.empty() ? "" : fmt::format(": {}", fmt::join(next.blocks, ", "));
+  words += next.next_case.name.empty() ? "" : ": case " + words_of(next.next_case);
   return words;
 }
 
-std::string choose_session(RunOptions& options, const Experiment& experiment) {
-  if (options.session) {
-    checked_session(*options.session, *experiment.definition);
-  }
+namespace {
+
+std::string chosen(RunOptions& options, const Experiment& experiment) {
   if (options.subject.empty()) {
     return choose_subject(options, experiment);
   }
   confirm_pilot(options, experiment);
-  if (!options.session && experiment.definition->sessions() > 1) {
-    return choose_number(options, experiment);
+  return !options.session && experiment.definition->sessions() > 1
+             ? choose_number(options, experiment)
+             : "";
+}
+
+/// A session to which the participant's group does not come, or in which a tutor leads and there
+/// is none.
+void check_place(const RunOptions& options, const protocols::Definition& d) {
+  const int session = options.session.value_or(1);
+  const int number = options.participant.value_or(number_of_subject(options.subject));
+  const auto groups = protocols::study_groups(d.text, d.file_name);
+  const std::string group = protocols::group_of(groups, number - 1);
+  if (!options.pilot && !d.comes(session, group)) {
+    throw InputError(
+        fmt::format("{}: session {} is for {}, and {} is of {}; choose another "
+                    "--session",
+                    options.definition, d.session_name(session),
+                    fmt::join(d.session_plan(session).groups, ", "), options.subject,
+                    group.empty() ? "no group" : group));
   }
-  return "";
+  const bool led = !d.tutoring.led.groups.empty() && d.is_led(session, {1, number - 1, group});
+  if (led && !options.pilot && options.tutor.empty() && options.learn_from.empty() &&
+      !options.teach) {
+    throw InputError(
+        fmt::format("{}: a tutor leads {} in session {} (tutoring.led_in); add "
+                    "--tutor FILE:TRIAL, or --learn-from",
+                    options.definition, options.subject, d.session_name(session)));
+  }
+}
+
+}  // namespace
+
+std::string choose_session(RunOptions& options, const Experiment& experiment) {
+  const protocols::Definition& d = *experiment.definition;
+  if (options.session) {
+    checked_session(*options.session, d);
+  }
+  std::string words = chosen(options, experiment);
+  check_place(options, d);
+  if (options.case_name.empty() && has_cases(experiment)) {
+    choose_case(options, experiment);
+  }
+  words +=
+      options.case_name.empty() ? "" : (words.empty() ? "case " : ", case ") + options.case_name;
+  return words;
 }
 
 }  // namespace haptrial::experiments

@@ -22,6 +22,7 @@ struct RunOptions {
   std::string seed{"1"};
   std::optional<int> participant;
   std::optional<int> session;
+  std::string case_name;  // of a curriculum; empty: the one that comes next
   std::string out;
   std::string backup;
   std::optional<int> trials;

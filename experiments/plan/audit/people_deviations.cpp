@@ -42,9 +42,10 @@ void compare_people(const std::string& where, int planned, int done,
 
 void add_sessions(const PlannedStudy& study, std::vector<Deviation>& deviations) {
   for (const auto& [subject, had] : sessions_had(study.sessions)) {
-    if (static_cast<int>(had.size()) < study.plan.sessions) {
-      deviations.push_back({"sessions_missing", fmt::format("{} has {} of {} sessions", subject,
-                                                            had.size(), study.plan.sessions)});
+    const int planned = sessions_of(study.plan, subject);
+    if (static_cast<int>(had.size()) < planned) {
+      deviations.push_back({"sessions_missing",
+                            fmt::format("{} has {} of {} sessions", subject, had.size(), planned)});
     }
   }
 }
@@ -58,6 +59,12 @@ bool is_stated(const StudyPlan& plan, const std::vector<std::string>& reasons) {
 }
 
 }  // namespace
+
+int sessions_of(const StudyPlan& plan, const std::string& subject) {
+  const auto group =
+      std::ranges::find(plan.groups, planned_group(plan, subject), &PlannedGroup::name);
+  return group != plan.groups.end() ? group->sessions : plan.sessions;
+}
 
 void add_people(const PlannedStudy& study, std::vector<Deviation>& deviations) {
   const auto had = sessions_had(study.sessions);

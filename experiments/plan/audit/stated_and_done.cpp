@@ -25,7 +25,7 @@ std::string list_of(const std::vector<std::string>& texts, const char* none) {
 int complete_people(const StudyPlan& plan, const std::vector<SessionFacts>& sessions) {
   const auto had = sessions_had(sessions);
   return static_cast<int>(std::ranges::count_if(had, [&](const auto& each) {
-    return static_cast<int>(each.second.size()) >= plan.sessions;
+    return static_cast<int>(each.second.size()) >= sessions_of(plan, each.first);
   }));
 }
 

@@ -33,6 +33,9 @@ PlannedStudy planned_study(const std::filesystem::path& plan);
 /// Every deviation, those of the same kind together. Pilots count only as files.
 std::vector<Deviation> deviations_of(const PlannedStudy& study);
 
+/// How many sessions the plan states for a participant, by the group of the identifier.
+int sessions_of(const StudyPlan& plan, const std::string& subject);
+
 /// The parts of it: participants, their sessions and trials; definition, tests and program; files
 /// and the log of what was done.
 void add_people(const PlannedStudy& study, std::vector<Deviation>& deviations);

@@ -8,11 +8,14 @@
 #include "core/base/exception_words.h"
 #include "core/bone/record/drilling_types.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/drilling_curriculum.h"
+#include "experiments/studies/drilling/drilling_learning.h"
 #include "experiments/studies/drilling/drilling_preview.h"
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/live_drilling.h"
 #include "experiments/studies/drilling/trainee_pages.h"
 #include "experiments/studies/drilling/tried_drilling.h"
+#include "experiments/study/study_run.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
@@ -93,6 +96,15 @@ std::shared_ptr<const Procedure> DrillingFigures::of_earlier_run(const record::P
 class BoneStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::bone_drilling(); }
+  void read_analysis(Table& root, bool) const override {
+    read_drilling_learning(root);
+    check_curriculum(root);
+  }
+  std::optional<NextCase> next_case(const protocols::Definition& definition, const fs::path& folder,
+                                    const std::vector<fs::path>& sessions) const override {
+    const auto& d = dynamic_cast<const protocols::BoneDefinition&>(definition);
+    return d.curriculum ? std::optional(next_case_of(d, folder, sessions)) : std::nullopt;
+  }
   std::unique_ptr<record::LiveFigures> live_figures(const protocols::Definition& definition,
                                                     const fs::path& resumed) const override {
     return std::make_unique<DrillingFigures>(
@@ -122,7 +134,7 @@ class BoneStudy final : public Study {
     return analyze_drillings(request);
   }
   std::string next_step(const fs::path& folder) const override {
-    return "haptrial replay " + (folder / "S01.h5").string();
+    return "haptrial replay " + session_files(folder).front().string();
   }
 };
 

@@ -11,9 +11,12 @@
 #include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/bone_drilling/report/visibility_picture.h"
 #include "analysis/exchange/own_findings.h"
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "core/render/mesh/scene.h"
+#include "experiments/studies/curve_analysis.h"
+#include "experiments/studies/drilling/drilling_learning.h"
 #include "experiments/studies/drilling/learn_phases.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
@@ -101,7 +104,12 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
       protocols::study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
   const auto definition = protocols::parse_bone_definition(first.definition, first.definition_name);
-  study.title = definition.nerves      ? "Drilling beside watched nerves"
+  Table root = definition.root();
+  study.learning = read_drilling_learning(root);
+  study.learning_names = learning_names(definition);
+  const bool learns = !study.learning.outcomes.empty();
+  study.title = learns                 ? "Learning in drillings"
+                : definition.nerves    ? "Drilling beside watched nerves"
                 : definition.hints     ? "Drilling with hints"
                 : definition.forbidden ? "Drilling beside forbidden regions"
                                        : "Construct validity of simulated bone surgery";
@@ -120,12 +128,17 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
   };
   for (const protocols::StudyGroup& group : groups) {
     study.plan.groups.push_back(group.name);
-    if (group.expert) {
+    if (group.expert && !learns) {
       study.plan.expert_groups.push_back(group.name);
     }
   }
+  std::vector<std::string> remarks = request.files.remarks;
+  if (learns) {
+    study.learning.plan =
+        plan_for(request.planned, request.reference, study.learning.plan, remarks);
+  }
   drilling::ValidityResult result = drilling::analyze(study);
-  result.remarks = request.files.remarks;
+  result.remarks = std::move(remarks);
   const PictureFolder pictures(request.out);
   result.pictures = visibility_pictures(result.procedures, definition, pictures.path());
   const auto own = analysis::own_findings(request.files.files);

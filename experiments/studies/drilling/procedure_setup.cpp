@@ -38,8 +38,9 @@ class KeptPlans {
 drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
                                          const std::vector<protocols::StudyGroup>& groups) {
   const record::SessionInfo& info = session.info();
-  drilling::ProcedureSetup setup =
-      procedure_setup(protocols::parse_bone_definition(info.definition, info.definition_name));
+  const auto definition = protocols::parse_bone_definition(info.definition, info.definition_name);
+  drilling::ProcedureSetup setup = procedure_setup(definition);
+  setup.session_name = definition.session_plan(static_cast<int>(info.session)).name;
   setup.group = protocols::group_of(groups, info.subject);
   return setup;
 }

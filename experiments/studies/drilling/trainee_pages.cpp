@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "analysis/bone_drilling/checklist/checklist.h"
+#include "analysis/bone_drilling/feedback/curriculum_page.h"
 #include "analysis/bone_drilling/feedback/procedure_page.h"
 #include "analysis/bone_drilling/feedback/score.h"
 #include "analysis/bone_drilling/feedback/trainee_page.h"
@@ -16,6 +18,7 @@
 #include "core/base/whole_file.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/drilling_curriculum.h"
 #include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/learn_phases.h"
 #include "experiments/studies/drilling/learn_score.h"
@@ -71,7 +74,8 @@ class Pages {
       write_procedure(*session, trial, procedures.size());
     }
     if (procedures.size() > 1) {
-      write(request_.out, drilling::trainee_page(participant_, done_, experts_));
+      write(request_.out,
+            drilling::trainee_page(participant_, done_, experts_, curriculum_section()));
       std::rotate(files_.begin(), files_.end() - 1, files_.end());
     }
     return files_;
@@ -87,6 +91,7 @@ class Pages {
   const ExpertSession* shown_beside(const bone::BoneModel* bone) const;
   drilling::FirstView first_view(const Session& session) const;
   std::string picture(const drilling::Findings& findings, const Session& session) const;
+  std::string curriculum_section() const;
   void write(const fs::path& file, const std::string& html);
   fs::path numbered(std::size_t number) const {
     return request_.out.parent_path() / fmt::format("{}-{}{}", request_.out.stem().string(), number,
@@ -247,6 +252,7 @@ void Pages::write_procedure(const Session& session, int trial, std::size_t proce
     page.score = drilling::score_section(
         *score_, score_of(*score_, f.summary, score_rules(session.definition)));
   }
+  page.curriculum = several ? "" : curriculum_section();
   if (checklist_) {
     check_measures(*checklist_, f.summary, request_.checklist.string());
     page.checklist = drilling::checklist_section(*checklist_, f.summary);
@@ -264,6 +270,31 @@ void Pages::write_procedure(const Session& session, int trial, std::size_t proce
   done.page = file.filename().string();
   done.started = page.started;
   done_.push_back(std::move(done));
+}
+
+/// How the participant stands in the curriculum of the last session, by every session that the
+/// folder holds; empty without one.
+std::string Pages::curriculum_section() const {
+  const Session& last = *sessions_.back();
+  const auto& curriculum = last.definition.curriculum;
+  if (!curriculum) {
+    return "";
+  }
+  std::map<std::uint64_t, fs::path> files;  // by number of the session
+  for (const fs::path& file :
+       session_files(last.path.parent_path().empty() ? fs::path(".") : last.path.parent_path())) {
+    const record::SessionReader reader(file);
+    const record::SessionInfo& info = reader.info();
+    if (info.subject == participant_ && info.pilot == last.reader.info().pilot) {
+      files[info.session] = file;
+    }
+  }
+  std::vector<fs::path> own;
+  for (const auto& [session, file] : files) {
+    own.push_back(file);
+  }
+  const auto attempts = case_attempts(*curriculum, own, score_ ? &*score_ : nullptr);
+  return drilling::curriculum_section(*curriculum, standing(*curriculum, attempts));
 }
 
 void Pages::write(const fs::path& file, const std::string& html) {

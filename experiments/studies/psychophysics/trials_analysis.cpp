@@ -39,6 +39,12 @@ void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
     defaults.factors.emplace_back("group");
   }
   defaults.names = {"condition", "block", "track", "probe", "group"};
+  if (d.sessions() > 1) {
+    defaults.names.emplace_back(analysis::trials::kSession);
+  }
+  for (int session = 1; session <= d.sessions(); ++session) {
+    defaults.sessions.push_back(d.session_name(session));
+  }
   for (const protocols::Block& block : d.order.blocks) {
     for (const protocols::GivenValue& value : block.values) {
       defaults.names.push_back(value.name);
@@ -198,6 +204,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   defaults.cues = cue_names(d);
   defaults.produced = produced_names(d, defaults);
   defaults.levels = defaults.cues.levels;
+  defaults.levels[analysis::trials::kSession] = defaults.sessions;
   for (const auto& group : d.groups) {
     defaults.levels["group"].push_back(group.name);
   }

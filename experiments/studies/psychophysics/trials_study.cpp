@@ -104,12 +104,13 @@ void add_sequential(const AnalysisRequest& request, const TrialsDefinition& defi
 }
 
 /// The sessions that a participant should have had and has not, and those that there are twice.
-void add_sessions_of(const std::string& participant, const std::multiset<int>& there, int sessions,
+void add_sessions_of(const std::string& participant, const std::string& group,
+                     const std::multiset<int>& there, const TrialsDefinition& definition,
                      std::vector<std::string>& remarks) {
   std::vector<int> missing, twice;
-  for (int session = 1; session <= sessions; ++session) {
+  for (int session = 1; session <= definition.sessions(); ++session) {
     const std::size_t files = there.count(session);
-    if (files == 0) {
+    if (files == 0 && definition.comes(session, group)) {
       missing.push_back(session);
     } else if (files > 1) {
       twice.push_back(session);
@@ -146,7 +147,9 @@ void add_other_levels(const trials::TrialsData& data, const trials::TrialsPlan& 
 void add_missing(const AnalysisRequest& request, const TrialsDefinition& definition,
                  const trials::TrialsData& data, std::vector<std::string>& remarks) {
   std::map<std::string, std::multiset<int>> sessions;
+  std::map<std::string, std::string> groups;
   for (const trials::StudySession& session : data.sessions) {
+    groups[session.participant] = session.group;
     sessions[session.participant].insert(session.session);
   }
   const auto planned = static_cast<std::size_t>(definition.design.participants);
@@ -156,7 +159,7 @@ void add_missing(const AnalysisRequest& request, const TrialsDefinition& definit
   }
   for (const auto& [participant, there] : sessions) {
     if (definition.sessions() > 1) {
-      add_sessions_of(participant, there, definition.sessions(), remarks);
+      add_sessions_of(participant, groups[participant], there, definition, remarks);
     }
   }
   if (const auto unfinished = unfinished_sessions(request.folder); !unfinished.empty()) {

@@ -160,7 +160,9 @@ class TrialsStudySimulation final : public StudySimulation {
     trials::TrialsPlan plan = plan_;
     for (int p = 0; p < d_.design.participants; ++p) {
       for (int session = 1; session <= d_.sessions(); ++session) {
-        add_session(p, session, seed, data);
+        if (d_.comes(session, protocols::group_of(d_.groups, p))) {
+          add_session(p, session, seed, data);
+        }
       }
       draw_covariate(participant_name(p), seed, plan.plan.covariate);
     }

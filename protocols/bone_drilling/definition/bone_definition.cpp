@@ -41,6 +41,21 @@ DrillingParameters read_drilling(Table& root) {
   return p;
 }
 
+/// The sessions, of which each may have a number of procedures of its own; the design has the most.
+void read_sessions(Table& root, BoneDefinition& d) {
+  const int usual = d.design.trials;
+  d.session_plans = read_session_plans(
+      root, d.design.sessions, "a name at least", [&](Table& session, int number) {
+        session.describe(
+            {"procedures", "Number of procedures of the session", "design.procedures"});
+        d.procedures.resize(static_cast<std::size_t>(number), usual);
+        d.procedures.back() = session.integer_or("procedures", usual, 1, 1000);
+      });
+  if (!d.procedures.empty()) {
+    d.design.trials = *std::ranges::max_element(d.procedures);
+  }
+}
+
 void read_groups(Table& root, BoneDefinition& d) {
   if (!root.has("groups")) {
     return;
@@ -125,6 +140,19 @@ void read_osteotomy(Table& root, BoneDefinition& d) {
     for (const char* missing : subject::missing_tools(d.simulator.tools)) {
       root.reject("osteotomy_hand",
                   fmt::format("needs a tool of type \"{}\" in tools.in_hand", missing));
+    }
+  }
+}
+
+/// A criterion about the score needs the score.
+void check_scored(Table& root, const BoneDefinition& d) {
+  if (!d.curriculum || !d.score_file.empty()) {
+    return;
+  }
+  for (const bone::CurriculumCase& each : d.curriculum->cases) {
+    if (std::ranges::find(each.pass, bone::kScoreQuantity, &bone::Criterion::quantity) !=
+        each.pass.end()) {
+      root.reject("curriculum", "asks for a score; name its file in feedback.score");
     }
   }
 }
@@ -257,6 +285,11 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     bone.reject("planned_to", "needs a cavity; add a table [cavity]");
   }
   read_groups(root, d);
+  read_sessions(root, d);
+  if (root.has("curriculum")) {
+    Table curriculum = root.table("curriculum");
+    d.curriculum = bone::read_curriculum(curriculum, d.sources);
+  }
   root.leave("analysis");  // of the rule on marked trials
   read_surgeons(root, d);
   bone_display_schema().read(display, d);
@@ -266,6 +299,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
     Table feedback = root.table("feedback");
     feedback_schema().read(feedback, d);
   }
+  check_scored(root, d);
   check_common(root, d);
   check_together(root, d);
   if (folder != nullptr && root.has("drilling_hand")) {
@@ -285,6 +319,19 @@ bool BoneDefinition::has_handpiece() const {
          drilling.controls.buttons[kReverse] != 0 || !drilling.controls.keys[kReverse].empty();
 }
 
+int BoneDefinition::procedures_in(int session) const {
+  const auto at = static_cast<std::size_t>(session - 1);
+  return session >= 1 && at < procedures.size() ? procedures[at] : design.trials;
+}
+
+int BoneDefinition::procedures_before(int session, std::string_view group) const {
+  int all = 0;
+  for (int earlier = 1; earlier < session; ++earlier) {
+    all += comes(earlier, group) ? procedures_in(earlier) : 0;
+  }
+  return all;
+}
+
 const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {
   for (const ParticipantGroup& group : d.groups) {
     if (participant < group.participants) {
@@ -293,6 +340,29 @@ const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {
     participant -= group.participants;
   }
   return nullptr;
+}
+
+BoneDefinition of_case(const BoneDefinition& d, const std::string& name) {
+  const bone::CurriculumCase* own = d.curriculum ? d.curriculum->case_of(name) : nullptr;
+  if (own == nullptr || own->name != name) {
+    throw InputError(fmt::format("{}: has no case '{}' in its curriculum", d.file_name, name));
+  }
+  BoneDefinition narrow = d;
+  narrow.case_name = name;
+  const auto bone =
+      static_cast<std::size_t>(std::ranges::find(d.sources, own->bone) - d.sources.begin());
+  const auto keep = [&](auto& by_bone) {
+    if (bone < by_bone.size()) {
+      by_bone = {by_bone[bone]};
+    }
+  };
+  keep(narrow.sources);
+  keep(narrow.bones);
+  keep(narrow.charts);
+  keep(narrow.nerve_distances);
+  keep(narrow.hint_maps);
+  keep(narrow.region_maps);
+  return narrow;
 }
 
 BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name) {

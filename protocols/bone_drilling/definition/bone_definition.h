@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/bone/curriculum/curriculum.h"
 #include "core/bone/hint/hint_watch.h"
 #include "core/bone/model/bone_model.h"
 #include "core/bone/nerve/nerve_distances.h"
@@ -33,12 +34,20 @@ namespace haptrial::protocols {
 
 inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [experiment]
 inline constexpr const char* kMonitor = "monitor";  // in conditions: "monitor on", "monitor off"
+inline constexpr const char* kTutor = "tutor";  // likewise, where the definition says who is led
 
 /// Participants of one kind. The first ones belong to the first group, and so on.
 struct ParticipantGroup {
   std::string name;
   int participants{0};
   double skill{0.5};  // of virtual ones, 0 to 1
+};
+
+/// A procedure of a study, by its place in it.
+struct ProcedurePlace {
+  int trial{1};        // of the session, from 1; practice: 0
+  int participant{0};  // from 0
+  int session{1};      // of the participant, from 1
 };
 
 /// Where procedures begin instead of at intact bone.
@@ -65,7 +74,10 @@ struct BoneDefinition : Definition {
   subject::DrillingHandParameters hand_plan;  // of the virtual hand
   Eigen::Vector3d beside{0.003, 0.003, 0.0};  // the burr, where its other one holds the tube [m]
   std::vector<ParticipantGroup> groups;       // none: everybody is alike
-  double practice{0.0};                       // before the first procedure, of people only [s]
+  std::vector<int> procedures;  // of each session, where the definition describes sessions
+  std::optional<bone::Curriculum> curriculum;  // nothing: bones come in turn
+  std::string case_name;                       // of it, which the session is of; empty: none
+  double practice{0.0};                        // before the first procedure, of people only [s]
   std::optional<subject::CavityParameters> cavity;  // that is asked for
   std::optional<subject::FragmentPlan> osteotomy;   // likewise, of a cut and its fragment
   std::optional<subject::OsteotomyHandParameters> osteotomy_hand;  // of the virtual hand, with it
@@ -114,13 +126,16 @@ struct BoneDefinition : Definition {
   bool tools_meet() const { return simulator.tube && simulator.tube->at_tool.stiffness > 0.0; }
   /// Whether a participant hears the nerve monitor in a procedure, sees hints, or is kept out of
   /// forbidden regions.
-  /// @param trial  from 1; practice: 0
-  bool hears_nerves(int trial, int participant) const;
-  bool sees_hints(int trial, int participant) const;
-  bool has_regions(int trial, int participant) const;
+  bool hears_nerves(const ProcedurePlace& place) const;
+  bool sees_hints(const ProcedurePlace& place) const;
+  bool has_regions(const ProcedurePlace& place) const;
   /// Condition of a procedure: one of design.conditions.
-  std::string condition(int trial, int participant) const;
+  std::string condition(const ProcedurePlace& place) const;
+  /// Procedures of a session, from 1, and of all sessions before it to which a group comes.
+  int procedures_in(int session) const;
+  int procedures_before(int session, std::string_view group) const;
 
+  int sessions() const override { return design.sessions; }
   PedalUse pedal_use() const override;
   std::vector<ButtonUse> button_uses() const override;
   std::vector<std::string> description() const override;
@@ -153,6 +168,10 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
 /// Reads [nerve_monitor], [hints] and [forbidden], what participants may be given while they drill,
 /// and the conditions of procedures that follow from them.
 void read_given(Table& root, BoneDefinition& definition);
+
+/// The definition of a session of one case of its curriculum: with the case's bone alone.
+/// @throws InputError if it has no such case
+BoneDefinition of_case(const BoneDefinition& definition, const std::string& name);
 
 /// The simulator of a procedure: the definition's, around a bone.
 bone::SimulatorParameters simulator_for(const BoneDefinition& definition,

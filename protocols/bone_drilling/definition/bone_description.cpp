@@ -60,14 +60,18 @@ void warn_of_devices(const BoneDefinition& d, std::vector<std::string>& warnings
   }
 }
 
+/// "shown in every other one", or what stands for none.
+std::string words_on(const char* verb, const GivenIn& in, const char* none) {
+  return in.trials == GivenIn::kNone ? none
+                                     : fmt::format("{} {}", verb, given_text(in, "procedure"));
+}
+
 std::string describe_nerves(const BoneDefinition& d) {
   std::vector<std::string> names;
   for (const nerve::WatchedNerve& nerve : d.nerves->nerves) {
     names.push_back(nerve.name);
   }
-  const char* heard = d.nerves->heard == GivenIn::kAll          ? "heard in every procedure"
-                      : d.nerves->heard == GivenIn::kEveryOther ? "heard in every other one"
-                                                                : "not heard";
+  const std::string heard = words_on("heard", d.nerves->heard, "not heard");
   return fmt::format("nerve monitor (a model, no clinical claim): {}; {} at {:g} Hz, {}",
                      fmt::join(names, ", "), counted(d.nerves->channels(), "channel", "channels"),
                      d.nerves->monitor.rate, heard);
@@ -80,9 +84,7 @@ std::string describe_hints(const hint::HintSetup& setup) {
       kinds.push_back(hint::name_of(kind));
     }
   }
-  const char* shown = setup.shown == GivenIn::kAll          ? "shown in every procedure"
-                      : setup.shown == GivenIn::kEveryOther ? "shown in every other one"
-                                                            : "recorded but not shown";
+  const std::string shown = words_on("shown", setup.shown, "recorded but not shown");
   const std::string from =
       setup.file.empty() ? ""
                          : fmt::format("; safe values of {} ({} of {})",
@@ -92,9 +94,8 @@ std::string describe_hints(const hint::HintSetup& setup) {
 }
 
 std::string describe_regions(const bone::RegionSetup& setup) {
-  const char* given = setup.given == GivenIn::kAll          ? "in every procedure"
-                      : setup.given == GivenIn::kEveryOther ? "in every other one"
-                                                            : "recorded only";
+  const std::string given =
+      setup.given.trials == GivenIn::kNone ? "recorded only" : given_text(setup.given, "procedure");
   const std::string how =
       setup.kind == bone::RegionKind::kSound
           ? "a chime"
@@ -168,6 +169,16 @@ std::vector<std::string> BoneDefinition::description() const {
         "with {:.2g} N·s/m of damping, and the hand of [hand] has {:g}",
         soft.structure, soft.stiffness, soft.tears_at, soft.suction, 0.5 * soft.stiffness / rate,
         hand.damping));
+  }
+  if (curriculum) {
+    std::vector<std::string> names;
+    for (const bone::CurriculumCase& each : curriculum->cases) {
+      names.push_back(each.name);
+    }
+    lines.push_back(
+        fmt::format("curriculum: {}; which case a session is of follows from the "
+                    "sessions before it",
+                    fmt::join(names, ", ")));
   }
   if (nerves) {
     lines.push_back(describe_nerves(*this));

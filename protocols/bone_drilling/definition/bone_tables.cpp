@@ -78,8 +78,11 @@ const Schema<Design>& procedures_schema() {
                    "Number of participants of the study")
           .required()
           .integer("procedures", &Design::trials, 1, 1000,
-                   "Number of procedures of each participant, each on a new bone")
+                   "Number of procedures of each session, each on a new bone; [design.session.N] "
+                   "may give session N another number")
           .required()
+          .integer("sessions", &Design::sessions, 1, 100,
+                   "Sessions of each participant, on days of their own")
           .integer("break_after", &Design::break_after, 0, 999,
                    "Number of procedures after which a break comes; 0: no breaks")
           .number("break_duration", &Design::break_duration, {0.0, 86400.0}, "s",

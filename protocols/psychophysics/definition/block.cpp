@@ -225,24 +225,17 @@ void check_sessions(Table& design, const TrialDesign& d) {
   }
 }
 
-void read_sessions(Table& design, TrialDesign& d) {
-  if (!design.has("session")) {
-    return;
+void read_sessions(Table& root, TrialDesign& d) {
+  d.session_plans =
+      read_session_plans(root, d.sessions, "its blocks", [&](Table& session, int number) {
+        d.by_session.resize(static_cast<std::size_t>(number));
+        d.by_session.back() = read_session(session, d.blocks);
+      });
+  if (!d.session_plans.empty()) {
+    d.by_session.resize(d.session_plans.size());
+    Table design = root.table("design");
+    check_sessions(design, d);
   }
-  Table table = design.table("session");
-  for (int session = 1; session <= d.sessions; ++session) {
-    const std::string number = std::to_string(session);
-    if (table.has(number)) {
-      Table one = table.table(number);
-      d.by_session.push_back(read_session(one, d.blocks));
-    } else {
-      design.reject("session", fmt::format("says nothing of session {0}; add [design.session.{0}] "
-                                           "with its blocks",
-                                           number));
-      d.by_session.emplace_back();
-    }
-  }
-  check_sessions(design, d);
 }
 
 }  // namespace
@@ -292,7 +285,7 @@ TrialDesign read_trial_design(Table& root, bool procedures) {
                   "is a rule for the order, but trials = \"random\" draws each trial without one; "
                   "keep one of the two");
   }
-  read_sessions(design, d);
+  read_sessions(root, d);
   return d;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "protocols/definition/session_plan.h"
 #include "protocols/psychophysics/definition/counterbalance.h"
 
 namespace haptrial {
@@ -71,6 +72,7 @@ struct TrialDesign {
   std::vector<RunLimit> most_in_a_row;
   std::vector<Factor> factors;
   std::vector<Block> blocks;                         // at least one; practice first
+  std::vector<SessionPlan> session_plans;            // of each; empty: nothing is said of them
   std::vector<std::vector<std::size_t>> by_session;  // blocks of each; empty: all in each
 
   /// The blocks of a session as the definition lists them. @param session  from 1
@@ -82,7 +84,8 @@ struct TrialDesign {
 ///
 ///     [design]    participants, [break_after], [break_duration], [break_until], [blocks],
 ///                 [most_in_a_row], [sessions], [trials]
-///     [design.session.N]  blocks = ["practice", …]: those of session N; of all sessions or of none
+///     [design.session.N]  blocks = ["practice", …]: those of session N, beside what every protocol
+///                         has of it (session_plan.h); of all sessions or of none
 ///     [factors]   name = [level, level, …]: numbers, words, or formulas with $
 ///     [practice]  trials, [right_in_a_row], and values as of a block
 ///     [[blocks]]  name, [trials], [practice], [right_in_a_row], [procedures],

@@ -271,6 +271,7 @@ void read_all_objects(Table& root, TrialsDefinition& d) {
 /// Plans the definition's sessions.
 void plan(TrialsDefinition& d) {
   d.design.participants = d.order.participants;
+  d.session_plans = d.order.session_plans;
   d.design.break_after = d.order.break_after;
   d.design.break_duration = d.order.break_duration;
   d.design.break_until_ready = d.order.break_until_ready;

@@ -172,6 +172,9 @@ PlannedTrials planned_trials(const StudiedDefinition& d, std::uint64_t seed, int
       count_order(planned.groups, group_of(d.groups, place.subject));
     }
     for (place.session = 1; place.session <= d.order.sessions; ++place.session) {
+      if (!d.comes(place.session, group_of(d.groups, participant))) {
+        continue;
+      }
       give_seeds(place);
       merge(SessionWalk(d, place, planned).walk(), planned.counts);
     }

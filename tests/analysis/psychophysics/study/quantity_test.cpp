@@ -55,5 +55,25 @@ TEST(QuantityTest, AnOpenValueLeavesNoMean) {
   EXPECT_EQ(thresholds.open, std::vector<std::string>{"C"});
 }
 
+TEST(QuantityTest, WithABaselineChangesAreCompared) {
+  TrialsPlan plan;
+  plan.by = {"group", "session"};
+  plan.baseline = "before";
+  plan.plan = parse_analysis_plan({"taught, after > alone, after"}, "", "tests");
+  std::vector<QuantityValue> values;
+  for (int person = 0; person < 6; ++person) {
+    const std::string name = "P" + std::to_string(person);
+    const std::string group = person < 3 ? "taught" : "alone";
+    values.push_back({name, {group, "before"}, 10.0 * person});
+    values.push_back(
+        {name, {group, "after"}, 10.0 * person + 0.1 * person + (person < 3 ? 4.0 : 1.0)});
+  }
+  const Quantity changed = quantity("force", "force", "N", values, plan);
+  EXPECT_EQ(changed.title, "change of force");
+  EXPECT_EQ(changed.table.names, (std::vector<std::string>{"alone, after", "taught, after"}));
+  ASSERT_TRUE(changed.tests.planned.tests.front().t);
+  EXPECT_NEAR(changed.tests.planned.tests.front().t->difference, 2.7, 1e-12);
+}
+
 }  // namespace
 }  // namespace haptrial::analysis::trials

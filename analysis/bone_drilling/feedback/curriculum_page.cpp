@@ -1,0 +1,138 @@
+#include "analysis/bone_drilling/feedback/curriculum_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include "analysis/bone_drilling/feedback/page_frame.h"
+#include "analysis/document/html.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+using bone::CaseStanding;
+using bone::CheckedCriterion;
+using bone::Curriculum;
+using bone::CurriculumCase;
+using bone::CurriculumStanding;
+using Rows = std::vector<std::vector<std::string>>;
+
+/// "done 2026-03-02, 3 procedures", "next, 2 procedures, 1 passed", "–".
+std::string state_of(const CurriculumStanding& standing, std::size_t place) {
+  const CaseStanding& own = standing.cases[place];
+  const bool next = standing.next == place;
+  if (own.attempts == 0) {
+    return next ? "next" : "–";
+  }
+  const std::string tried = fmt::format("{} {}, {} passed", own.attempts,
+                                        own.attempts == 1 ? "procedure" : "procedures", own.passed);
+  return own.done ? fmt::format("done {}, {}", own.date, tried)
+         : next   ? fmt::format("next, {}", tried)
+                  : fmt::format("open, {}", tried);
+}
+
+std::string criterion_text(const bone::Criterion& criterion) {
+  return fmt::format("{} {} {:g}", criterion.quantity, criterion.least ? "at least" : "at most",
+                     criterion.value);
+}
+
+std::string asked_of(const CurriculumCase& of) {
+  std::vector<std::string> asked;
+  for (const bone::Criterion& criterion : of.pass) {
+    asked.push_back(criterion_text(criterion));
+  }
+  return fmt::format("{}{}", fmt::join(asked, "; "),
+                     of.in_a_row > 1 ? fmt::format("; {} procedures in a row", of.in_a_row) : "");
+}
+
+std::string last_of(const CurriculumCase& of, const CaseStanding& standing) {
+  if (!standing.last) {
+    return "–";
+  }
+  std::vector<std::string> values;
+  for (const CheckedCriterion& each : check(of, *standing.last)) {
+    values.push_back(fmt::format("{} {}: {}", each.criterion.quantity,
+                                 each.value ? fmt::format("{:.4g}", *each.value) : "unknown",
+                                 each.met ? "met" : "missed"));
+  }
+  return fmt::format("{}", fmt::join(values, "; "));
+}
+
+Rows trainee_rows(const CurriculumClass& of) {
+  Rows rows;
+  for (const ClassTrainee& trainee : of.trainees) {
+    const CurriculumStanding& standing = trainee.standing;
+    std::vector<std::string> row{trainee.name, trainee.group.empty() ? "–" : trainee.group};
+    for (std::size_t place = 0; place < of.curriculum.cases.size(); ++place) {
+      row.push_back(state_of(standing, place));
+    }
+    const std::string why = why_next(of.curriculum, standing);
+    row.push_back(!standing.next
+                      ? "every case is done"
+                      : of.curriculum.cases[*standing.next].name + (why.empty() ? "" : ": " + why));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// Trainees whose last procedure of a case misses a criterion, of those who tried it.
+Rows missed_rows(const CurriculumClass& of) {
+  Rows rows;
+  for (std::size_t place = 0; place < of.curriculum.cases.size(); ++place) {
+    const CurriculumCase& own = of.curriculum.cases[place];
+    for (std::size_t i = 0; i < own.pass.size(); ++i) {
+      int tried = 0, missed = 0;
+      for (const ClassTrainee& trainee : of.trainees) {
+        if (const auto& last = trainee.standing.cases[place].last) {
+          ++tried;
+          missed += check(own, *last)[i].met ? 0 : 1;
+        }
+      }
+      rows.push_back(
+          {own.name, criterion_text(own.pass[i]), std::to_string(tried), std::to_string(missed)});
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string curriculum_section(const Curriculum& curriculum, const CurriculumStanding& standing) {
+  Rows rows;
+  for (std::size_t place = 0; place < curriculum.cases.size(); ++place) {
+    const CurriculumCase& own = curriculum.cases[place];
+    rows.push_back(
+        {own.name, state_of(standing, place), asked_of(own), last_of(own, standing.cases[place])});
+  }
+  const std::string why = why_next(curriculum, standing);
+  const std::string next = standing.next
+                               ? fmt::format("Next: {}{}.", curriculum.cases[*standing.next].name,
+                                             why.empty() ? "" : " (" + why + ")")
+                               : "Every case is done.";
+  return heading("Curriculum") + paragraph(next) +
+         html_table({"case", "state", "to pass", "last procedure"}, rows);
+}
+
+std::string class_page(const CurriculumClass& of) {
+  const bool simulated = std::ranges::any_of(of.trainees, &ClassTrainee::simulated);
+  std::vector<std::string> names{"trainee", "group"};
+  for (const CurriculumCase& each : of.curriculum.cases) {
+    names.push_back(each.name);
+  }
+  names.emplace_back("next");
+  std::string body = simulated ? banner(
+                                     "SIMULATED: some trainees are programs. This page proves "
+                                     "nothing about people.")
+                               : "";
+  body += html_table(names, trainee_rows(of));
+  body += heading("What is missed") +
+          paragraph(
+              "Of the trainees who tried a case, how many miss each criterion in their last "
+              "procedure of it.") +
+          html_table({"case", "to pass", "tried", "missed last"}, missed_rows(of));
+  return whole_page("Class of " + of.name, simulated, body);
+}
+
+}  // namespace haptrial::analysis::drilling

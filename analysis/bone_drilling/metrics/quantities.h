@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptrial::analysis::drilling {
+
+/// The names that quantity() knows of procedures on any bone; those of its structures are said by
+/// their form, "bone_left_STRUCTURE_mm".
+std::vector<std::string> quantity_names();
+
+/// Whether quantity() may know a name, on some bone.
+bool is_quantity(std::string_view name);
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/design/analysis_plan.h"
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::analysis::drilling {
+
+/// What a definition says that a learning plan may name.
+struct LearningNames {
+  std::vector<std::string> groups;    // in their order; one if everybody is alike
+  std::vector<std::string> sessions;  // in their order
+  std::vector<std::string> tests;     // sessions that give nothing, in their order
+};
+
+/// How a study of drillings over several sessions says what was learned: [analysis] of a
+/// definition.
+struct LearningPlan {
+  std::vector<std::string> outcomes;  // quantities of metrics.csv, the decisive one first; or none
+  std::string baseline;               // session from which changes are counted
+  std::vector<std::string> tests;     // sessions up to which they are, in their order
+  /// Planned tests compare changes: sides are groups, tests, or "GROUP, TEST". Their directions are
+  /// those of the first outcome.
+  AnalysisPlan plan;
+};
+
+/// Reads the keys `outcomes`, `baseline` and `planned` of [analysis], and those that tests have
+/// beside them, if `outcomes` is there; problems are noted.
+LearningPlan read_learning_plan(Table& root, const LearningNames& names);
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,271 @@
+#include "analysis/bone_drilling/report/learning_section.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "analysis/bone_drilling/report/validity_words.h"
+#include "analysis/document/palette.h"
+#include "analysis/statistics/design/changes.h"
+#include "analysis/statistics/design/design_blocks.h"
+#include "analysis/statistics/design/design_lines.h"
+#include "analysis/statistics/design/wording.h"
+#include "core/base/error.h"
+
+namespace haptrial::analysis::drilling {
+namespace {
+
+constexpr std::size_t kGroup = 0, kSession = 1;  // factors
+
+/// Title and unit of a quantity that some procedure has.
+void describe(std::span<const ProcedureSummary> procedures, LearnedOutcome& outcome) {
+  for (const MetricKind& kind : metric_kinds()) {
+    if (kind.name == outcome.name) {
+      outcome.title = kind.title;
+      outcome.unit = kind.unit;
+    }
+  }
+  for (const ProcedureSummary& p : procedures) {
+    for (const AchievedFigure& figure : figures_of(p.achieved)) {
+      if (figure.column == outcome.name) {
+        outcome.title = figure.title;
+        outcome.unit = figure.unit;
+      }
+    }
+  }
+  if (outcome.title.empty()) {
+    throw InputError(
+        fmt::format("analysis.outcomes names '{}', which no procedure has; allowed: {}",
+                    outcome.name, fmt::join(quantity_names(procedures.front()), ", ")));
+  }
+}
+
+std::vector<Observation> observations_of(std::span<const ProcedureSummary> procedures,
+                                         const std::string& name) {
+  std::vector<Observation> observations;
+  for (const ProcedureSummary& p : procedures) {
+    if (const auto value = quantity(p, name)) {
+      const std::string session =
+          p.session_name.empty() ? std::to_string(p.session_number) : p.session_name;
+      observations.push_back({p.participant, {p.group, session}, *value});
+    }
+  }
+  return observations;
+}
+
+std::vector<std::string> joined(std::vector<std::string> first,
+                                const std::vector<std::string>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+void add_means(const DesignTable& table, LearnedOutcome& outcome) {
+  outcome.groups = table.factors[kGroup].levels;
+  outcome.sessions = table.factors[kSession].levels;
+  outcome.means.assign(
+      outcome.groups.size(),
+      std::vector<Defined<MeanInterval>>(outcome.sessions.size(), Undefined{"nobody came"}));
+  for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
+    std::vector<double> values;
+    for (const auto& row : table.means) {
+      if (row[cell]) {
+        values.push_back(*row[cell]);
+      }
+    }
+    const auto& levels = table.cells[cell];
+    if (!values.empty()) {
+      outcome.means[levels[kGroup]][levels[kSession]] = mean_interval(values);
+    }
+  }
+}
+
+LearnedOutcome outcome_of(std::span<const ProcedureSummary> procedures, const std::string& name,
+                          const LearningPlan& plan, const LearningNames& names) {
+  LearnedOutcome outcome;
+  outcome.name = name;
+  describe(procedures, outcome);
+  const std::vector<Observation> all = observations_of(procedures, name);
+  const auto order = joined(names.groups, names.sessions);
+  add_means(design_table(all, {"group", "session"}, order), outcome);
+  std::vector<Observation> changes = changes_from(all, kSession, plan.baseline);
+  std::erase_if(changes, [&](const Observation& each) {
+    return std::ranges::find(plan.tests, each.levels[kSession]) == plan.tests.end();
+  });
+  if (changes.empty()) {
+    return outcome;
+  }
+  outcome.changes = design_table(changes, {"group", "change"}, order);
+  Resampling resampling;
+  resampling.stream = "learning " + name;
+  outcome.tests = design_tests(outcome.changes, plan.plan, resampling);
+  return outcome;
+}
+
+Look look_of_group(std::size_t group) {
+  static constexpr std::array<Look, 6> kLooks{{{palette::kBlue, palette::kSolid, 7, 2.0, 1.0},
+                                               {palette::kOrange, palette::kLong, 5, 2.0, 1.0},
+                                               {palette::kGreen, palette::kShort, 9, 2.0, 1.2},
+                                               {palette::kPurple, palette::kMixed, 13, 2.0, 1.2},
+                                               {palette::kGrey, palette::kSolid, 4, 2.0, 1.0},
+                                               {palette::kBlack, palette::kLong, 6, 2.0, 1.0}}};
+  return kLooks[group % kLooks.size()];
+}
+
+std::string unit_of(const LearnedOutcome& outcome) {
+  return outcome.unit == "1" ? "" : outcome.unit;
+}
+
+Series series_of(const LearnedOutcome& outcome, std::size_t group) {
+  constexpr double kAside = 0.06;  // of groups from each other
+  Series series{outcome.groups[group], Mark::kLinkedBars, look_of_group(group)};
+  const double middle = 0.5 * static_cast<double>(outcome.groups.size() - 1);
+  for (std::size_t session = 0; session < outcome.sessions.size(); ++session) {
+    if (const auto& mean = outcome.means[group][session]) {
+      series.x.push_back(static_cast<double>(session + 1) +
+                         kAside * (static_cast<double>(group) - middle));
+      series.y.push_back(mean->mean);
+      series.low.push_back(mean->low);
+      series.high.push_back(mean->high);
+    }
+  }
+  return series;
+}
+
+Figure figure_of(const LearnedOutcome& outcome, bool simulated) {
+  Figure figure;
+  figure.name = "learning-" + outcome.name;
+  figure.title = capitalized(outcome.title) + " by session";
+  figure.x_label = "Session";
+  figure.y_label = capitalized(outcome.title) +
+                   (unit_of(outcome).empty() ? "" : fmt::format(" ({})", outcome.unit));
+  figure.simulated = simulated;
+  for (std::size_t session = 0; session < outcome.sessions.size(); ++session) {
+    figure.x_names.emplace_back(static_cast<double>(session + 1), outcome.sessions[session]);
+  }
+  figure.x_range = Range{0.5, static_cast<double>(outcome.sessions.size()) + 0.5};
+  for (std::size_t group = 0; group < outcome.groups.size(); ++group) {
+    Series series = series_of(outcome, group);
+    if (!series.x.empty()) {
+      figure.series.push_back(std::move(series));
+    }
+  }
+  figure.caption =
+      "Means of participants' means with 95 % confidence intervals between participants. What "
+      "groups learned is compared by changes within participants, whose intervals are in the "
+      "table.";
+  figure.alt =
+      fmt::format("A line for each group over the sessions {}.", fmt::join(outcome.sessions, ", "));
+  return figure;
+}
+
+/// Means by group and session, then the mean change up to each test.
+void add_outcome_table(Document& document, const LearnedOutcome& outcome,
+                       const LearningPlan& plan) {
+  std::vector<std::string> heading{"group"};
+  heading.insert(heading.end(), outcome.sessions.begin(), outcome.sessions.end());
+  for (const std::string& test : plan.tests) {
+    heading.push_back(fmt::format("change to {}", test));
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t group = 0; group < outcome.groups.size(); ++group) {
+    std::vector<std::string> row{outcome.groups[group]};
+    for (const auto& mean : outcome.means[group]) {
+      row.push_back(interval_word(mean));
+    }
+    for (const std::string& test : plan.tests) {
+      row.push_back(interval_word(mean_change(outcome, outcome.groups[group], test)));
+    }
+    rows.push_back(std::move(row));
+  }
+  document.table(heading, rows);
+}
+
+}  // namespace
+
+Defined<MeanInterval> mean_change(const LearnedOutcome& outcome, const std::string& group,
+                                  const std::string& test) {
+  const DesignTable& table = outcome.changes;
+  std::vector<double> values;
+  for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
+    const auto& levels = table.cells[cell];
+    if (table.factors[kGroup].levels[levels[kGroup]] == group &&
+        table.factors[kSession].levels[levels[kSession]] == test) {
+      for (const auto& row : table.means) {
+        if (row[cell]) {
+          values.push_back(*row[cell]);
+        }
+      }
+    }
+  }
+  return mean_interval(values);
+}
+
+LearnedStudy learned_study(std::span<const ProcedureSummary> procedures, const LearningPlan& plan,
+                           const LearningNames& names) {
+  LearnedStudy study{plan, {}};
+  LearningPlan own = plan;
+  for (const std::string& name : plan.outcomes) {
+    study.outcomes.push_back(outcome_of(procedures, name, own, names));
+    for (PlannedTest& test : own.plan.tests) {  // directions are those of the first outcome
+      test.tail = Tail::kTwoSided;
+    }
+  }
+  return study;
+}
+
+std::vector<Figure> learning_figures(const LearnedStudy& study, bool simulated) {
+  std::vector<Figure> figures;
+  for (const LearnedOutcome& outcome : study.outcomes) {
+    figures.push_back(figure_of(outcome, simulated));
+  }
+  return figures;
+}
+
+void add_learning_section(Document& document, const LearnedStudy& study,
+                          const std::vector<Drawing>& drawings, bool simulated) {
+  if (study.outcomes.empty()) {
+    return;
+  }
+  document.heading(simulated ? "Learning (simulated)" : "Learning");
+  document.paragraph(fmt::format(
+      "A change is a participant's mean in a test less the mean in {}. Groups are compared in "
+      "their "
+      "changes, so that a test of two groups is one of group by session. Holm's adjustment covers "
+      "the planned tests of one outcome, and the first outcome decides{}.",
+      study.plan.baseline,
+      study.outcomes.size() > 1 ? "; tests of the others are two-tailed and stand beside it" : ""));
+  for (const LearnedOutcome& outcome : study.outcomes) {
+    document.subheading(capitalized(outcome.title) +
+                        (unit_of(outcome).empty() ? "" : fmt::format(" [{}]", outcome.unit)));
+    for (const Drawing& drawing : drawings) {
+      if (drawing.figure.name == "learning-" + outcome.name) {
+        document.picture(drawing);
+      }
+    }
+    add_outcome_table(document, outcome, study.plan);
+    if (outcome.changes.cells.empty()) {
+      document.paragraph("Nobody has both the baseline and a test yet, so no change is known.");
+    } else {
+      add_design_tests(document, outcome.changes, outcome.tests, unit_of(outcome));
+    }
+  }
+}
+
+std::vector<std::string> learning_lines(const LearnedStudy& study) {
+  std::vector<std::string> lines;
+  if (!study.outcomes.empty()) {
+    const LearnedOutcome& outcome = study.outcomes.front();
+    for (const auto& found : {effect_lines(outcome.tests), planned_lines(outcome.tests)}) {
+      for (const std::string& line : found) {
+        const std::size_t end = line.ends_with('.') ? line.size() - 1 : line.size();
+        lines.push_back(fmt::format("change of {}: {}", outcome.title, line.substr(0, end)));
+      }
+    }
+  }
+  return lines;
+}
+
+}  // namespace haptrial::analysis::drilling

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/report/learning_plan.h"
+#include "analysis/document/document.h"
+#include "analysis/statistics/base/descriptive.h"
+#include "analysis/statistics/design/design_tests.h"
+
+namespace haptrial::analysis::drilling {
+
+/// A quantity over the sessions of a study, participants as the unit.
+struct LearnedOutcome {
+  std::string name;                   // of the quantity, as in metrics.csv without its unit
+  std::string title;                  // "planned cavity removed"
+  std::string unit;                   // "1": a pure number
+  std::vector<std::string> groups;    // that have values, in the definition's order
+  std::vector<std::string> sessions;  // likewise, tests and trainings
+  /// (groups x sessions) over participants' means; undefined where nobody came.
+  std::vector<std::vector<Defined<MeanInterval>>> means;
+  DesignTable changes;  // from the baseline, by "group" and "change" up to a test
+  DesignTests tests;    // of them
+};
+
+/// What a study learned; without outcomes, the definition asks for none.
+struct LearnedStudy {
+  LearningPlan plan;
+  std::vector<LearnedOutcome> outcomes;  // (plan.outcomes)
+};
+
+/// @param names  of the study, in their order
+/// @throws InputError for an outcome that no procedure has, and planned tests that name several
+/// things at once
+LearnedStudy learned_study(std::span<const ProcedureSummary> procedures, const LearningPlan& plan,
+                           const LearningNames& names);
+
+/// The mean change of a group from the baseline to a test.
+Defined<MeanInterval> mean_change(const LearnedOutcome& outcome, const std::string& group,
+                                  const std::string& test);
+
+/// A figure of each outcome over the sessions, by group.
+std::vector<Figure> learning_figures(const LearnedStudy& study, bool simulated);
+
+/// Learning in a report; nothing without outcomes. @param drawings  with those of
+/// learning_figures()
+void add_learning_section(Document& document, const LearnedStudy& study,
+                          const std::vector<Drawing>& drawings, bool simulated);
+
+/// Lines for the end of the command, without "Simulated": effects and planned tests of the outcome
+/// that decides.
+std::vector<std::string> learning_lines(const LearnedStudy& study);
+
+}  // namespace haptrial::analysis::drilling

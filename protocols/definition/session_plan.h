@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+
+/// What a definition says of one session of each participant, in [design.session.N]: what every
+/// protocol has of it.
+struct SessionPlan {
+  std::string name{};                 // for reports and tests, "pre-test"; empty: its number
+  std::vector<std::string> groups{};  // whose participants alone come; empty: everybody
+  bool gives{true};  // what the study gives is given: hints, a monitor, regions, a tutor
+};
+
+/// Reads the rest of a session's table, which belongs to a protocol. @param number  from 1
+using ReadSession = std::function<void(Table& session, int number)>;
+
+/// The sessions that [design.session.N] describes, of all sessions or of none; problems are noted.
+/// @param sessions  of each participant >= 1
+/// @param contents  what a session's table says at least, for a sentence: "its blocks"
+std::vector<SessionPlan> read_session_plans(Table& root, int sessions, std::string_view contents,
+                                            const ReadSession& read_more);
+
+/// Notes groups that [groups] does not have, where a key names some.
+void check_groups(Table& root, Table& table, std::string_view key,
+                  const std::vector<std::string>& groups);
+
+}  // namespace haptrial::protocols
