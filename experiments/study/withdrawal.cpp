@@ -90,8 +90,7 @@ bool has_text(const fs::path& file) {
 }
 
 bool names(const fs::path& file, const std::string& subject) {
-  return has_word(file.string(), subject) ||
-         (has_text(file) && has_word(file_text(file), subject));
+  return has_word(file.string(), subject) || (has_text(file) && has_word(file_text(file), subject));
 }
 
 /// Folders that hold the participant's sessions, or something made from them.
