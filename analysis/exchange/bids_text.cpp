@@ -241,7 +241,8 @@ std::string readme(std::span<const Session> sessions, double motion) {
       targets ? "stimuli/           the ideal movement and target force of each block\n" : "";
   const std::string moved =
       motion > 0.0 ? fmt::format(
-                         "motion/            the tip's movement, {} of its samples a second\n"
+                         "motion/            the movement of every device's tip, {} of its samples "
+                         "a second\n"
                          "                   (picked, not filtered), and the events again\n",
                          motion)
                    : "";

@@ -12,6 +12,7 @@
 
 #include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/columns.h"
+#include "analysis/exchange/other_devices.h"
 #include "analysis/exchange/pass_facts.h"
 #include "analysis/files/new_folder.h"
 #include "analysis/files/xdf_file.h"
@@ -61,9 +62,33 @@ std::vector<double> values_of(const record::Sample& s) {
   return values;
 }
 
-/// Writes every tick. @returns the times of the passes' first ticks [s]
-std::map<std::uint64_t, double> write_device(const SessionReader& reader, XdfFile& file,
-                                             std::uint32_t stream, Counter& counter) {
+/// The stream of a device after the first. @param number  as in /devices
+XdfStream other_stream(const record::SessionInfo& info, std::size_t number) {
+  XdfStream stream = device_stream(info);
+  stream.name = fmt::format("device_{}", number);
+  stream.channels.clear();
+  for (const ColumnDoc& doc : docs_of(record::table_of<record::DeviceRow>())) {
+    if (doc.name != "sequence" && doc.name != "device") {
+      stream.channels.push_back({doc.name, doc.unit});
+    }
+  }
+  return stream;
+}
+
+std::vector<double> values_of(const record::DeviceRow& row) {
+  std::vector<double> values;
+  for (const Eigen::Vector3d& vector : {row.position, row.velocity, row.force}) {
+    values.insert(values.end(), vector.begin(), vector.end());
+  }
+  values.push_back(static_cast<double>(row.buttons));
+  return values;
+}
+
+/// Writes every tick of every device. @param stream  of the first device; those of the others
+/// follow it. @returns the times of the passes' first ticks [s]
+std::map<std::uint64_t, double> write_devices(const SessionReader& reader, XdfFile& file,
+                                              std::uint32_t stream, OtherDevices& others,
+                                              Counter& counter) {
   std::map<std::uint64_t, double> begins;
   for (const record::PassRow& pass : reader.passes()) {
     begins[pass.first_sample] = static_cast<double>(pass.first_sample) / reader.info().rate;
@@ -73,6 +98,10 @@ std::map<std::uint64_t, double> write_device(const SessionReader& reader, XdfFil
     const std::uint64_t count = std::min(kRowsAtOnce, rows - row);
     for (const record::Sample& sample : reader.samples(row, count)) {
       file.add(stream, seconds(sample.time_ns), values_of(sample));
+      for (const record::DeviceRow& other : others.at_tick(sample.sequence)) {
+        file.add(stream + static_cast<std::uint32_t>(other.device), seconds(sample.time_ns),
+                 values_of(other));
+      }
       if (const auto begin = begins.find(sample.sequence); begin != begins.end()) {
         begin->second = seconds(sample.time_ns);
       }
@@ -170,8 +199,13 @@ std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counte
   std::size_t streams = 0;
   std::map<std::uint64_t, double> begins;
   if (reader.sample_count() > 0) {
-    ++streams;
-    begins = write_device(reader, file, file.add_stream(device_stream(session.info)), counter);
+    OtherDevices others(reader);
+    const std::uint32_t first = file.add_stream(device_stream(session.info));
+    for (std::size_t number = 1; number <= others.count(); ++number) {
+      file.add_stream(other_stream(session.info, number));
+    }
+    streams += 1 + others.count();
+    begins = write_devices(reader, file, first, others, counter);
   }
   if (!begins.empty()) {
     ++streams;

@@ -15,7 +15,7 @@ struct XdfSummary {
   std::uint64_t samples{0};  // of devices
 };
 
-/// Writes each session as a file of the Extensible Data Format, SUBJECT.xdf: every tick of the
+/// Writes each session as a file of the Extensible Data Format, SUBJECT.xdf: every tick of each
 /// device, passes with what was presented and answered, events, and each channel, all on the
 /// session's clock. Consent and free notes about participants stay out.
 /// @param folder  new or empty; it appears whole or not at all.

@@ -83,8 +83,14 @@ std::vector<fs::path> sessions_among(const std::vector<fs::path>& files,
   return own;
 }
 
+/// Whether bytes of a file are words: in compressed ones an identifier occurs by chance.
+bool has_text(const fs::path& file) {
+  static const std::set<std::string> kCompressed{".gz", ".png", ".mp4", ".webm", ".pdf"};
+  return !kCompressed.contains(file.extension().string());
+}
+
 bool names(const fs::path& file, const std::string& subject) {
-  return has_word(file.string(), subject) || has_word(file_text(file), subject);
+  return has_word(file.string(), subject) || (has_text(file) && has_word(file_text(file), subject));
 }
 
 /// Folders that hold the participant's sessions, or something made from them.

@@ -115,6 +115,14 @@ TEST_F(WithdrawTest, StimuliDefinitionsAndOtherStudiesStay) {
   EXPECT_THAT(files_with("S02"), IsEmpty());
 }
 
+TEST_F(WithdrawTest, BytesOfCompressedFilesAreNoWords) {
+  fs::create_directories(folder_ / "data/sub-S01");
+  const fs::path theirs = folder_ / "data/sub-S01/sub-S01_physio.tsv.gz";
+  write_text(theirs, "by chance \x8b\x01S02\x02");
+  EXPECT_EQ(run("withdraw out/mine S02 --also data --yes").status, 0);
+  EXPECT_TRUE(fs::exists(theirs));
+}
+
 TEST(HasWordTest, NeighboursDecide) {
   EXPECT_TRUE(has_word("P03", "P03"));
   EXPECT_TRUE(has_word("P03-session-2.h5", "P03"));

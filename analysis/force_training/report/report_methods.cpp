@@ -21,6 +21,10 @@ std::string methods(const StudyResult& study) {
   for (const auto& [name, value] : study.parameters) {
     parameters.push_back(name + " " + value);
   }
+  std::string compared = comparison_words(study.statistics.tests);
+  for (const std::string& sentence : sentences_beside(study.statistics.tests, "recall error")) {
+    compared += " " + sentence;
+  }
   return fmt::format(
       "Recall was scored as in Morris (2006, §4.3): target and applied force were resampled to a "
       "common time base, the applied force low-pass filtered, the two aligned by dynamic "
@@ -32,7 +36,7 @@ std::string methods(const StudyResult& study) {
       "arrangements "
       "if there are at most 1,000,000). {} Intervals have a coverage of 95 %; "
       "those of shares of variance have 90 % and invert the noncentral F distribution.{}",
-      joined(parameters), comparison_words(study.statistics.tests), kMixedModel,
+      joined(parameters), compared, kMixedModel,
       study.simulated() ? " All participants were simulated." : "");
 }
 

@@ -138,6 +138,14 @@ std::string rating_response(const ImportedStudy& study) {
                      kImportedRating, low, std::max(high, low + 1));
 }
 
+std::string by_line(const ImportedStudy& study) {
+  std::vector<std::string> names;
+  for (const auto& factor : study.columns.factors) {
+    names.push_back(toml_text(factor.variable));
+  }
+  return fmt::format("by = [{}]\n", fmt::join(names, ", "));
+}
+
 std::string analysis_table(const ImportedStudy& study, const ImportedAnalysis& analysis,
                            const std::string& kind) {
   std::string text = fmt::format("\n[analysis]\nkind = {}\n", toml_text(kind));
@@ -146,6 +154,9 @@ std::string analysis_table(const ImportedStudy& study, const ImportedAnalysis& a
   }
   if (!analysis.yes.empty()) {
     text += fmt::format("yes = {}\n", toml_text(analysis.yes));
+  }
+  if (kind == "detection" && !study.columns.factors.empty()) {
+    text += by_line(study);  // other kinds compare the factors without it
   }
   if (kind != "psychometric") {
     return text;

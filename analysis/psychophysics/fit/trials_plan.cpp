@@ -515,12 +515,13 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
           [&](Table& table, const std::string&, P& plan) { read_tests(table, defaults, plan); })
       .otherwise("none")
       .keys_of(&P::plan, tests_beside_schema())
-      .custom("covariate",
-              "Score of a page of questions, as PAGE.SCORE, whose influence planned tests and the "
-              "effect of a factor are adjusted for",
-              [&](Table& table, const std::string& key, P& plan) {
-                read_covariate(table, key, defaults, plan);
-              })
+      .custom(
+          "covariate",
+          "Score of a page of questions, as PAGE.SCORE, that is held in tests between people; of "
+          "conditions that the same people had, whether their differences follow it",
+          [&](Table& table, const std::string& key, P& plan) {
+            read_covariate(table, key, defaults, plan);
+          })
       .otherwise("none");
   add_answers(schema, defaults);
   schema.check([&](Table& table, P& plan) {

@@ -314,8 +314,8 @@ FindingTable detection_findings(const TrialsResult& result) {
       add(row, "binormal_roc/low_95", "", b->area_low);
       add(row, "binormal_roc/high_95", "", b->area_high);
       add(row, "binormal_roc/a", "", b->a);
-      add(row, "binormal_roc/b", "", b->b);
-      add(row, "binormal_roc/d_a", "", b->d_a).csv = "d_a";
+      add(row, "binormal_roc/b", "b = sd of noise / sd of signal", b->b).csv = "binormal_b";
+      add(row, "binormal_roc/d_a", "d_a", b->d_a).csv = "d_a";
     } else {
       add_missing(row, "binormal_roc", "", b.because());
     }

@@ -4,7 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
+#include <string>
+#include <vector>
 
 #include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_figures.h"
@@ -125,15 +126,30 @@ std::string interval_words(const TrialsResult& result) {
   return words;
 }
 
+void add_binormal_methods(Document& document, const TrialsResult& result) {
+  if (std::ranges::any_of(result.detected, [](const auto& one) { return bool(one.binormal); })) {
+    document.paragraph(
+        "Ratings are also described by normal distributions of unequal variances (Dorfman and Alf "
+        "1969): z(H) = a + b z(F), b the standard deviation of the noise over that of the signal, "
+        "d_a = √2 a / √(1 + b²), which is d' if the variances are equal.");
+  }
+}
+
 /// Sentences on the tests of quantities that are compared, each once.
 std::string compared_words(const TrialsResult& result) {
-  std::set<std::string> all;
+  std::vector<std::string> all;
+  const auto add = [&all](const std::string& sentence) {
+    if (std::ranges::find(all, sentence) == all.end()) {
+      all.push_back(sentence);
+    }
+  };
   for (const Quantity& quantity : result.quantities) {
     if (quantity.compared && quantity.table.cells.size() > 1) {
-      all.insert(" " + comparison_words(quantity.tests));
+      add(comparison_words(quantity.tests));
+      std::ranges::for_each(sentences_beside(quantity.tests, quantity.title), add);
     }
   }
-  return all.empty() ? " No conditions were compared." : fmt::format("{}", fmt::join(all, ""));
+  return all.empty() ? " No conditions were compared." : fmt::format(" {}", fmt::join(all, " "));
 }
 
 void add_methods(Document& document, const TrialsResult& result) {
@@ -152,6 +168,7 @@ void add_methods(Document& document, const TrialsResult& result) {
         "(log-linear correction, Hautus 1995). Signal is in the trials in which \"yes\" is right; "
         "if "
         "the definition does not say what is right, in those with a level above 0 and no probe.");
+    add_binormal_methods(document, result);
   } else if (plan.kind == AnalysisKind::kMagnitude) {
     document.paragraph(
         "A participant's repeated estimates at a level are put together by their geometric mean; "

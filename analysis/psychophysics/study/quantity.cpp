@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "analysis/statistics/design/changes.h"
+#include "core/base/error.h"
 
 namespace haptrial::analysis::trials {
 
@@ -102,6 +103,40 @@ Quantity quantity(std::string name, std::string title, std::string unit,
     result.tests = design_tests(result.table, plan.plan, resampling);
   }
   return result;
+}
+
+Quantity* compared_quantity(std::vector<Quantity>& all, const std::string& name,
+                            std::string_view key) {
+  std::vector<std::string> names;
+  for (Quantity& each : all) {
+    if (!each.compared) {
+      continue;
+    }
+    if (name.empty() || each.name == name) {
+      return &each;
+    }
+    names.push_back(each.name);
+  }
+  if (!names.empty()) {
+    throw InputError(fmt::format("{} is \"{}\"; allowed: {}", key, name, fmt::join(names, ", ")));
+  }
+  return nullptr;
+}
+
+void keep_equivalence(std::vector<Quantity>& all, const TestsBeside& beside) {
+  if (!(beside.equivalence > 0.0)) {
+    return;
+  }
+  const Quantity* kept = compared_quantity(all, beside.equivalence_of, "analysis.equivalence_of");
+  for (Quantity& each : all) {
+    for (SideTest& test : each.tests.planned.tests) {
+      if (&each != kept) {
+        test.beside.equivalence = 0.0;
+        test.equivalence = Undefined{kNotAskedFor};
+        test.equivalence_holm = Undefined{kNotAskedFor};
+      }
+    }
+  }
 }
 
 }  // namespace haptrial::analysis::trials

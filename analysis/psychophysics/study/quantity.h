@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/psychophysics/fit/trials_plan.h"
@@ -34,6 +35,18 @@ struct Quantity {
 /// The plan without the directions of its planned tests, which are of the study's first quantity:
 /// for quantities of another kind, such as widths beside thresholds.
 TrialsPlan without_directions(TrialsPlan plan);
+
+/// The compared quantity of a name that a definition states; an empty name means the first.
+/// @param key  of the definition, for the sentence
+/// @returns null if nothing is compared
+/// @throws InputError if no compared quantity has the name
+Quantity* compared_quantity(std::vector<Quantity>& all, const std::string& name,
+                            std::string_view key);
+
+/// Takes the plan's test of equivalence from all quantities but the one that its bound is of: a
+/// bound has a unit.
+/// @throws InputError as compared_quantity()
+void keep_equivalence(std::vector<Quantity>& all, const TestsBeside& beside);
 
 /// The range that holds every value of a quantity.
 enum class ValueRange { kAny, kPositive, kShare };

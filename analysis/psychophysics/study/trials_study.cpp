@@ -172,7 +172,7 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
 
 void add_detection(TrialsResult& result) {
   result.detected = detected(result.data, result.plan);
-  std::vector<QuantityValue> d_prime, criterion, area;
+  std::vector<QuantityValue> d_prime, criterion, area, d_a, log_sd;
   for (const DetectedCondition& one : result.detected) {
     if (one.detection) {
       d_prime.push_back({one.participant, one.levels, one.detection->d_prime});
@@ -181,18 +181,28 @@ void add_detection(TrialsResult& result) {
     if (one.roc) {
       area.push_back({one.participant, one.levels, one.roc->area});
     }
+    if (one.binormal) {
+      d_a.push_back({one.participant, one.levels, one.binormal->d_a});
+      log_sd.push_back({one.participant, one.levels, -std::log(one.binormal->b)});
+    }
   }
   const std::size_t first = result.quantities.size();
   const bool chosen = std::ranges::any_of(result.tracks, &TrackEstimate::adaptive);
   const std::string at = chosen ? " at the levels that the procedure chose" : "";
   const auto add = [&](const char* name, const std::string& title, const auto& values,
-                       ValueRange range = ValueRange::kAny) {
-    result.quantities.push_back(quantity(name, title + at, "", values, result.plan, range));
+                       const TrialsPlan& plan, ValueRange range = ValueRange::kAny) {
+    result.quantities.push_back(quantity(name, title + at, "", values, plan, range));
   };
-  add("d_prime", "sensitivity d'", d_prime);
-  add("criterion", "criterion c", criterion);
+  const TrialsPlan two_sided = without_directions(result.plan);
+  add("d_prime", "sensitivity d'", d_prime, result.plan);
+  add("criterion", "criterion c", criterion, two_sided);
   if (!area.empty()) {
-    add("roc_area", "area under the ROC curve of ratings", area, ValueRange::kShare);
+    add("roc_area", "area under the ROC curve of ratings", area, result.plan, ValueRange::kShare);
+  }
+  if (!d_a.empty()) {
+    add("d_a", "sensitivity d_a of unequal variances", d_a, result.plan);
+    add("log_signal_sd", "logarithm of the signal's standard deviation over the noise's", log_sd,
+        two_sided);
   }
   if (result.plan.metacognition) {
     std::ranges::move(metacognition_quantities(result.detected, result.plan),

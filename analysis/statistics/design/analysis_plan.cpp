@@ -85,6 +85,10 @@ const Schema<TestsBeside>& beside_keys() {
                   "Largest difference that counts as none, in the unit of the tested values: "
                   "planned tests also say whether the difference lies within it, by two one-sided "
                   "tests; 0: they do not")
+          .text("equivalence_of", &B::equivalence_of,
+                "The quantity whose differences the bound is of, by its name in results.json; "
+                "others have no such test")
+          .otherwise("the first that is compared")
           .number("trimmed", &B::trimmed, {0.0, 0.4}, "1",
                   "Share of the participants at each end whom a robust test beside each planned "
                   "one leaves out (Yuen's test of trimmed means), such as 0.2; 0: there is none");

@@ -28,7 +28,8 @@ struct PlannedTest {
 struct TestsBeside {
   bool bayes_factors{false};
   double equivalence{0.0};  // largest difference that counts as none, in the values' unit; 0: none
-  double trimmed{0.0};      // share of each tail that Yuen's test leaves out; 0: it is not made
+  std::string equivalence_of;  // the quantity of that bound, as in results.json; empty: the first
+  double trimmed{0.0};         // share of each tail that Yuen's test leaves out; 0: it is not made
 };
 
 /// A number of each participant for which planned tests are adjusted.

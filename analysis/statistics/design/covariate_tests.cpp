@@ -18,6 +18,8 @@ using Eigen::MatrixXd;
 
 constexpr double kLevel = 0.95;
 constexpr const char* kNobody = "nobody has a value of the covariate";
+constexpr const char* kSamePeople =
+    "the same people are compared, and what they bring along drops out of their difference";
 
 /// A value of a participant who has the covariate.
 struct Row {
@@ -118,30 +120,30 @@ MatrixXd within_predictors(const std::vector<Row>& rows, std::size_t levels) {
 
 Defined<TTest> adjusted_test(const DesignTable& table, const Sides& sides,
                              const Covariate& covariate, Tail tail) {
+  if (sides.paired) {
+    return Undefined{kSamePeople};
+  }
   if (sides.strata.size() > 1) {
     return Undefined{"other groups lie across both sides"};
   }
   std::vector<Row> rows;
   for (std::size_t i = 0; i < sides.a.size(); ++i) {
-    add_row(table, covariate, sides.subjects_a[i], 1,
-            sides.paired ? sides.a[i] - sides.b[i] : sides.a[i], rows);
+    add_row(table, covariate, sides.subjects_a[i], 1, sides.a[i], rows);
   }
-  for (std::size_t i = 0; !sides.paired && i < sides.b.size(); ++i) {
+  for (std::size_t i = 0; i < sides.b.size(); ++i) {
     add_row(table, covariate, sides.subjects_b[i], 0, sides.b[i], rows);
   }
   if (rows.empty()) {
     return Undefined{kNobody};
   }
   centre(rows);
-  MatrixXd x(std::ssize(rows), sides.paired ? 1 : 2);
+  MatrixXd x(std::ssize(rows), 2);
   for (Index i = 0; i < x.rows(); ++i) {
     const Row& row = rows[static_cast<std::size_t>(i)];
     x(i, 0) = row.covariate;
-    if (!sides.paired) {
-      x(i, 1) = static_cast<double>(row.cell);
-    }
+    x(i, 1) = static_cast<double>(row.cell);
   }
-  return test_of(linear_regression(x, values_of_rows(rows)), sides.paired ? 0 : 2, tail);
+  return test_of(linear_regression(x, values_of_rows(rows)), 2, tail);
 }
 
 Defined<EffectTest> adjusted_effect(const DesignTable& table, const Covariate& covariate) {
@@ -162,16 +164,22 @@ Defined<EffectTest> adjusted_effect(const DesignTable& table, const Covariate& c
   }
   const auto contrasts = static_cast<Index>(levels - 1);
   MatrixXd weights = MatrixXd::Zero(contrasts, x.cols() + 1);
-  weights.middleCols(1, contrasts).setIdentity();
+  const Index first = factor.within ? 1 + contrasts : 1;  // of the products, or of the levels
+  weights.middleCols(first, contrasts).setIdentity();
   const auto joint = joint_test(*model, weights);
   if (!joint) {
     return Undefined{joint.because()};
   }
   const auto df_error = static_cast<double>(x.rows() - x.cols() - 1);
-  EffectTest effect{factor.name, fmt::format("analysis of covariance, {} held", covariate.name),
-                    joint->f,    joint->df_numerator,
-                    df_error,    joint->p,
-                    std::nullopt};
+  EffectTest effect{
+      factor.within ? fmt::format("{} × {}", factor.name, covariate.name) : factor.name,
+      fmt::format("analysis of covariance, {} {}", covariate.name,
+                  factor.within ? "beside each level" : "held"),
+      joint->f,
+      joint->df_numerator,
+      df_error,
+      joint->p,
+      std::nullopt};
   effect.size = partial_eta_squared(joint->f, joint->df_numerator, df_error);
   return effect;
 }

@@ -1,6 +1,7 @@
 #include "analysis/statistics/design/wording.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,25 @@ std::string not_defined(const std::string& because) { return "not defined, becau
 // Degrees of freedom are whole but for Welch's test.
 std::string degrees(double df) {
   return df == std::floor(df) ? fmt::format("{:.0f}", df) : fmt::format("{:.1f}", df);
+}
+
+/// The rule by which a study may end before its last participant.
+std::string words_of_rule(const SequentialResult& result, const std::string& of) {
+  const SequentialPlan& plan = result.plan;
+  if (plan.rule == StopRule::kBayesFactor) {
+    return fmt::format(
+        "The study could end after any participant, if the Bayes factor of {} ({}) reached "
+        "{:g}{}: without an effect that happens with a probability of at most {:g} (Ville's "
+        "inequality).",
+        text_of(result.test), of, 1.0 / plan.error,
+        plan.none > 0.0 ? fmt::format(" for an effect or {:g} against one", plan.none) : "",
+        plan.error);
+  }
+  return fmt::format(
+      "The test {} ({}) was looked at after {:g} participants; the bounds of z spend an error of "
+      "{:g} over these looks as Lan and DeMets (1983) do, in {} way.",
+      text_of(result.test), of, fmt::join(plan.looks, ", "), plan.error,
+      plan.spending == Spending::kPocock ? "Pocock's" : "O'Brien and Fleming's");
 }
 
 }  // namespace
@@ -85,6 +105,38 @@ std::string comparison_words(const DesignTests& tests) {
           : (*effect)->test + ((*effect)->epsilon ? " with Greenhouse and Geisser's "
                                                     "correction"
                                                   : ""));
+}
+
+std::vector<std::string> sentences_beside(const DesignTests& tests, const std::string& of) {
+  std::vector<std::string> sentences;
+  const SideTest none;
+  const SideTest& test = tests.planned.tests.empty() ? none : tests.planned.tests.front();
+  if (test.beside.bayes_factors) {
+    sentences.emplace_back(
+        "Bayes factors of planned tests are those of Rouder et al. (2009), with a Cauchy prior of "
+        "scale 0.707 on the standardized effect, on one side if the test is directed.");
+  }
+  if (test.beside.equivalence > 0.0) {
+    sentences.push_back(
+        fmt::format("Whether a difference ({}) lies within ±{} was tested by two one-sided t-tests "
+                    "(Schuirmann 1987).",
+                    of, number(test.beside.equivalence)));
+  }
+  if (test.beside.trimmed > 0.0) {
+    sentences.push_back(
+        fmt::format("Means trimmed by {:.3g} % at each end were compared by Yuen's test (1974).",
+                    100.0 * test.beside.trimmed));
+  }
+  if (!test.covariate.empty()) {
+    sentences.push_back(fmt::format(
+        "Different people were also compared by an analysis of covariance with {0} held; of "
+        "conditions that the same people had, it tests whether differences follow {0}.",
+        test.covariate));
+  }
+  if (tests.sequential) {
+    sentences.push_back(words_of_rule(*tests.sequential, of));
+  }
+  return sentences;
 }
 
 std::string effect_result(const EffectTest& effect) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "analysis/document/number.h"
 #include "analysis/statistics/base/descriptive.h"
@@ -37,6 +38,9 @@ std::string effect_result(const EffectTest& effect);
 /// A sentence for a methods section on how conditions were compared: "Conditions were compared by
 /// repeated-measures analysis of variance with Greenhouse and Geisser's correction, …".
 std::string comparison_words(const DesignTests& tests);
+/// Sentences for the same section on the tests beside the planned ones, the covariate and the rule
+/// by which a study may end early. @param of  the tested quantity, "mean reaction time"
+std::vector<std::string> sentences_beside(const DesignTests& tests, const std::string& of);
 /// "difference -0.19, 95 % CI -0.50 to 0.11 (two-sided, not adjusted), paired t(11) = -1.39,
 /// p = 0.096 after Holm's adjustment, one-tailed".
 std::string side_result(const SideTest& test);

@@ -83,23 +83,12 @@ void add_sequential(const AnalysisRequest& request, const TrialsDefinition& defi
   if (!plan.sequential) {
     return;
   }
-  std::vector<std::string> names;
-  for (trials::Quantity& quantity : result.quantities) {
-    if (!quantity.compared) {
-      continue;
-    }
-    names.push_back(quantity.name);
-    if (plan.sequential->of.empty() || plan.sequential->of == quantity.name) {
-      quantity.tests.sequential =
-          analysis::sequential_result(quantity.table, analysis::decisive_test(plan),
-                                      *plan.sequential, participants_in_order(request.files.files),
-                                      static_cast<std::size_t>(definition.design.participants));
-      return;
-    }
-  }
-  if (!names.empty()) {
-    throw InputError(fmt::format("analysis.sequential.of is \"{}\"; allowed: {}",
-                                 plan.sequential->of, fmt::join(names, ", ")));
+  if (trials::Quantity* decides = trials::compared_quantity(result.quantities, plan.sequential->of,
+                                                            "analysis.sequential.of")) {
+    decides->tests.sequential =
+        analysis::sequential_result(decides->table, analysis::decisive_test(plan), *plan.sequential,
+                                    participants_in_order(request.files.files),
+                                    static_cast<std::size_t>(definition.design.participants));
   }
 }
 
@@ -252,6 +241,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
   add_file_quantities(definition, request.files.files, request.threads, result);
   check_planned(result);
+  trials::keep_equivalence(result.quantities, plan.plan.beside);
   add_sequential(request, definition, result);
   result.page_scores = std::move(scores);
   result.title = definition.name;

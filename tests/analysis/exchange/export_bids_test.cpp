@@ -103,6 +103,13 @@ TEST_F(ExportBidsTest, MotionIsOneTickForEachPeriodOfItsRate) {
   expect_equal_to_the_files();
 }
 
+TEST_F(ExportBidsTest, MotionHasEveryDevice) {
+  write("a.h5",
+        {.subject = "P-01", .rate = 1000.0, .gap_at = 1100, .gap = 500, .other_devices = 2});
+  run({.motion = 60.0});
+  expect_equal_to_the_files();
+}
+
 TEST_F(ExportBidsTest, MotionIsNoFasterThanTheLoop) {
   write("a.h5", {.rate = 500.0});
   EXPECT_THROW(run({.motion = 501.0}), InputError);
@@ -136,6 +143,7 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
   write("b.h5", {.subject = "P-01", .start_utc = "2026-11-21T09:30:00Z"});
   write("c.h5", {.subject = "P_2", .gap_at = 100, .gap = 3, .odd_values = true});
   write("d.h5", {.subject = "P_3", .trials = 0, .pilot = true});
+  write("f.h5", {.subject = "P_5", .other_devices = 1});
   write("e.h5", {.subject = "P_4", .pilot = true, .practice = 1, .ticks_of_no_pass = 5});
   run({.name = "A study",
        .authors = {"A. Author", "B. Author"},
@@ -155,7 +163,7 @@ TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
             0);
   EXPECT_EQ(shell(validator + quoted(folder_ / "out")), 0) << output_;
   EXPECT_THAT(output_, Not(HasSubstr("[ERR]")));
-  EXPECT_THAT(output_, HasSubstr("4 - Subjects"));
+  EXPECT_THAT(output_, HasSubstr("5 - Subjects"));
   // It does look: without the rate of a recording it finds an error.
   const auto sidecar = folder_ / "out/sub-P2/ses-1/beh/sub-P2_ses-1_task-smallstudy_physio.json";
   std::string text = file_text(sidecar);

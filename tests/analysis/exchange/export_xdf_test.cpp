@@ -86,6 +86,32 @@ TEST_F(ExportXdfTest, LibxdfReadsEveryTickOfTheDevice) {
   }
 }
 
+TEST_F(ExportXdfTest, EveryDeviceIsAStreamOfItsOwn) {
+  write("a.h5", {.subject = "P1", .gap_at = 1100, .gap = 500, .other_devices = 2});
+  EXPECT_EQ(export_xdf(files_, folder_ / "out", 1, ignore).streams, 5u);
+  const Xdf xdf = load(folder_ / "out/P1.xdf");
+  const record::SessionReader reader(files_.front());
+  const std::vector<record::DeviceRow> rows = reader.rows<record::DeviceRow>();
+  for (const int device : {1, 2}) {
+    const Xdf::Stream& theirs = stream(xdf, "device_" + std::to_string(device));
+    ASSERT_EQ(theirs.info.channels.size(), 10u);
+    EXPECT_EQ(theirs.info.channels[6].at("label"), "force_x");
+    EXPECT_EQ(theirs.info.channels[6].at("unit"), "N");
+    ASSERT_EQ(theirs.time_stamps.size(), rows.size() / 2);
+    const double rate = reader.info().rate;
+    std::size_t i = 0;
+    for (const record::DeviceRow& row : rows) {
+      if (row.device == device) {
+        ASSERT_NEAR(theirs.time_stamps[i], static_cast<double>(row.sequence) / rate, 1e-9) << i;
+        ASSERT_EQ(theirs.time_series[0][i], static_cast<float>(row.position.x())) << i;
+        ASSERT_EQ(theirs.time_series[8][i], static_cast<float>(row.force.z())) << i;
+        ASSERT_EQ(theirs.time_series[9][i], static_cast<float>(device)) << i;
+        ++i;
+      }
+    }
+  }
+}
+
 TEST_F(ExportXdfTest, PassesAndEventsAreMarkersAtTheirTimes) {
   write("a.h5", {.subject = "P1", .note = "5 µm & <more>"});
   export_xdf(files_, folder_ / "out", 1, ignore);

@@ -71,7 +71,7 @@ def check_motion(file, folder, samples):
         assert sidecar[kind + "ChannelCount"] == count
     assert sidecar["MotionChannelCount"] == len(channels) and sidecar["TaskName"]
     table = pd.read_csv(next(folder.glob("*_motion.tsv")), sep="\t", header=None,
-                        names=list(channels.name), na_values="n/a")
+                        names=list(channels.name), na_values="n/a", float_precision="round_trip")
     rate, loop = sidecar["SamplingFrequency"], file.attrs["rate"]
     ticks = np.floor(np.arange(len(table)) * loop / rate + 0.5).astype(int)
     assert int(samples["sequence"][-1]) - loop / rate <= ticks[-1] <= int(samples["sequence"][-1])
@@ -82,8 +82,25 @@ def check_motion(file, folder, samples):
         for column, ours in (("pos", "position"), ("vel", "velocity")):
             theirs = table[there][f"tip_{column}_{axis}"].to_numpy().astype("f4")
             assert np.array_equal(theirs, samples[f"{ours}_{axis}"][rows]), (column, axis)
+    check_devices(file, table[there], samples["sequence"][rows], channels)
     late = table[there].latency.to_numpy() * 1e9
     assert (np.round(late) == samples["time_ns"][rows] - samples["time_ns"][0]).all()
+
+
+def check_devices(file, table, sequences, channels):
+    """Further devices stand beside the first; n/a in ticks in which a device has no row."""
+    rows = file["devices"][:] if "devices" in file else np.empty(0, dtype=[("device", "i4")])
+    devices = np.unique(rows["device"])
+    assert channels.tracked_point[channels.type == "POS"].nunique() == 1 + len(devices)
+    for device in devices:
+        own = rows[rows["device"] == device]
+        there = np.isin(sequences, own["sequence"])
+        picked = own[np.searchsorted(own["sequence"], sequences[there])]
+        for axis in "xyz":
+            for column, ours in (("pos", "position"), ("vel", "velocity")):
+                theirs = table[f"device_{device}_{column}_{axis}"].to_numpy().astype("f4")
+                assert np.array_equal(theirs[there], picked[f"{ours}_{axis}"]), (device, column, axis)
+                assert np.isnan(theirs[~there]).all()
 
 
 def read_events(folder):

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "core/record/hdf5/session_writer.h"
@@ -32,10 +33,17 @@ record::SessionInfo info_of(const SmallSession& s) {
   return info;
 }
 
+record::TableList tables_of(const SmallSession& session) {
+  return session.other_devices > 0 ? record::TableList{&record::table_of<record::DeviceRow>()}
+                                   : record::TableList{};
+}
+
 class Writer {
  public:
   Writer(const std::filesystem::path& file, const SmallSession& session)
-      : session_(session), writer_(file, info_of(session)), next_(session.first_tick) {}
+      : session_(session),
+        writer_(file, info_of(session), tables_of(session)),
+        next_(session.first_tick) {}
 
   void write() {
     add_ticks_of_no_pass();
@@ -83,8 +91,21 @@ class Writer {
     }
     row.last_sample = next_ - 1;
     writer_.append(samples);
+    add_devices(std::span(samples).first(samples.size() - 1));
     writer_.add_pass(row);
     ++pass_;
+  }
+
+  void add_devices(std::span<const record::Sample> samples) {
+    std::vector<record::DeviceRow> rows;
+    for (const record::Sample& sample : samples) {
+      for (int device = 1; device <= session_.other_devices; ++device) {
+        rows.push_back(small_device(sample, device));
+      }
+    }
+    if (!rows.empty()) {
+      writer_.add(std::span<const record::DeviceRow>(rows));
+    }
   }
 
   void add_tick(std::vector<record::Sample>& samples, int trial, int k) {
@@ -124,6 +145,17 @@ class Writer {
 
 double small_target(int trial, int k) { return 5.0 + 3.0 * std::sin(0.008 * k + trial); }
 double small_applied(int trial, int k) { return 4.5 + 2.5 * std::sin(0.0082 * k + trial - 0.2); }
+
+record::DeviceRow small_device(const record::Sample& sample, int device) {
+  record::DeviceRow row;
+  row.sequence = sample.sequence;
+  row.device = device;
+  row.position = sample.position + 0.01 * device * Eigen::Vector3d::Ones();
+  row.velocity = -sample.velocity;
+  row.force = 0.5 * device * sample.force;
+  row.buttons = device;
+  return row;
+}
 
 void write_session(const std::filesystem::path& file, const SmallSession& session) {
   Writer(file, session).write();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/record/rows/device_row.h"
 #include "core/record/rows/session_types.h"
 
 namespace haptrial::exchange {
@@ -28,11 +29,15 @@ struct SmallSession {
   bool pilot{false};
   int practice{0};          // trials of practice before the first
   int ticks_of_no_pass{0};  // samples before the first pass, as a recovered session may have
+  int other_devices{0};     // after the first; the last tick of each pass is of the first alone
 };
 
 constexpr int kTicksOfPass = 1000;
 
 void write_session(const std::filesystem::path& file, const SmallSession& session);
+
+/// Row of another device in a tick. @param device  from 1
+record::DeviceRow small_device(const record::Sample& sample, int device);
 
 /// Applied and target force of trial `trial` from 1, tick `k` of its run [N].
 double small_target(int trial, int k);

@@ -85,6 +85,38 @@ TEST(Decisions, AStatedAnswerIsTheUpperBoundary) {
   EXPECT_NEAR(quantity_of(result, "drift").means[0]->mean, -2.0, 0.3);
 }
 
+/// A signal of mean 2 and standard deviation 1.6 in noise of 1: d_a = 2 / sqrt((1 + 1.6²) / 2).
+TEST(Decisions, RatingsTellUnequalVariances) {
+  test::SimulatedTrials study;
+  study.task = test::SimulatedTask::kDetection;
+  study.trials = 400;
+  TrialsData data = test::simulated_trials(study);
+  RandomStream random(1, "unequal variances");
+  for (StudyTrial& trial : data.trials) {
+    const bool signal = trial.levels.front().applied > 0.0;
+    const double beyond = (signal ? 2.0 + 1.6 * random.normal() : random.normal()) - 0.8;
+    trial.answers[0].text = beyond > 0.0 ? "yes" : "no";
+    trial.answers[0].value = beyond > 0.0 ? 1.0 : 2.0;
+    trial.answers[1].value = std::abs(beyond) > 1.2 ? 3.0 : std::abs(beyond) > 0.5 ? 2.0 : 1.0;
+    trial.levels.front().outcome = beyond > 0.0 ? 1.0 : 0.0;
+  }
+  TrialsPlan plan = test::plan_of(study);
+  plan.plan = parse_analysis_plan({"on > off"}, "", "tests");
+  const TrialsResult result = analyze(std::move(data), plan, {}, 1);
+  for (const std::size_t condition : {std::size_t{0}, std::size_t{1}}) {
+    const auto& d_a = *quantity_of(result, "d_a").means[condition];
+    EXPECT_NEAR(d_a.mean, 2.0 / std::sqrt((1.0 + 1.6 * 1.6) / 2.0), 0.1);
+    const auto& sd = *quantity_of(result, "log_signal_sd").means[condition];
+    EXPECT_NEAR(sd.mean, std::log(1.6), 0.1);
+    EXPECT_GT(sd.low, 0.0) << "the variances are unequal";
+  }
+  const auto tail = [&](const char* name) {
+    return quantity_of(result, name).tests.planned.tests.front().sides.tail;
+  };
+  EXPECT_EQ(tail("d_a"), Tail::kGreater);
+  EXPECT_EQ(tail("criterion"), Tail::kTwoSided) << "a planned direction is of sensitivity";
+}
+
 TEST(Decisions, ConfidenceOfAnIdealObserverHasAnMRatioOfOne) {
   test::SimulatedTrials study;
   study.task = test::SimulatedTask::kDetection;

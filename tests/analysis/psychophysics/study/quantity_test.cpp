@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/error.h"
+#include "tests/support/message_of.h"
+
 namespace haptrial::analysis::trials {
 namespace {
 
@@ -43,6 +46,42 @@ TEST(QuantityTest, IntervalsOfPositiveValuesStayAbove0) {
   const MeanInterval narrow = interval_of({0.199, 0.2, 0.201}, ValueRange::kPositive);
   const MeanInterval plain = interval_of({0.199, 0.2, 0.201}, ValueRange::kAny);
   EXPECT_NEAR(narrow.low, plain.low, 1e-4);
+}
+
+/// Reaction times and shares of errors of four people, with one bound of equivalence.
+std::vector<Quantity> two_quantities(const TrialsPlan& plan) {
+  std::vector<QuantityValue> times, shares;
+  const std::vector<double> slower{0.010, 0.004, 0.006, 0.012};
+  for (std::size_t i = 0; i < slower.size(); ++i) {
+    const std::string person = "P" + std::to_string(i);
+    times.push_back({person, {"off"}, 0.5});
+    times.push_back({person, {"on"}, 0.5 + slower[i]});
+    shares.push_back({person, {"off"}, 0.1});
+    shares.push_back({person, {"on"}, 0.1 + 2.0 * slower[i]});
+  }
+  return {quantity("reaction_time", "time", "s", times, plan),
+          quantity("share_wrong", "errors", "", shares, plan)};
+}
+
+TEST(QuantityTest, ABoundOfEquivalenceIsOfOneQuantity) {
+  TrialsPlan plan;
+  plan.by = {"light"};
+  plan.plan = parse_analysis_plan({"off != on"}, "", "tests");
+  plan.plan.beside.equivalence = 0.02;
+  const auto tested = [&](const std::string& of) {
+    plan.plan.beside.equivalence_of = of;
+    std::vector<Quantity> all = two_quantities(plan);
+    keep_equivalence(all, plan.plan.beside);
+    std::string names;
+    for (const Quantity& each : all) {
+      names += each.tests.planned.tests.front().equivalence ? each.name : "";
+    }
+    return names;
+  };
+  EXPECT_EQ(tested(""), "reaction_time");
+  EXPECT_EQ(tested("share_wrong"), "share_wrong");
+  EXPECT_EQ(test::message_of<InputError>([&] { tested("share_rong"); }),
+            "analysis.equivalence_of is \"share_rong\"; allowed: reaction_time, share_wrong");
 }
 
 TEST(QuantityTest, AnOpenValueLeavesNoMean) {

@@ -1,0 +1,152 @@
+// Thresholds over a second variable, compared between conditions, beside the lines that the
+// simulated people have.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "analysis/psychophysics/study/trials_study.h"
+#include "core/base/random.h"
+#include "core/psychometric/procedure/quest_plus.h"
+#include "tests/support/null_levels.h"
+
+namespace haptrial::analysis::trials::surface_comparison_test {
+namespace {
+
+std::vector<double> even(double from, double to, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    values.push_back(from + (to - from) * i / (count - 1));
+  }
+  return values;
+}
+
+constexpr double kSpread = 0.15;
+
+double share_of_yes(double x, double y, double offset, double slope) {
+  const double z = (y - offset - slope * x) / kSpread;
+  return 0.01 + 0.98 * 0.5 * std::erfc(-z / std::sqrt(2.0));
+}
+
+/// The threshold of y is a straight line over x.
+psychometric::QuestDefinition line() {
+  psychometric::QuestDefinition d;
+  d.stimulus = {{"x", even(0.0, 1.0, 5), {}, false}, {"y", even(0.0, 2.0, 9), {}, false}};
+  d.parameters = {{"offset", even(0.2, 1.6, 8), {}, false},
+                  {"slope", even(-1.0, 1.0, 11), {}, false}};
+  d.model = [](const double* s, const double* p, double* probability) {
+    probability[1] = share_of_yes(s[0], s[1], p[0], p[1]);
+    probability[0] = 1.0 - probability[1];
+  };
+  return d;
+}
+
+struct People {
+  std::size_t count{8};
+  int trials{40};                  // under each condition
+  double offset{0.0}, slope{0.0};  // of "on" less "off"
+};
+
+/// One trial of a person with a line.
+StudyTrial answered(double x, double y, double offset, double slope, RandomStream& random) {
+  const double yes = random.uniform() < share_of_yes(x, y, offset, slope) ? 1.0 : 0.0;
+  StudyTrial trial;
+  trial.levels = {{"search", "x", x, x, yes}, {"search", "y", y, y, yes}};
+  return trial;
+}
+
+/// People differ in their lines, and in what the condition changes of them.
+TrialsData data_of(const People& people, std::size_t study) {
+  TrialsData data;
+  const auto xs = even(0.0, 1.0, 5), ys = even(0.0, 2.0, 9);
+  RandomStream random(study, "lines of people");
+  for (std::size_t p = 0; p < people.count; ++p) {
+    const std::string name = fmt::format("P{:02}", p + 1);
+    data.sessions.push_back({name + ".h5", name, "", "simulated", true, false});
+    const double offset = 0.8 + 0.1 * random.normal(), slope = 0.1 * random.normal();
+    for (const bool on : {false, true}) {
+      const double own_offset = offset + 0.05 * random.normal() + (on ? people.offset : 0.0);
+      const double own_slope = slope + 0.05 * random.normal() + (on ? people.slope : 0.0);
+      for (int i = 0; i < people.trials; ++i) {
+        const double x = xs[static_cast<std::size_t>(random.uniform() * 5.0)];
+        const double y = ys[static_cast<std::size_t>(random.uniform() * 9.0)];
+        StudyTrial trial = answered(x, y, own_offset, own_slope, random);
+        trial.session = p;
+        trial.trial = static_cast<int>(data.trials.size()) + 1;
+        trial.variables = {{"light", 0, kNotKnown, on ? "on" : "off"}};
+        data.trials.push_back(std::move(trial));
+      }
+    }
+  }
+  return data;
+}
+
+TrialsResult analyzed(const People& people, std::size_t study) {
+  TrialsPlan plan;
+  plan.kind = AnalysisKind::kPsychometric;
+  plan.functions = true;
+  plan.by = {"light"};
+  plan.threshold_at = 0.5;
+  plan.resamples = 0;
+  plan.permutations = 0;
+  plan.plan = parse_analysis_plan({"on != off"}, "", "tests");
+  const auto tables = std::make_shared<const psychometric::QuestTables>(line());
+  return analyze(
+      data_of(people, study), plan,
+      [&tables](const std::string&) {
+        return std::make_unique<psychometric::QuestPlus>(tables, psychometric::QuestStop{60, 0.0});
+      },
+      1);
+}
+
+const Quantity& quantity_of(const TrialsResult& result, const std::string& name) {
+  const auto found = std::ranges::find(result.quantities, name, &Quantity::name);
+  EXPECT_NE(found, result.quantities.end()) << name;
+  return *found;
+}
+
+const TTest& test_of(const TrialsResult& result, const std::string& name) {
+  return *quantity_of(result, name).tests.planned.tests.front().t;
+}
+
+/// Over x from 0 to 1 a line has the mean offset + slope / 2.
+TEST(SurfaceComparisonTest, DifferencesAreThoseOfThePeoplesLines) {
+  const TrialsResult result = analyzed({.count = 8, .trials = 150, .offset = 0.1, .slope = 0.5}, 1);
+  for (const auto& [name, truth] :
+       {std::pair("surface_threshold", 0.1 + 0.5 * 0.5), {"surface_slope", 0.5}}) {
+    const TTest& test = test_of(result, name);
+    EXPECT_NEAR(test.difference, truth, 4.0 * test.error) << name;
+    EXPECT_LT(test.error, 0.25 * truth) << name;
+    EXPECT_LT(test.p, 0.05) << name;
+  }
+}
+
+/// With HAPTRIAL_EVERY_STUDY 200 studies, else none: a study takes more than a second.
+TEST(SurfaceComparisonTest, TestsKeepTheirLevelInNullStudies) {
+  if (std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {
+    GTEST_SKIP() << "set HAPTRIAL_EVERY_STUDY=1 to count 200 null studies, which take minutes";
+  }
+  constexpr std::size_t kStudies = 200;
+  const auto levels = test::null_levels(kStudies, 2, [](std::size_t number) {
+    const TrialsResult result = analyzed({}, number);
+    test::NullLevels noted;
+    for (const char* name : {"surface_threshold", "surface_slope"}) {
+      noted.note(name, true, test_of(result, name).p < 0.05);
+    }
+    return noted;
+  });
+  const auto band = test::binomial_band(kStudies, 1.0 - 1e-4);
+  for (const auto& level : levels) {
+    std::printf("%s: %zu of %zu\n", level.test.c_str(), level.found, level.replications);
+    EXPECT_GE(level.found, band.low) << level.test;
+    EXPECT_LE(level.found, band.high) << level.test;
+  }
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials::surface_comparison_test
