@@ -244,10 +244,10 @@ TEST(NerveDefinitionTest, EveryOtherProcedureIsHeard) {
       write_monitored(folder.path(), 5.0,
                       "\n[nerve_monitor]\nheard_in = \"every other\"\n[[nerve_monitor.nerves]]\n"
                       "structure = \"facial nerve\"\n"));
-  EXPECT_TRUE(d.hears_nerves(1, 0));
-  EXPECT_FALSE(d.hears_nerves(2, 0));
-  EXPECT_FALSE(d.hears_nerves(1, 1));
-  EXPECT_TRUE(d.hears_nerves(2, 1));
+  EXPECT_TRUE(d.hears_nerves({1, 0}));
+  EXPECT_FALSE(d.hears_nerves({2, 0}));
+  EXPECT_FALSE(d.hears_nerves({1, 1}));
+  EXPECT_TRUE(d.hears_nerves({2, 1}));
 }
 
 TEST(NerveTrainingTest, TheShippedDefinitionIsATrainingWithAndWithout) {

@@ -50,7 +50,7 @@ class TriedDrilling final : public TriedPass {
                                                           vibration_ ? &*vibration_ : nullptr);
     if (d.forbidden) {
       guard_.emplace(*d.forbidden, d.region_maps[bone], nullptr);
-      guard_->begin_pass(d.has_regions(trial.trial, 1));
+      guard_->begin_pass(d.has_regions({.trial = trial.trial}));
       pass->keep_out(*guard_);
     }
     begin(std::move(pass));

@@ -25,7 +25,7 @@ TEST(HintSetupTest, HasDefaultsForAllButTheFile) {
   const HintSetup s = read("file = \"safe.toml\"\n");
   EXPECT_EQ(s.file, "safe.toml");
   EXPECT_TRUE(s.gives(HintKind::kForce) && s.gives(HintKind::kSpeed) && s.gives(HintKind::kHidden));
-  EXPECT_EQ(s.shown, GivenIn::kAll);
+  EXPECT_EQ(s.shown, GivenIn{GivenIn::kAll});
   EXPECT_EQ(s.fewest, 3);
   EXPECT_FALSE(s.sound);
 }
@@ -34,7 +34,7 @@ TEST(HintSetupTest, HintsOfWhatIsHiddenNeedNoFile) {
   const HintSetup s = read("kinds = [\"hidden\"]\nshown_in = \"every other\"\n");
   EXPECT_FALSE(s.gives(HintKind::kForce));
   EXPECT_TRUE(s.gives(HintKind::kHidden));
-  EXPECT_EQ(s.shown, GivenIn::kEveryOther);
+  EXPECT_EQ(s.shown, GivenIn{GivenIn::kEveryOther});
   const auto refusal = [](const std::string& lines) {
     return test::message_of([&] { read(lines); });
   };

@@ -65,7 +65,7 @@ TEST(NerveSetupTest, StructuresAndCurvesAreRead) {
   EXPECT_DOUBLE_EQ(s.monitor.threshold, 80e-6);
   EXPECT_DOUBLE_EQ(s.monitor.highest, 400e-6);
   EXPECT_TRUE(s.muted);
-  EXPECT_EQ(s.heard, GivenIn::kEveryOther);
+  EXPECT_EQ(s.heard, GivenIn{GivenIn::kEveryOther});
 }
 
 TEST(NerveSetupTest, SamplesAreAtLeastEightThousandASecond) {
