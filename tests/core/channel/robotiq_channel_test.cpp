@@ -36,7 +36,7 @@ TEST(RobotiqChannelTest, ValuesAreRightToTheLastCount) {
   StandInRobotiq sensor;
   ChannelRun run(robotiq_keys(sensor.line().name()));
   ASSERT_EQ(run.channel().wait_until_open(), "");
-  EXPECT_EQ(sensor.starts(), 1);
+  test::wait_until([&] { return sensor.starts() == 1; });
   EXPECT_EQ(sensor.jammed(), 50u) << "a stream that runs is stopped first";
   RandomStream random(5, "counts");
   std::vector<std::array<std::int16_t, 6>> sent{{std::numeric_limits<std::int16_t>::min(),
