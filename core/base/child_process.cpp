@@ -82,6 +82,27 @@ void crash_quietly() {
   dup2(nowhere, STDERR_FILENO);
 }
 
+/// Keeps the signal of a reader that has left from ending this process; the write fails instead.
+class WithoutPipeSignal {
+ public:
+  WithoutPipeSignal() {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~WithoutPipeSignal() {
+    const timespec now{};
+    while (sigtimedwait(&pipe_, nullptr, &now) == SIGPIPE) {
+    }
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  WithoutPipeSignal(const WithoutPipeSignal&) = delete;
+  WithoutPipeSignal& operator=(const WithoutPipeSignal&) = delete;
+
+ private:
+  sigset_t pipe_, before_;
+};
+
 }  // namespace
 
 Descriptor::Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
@@ -177,6 +198,7 @@ int ChildProcess::wait() noexcept {
 }
 
 bool write_fully(int to, const void* bytes, std::size_t count) noexcept {
+  const WithoutPipeSignal quiet;
   const char* at = static_cast<const char*>(bytes);
   while (count > 0) {
     const ssize_t done = write(to, at, count);

@@ -67,7 +67,7 @@ class ChildProcess {
   int status_{-1};
 };
 
-/// @returns whether all bytes went.
+/// @returns whether all bytes went; no, without a signal, if the reader of a pipe has left.
 bool write_fully(int to, const void* bytes, std::size_t count) noexcept;
 
 /// Takes what comes, piece by piece, until the other end is closed or `take` returns false.

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -16,6 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <thread>
+#include <vector>
 
 #include "core/base/file_text.h"
 #include "core/channel/channel_row.h"

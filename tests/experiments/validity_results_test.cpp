@@ -80,7 +80,8 @@ TEST(ValidityResultsTest, ExpertsRarelyInjureAndNovicesMoreOften) {
 
 TEST(ValidityResultsTest, EveryMetricThatExpertsAreExpectedToLeadIsLedByThem) {
   int expected = 0;
-  for (const nlohmann::json& metric : statistics()["metrics"]) {
+  const nlohmann::json results = statistics();
+  for (const nlohmann::json& metric : results["metrics"]) {
     const auto end = metric["experts_expected"].get<std::string>();
     if (end == "higher" || end == "lower") {
       ++expected;

@@ -89,6 +89,13 @@ TEST(ChildProcessTest, WordsOfACopyComeWhole) {
   EXPECT_EQ(child.wait(), 0);
 }
 
+/// The signal of a broken pipe would end the test.
+TEST(ChildProcessTest, AReaderThatHasLeftEndsTheWritingAlone) {
+  Pipe pipe;
+  pipe.from.close();
+  EXPECT_FALSE(write_fully(pipe.to.get(), "words", 5));
+}
+
 TEST(ChildProcessTest, ReadingCanBeGivenUp) {
   const Pipe pipe;
   int asked = 0;
