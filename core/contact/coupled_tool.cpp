@@ -65,7 +65,8 @@ CoupledTool::Step CoupledTool::step_with(const Eigen::Isometry3d& hand,
   stiffness.diagonal() << Vector3d::Constant(coupling_.stiffness),
       Vector3d::Constant(coupling_.turning_stiffness);
   Step step;
-  step.way << coupling_.stiffness * (hand.translation() - tool_.translation()),
+  Vector6 push;
+  push << coupling_.stiffness * (hand.translation() - tool_.translation()),
       coupling_.turning_stiffness * turn_between(tool_.linear(), hand.linear());
   for (const TouchingPoint& at : points) {
     const Vector6 along = along_of(at);
@@ -74,12 +75,12 @@ CoupledTool::Step CoupledTool::step_with(const Eigen::Isometry3d& hand,
     }
     ++step.touching;
     stiffness.noalias() += coupling_.contact_stiffness * along * along.transpose();
-    step.way += coupling_.contact_stiffness * at.depth * along;
+    push += coupling_.contact_stiffness * at.depth * along;
     if (coupling_.friction > 0.0 && at.depth > 0.0) {
       rub(at, dt, stiffness);
     }
   }
-  step.way = stiffness.ldlt().solve(step.way).eval();
+  step.way = stiffness.ldlt().solve(push);
   return step;
 }
 

@@ -12,6 +12,12 @@ namespace {
 
 constexpr double kReach = 1e-3;  // a tool that touches goes less far in a tick [m]
 
+/// Whether two faces meet in a groove: each lies before the other, not behind it as at a ridge.
+bool is_groove(const SurfacePoint& a, const SurfacePoint& b) noexcept {
+  const Vector3d way = b.point - a.point;
+  return a.normal.dot(way) >= 0.0 && b.normal.dot(way) <= 0.0;
+}
+
 }  // namespace
 
 std::vector<Vector3d> points_on(const geometry::Mesh& mesh, double spacing) {
@@ -47,7 +53,7 @@ RigidTool::RigidTool(const std::vector<Vector3d>& points, const Coupling& coupli
   for (const Vector3d& point : points) {
     points_.push_back({point, Vector3d::Zero(), -1.0, -1});
   }
-  near_.reserve(points.size());
+  near_.reserve(2 * points.size());
 }
 
 void RigidTool::begin(const Eigen::Isometry3d& hand) noexcept {
@@ -56,6 +62,20 @@ void RigidTool::begin(const Eigen::Isometry3d& hand) noexcept {
   for (Point& point : points_) {
     point.distance = -1.0;
     point.near = -1;
+    point.last = point.other = {};
+  }
+}
+
+void RigidTool::remember(Point& point, const SurfacePoint& surface) const noexcept {
+  constexpr double kSameSide = 0.999;  // cosine of normals
+  if (surface.normal.dot(point.last.normal) < kSameSide) {
+    point.other = point.last;
+  }
+  point.last = surface;
+  const bool holds = (point.asked - point.other.point).squaredNorm() < 4.0 * kReach * kReach &&
+                     is_groove(surface, point.other);
+  if (!holds) {
+    point.other.normal.setZero();
   }
 }
 
@@ -72,8 +92,14 @@ void RigidTool::find_near(const BodyDistance& body) noexcept {
     point.asked = at;
     point.distance = surface.distance;
     point.near = surface.triangle;
-    if (surface.distance < kReach) {
-      near_.push_back({lever, surface.normal, -surface.distance});
+    if (surface.distance >= kReach) {
+      point.last = point.other = {};
+      continue;
+    }
+    near_.push_back({lever, surface.normal, -surface.distance});
+    remember(point, surface);
+    if (!point.other.normal.isZero(0.0)) {
+      near_.push_back({lever, point.other.normal, point.other.normal.dot(point.other.point - at)});
     }
   }
 }

@@ -16,7 +16,9 @@ std::vector<Eigen::Vector3d> points_on(const geometry::Mesh& mesh, double spacin
 /// A rigid tool of any shape against a body, with force and torque on the hand. The tool is points
 /// on its surface, the body a distance from its own: what of the body is sharper than the points
 /// are close passes between them. A point is looked up only where the way since it was looked up
-/// last may have brought it near, so that points far from the body cost nothing.
+/// last may have brought it near, so that points far from the body cost nothing. In a groove a
+/// distance tells one side alone: the side that was told before holds the point, too, else it would
+/// be thrown from side to side.
 ///
 /// All poses, forces and torques are in the body's frame. Source: Morris 2006, §7.4.1, for points;
 /// McNeely, Puterbaugh and Troy 1999, for tools.
@@ -44,8 +46,11 @@ class RigidTool {
     Eigen::Vector3d asked;  // where it was looked up last, in W
     double distance;        // that it had then; below 0: it touched or was never looked up
     std::int32_t near;      // a triangle, as a hint
+    SurfacePoint last{};    // of the surface, where it was near
+    SurfacePoint other{};   // likewise, before that, on another side; its normal is zero: none
   };
   void find_near(const BodyDistance& body) noexcept;
+  void remember(Point& point, const SurfacePoint& surface) const noexcept;
 
   std::vector<Point> points_;
   std::vector<TouchingPoint> near_;

@@ -86,7 +86,7 @@ struct Definition {
   Table root() const;
   /// How many sessions each participant comes to, on days of their own; at least 1.
   virtual int sessions() const { return 1; }
-  /// What the definition says of a session, from 1; the default where it says nothing.
+  /// Gets what is stated about a session, from 1; the default where nothing is stated.
   const SessionPlan& session_plan(int session) const;
   std::string session_name(int session) const;  // its number if it has none
   /// Whether participants of a group come to a session. @param group  empty: of none

@@ -11,8 +11,8 @@ class Table;
 
 namespace haptrial::protocols {
 
-/// What a definition says of one session of each participant, in [design.session.N]: what every
-/// protocol has of it.
+/// One session of each participant as [design.session.N] states it, as far as all protocols have
+/// it.
 struct SessionPlan {
   std::string name{};                 // for reports and tests, "pre-test"; empty: its number
   std::vector<std::string> groups{};  // whose participants alone come; empty: everybody

@@ -146,7 +146,7 @@ TEST(KeysTest, EveryKeyOfTheShippedDefinitionsIsListed) {
   EXPECT_GT(checked, 500);
 }
 
-/// What the command prints, once for each protocol.
+/// The command's output, made once for each protocol.
 const std::string& schema_of(const std::string& protocol) {
   static std::map<std::string, std::string> schemas;
   const auto [at, is_new] = schemas.try_emplace(protocol);

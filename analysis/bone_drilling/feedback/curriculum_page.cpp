@@ -129,8 +129,8 @@ std::string class_page(const CurriculumClass& of) {
   body += html_table(names, trainee_rows(of));
   body += heading("What is missed") +
           paragraph(
-              "Of the trainees who tried a case, how many miss each criterion in their last "
-              "procedure of it.") +
+              "Trainees who tried a case, and how many of them missed each criterion in "
+              "their last procedure of it.") +
           html_table({"case", "to pass", "tried", "missed last"}, missed_rows(of));
   return whole_page("Class of " + of.name, simulated, body);
 }

@@ -11,7 +11,7 @@ class Table;
 
 namespace haptrial::analysis::drilling {
 
-/// What a definition says that a learning plan may name.
+/// Groups and sessions of a definition, which a learning plan may name.
 struct LearningNames {
   std::vector<std::string> groups;    // in their order; one if everybody is alike
   std::vector<std::string> sessions;  // in their order

@@ -25,7 +25,7 @@ struct LearnedOutcome {
   DesignTests tests;    // of them
 };
 
-/// What a study learned; without outcomes, the definition asks for none.
+/// The changes that a study found; without outcomes, the definition asks for none.
 struct LearnedStudy {
   LearningPlan plan;
   std::vector<LearnedOutcome> outcomes;  // (plan.outcomes)

@@ -20,7 +20,7 @@ struct ContactTask {
   bool is_rigid() const { return !tool.empty(); }
 };
 
-/// What a hand feels.
+/// Force and torque on the hand.
 struct Answer {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};   // [N]
   Eigen::Vector3d torque{Eigen::Vector3d::Zero()};  // about the tool's origin [N·m]

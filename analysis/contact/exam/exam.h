@@ -25,7 +25,7 @@ struct ExamCase {
 /// friction and with 0.3, at 500 N/m and 1 kHz. Nothing in it is random: every exam is the same.
 /// @throws InputError when `folder` holds anything or cannot be made. Source: Morris 2006, §7.5.
 void write_exam(const std::filesystem::path& folder);
-/// The same of rigid tools, exam_tools(), at 500 N/m, 0.3 N·m/rad and 1 kHz, with true torques.
+/// Writes the exam of rigid tools, exam_tools(), likewise: 500 N/m, 0.3 N·m/rad, 1 kHz, torques.
 void write_rigid_exam(const std::filesystem::path& folder);
 
 /// @throws InputError for a file that is missing or does not hold what it should.

@@ -35,7 +35,7 @@ Isometry3d on_a_plane(double t) {
               {0.2 * std::sin(7.0 * t), 0.3 * t, 0.25 * std::sin(11.0 * t)});
 }
 
-/// Its lower edge goes into the groove, is drawn up its sides, and is turned in it.
+/// The box goes into the groove with its lower edge, is drawn up the sides, and is turned there.
 Isometry3d in_a_groove(double t) {
   return pose({0.012 * std::sin(6.0 * t), 0.03 - 0.02 * std::sin(3.0 * t), 0.01 * t},
               {0.1 * std::sin(9.0 * t), 0.15 * std::sin(5.0 * t), 0.7 + 0.3 * std::sin(4.0 * t)});

@@ -14,7 +14,7 @@ class Table;
 
 namespace haptrial::bone {
 
-/// What a procedure must reach to pass: a quantity that is at least, or at most, so much.
+/// A procedure passes if this quantity is at least, or at most, so much.
 struct Criterion {
   std::string quantity;  // of metrics.csv without its unit, or kScoreQuantity
   bool least{true};      // else at most

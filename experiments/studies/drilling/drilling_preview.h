@@ -8,7 +8,7 @@ namespace haptrial::experiments {
 /// The procedure that is shown. @throws InputError for a number beyond the session
 protocols::PlannedTrial procedure_of(const protocols::BoneDefinition& definition,
                                      const PreviewRequest& request);
-/// Its bone, of definition.bones.
+/// The place in definition.bones of that procedure's bone.
 std::size_t bone_of(const protocols::BoneDefinition& definition,
                     const protocols::PlannedTrial& trial);
 

@@ -138,6 +138,7 @@ TEST(ExamTest, TheRigidToolPasses) {
   for (std::size_t i = 0; i < exam.size(); ++i) {
     const CaseScore score = score_case(exam[i], answers.cases[i].answer);
     EXPECT_EQ(score.verdict, ExamVerdict::kRight) << exam[i].name;
+    EXPECT_LT(score.bands.fast, 0.005) << exam[i].name << " is thrown from side to side";
     EXPECT_GT(score.torque.mean_force, 0.01) << exam[i].name << " turns against what it touches";
     EXPECT_LT(score.torque.root_mean_square, 0.1 * score.torque.mean_force) << exam[i].name;
   }
