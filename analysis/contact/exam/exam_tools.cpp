@@ -14,7 +14,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using geometry::Mesh;
 
-constexpr double kRise = 0.6;  // of the groove's sides, above the horizontal [rad]
+constexpr double kRise = 0.6;   // of the groove's sides, above the horizontal [rad]
 constexpr double kPlay = 2e-4;  // of the peg, to either side [m]
 
 const Vector3d kBox(0.03, 0.02, 0.04);  // [m]
