@@ -172,58 +172,56 @@ class Studio::Implementation {
 
   std::vector<WebRoute> acts() {
     constexpr int kMostSubjects = 10'000;
-    return {post("/validate",
-                 [this](const json& body) {
-                   return views_.validate(string_in(body, "file"), string_in(body, "text"));
-                 }),
-            post("/preview",
-                 [this](const json& body) {
-                   constexpr int kMostTrials = 1'000'000;
-                   return views_.preview(string_in(body, "file"), string_in(body, "text"),
-                                         number_in(body, "trial", 1, kMostTrials),
-                                         body.value("virtual", json()) == true,
-                                         body.value("language", json()) == "de" ? "de" : "en");
-                 }),
-            post("/keys",
-                 [this](const json& body) {
-                   return views_.keys(string_in(body, "file"), string_in(body, "text"));
-                 }),
-            post("/set",
-                 [this](const json& body) {
-                   return views_.set_key(string_in(body, "file"), string_in(body, "text"),
-                                         string_in(body, "key"), string_in(body, "edit"),
-                                         body.value("value", std::string()));
-                 }),
-            post("/save",
-                 [this](const json& body) {
-                   return views_.save(string_in(body, "file"), string_in(body, "text"),
-                                      string_in(body, "stamp"));
-                 }),
-            post("/new",
-                 [this](const json& body) {
-                   return views_.begin(string_in(body, "name"), string_in(body, "from"));
-                 }),
-            post("/rehearse",
-                 [this](const json& body) {
-                   constexpr int kMostMinutes = 600;
-                   return views_.rehearse(
-                       string_in(body, "file"), number_in(body, "subjects", 1, kMostSubjects),
-                       body.contains("setup")
-                           ? std::optional(number_in(body, "setup", 0, kMostMinutes))
-                           : std::nullopt);
-                 }),
-            post("/plan",
-                 [this](const json& body) { return views_.plan(string_in(body, "file")); }),
-            post("/power",
-                 [this](const json& body) { return views_.power(string_in(body, "file")); }),
-            post("/analyze",
-                 [this](const json& body) {
-                   return views_.analyze(string_in(body, "file"), string_in(body, "folder"));
-                 }),
-            post("/cancel", [this](const json& body) {
-              commands_.cancel(number_in(body, "job", 1, 1'000'000));
-              return views_.jobs();
-            })};
+    return {
+        post("/validate",
+             [this](const json& body) {
+               return views_.validate(string_in(body, "file"), string_in(body, "text"));
+             }),
+        post("/preview",
+             [this](const json& body) {
+               constexpr int kMostTrials = 1'000'000;
+               return views_.preview(string_in(body, "file"), string_in(body, "text"),
+                                     number_in(body, "trial", 1, kMostTrials),
+                                     body.value("virtual", json()) == true,
+                                     body.value("language", json()) == "de" ? "de" : "en");
+             }),
+        post("/keys",
+             [this](const json& body) {
+               return views_.keys(string_in(body, "file"), string_in(body, "text"));
+             }),
+        post("/set",
+             [this](const json& body) {
+               return views_.set_key(string_in(body, "file"), string_in(body, "text"),
+                                     string_in(body, "key"), string_in(body, "edit"),
+                                     body.value("value", std::string()));
+             }),
+        post("/save",
+             [this](const json& body) {
+               return views_.save(string_in(body, "file"), string_in(body, "text"),
+                                  string_in(body, "stamp"));
+             }),
+        post("/new",
+             [this](const json& body) {
+               return views_.begin(string_in(body, "name"), string_in(body, "from"));
+             }),
+        post("/rehearse",
+             [this](const json& body) {
+               constexpr int kMostMinutes = 600;
+               return views_.rehearse(
+                   string_in(body, "file"), number_in(body, "subjects", 1, kMostSubjects),
+                   body.contains("setup") ? std::optional(number_in(body, "setup", 0, kMostMinutes))
+                                          : std::nullopt);
+             }),
+        post("/plan", [this](const json& body) { return views_.plan(string_in(body, "file")); }),
+        post("/power", [this](const json& body) { return views_.power(string_in(body, "file")); }),
+        post("/analyze",
+             [this](const json& body) {
+               return views_.analyze(string_in(body, "file"), string_in(body, "folder"));
+             }),
+        post("/cancel", [this](const json& body) {
+          commands_.cancel(number_in(body, "job", 1, 1'000'000));
+          return views_.jobs();
+        })};
   }
 
   /// A trial under the pointer of the page.

@@ -140,8 +140,7 @@ void press_cube(const Mesh& mesh, const ContactSurface& surface, const Path& pat
   using namespace haptrial::contact;
   constexpr double kSide = 0.01;  // [m]
   const SignedDistance body(mesh, surface);
-  RigidTool tool(points_on(haptrial::geometry::make_box(Vector3d::Constant(kSide)), kSide / 9),
-                 {});
+  RigidTool tool(points_on(haptrial::geometry::make_box(Vector3d::Constant(kSide)), kSide / 9), {});
   const auto hand = [&](std::size_t i) {
     Eigen::Isometry3d pose(Eigen::AngleAxisd(1e-3 * i, Vector3d(0.6, 0.0, 0.8)));
     const auto nearest = surface.bvh().closest(path[i]);
