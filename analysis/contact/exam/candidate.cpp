@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/contact/exam/soft_candidates.h"
 #include "core/base/error.h"
 #include "core/contact/felt_body.h"
 #include "core/contact/make_renderer.h"
@@ -27,10 +28,7 @@ class OwnCandidate final : public Candidate {
   explicit OwnCandidate(contact::RendererKind kind) : kind_(kind) {}
 
   void begin(const ContactTask& task) override {
-    if (task.is_rigid()) {
-      throw InputError(fmt::format("{} renders a point; allowed in an exam of rigid tools: {}",
-                                   contact::kind_of(kind_).word, kRigidTool));
-    }
+    check_kind(task, ExamKind::kPoint, contact::kind_of(kind_).word);
     renderer_.reset();
     body_.emplace(geometry::read_mesh(task.body));
     contact::RendererOptions options;
@@ -58,10 +56,7 @@ class OwnCandidate final : public Candidate {
 class RigidCandidate final : public Candidate {
  public:
   void begin(const ContactTask& task) override {
-    if (!task.is_rigid()) {
-      throw InputError(
-          fmt::format("{} needs an exam of rigid tools (exam make --rigid)", kRigidTool));
-    }
+    check_kind(task, ExamKind::kRigid, kRigidTool);
     constexpr double kContactStiffness = 1e5;  // [N/m]
     const geometry::Mesh tool = geometry::read_mesh(task.tool);
     const double spacing = geometry::bounds(tool).sizes().maxCoeff() / 20.0;
@@ -93,23 +88,65 @@ std::string on_a_line(std::string word) {
   return word;
 }
 
+/// Kinds of renderer whose tool may be a point: the truth is that of one.
+std::vector<const KindOfRenderer*> point_kinds() {
+  std::vector<const KindOfRenderer*> kinds;
+  for (const KindOfRenderer& kind : contact::kinds_of_renderer()) {
+    if (kind.tool != KindOfRenderer::Tool::kBall) {
+      kinds.push_back(&kind);
+    }
+  }
+  return kinds;
+}
+
+std::vector<std::string> words_of(ExamKind kind) {
+  if (kind == ExamKind::kSoft) {
+    return soft_candidate_words();
+  }
+  if (kind == ExamKind::kRigid) {
+    return {kRigidTool};
+  }
+  std::vector<std::string> words;
+  for (const KindOfRenderer* one : point_kinds()) {
+    words.push_back(on_a_line(one->word));
+  }
+  return words;
+}
+
+/// What an exam is of, and what its candidates render.
+std::pair<const char*, const char*> names_of(ExamKind kind) {
+  return kind == ExamKind::kPoint   ? std::pair{"a point", "points"}
+         : kind == ExamKind::kRigid ? std::pair{"rigid tools", "rigid tools"}
+                                    : std::pair{"soft bodies", "soft bodies"};
+}
+
 }  // namespace
+
+void check_kind(const ContactTask& task, ExamKind renders, std::string_view word) {
+  if (task.kind() != renders) {
+    throw InputError(fmt::format("{} renders {}; allowed in an exam of {}: {}", word,
+                                 names_of(renders).first, names_of(task.kind()).second,
+                                 fmt::join(words_of(task.kind()), ", ")));
+  }
+}
 
 std::unique_ptr<Candidate> own_candidate(const std::string& word) {
   if (word == kRigidTool) {
     return std::make_unique<RigidCandidate>();
   }
-  std::vector<std::string> allowed{kRigidTool};
-  for (const KindOfRenderer& kind : contact::kinds_of_renderer()) {
-    if (kind.tool == KindOfRenderer::Tool::kBall) {
-      continue;  // the truth is that of a point
+  for (const KindOfRenderer* kind : point_kinds()) {
+    if (on_a_line(kind->word) == word) {
+      return std::make_unique<OwnCandidate>(contact::renderer_kind(kind->word));
     }
-    if (on_a_line(kind.word) == word) {
-      return std::make_unique<OwnCandidate>(contact::renderer_kind(kind.word));
-    }
-    allowed.push_back(on_a_line(kind.word));
   }
-  std::ranges::rotate(allowed, allowed.begin() + 1);
+  if (auto soft = soft_candidate(word)) {
+    return soft;
+  }
+  std::vector<std::string> allowed;
+  for (const ExamKind kind : {ExamKind::kPoint, ExamKind::kRigid, ExamKind::kSoft}) {
+    const std::vector<std::string> words = words_of(kind);
+    allowed.insert(allowed.end(), words.begin(), words.end());
+  }
   throw InputError(fmt::format("RENDERER is '{}'; allowed: {}, or another program by --program",
                                word, fmt::join(allowed, ", ")));
 }

@@ -4,13 +4,23 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
+
+#include "core/deformable/body/block_matrix.h"
 
 namespace haptrial::evaluation {
 
-/// A contact that a candidate renders, at a stiffness and with Coulomb friction. The tool is a
-/// point, or rigid and of a shape of its own; then there is no friction.
+/// Kinds of exam, by what is in contact.
+enum class ExamKind : std::uint8_t {
+  kPoint,  // a tool that is a point, on a hard body
+  kRigid,  // a rigid tool with a shape of its own, without friction
+  kSoft    // a body that gives way, of which the tool holds some vertices
+};
+
+/// A contact that a candidate renders, at a stiffness and with Coulomb friction. A soft body has
+/// all in its file, so that a rate is left.
 struct ContactTask {
-  std::filesystem::path body{};   // closed mesh (.obj), in metres
+  std::filesystem::path body{};   // closed mesh (.obj), in metres; a soft body (soft_body.h, .node)
   double stiffness{500.0};        // of the spring to the hand [N/m]
   double friction{0.0};           // static and dynamic alike
   double rate{1000.0};            // ticks per second [Hz]
@@ -18,12 +28,17 @@ struct ContactTask {
   double turning_stiffness{0.0};  // of the spring that turns a rigid tool with the hand [N·m/rad]
 
   bool is_rigid() const { return !tool.empty(); }
+  bool is_soft() const { return body.extension() == ".node"; }
+  ExamKind kind() const {
+    return is_soft() ? ExamKind::kSoft : is_rigid() ? ExamKind::kRigid : ExamKind::kPoint;
+  }
 };
 
-/// Force and torque on the hand.
+/// Force and torque on the hand, and where a soft body is.
 struct Answer {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};   // [N]
   Eigen::Vector3d torque{Eigen::Vector3d::Zero()};  // about the tool's origin [N·m]
+  deformable::Vectors shape{};  // displacements of the vertices [m]; empty where nobody asks
 };
 
 /// A renderer that sits the exam: a kind of the program's own, or another program. Poses are in the
@@ -37,12 +52,19 @@ class Candidate {
   virtual void start(const Eigen::Isometry3d& tool) = 0;
   /// @param time  since the start [s]  @param tool  where the hand has it
   virtual Answer tick(double time, const Eigen::Isometry3d& tool) = 0;
+  /// Sets the share of a soft body's forces that acts from the next tick on.
+  virtual void set_load(double /*share*/) {}
+  /// @returns displacements of a soft body's vertices after the last tick [m]
+  virtual deformable::Vectors shape() { return {}; }
 };
 
 /// A kind of renderer (core/contact/renderer_kinds.h) whose tool may be a point; one without
-/// friction renders every task without. Or "rigid-tool" (core/contact/rigid_tool.h), for exams with
-/// one. @param word  as a command line has it: "distance-field"
-/// @throws InputError for another word.
+/// friction renders every task without. Or "rigid-tool" (core/contact/rigid_tool.h), or a model of
+/// soft bodies (soft_candidates.h), for exams of these.
+/// @param word  as a command line has it: "distance-field" @throws InputError for another word.
 std::unique_ptr<Candidate> own_candidate(const std::string& word);
+
+/// @throws InputError if a task is of another kind than the candidate of this word renders.
+void check_kind(const ContactTask& task, ExamKind renders, std::string_view word);
 
 }  // namespace haptrial::evaluation

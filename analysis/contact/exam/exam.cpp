@@ -4,18 +4,21 @@
 #include <fmt/ranges.h>
 
 #include <array>
-#include <chrono>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
-#include "analysis/contact/evaluation/rendering_error.h"
+#include "analysis/contact/exam/answer_tables.h"
 #include "analysis/contact/exam/exam_bodies.h"
+#include "analysis/contact/exam/exam_soft.h"
 #include "analysis/contact/exam/exam_tools.h"
 #include "analysis/contact/truth/true_contact.h"
 #include "analysis/files/csv.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/parallel.h"
 #include "core/geometry/files/mesh_io.h"
 
 namespace haptrial::evaluation {
@@ -25,11 +28,9 @@ namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 constexpr int kFine = 4;  // edges of curved bodies: 0.5 to 0.8 mm
 constexpr double kFriction = 0.3;
-constexpr double kGrain = 1e-6;  // forces in files [N]
 
 constexpr const char* kAboutTools = R"(# An exam for renderers of rigid tools
 
@@ -45,6 +46,26 @@ no friction.
 Answers are a folder with a file CASE.csv for each case, with the columns of forces and torques and
 as many rows as the path. `haptrial exam run` writes one for `rigid-tool`, or for any program that
 answers on a pipe; `haptrial exam score` compares answers with the truth.
+)";
+
+constexpr const char* kAboutSofts = R"(# An exam for soft bodies
+
+Bodies of tetrahedra give way to a tool that holds some of their vertices, or to forces. They are led
+there and back so slowly that the truth is the body at rest, by neo-Hookean elements on finer meshes.
+The last one is free: forces push it for 0.1 s, then it must keep its momentum.
+
+- exam.json names the cases: body, path, rate (Hz), and the samples at which the shape is asked.
+- bodies/NAME.node and .ele are in TetGen's form, in metres: a vertex has its place, the force on it
+  (N) and a marker (1 fixed, 2 held by the tool); a tetrahedron has its corners, Young's modulus (Pa),
+  Poisson's ratio and density (kg/m3).
+- cases/CASE.csv has how far the tool has moved the vertices that it holds (x_m, y_m, z_m), the share
+  of the forces that acts (load), and the true force on the tool (force_x_N, ...).
+- shapes/CASE.csv has the true displacements (sample, vertex, ux_m, uy_m, uz_m).
+
+Answers are a folder with CASE.csv (force_x_N, force_y_N, force_z_N, a row for each row of the path)
+and CASE-shape.csv (as in shapes) for each case. `haptrial exam run` writes one for a model of
+haptrial, or for any program that answers on a pipe; `haptrial exam score` compares answers with the
+truth.
 )";
 
 constexpr const char* kAboutPoints = R"(# An exam for renderers of contact
@@ -67,10 +88,6 @@ std::string words_in_a_row(std::string name) {
   return name;
 }
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 /// Numbers of a row of a path: the place, and the turn of a rigid tool.
 std::string pose_words(const Isometry3d& pose, bool rigid) {
   const Vector3d p = pose.translation();
@@ -84,69 +101,21 @@ std::string pose_words(const Isometry3d& pose, bool rigid) {
 
 constexpr std::array kPlaces{"x_m", "y_m", "z_m"};
 constexpr std::array kTurns{"qw", "qx", "qy", "qz"};
-constexpr std::array kForces{"force_x_N", "force_y_N", "force_z_N"};
-constexpr std::array kTorques{"torque_x_Nm", "torque_y_Nm", "torque_z_Nm"};
 
 std::string case_csv(const ExamCase& one) {
   const bool rigid = one.task.is_rigid();
-  std::string text =
-      fmt::format("time_s,{}{},{}{}\n", fmt::join(kPlaces, ","),
-                  rigid ? fmt::format(",{}", fmt::join(kTurns, ",")) : "", fmt::join(kForces, ","),
-                  rigid ? fmt::format(",{}", fmt::join(kTorques, ",")) : "");
+  std::string text = fmt::format("time_s,{}{}{},{}{}\n", fmt::join(kPlaces, ","),
+                                 rigid ? fmt::format(",{}", fmt::join(kTurns, ",")) : "",
+                                 one.task.is_soft() ? ",load" : "", fmt::join(kForces, ","),
+                                 rigid ? fmt::format(",{}", fmt::join(kTorques, ",")) : "");
   for (std::size_t i = 0; i < one.tool.size(); ++i) {
     const Vector3d &f = one.truth[i].force, &m = one.truth[i].torque;
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{}",
-                   static_cast<double>(i) / one.task.rate, pose_words(one.tool[i], rigid), f.x(),
-                   f.y(), f.z());
+    fmt::format_to(std::back_inserter(text), "{},{}{},{},{},{}",
+                   static_cast<double>(i) / one.task.rate, pose_words(one.tool[i], rigid),
+                   one.task.is_soft() ? fmt::format(",{}", one.load[i]) : "", f.x(), f.y(), f.z());
     text += rigid ? fmt::format(",{},{},{}\n", m.x(), m.y(), m.z()) : "\n";
   }
   return text;
-}
-
-void add_on_grid(std::string& text, const Vector3d& v) {
-  const Eigen::Array3d on_grid = (v.array() / kGrain).round() * kGrain + 0.0;  // no "-0"
-  fmt::format_to(std::back_inserter(text), "{:.6f},{:.6f},{:.6f}", on_grid.x(), on_grid.y(),
-                 on_grid.z());
-}
-
-std::string answer_csv(const std::vector<Answer>& answers, bool rigid) {
-  std::string text = fmt::format("{}{}\n", fmt::join(kForces, ","),
-                                 rigid ? fmt::format(",{}", fmt::join(kTorques, ",")) : "");
-  for (const Answer& answer : answers) {
-    add_on_grid(text, answer.force);
-    if (rigid) {
-      text += ",";
-      add_on_grid(text, answer.torque);
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-std::vector<Vector3d> vectors_of(const analysis::CsvTable& table,
-                                 const std::array<const char*, 3>& names) {
-  const std::vector<double> x = table.numbers(table.column(names[0]));
-  const std::vector<double> y = table.numbers(table.column(names[1]));
-  const std::vector<double> z = table.numbers(table.column(names[2]));
-  std::vector<Vector3d> points;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    points.emplace_back(x[i], y[i], z[i]);
-  }
-  return points;
-}
-
-std::vector<Answer> answers_of(const analysis::CsvTable& table, bool rigid) {
-  std::vector<Answer> answers;
-  for (const Vector3d& force : vectors_of(table, kForces)) {
-    answers.push_back({force, Vector3d::Zero()});
-  }
-  if (rigid) {
-    const std::vector<Vector3d> torque = vectors_of(table, kTorques);
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      answers[i].torque = torque[i];
-    }
-  }
-  return answers;
 }
 
 std::vector<Isometry3d> poses_of(const analysis::CsvTable& table, bool rigid) {
@@ -166,11 +135,40 @@ std::vector<Isometry3d> poses_of(const analysis::CsvTable& table, bool rigid) {
   return poses;
 }
 
+/// Every so many samples from one on.
+std::vector<std::size_t> samples_of(const nlohmann::json& said, std::size_t samples) {
+  const std::size_t first = said.at("first_sample"), every = said.at("every");
+  if (every == 0 || first >= samples) {
+    throw InputError(fmt::format(
+        "exam.json: shapes from sample {} on, every {}; allowed: within the {} of the path", first,
+        every, samples));
+  }
+  std::vector<std::size_t> found;
+  for (std::size_t i = first; i < samples; i += every) {
+    found.push_back(i);
+  }
+  return found;
+}
+
+void read_soft_case(const fs::path& folder, const nlohmann::json& said,
+                    const analysis::CsvTable& table, ExamCase& one) {
+  one.load = table.numbers(table.column("load"));
+  one.shape_samples = samples_of(said.at("shapes"), one.tool.size());
+  if (said.at("shapes").contains("truth")) {
+    read_shapes(folder / std::string(said.at("shapes").at("truth")), one,
+                read_soft_body(one.task.body).mesh.vertices.size(), one.truth);
+  }
+}
+
 ExamCase read_case(const fs::path& folder, const nlohmann::json& said) {
   ExamCase one;
   one.name = said.at("name");
-  one.task = {folder / std::string(said.at("body")), said.at("stiffness_N_per_m"),
-              said.at("friction"), said.at("rate_Hz")};
+  one.task.body = folder / std::string(said.at("body"));
+  one.task.rate = said.at("rate_Hz");
+  if (!one.task.is_soft()) {
+    one.task.stiffness = said.at("stiffness_N_per_m");
+    one.task.friction = said.at("friction");
+  }
   if (said.contains("tool")) {
     one.task.tool = folder / std::string(said.at("tool"));
     one.task.turning_stiffness = said.at("turning_stiffness_Nm_per_rad");
@@ -178,7 +176,21 @@ ExamCase read_case(const fs::path& folder, const nlohmann::json& said) {
   const auto table = analysis::CsvTable::load(folder / std::string(said.at("path")));
   one.tool = poses_of(table, one.task.is_rigid());
   one.truth = answers_of(table, one.task.is_rigid());
+  if (one.task.is_soft()) {
+    read_soft_case(folder, said, table, one);
+  }
   return one;
+}
+
+/// Writes the true shapes of a case and says which ones are asked.
+void write_soft_case(const ExamCase& one, exchange::NewFolder& out, Json& said) {
+  const std::vector<std::size_t>& samples = one.shape_samples;
+  said["shapes"] = {{"first_sample", samples.front()}, {"every", samples[1] - samples[0]}};
+  if (!one.truth[samples.back()].shape.empty()) {
+    const std::string file = "shapes/" + one.name + ".csv";
+    out.write(file, shape_csv(one, one.truth));
+    said["shapes"]["truth"] = file;
+  }
 }
 
 /// Writes the path of a case. @returns what exam.json says about it
@@ -188,9 +200,13 @@ Json write_case(const ExamCase& one, exchange::NewFolder& out) {
   Json said{{"name", one.name},
             {"body", one.task.body.string()},
             {"path", path},
-            {"stiffness_N_per_m", one.task.stiffness},
-            {"friction", one.task.friction},
             {"rate_Hz", one.task.rate}};
+  if (one.task.is_soft()) {
+    write_soft_case(one, out, said);
+    return said;
+  }
+  said["stiffness_N_per_m"] = one.task.stiffness;
+  said["friction"] = one.task.friction;
   if (one.task.is_rigid()) {
     said["tool"] = one.task.tool.string();
     said["turning_stiffness_Nm_per_rad"] = one.task.turning_stiffness;
@@ -258,6 +274,71 @@ void write_rigid_exam(const fs::path& folder) {
   publish("contact of a rigid tool", cases, kAboutTools, out);
 }
 
+namespace {
+
+constexpr int kSoftTicks = 2000;  // there and back at 1 kHz
+
+/// A body that is led there and back, slowly enough for what rests to be the truth.
+ExamCase led_case(const ExamSoft& soft) {
+  constexpr std::size_t kEvery = 50;
+  ExamCase one;
+  std::vector<double> ways;
+  for (int i = 0; i <= kSoftTicks; ++i) {
+    ways.push_back(0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * i / kSoftTicks)));
+    one.tool.emplace_back(Eigen::Translation3d(soft.tool(ways.back())));
+    one.load.push_back(soft.load(ways.back()));
+  }
+  std::vector<SoftRest> rests = true_softs(soft, ways);
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    one.truth.push_back({rests[i].force, Vector3d::Zero()});
+    if (i % kEvery == 0) {
+      one.shape_samples.push_back(i);
+      one.truth.back().shape = std::move(rests[i].shape);
+    }
+  }
+  return one;
+}
+
+/// A body that forces push until it flies; its shape is asked from then on.
+ExamCase free_case() {
+  constexpr std::size_t kTicks = 300;
+  ExamCase one;
+  for (std::size_t i = 0; i <= kTicks; ++i) {
+    one.tool.push_back(Isometry3d::Identity());
+    one.load.push_back(free_load(static_cast<double>(i) / one.task.rate));
+    one.truth.emplace_back();
+    if (i > 0 && one.load[i - 1] == 0.0 && one.load[i] == 0.0) {
+      one.shape_samples.push_back(i);
+    }
+  }
+  return one;
+}
+
+Json write_soft(ExamCase one, const std::string& name, const SoftBody& body,
+                exchange::NewFolder& out) {
+  one.name = words_in_a_row(name);
+  const std::string file = "bodies/" + one.name;
+  out.write(file + ".node", node_text(body));
+  out.write(file + ".ele", element_text(body));
+  one.task.body = file + ".node";
+  return write_case(one, out);
+}
+
+}  // namespace
+
+void write_soft_exam(const fs::path& folder) {
+  exchange::NewFolder out(folder);
+  const std::vector<ExamSoft>& softs = exam_softs();
+  std::vector<ExamCase> led(softs.size());
+  parallel_for(softs.size(), 0, [&](std::size_t i) { led[i] = led_case(softs[i]); });
+  Json cases = Json::array();
+  for (std::size_t i = 0; i < softs.size(); ++i) {
+    cases.push_back(write_soft(std::move(led[i]), softs[i].name, softs[i].body(1), out));
+  }
+  cases.push_back(write_soft(free_case(), "free block", free_block(), out));
+  publish("soft bodies", cases, kAboutSofts, out);
+}
+
 std::vector<ExamCase> read_exam(const fs::path& folder) {
   const fs::path file = folder / "exam.json";
   std::vector<ExamCase> exam;
@@ -275,80 +356,6 @@ std::vector<ExamCase> read_exam(const fs::path& folder) {
         fmt::format("{}: no cases; allowed: what haptrial exam make writes", file.string()));
   }
   return exam;
-}
-
-ExamAnswers sit_exam(Candidate& candidate, const std::string& renderer,
-                     const std::vector<ExamCase>& exam) {
-  ExamAnswers answers{renderer, {}, true};
-  for (const ExamCase& one : exam) {
-    ExamAnswers::Case answer;
-    const Clock::time_point start = Clock::now();
-    candidate.begin(one.task);
-    answer.preparation = seconds_since(start);
-    candidate.start(one.tool.front());
-    std::vector<double> ticks;
-    for (std::size_t i = 0; i < one.tool.size(); ++i) {
-      const Clock::time_point tick = Clock::now();
-      answer.answer.push_back(candidate.tick(static_cast<double>(i) / one.task.rate, one.tool[i]));
-      ticks.push_back(seconds_since(tick));
-    }
-    const TickTimes times = tick_times(ticks);
-    answer.median_tick = times.median;
-    answer.worst_tick = times.worst;
-    answers.cases.push_back(std::move(answer));
-  }
-  return answers;
-}
-
-void write_answers(const ExamAnswers& answers, const std::optional<FailureMap>& ridges,
-                   const std::vector<ExamCase>& exam, const fs::path& folder) {
-  exchange::NewFolder out(folder);
-  Json costs = Json::object();
-  for (std::size_t i = 0; i < exam.size(); ++i) {
-    const ExamAnswers::Case& answer = answers.cases[i];
-    out.write(exam[i].name + ".csv", answer_csv(answer.answer, exam[i].task.is_rigid()));
-    costs[exam[i].name] = {{"preparation_s", answer.preparation},
-                           {"median_tick_s", answer.median_tick},
-                           {"worst_tick_s", answer.worst_tick}};
-  }
-  if (ridges) {
-    out.write("failures.csv", failure_csv({*ridges}));
-  }
-  out.write("answers.json", Json{{"renderer", answers.renderer}, {"costs", costs}}.dump(2) + "\n");
-  out.publish();
-}
-
-ExamAnswers read_answers(const fs::path& folder, const std::vector<ExamCase>& exam) {
-  ExamAnswers answers{fs::weakly_canonical(folder).filename().string(), {}, false};
-  const fs::path file = folder / "answers.json";
-  nlohmann::json said;
-  try {
-    if (fs::exists(file)) {
-      said = nlohmann::json::parse(file_text(file));
-      answers.renderer = said.at("renderer");
-      answers.costs_known = true;
-    }
-    for (const ExamCase& one : exam) {
-      const fs::path path = folder / (one.name + ".csv");
-      ExamAnswers::Case answer;
-      answer.answer = answers_of(analysis::CsvTable::load(path), one.task.is_rigid());
-      if (answer.answer.size() != one.tool.size()) {
-        throw InputError(fmt::format("{}: {} forces; allowed: {}, one for each row of the path",
-                                     path.string(), answer.answer.size(), one.tool.size()));
-      }
-      if (answers.costs_known) {
-        const auto& cost = said.at("costs").at(one.name);
-        answer.preparation = cost.at("preparation_s");
-        answer.median_tick = cost.at("median_tick_s");
-        answer.worst_tick = cost.at("worst_tick_s");
-      }
-      answers.cases.push_back(std::move(answer));
-    }
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(
-        fmt::format("{}: {}; allowed: what haptrial exam run writes", file.string(), error.what()));
-  }
-  return answers;
 }
 
 }  // namespace haptrial::evaluation

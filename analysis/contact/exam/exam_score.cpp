@@ -14,6 +14,8 @@ constexpr double kFelt = 0.2;            // [N]
 constexpr double kShareOfTruth = 0.1;    // below it a force is lost
 constexpr double kShareOfEnergy = 0.01;  // of what goes in and out
 constexpr double kNoticed = 0.05;        // of the samples
+constexpr double kShareOfMomentum = 0.05;
+constexpr double kShareOfShape = 0.1;  // of the way of the vertices
 
 Vectors forces_of(const std::vector<Answer>& answers) {
   Vectors forces;
@@ -65,8 +67,17 @@ ExamVerdict verdict_of(const CaseScore& score, const Energy& truth) {
   if (score.stuck > 0) {
     return ExamVerdict::kSticks;
   }
+  if (score.soft.inside_out > 0) {
+    return ExamVerdict::kInsideOut;
+  }
+  if (score.soft.momentum_off > kShareOfMomentum) {
+    return ExamVerdict::kLosesMomentum;
+  }
   if (score.energy - score.true_energy > kShareOfEnergy * truth.taken) {
     return ExamVerdict::kGivesEnergy;
+  }
+  if (score.soft.root_mean_square > kShareOfShape * score.soft.moved) {
+    return ExamVerdict::kMisshapen;
   }
   return score.noticeable.beyond_low > kNoticed ? ExamVerdict::kNoticeable : ExamVerdict::kRight;
 }
@@ -79,14 +90,29 @@ const char* name_of(ExamVerdict verdict) {
       return "pops through";
     case ExamVerdict::kSticks:
       return "sticks";
+    case ExamVerdict::kInsideOut:
+      return "inside out";
+    case ExamVerdict::kLosesMomentum:
+      return "loses momentum";
     case ExamVerdict::kGivesEnergy:
       return "gives energy";
+    case ExamVerdict::kMisshapen:
+      return "misshapen";
     case ExamVerdict::kNoticeable:
       return "noticeable";
     case ExamVerdict::kRight:
       return "right";
   }
   return "";
+}
+
+std::vector<ExamVerdict> verdicts_of(ExamKind kind) {
+  using enum ExamVerdict;
+  if (kind == ExamKind::kSoft) {
+    return {kPopsThrough, kSticks,    kInsideOut,  kLosesMomentum,
+            kGivesEnergy, kMisshapen, kNoticeable, kRight};
+  }
+  return {kPopsThrough, kSticks, kGivesEnergy, kNoticeable, kRight};
 }
 
 CaseScore score_case(const ExamCase& one, const std::vector<Answer>& answers) {
@@ -98,9 +124,14 @@ CaseScore score_case(const ExamCase& one, const std::vector<Answer>& answers) {
   }
   score.bands = band_error(right, force, one.task.rate);
   score.noticeable = noticeable_error(right, force);
-  const Energy truth = energy_of(one.truth, one);
+  Energy truth = energy_of(one.truth, one);
   score.energy = energy_of(answers, one).given;
   score.true_energy = truth.given;
+  if (one.task.is_soft()) {
+    score.soft = soft_score(one, answers);
+    score.energy += score.soft.load_energy;
+    truth.taken += score.soft.load_taken;
+  }
   for (std::size_t i = 0; i < force.size(); ++i) {
     score.lost += is_lost(right[i], force[i]) ? 1 : 0;
     score.stuck += right[i].isZero(0.0) && force[i].norm() > kFelt ? 1 : 0;

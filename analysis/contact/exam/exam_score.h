@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,21 +8,24 @@
 #include "analysis/contact/demo_study/failure_map.h"
 #include "analysis/contact/evaluation/rendering_error.h"
 #include "analysis/contact/exam/exam.h"
+#include "analysis/contact/exam/soft_score.h"
 
 namespace haptrial::evaluation {
 
 /// A verdict says the worst that is wrong with the answers to a case; the worst stands first.
 enum class ExamVerdict : std::uint8_t {
-  kPopsThrough,  // no force, or one into the body, where there should be one
-  kSticks,       // a force in the air
-  kGivesEnergy,  // the hand gains energy on the way there and back
-  kNoticeable,   // off by more than 7 % of the force on more than a twentieth of the samples
+  kPopsThrough,    // no force, or one into the body, where there should be one
+  kSticks,         // a force in the air
+  kInsideOut,      // a tetrahedron of a soft body is turned inside out
+  kLosesMomentum,  // of a free body, or its angular momentum: by more than a twentieth
+  kGivesEnergy,    // the hand, or a force, gains energy on the way there and back
+  kMisshapen,      // vertices are off by more than a tenth of their way, in the root mean square
+  kNoticeable,     // off by more than 7 % of the force on more than a twentieth of the samples
   kRight
 };
-inline constexpr std::array kExamVerdicts{ExamVerdict::kPopsThrough, ExamVerdict::kSticks,
-                                          ExamVerdict::kGivesEnergy, ExamVerdict::kNoticeable,
-                                          ExamVerdict::kRight};
 const char* name_of(ExamVerdict verdict);
+/// Verdicts that an exam of a kind can have, the worst first.
+std::vector<ExamVerdict> verdicts_of(ExamKind kind);
 
 struct CaseScore {
   ForceError force;
@@ -34,6 +36,7 @@ struct CaseScore {
   double true_energy{0.0};  // that it is given by the truth: none, or less with friction [J]
   std::size_t lost{0};      // ticks without a force, or with one into the body, of contact
   std::size_t stuck{0};     // ticks with a force in the air
+  SoftScore soft;           // of a soft body
   ExamVerdict verdict{ExamVerdict::kRight};
 };
 

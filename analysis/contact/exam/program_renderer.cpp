@@ -9,13 +9,15 @@
 #include <sstream>
 #include <system_error>
 
+#include "analysis/contact/exam/soft_body.h"
 #include "core/base/error.h"
 
 namespace haptrial::evaluation {
 namespace {
 
-constexpr int kLongest = 60'000;        // an answer may take [ms]
-constexpr std::size_t kLongLine = 400;  // [bytes]
+constexpr int kLongest = 60'000;         // an answer may take [ms]
+constexpr std::size_t kLongLine = 400;   // [bytes]
+constexpr std::size_t kLongNumber = 40;  // with what stands between numbers [bytes]
 
 /// @returns whether something was read before the time was over.
 bool read_more(int from, std::string& text) {
@@ -29,6 +31,10 @@ bool read_more(int from, std::string& text) {
     text.append(bytes.data(), static_cast<std::size_t>(count));
   }
   return count > 0;
+}
+
+std::string beginning_of(const std::string& answer) {
+  return answer.size() < kLongLine ? answer : answer.substr(0, kLongLine) + "...";
 }
 
 }  // namespace
@@ -47,10 +53,15 @@ ProgramRenderer::ProgramRenderer(const std::vector<std::string>& words)
 }
 
 void ProgramRenderer::begin(const ContactTask& task) {
-  rigid_ = task.is_rigid();
+  kind_ = task.kind();
+  if (kind_ == ExamKind::kSoft) {
+    vertices_ = read_soft_body(task.body).mesh.vertices.size();
+    expect_ready(fmt::format("body soft rate {} {}", task.rate, task.body.string()));
+    return;
+  }
   expect_ready(fmt::format("body stiffness {} friction {} rate {} {}", task.stiffness,
                            task.friction, task.rate, task.body.string()));
-  if (rigid_) {
+  if (kind_ == ExamKind::kRigid) {
     expect_ready(fmt::format("tool turning {} {}", task.turning_stiffness, task.tool.string()));
   }
 }
@@ -58,7 +69,7 @@ void ProgramRenderer::begin(const ContactTask& task) {
 std::string ProgramRenderer::words_of(const Eigen::Isometry3d& tool) const {
   const Eigen::Vector3d p = tool.translation();
   const std::string place = fmt::format("{} {} {}", p.x(), p.y(), p.z());
-  if (!rigid_) {
+  if (kind_ != ExamKind::kRigid) {
     return place;
   }
   const Eigen::Quaterniond q(tool.linear());
@@ -70,41 +81,63 @@ void ProgramRenderer::start(const Eigen::Isometry3d& tool) {
 }
 
 Answer ProgramRenderer::tick(double time, const Eigen::Isometry3d& tool) {
-  const std::string line = fmt::format("tick {} {}", time, words_of(tool));
-  const std::string said = ask(line);
-  std::istringstream words(said);
-  words.imbue(std::locale::classic());
+  const bool rigid = kind_ == ExamKind::kRigid;
+  const std::string load = kind_ == ExamKind::kSoft ? fmt::format(" {}", load_) : "";
+  const std::vector<double> said =
+      ask_numbers(fmt::format("tick {} {}{}", time, words_of(tool), load), rigid ? 6 : 3);
   Answer answer;
-  const auto read = [&](Eigen::Vector3d& v) {
-    return words >> v.x() >> v.y() >> v.z() && v.allFinite();
-  };
-  std::string more;
-  if (!read(answer.force) || (rigid_ && !read(answer.torque)) || words >> more) {
-    refuse(line, said);
+  answer.force = {said[0], said[1], said[2]};
+  if (rigid) {
+    answer.torque = {said[3], said[4], said[5]};
   }
   return answer;
 }
 
+deformable::Vectors ProgramRenderer::shape() {
+  const std::vector<double> said = ask_numbers("shape", 3 * vertices_);
+  deformable::Vectors moved;
+  for (std::size_t i = 0; i < said.size(); i += 3) {
+    moved.emplace_back(said[i], said[i + 1], said[i + 2]);
+  }
+  return moved;
+}
+
 void ProgramRenderer::expect_ready(const std::string& line) {
-  const std::string answer = ask(line);
+  const std::string answer = ask(line, kLongLine);
   if (answer != "ready") {
-    refuse(line, answer);
+    throw InputError(fmt::format("--program: {} answers '{}' to '{}'; allowed: ready", name_,
+                                 beginning_of(answer), line));
   }
 }
 
-std::string ProgramRenderer::ask(const std::string& line) {
+std::vector<double> ProgramRenderer::ask_numbers(const std::string& line, std::size_t count) {
+  const std::string said = ask(line, kLongLine + kLongNumber * count);
+  std::istringstream words(said);
+  words.imbue(std::locale::classic());
+  std::vector<double> numbers;
+  for (double number = 0.0; words >> number && std::isfinite(number);) {
+    numbers.push_back(number);
+  }
+  if (numbers.size() != count || !words.eof()) {
+    throw InputError(fmt::format("--program: {} answers '{}' to '{}'; allowed: {} finite numbers",
+                                 name_, beginning_of(said), line, count));
+  }
+  return numbers;
+}
+
+std::string ProgramRenderer::ask(const std::string& line, std::size_t longest) {
   const std::string sent = line + "\n";
   bool there = write_fully(to_.to.get(), sent.data(), sent.size());
   std::size_t end = rest_.find('\n');
-  while (there && end == std::string::npos && rest_.size() < kLongLine) {
+  while (there && end == std::string::npos && rest_.size() < longest) {
     there = read_more(from_.from.get(), rest_);
     end = rest_.find('\n');
   }
   if (end == std::string::npos) {
-    throw InputError(
-        fmt::format("--program: {} gave no line to '{}'{}; allowed: one line within a "
-                    "minute",
-                    name_, line, rest_.empty() ? "" : fmt::format(" but '{}'", rest_)));
+    throw InputError(fmt::format(
+        "--program: {} gave no line to '{}'{}; allowed: one line within a "
+        "minute",
+        name_, line, rest_.empty() ? "" : fmt::format(" but '{}'", beginning_of(rest_))));
   }
   std::string answer = rest_.substr(0, end);
   rest_.erase(0, end + 1);
@@ -112,14 +145,6 @@ std::string ProgramRenderer::ask(const std::string& line) {
     answer.pop_back();
   }
   return answer;
-}
-
-void ProgramRenderer::refuse(const std::string& line, const std::string& found) const {
-  throw InputError(fmt::format("--program: {} answers '{}' to '{}'; allowed: {}", name_, found,
-                               line,
-                               !line.starts_with("tick") ? "ready"
-                               : rigid_                  ? "six finite numbers"
-                                                         : "three finite numbers"));
 }
 
 }  // namespace haptrial::evaluation

@@ -10,8 +10,8 @@
 
 namespace haptrial::evaluation {
 
-/// Another program that renders contact. It reads lines of its standard input and answers each one
-/// with a line:
+/// Another program that renders contact, or models soft bodies. It reads lines of its standard
+/// input and answers each one with a line:
 ///
 ///     body stiffness N/m friction MU rate HZ FILE     ready
 ///     start X Y Z                                     ready
@@ -24,8 +24,15 @@ namespace haptrial::evaluation {
 ///     start X Y Z QW QX QY QZ                         ready
 ///     tick TIME X Y Z QW QX QY QZ                     FX FY FZ TX TY TZ
 ///
-/// with positions in metres in the frame of the body's mesh, forces on the tool in newtons and
-/// torques about its origin in newton metres. A task
+/// or, of a soft body (soft_body.h),
+///
+///     body soft rate HZ FILE                          ready
+///     start X Y Z                                     ready
+///     tick TIME X Y Z LOAD                            FX FY FZ
+///     shape                                           UX UY UZ of each vertex, on one line
+///
+/// with positions in metres in the frame of the body's mesh, forces on the tool in newtons,
+/// torques about its origin in newton metres and displacements in metres. A task
 /// begins with "body", a path with "start", whose place is in the air; there may be several paths
 /// in a task and several tasks in a run. The program ends with its input.
 ///
@@ -39,18 +46,23 @@ class ProgramRenderer final : public Candidate {
   void begin(const ContactTask& task) override;
   /// Puts the tool to a place in the air. @throws InputError as begin()
   void start(const Eigen::Isometry3d& tool) override;
-  /// @throws InputError for an answer that is no three finite numbers, six of a rigid tool, or none
-  /// within a minute.
+  /// @throws InputError for an answer that is not three finite numbers, six of a rigid tool, or
+  /// none within a minute.
   Answer tick(double time, const Eigen::Isometry3d& tool) override;
+  void set_load(double share) override { load_ = share; }
+  /// @throws InputError as tick(), for three numbers of each vertex
+  deformable::Vectors shape() override;
 
  private:
   std::string words_of(const Eigen::Isometry3d& tool) const;
-  std::string ask(const std::string& line);
+  std::string ask(const std::string& line, std::size_t longest);
   void expect_ready(const std::string& line);
-  [[noreturn]] void refuse(const std::string& line, const std::string& found) const;
+  std::vector<double> ask_numbers(const std::string& line, std::size_t count);
 
   std::string name_;
-  bool rigid_{false};
+  ExamKind kind_{ExamKind::kPoint};
+  double load_{0.0};         // of a soft body
+  std::size_t vertices_{0};  // likewise
   Pipe to_, from_;
   std::unique_ptr<ChildProcess> program_;
   std::string rest_;  // that was read beyond a line

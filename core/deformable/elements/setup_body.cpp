@@ -85,7 +85,7 @@ std::size_t count_of(const NumberLines& lines, double number) {
   return static_cast<std::size_t>(number);
 }
 
-void drop_unused(TetMesh& mesh) {
+void drop_unused(TetMesh& mesh, TetgenColumns& columns) {
   std::vector<std::int32_t> number(mesh.vertices.size(), -1);
   for (const Tetrahedron& t : mesh.tetrahedra) {
     for (const std::int32_t v : t) {
@@ -96,10 +96,12 @@ void drop_unused(TetMesh& mesh) {
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] == 0) {
       mesh.vertices[static_cast<std::size_t>(kept)] = mesh.vertices[v];
+      columns.nodes[static_cast<std::size_t>(kept)].swap(columns.nodes[v]);
       number[v] = kept++;
     }
   }
   mesh.vertices.resize(static_cast<std::size_t>(kept));
+  columns.nodes.resize(static_cast<std::size_t>(kept));
   for (Tetrahedron& t : mesh.tetrahedra) {
     for (std::int32_t& v : t) {
       v = number[static_cast<std::size_t>(v)];
@@ -141,8 +143,9 @@ TetMesh filled(const BodySource& source, const std::filesystem::path& file,
 
 }  // namespace
 
-TetMesh read_tetgen(const std::filesystem::path& node_file, double scale) {
+TetMesh read_tetgen(const std::filesystem::path& node_file, double scale, TetgenColumns* columns) {
   TetMesh mesh;
+  TetgenColumns beside;
   NumberLines nodes(node_file);
   const std::size_t vertices = count_of(nodes, nodes.next(2)[0]);
   double first = 0;
@@ -156,6 +159,7 @@ TetMesh read_tetgen(const std::filesystem::path& node_file, double scale) {
           fmt::format("the vertex has the number {}; they go from 0 or 1 on, one by one", row[0]));
     }
     mesh.vertices.push_back(scale * Vector3d(row[1], row[2], row[3]));
+    beside.nodes.emplace_back(row.begin() + 4, row.end());
   }
   NumberLines elements(std::filesystem::path(node_file).replace_extension(".ele"));
   const std::vector<double> head = elements.next(2);
@@ -177,14 +181,18 @@ TetMesh read_tetgen(const std::filesystem::path& node_file, double scale) {
     }
     inverted += six_volumes(mesh.vertices, t) < 0 ? 1 : 0;
     mesh.tetrahedra.push_back(t);
+    beside.tetrahedra.emplace_back(row.begin() + 5, row.end());
   }
   if (inverted == tetrahedra) {  // the other convention
     for (Tetrahedron& t : mesh.tetrahedra) {
       std::swap(t[2], t[3]);
     }
   }
-  drop_unused(mesh);
+  drop_unused(mesh, beside);
   mark_surface(mesh);
+  if (columns != nullptr) {
+    *columns = std::move(beside);
+  }
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "core/deformable/elements/deform_setup.h"
 
@@ -14,10 +15,19 @@ using MemoryCheck = std::function<void(const std::string& what, double bytes)>;
 /// @throws InputError as the readers of files, voxelize() and `check`
 geometry::TetMesh body_of(const DeformSetup& setup, const MemoryCheck& check = {});
 
+/// Attributes and markers of TetGen's files: the numbers that stand behind a vertex's place and
+/// behind a tetrahedron's corners.
+struct TetgenColumns {
+  std::vector<std::vector<double>> nodes;       // (vertices)
+  std::vector<std::vector<double>> tetrahedra;  // (tetrahedra)
+};
+
 /// TetGen's NAME.node and NAME.ele: numbers from 0 or 1, tetrahedra of four corners, turned where
 /// they are inverted as files of other programs number them. @param scale  metres to the unit
+/// @param columns  if not null, is set to what the files have beside the mesh
 /// @throws InputError naming file, line and what was found.
-geometry::TetMesh read_tetgen(const std::filesystem::path& node_file, double scale);
+geometry::TetMesh read_tetgen(const std::filesystem::path& node_file, double scale,
+                              TetgenColumns* columns = nullptr);
 
 /// A block of cubes, five tetrahedra each, its lowest corner at the origin.
 /// @param resolution  cubes along the longest side; the others are rounded to whole ones

@@ -12,11 +12,14 @@ namespace {
 struct ExamMakeOptions {
   std::string folder;
   bool rigid{false};
+  bool soft{false};
 };
 
 int make_exam(const ExamMakeOptions& options) {
   if (options.rigid) {
     evaluation::write_rigid_exam(options.folder);
+  } else if (options.soft) {
+    evaluation::write_soft_exam(options.folder);
   } else {
     evaluation::write_exam(options.folder);
   }
@@ -33,7 +36,9 @@ void add_exam_make(CLI::App& exam, int& status) {
                  {"exam.json, README.md, bodies and cases in FOLDER", "algorithms/exam.md"});
   auto& o = options_of<ExamMakeOptions>(*sub, status, make_exam);
   sub->add_option("FOLDER", o.folder, "New folder of the exam")->required();
-  sub->add_flag("--rigid", o.rigid, "Rigid tools with force and torque, in place of a point");
+  CLI::Option* rigid =
+      sub->add_flag("--rigid", o.rigid, "Rigid tools with force and torque, in place of a point");
+  sub->add_flag("--soft", o.soft, "Bodies that give way, in place of hard ones")->excludes(rigid);
 }
 
 }  // namespace haptrial::experiments

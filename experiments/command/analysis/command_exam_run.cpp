@@ -46,7 +46,7 @@ int run_exam(const ExamRunOptions& options) {
   const std::string name = name_of(options);
   const evaluation::ExamAnswers answers = evaluation::sit_exam(*candidate, name, exam);
   std::optional<evaluation::FailureMap> ridges;
-  if (!exam.front().task.is_rigid()) {
+  if (exam.front().task.kind() == evaluation::ExamKind::kPoint) {
     ridges = evaluation::failure_map_of(*candidate, name);
   }
   evaluation::write_answers(answers, ridges, exam, options.out);
@@ -61,14 +61,15 @@ void add_exam_run(CLI::App& exam, int& status) {
   CLI::App* sub = subcommand(
       exam, "run", "Lead a tool along the bodies of an exam under a renderer",
       "haptrial exam run out/exam proxy --out out/answers-proxy",
-      {"answers.json, a table of forces for each case and failures.csv in the folder of --out",
+      {"answers.json, a table of forces for each case (and of shapes of soft bodies), and "
+       "failures.csv in the folder of --out",
        "algorithms/exam.md"});
   auto& o = options_of<ExamRunOptions>(*sub, status, run_exam);
   sub->add_option("EXAM", o.folder, "Folder of the exam")->required();
   sub->add_option(
       "RENDERER", o.renderer,
       "Renderer of this program: proxy, penalty, voxel or distance-field; rigid-tool in "
-      "an exam of rigid tools");
+      "an exam of rigid tools; springs or linear-elements in one of soft bodies");
   sub->add_option("--program", o.program,
                   "Another program and its arguments, which answers lines on its standard input "
                   "(to the end of the line)")
