@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -91,6 +95,110 @@ TEST_F(ExamCommandTest, TheKeptScoresAreReproduced) {
     EXPECT_FALSE(rows.empty());
     EXPECT_EQ(rows_of(renderer, folder_ / "scores/scores.csv"), rows);
   }
+}
+
+/// An exam of some of the cases of one that is there.
+void leave_cases(const std::filesystem::path& exam, const std::set<std::string>& names) {
+  auto said = nlohmann::json::parse(test::read_text(exam / "exam.json"));
+  auto& cases = said["cases"];
+  for (std::size_t i = cases.size(); i-- > 0;) {
+    if (!names.contains(cases[i]["name"])) {
+      cases.erase(i);
+    }
+  }
+  ASSERT_EQ(cases.size(), names.size());
+  std::ofstream(exam / "exam.json") << said.dump(2);
+}
+
+class SoftExamCommandTest : public ExamCommandTest {
+ protected:
+  /// Compares rows with those kept. Solvers may add in another order elsewhere, so that numbers may
+  /// be off by a hundredth.
+  void expect_kept(const std::string& renderer, const std::set<std::string>& cases) const {
+    const auto kept = analysis::CsvTable::load(kSource / "results/exam/soft-scores.csv");
+    const auto now = analysis::CsvTable::load(folder_ / "scores/scores.csv");
+    std::map<std::string, std::pair<std::string, double>> rows;
+    for (std::size_t i = 0; i < kept.rows(); ++i) {
+      rows[key(kept, i)] = {std::string(kept.text(i, kept.column("verdict"))), estimate(kept, i)};
+    }
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < now.rows(); ++i) {
+      if (now.text(i, now.column("renderer")) != renderer) {
+        continue;
+      }
+      ASSERT_TRUE(rows.contains(key(now, i))) << key(now, i);
+      const auto& [verdict, value] = rows.at(key(now, i));
+      EXPECT_EQ(now.text(i, now.column("verdict")), verdict) << key(now, i);
+      EXPECT_NEAR(estimate(now, i), value, 0.01 * std::abs(value) + 2e-5) << key(now, i);
+      ++compared;
+    }
+    EXPECT_EQ(compared, 18 * cases.size()) << renderer;
+  }
+
+ private:
+  static std::string key(const analysis::CsvTable& table, std::size_t row) {
+    std::string key;
+    for (const char* column : {"renderer", "case", "name"}) {
+      key += std::string(table.text(row, table.column(column))) + ",";
+    }
+    return key;
+  }
+  static double estimate(const analysis::CsvTable& table, std::size_t row) {
+    return table.numbers(table.column("estimate"), {row})[0];
+  }
+};
+
+TEST_F(SoftExamCommandTest, TheKeptScoresOfOurOwnAreReproduced) {
+  ASSERT_EQ(run("make exam --soft").status, 0);
+  const std::set<std::string> some{"layers-pressed", "free-block"};  // the others take longer
+  leave_cases(folder_ / "exam", some);
+  for (const std::string renderer : {"springs", "linear-elements"}) {
+    const auto sat = run("run exam " + renderer + " --out " + renderer);
+    ASSERT_EQ(sat.status, 0) << sat.errors;
+  }
+  ASSERT_EQ(run("score exam springs linear-elements --out scores").status, 0);
+  expect_kept("springs", some);
+  expect_kept("linear-elements", some);
+  EXPECT_THAT(test::read_text(folder_ / "scores/report.html"), HasSubstr("loses momentum"));
+  const auto point = run("run exam proxy --out more");
+  EXPECT_EQ(point.status, 2);
+  EXPECT_THAT(point.errors,
+              HasSubstr("proxy renders a point; allowed in an exam of soft bodies: springs, "));
+}
+
+TEST_F(SoftExamCommandTest, TheProgramsOfThePageSitIt) {
+  ASSERT_EQ(run("make exam --soft").status, 0);
+  leave_cases(folder_ / "exam", {"free-block"});
+  std::string folders;
+  for (const auto& [program, name] :
+       {std::pair<std::string, std::string>{"pbd_body", "position-based dynamics"},
+        {"vbd_body", "vertex block descent"}}) {
+    const std::string source = (kSource / "docs/worked/exam" / program).string() + ".cpp";
+    const auto made = test::run_command("c++ -O2 -Wall -Wextra -Werror -o '" +
+                                        (folder_ / program).string() + "' '" + source + "'");
+    ASSERT_EQ(made.status, 0) << made.errors;
+    const auto sat =
+        run("run exam --out answers-" + program + " --name '" + name + "' --program ./" + program);
+    ASSERT_EQ(sat.status, 0) << sat.errors;
+    folders += "answers-" + program + " ";
+  }
+  ASSERT_EQ(run("score exam " + folders + "--out scores").status, 0);
+  expect_kept("position-based dynamics", {"free-block"});
+  expect_kept("vertex block descent", {"free-block"});
+}
+
+TEST_F(SoftExamCommandTest, BadAnswersGetASentence) {
+  ASSERT_EQ(run("make exam --soft").status, 0);
+  std::ofstream(folder_ / "mute.sh") << R"(while read -r word rest; do
+  case $word in tick) echo 0 0 0;; *) echo ready;; esac
+done
+)";
+  const auto sat = run("run exam --out a --program sh mute.sh");
+  EXPECT_EQ(sat.status, 2);
+  EXPECT_THAT(sat.errors, HasSubstr("sh answers 'ready' to 'shape'; allowed: 1875 finite numbers"));
+  const auto both = run("make more --soft --rigid");
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.errors, HasSubstr("--rigid excludes --soft"));
 }
 
 TEST_F(ExamCommandTest, BadInputGetsASentence) {

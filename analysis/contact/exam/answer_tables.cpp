@@ -67,9 +67,9 @@ std::vector<Answer> answers_of(const analysis::CsvTable& table, bool rigid) {
   return answers;
 }
 
-std::string shape_csv(const ExamCase& one, const std::vector<Answer>& answers) {
+std::string shape_csv(const std::vector<std::size_t>& samples, const std::vector<Answer>& answers) {
   std::string text = fmt::format("sample,vertex,{}\n", fmt::join(kMoved, ","));
-  for (const std::size_t i : one.shape_samples) {
+  for (const std::size_t i : samples) {
     for (std::size_t v = 0; v < answers[i].shape.size(); ++v) {
       const Eigen::Array3d u = on_grid(answers[i].shape[v], kShapeGrain);
       fmt::format_to(std::back_inserter(text), "{},{},{:.9f},{:.9f},{:.9f}\n", i, v, u.x(), u.y(),
@@ -79,22 +79,22 @@ std::string shape_csv(const ExamCase& one, const std::vector<Answer>& answers) {
   return text;
 }
 
-void read_shapes(const std::filesystem::path& file, const ExamCase& one, std::size_t vertices,
-                 std::vector<Answer>& answers) {
+void read_shapes(const std::filesystem::path& file, const std::vector<std::size_t>& samples,
+                 std::size_t vertices, std::vector<Answer>& answers) {
   const auto table = analysis::CsvTable::load(file);
-  const std::size_t rows = one.shape_samples.size() * vertices;
+  const std::size_t rows = samples.size() * vertices;
   if (table.rows() != rows) {
     throw InputError(
         fmt::format("{}: {} rows; allowed: {}, one for each of {} samples and {} "
                     "vertices",
-                    file.string(), table.rows(), rows, one.shape_samples.size(), vertices));
+                    file.string(), table.rows(), rows, samples.size(), vertices));
   }
   const std::size_t sample = table.column("sample"), vertex = table.column("vertex");
-  const std::vector<double> samples = table.numbers(sample), numbers = table.numbers(vertex);
+  const std::vector<double> said = table.numbers(sample), numbers = table.numbers(vertex);
   const std::vector<Vector3d> moved = vectors_of(table, kMoved);
   for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t i = one.shape_samples[row / vertices], v = row % vertices;
-    if (samples[row] != static_cast<double>(i)) {
+    const std::size_t i = samples[row / vertices], v = row % vertices;
+    if (said[row] != static_cast<double>(i)) {
       table.refuse(row, sample, fmt::format("{}", i));
     }
     if (numbers[row] != static_cast<double>(v)) {

@@ -2,11 +2,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "analysis/contact/exam/exam.h"
+#include "analysis/contact/exam/candidate.h"
 #include "analysis/files/csv.h"
 
 namespace haptrial::evaluation {
@@ -22,11 +23,11 @@ std::vector<Eigen::Vector3d> vectors_of(const analysis::CsvTable& table,
 std::string answer_csv(const std::vector<Answer>& answers, bool rigid);
 std::vector<Answer> answers_of(const analysis::CsvTable& table, bool rigid);
 
-/// The shapes at a case's shape_samples, a row for each vertex, to a nanometre.
-std::string shape_csv(const ExamCase& one, const std::vector<Answer>& answers);
+/// The shapes at some samples, a row for each vertex, to a nanometre.
+std::string shape_csv(const std::vector<std::size_t>& samples, const std::vector<Answer>& answers);
 /// @param answers  (n), get their shapes
 /// @throws InputError for rows that are not those of the samples and vertices, in this order.
-void read_shapes(const std::filesystem::path& file, const ExamCase& one, std::size_t vertices,
-                 std::vector<Answer>& answers);
+void read_shapes(const std::filesystem::path& file, const std::vector<std::size_t>& samples,
+                 std::size_t vertices, std::vector<Answer>& answers);
 
 }  // namespace haptrial::evaluation

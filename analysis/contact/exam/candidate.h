@@ -1,10 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <string>
-#include <string_view>
 
 #include "core/deformable/body/block_matrix.h"
 
@@ -57,14 +55,5 @@ class Candidate {
   /// @returns displacements of a soft body's vertices after the last tick [m]
   virtual deformable::Vectors shape() { return {}; }
 };
-
-/// A kind of renderer (core/contact/renderer_kinds.h) whose tool may be a point; one without
-/// friction renders every task without. Or "rigid-tool" (core/contact/rigid_tool.h), or a model of
-/// soft bodies (soft_candidates.h), for exams of these.
-/// @param word  as a command line has it: "distance-field" @throws InputError for another word.
-std::unique_ptr<Candidate> own_candidate(const std::string& word);
-
-/// @throws InputError if a task is of another kind than the candidate of this word renders.
-void check_kind(const ContactTask& task, ExamKind renders, std::string_view word);
 
 }  // namespace haptrial::evaluation

@@ -155,7 +155,7 @@ void read_soft_case(const fs::path& folder, const nlohmann::json& said,
   one.load = table.numbers(table.column("load"));
   one.shape_samples = samples_of(said.at("shapes"), one.tool.size());
   if (said.at("shapes").contains("truth")) {
-    read_shapes(folder / std::string(said.at("shapes").at("truth")), one,
+    read_shapes(folder / std::string(said.at("shapes").at("truth")), one.shape_samples,
                 read_soft_body(one.task.body).mesh.vertices.size(), one.truth);
   }
 }
@@ -188,7 +188,7 @@ void write_soft_case(const ExamCase& one, exchange::NewFolder& out, Json& said) 
   said["shapes"] = {{"first_sample", samples.front()}, {"every", samples[1] - samples[0]}};
   if (!one.truth[samples.back()].shape.empty()) {
     const std::string file = "shapes/" + one.name + ".csv";
-    out.write(file, shape_csv(one, one.truth));
+    out.write(file, shape_csv(samples, one.truth));
     said["shapes"]["truth"] = file;
   }
 }
@@ -285,7 +285,8 @@ ExamCase led_case(const ExamSoft& soft) {
   std::vector<double> ways;
   for (int i = 0; i <= kSoftTicks; ++i) {
     ways.push_back(0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * i / kSoftTicks)));
-    one.tool.emplace_back(Eigen::Translation3d(soft.tool(ways.back())));
+    one.tool.emplace_back(
+        Eigen::Translation3d(soft.tool(ways.back()) + Vector3d::Zero()));  // no "-0"
     one.load.push_back(soft.load(ways.back()));
   }
   std::vector<SoftRest> rests = true_softs(soft, ways);

@@ -63,7 +63,7 @@ void write_answers(const ExamAnswers& answers, const std::optional<FailureMap>& 
     const ExamAnswers::Case& answer = answers.cases[i];
     out.write(exam[i].name + ".csv", answer_csv(answer.answer, exam[i].task.is_rigid()));
     if (exam[i].task.is_soft()) {
-      out.write(exam[i].name + "-shape.csv", shape_csv(exam[i], answer.answer));
+      out.write(exam[i].name + "-shape.csv", shape_csv(exam[i].shape_samples, answer.answer));
     }
     costs[exam[i].name] = {{"preparation_s", answer.preparation},
                            {"median_tick_s", answer.median_tick},
@@ -95,7 +95,7 @@ ExamAnswers read_answers(const fs::path& folder, const std::vector<ExamCase>& ex
                                      path.string(), answer.answer.size(), one.tool.size()));
       }
       if (one.task.is_soft()) {
-        read_shapes(folder / (one.name + "-shape.csv"), one,
+        read_shapes(folder / (one.name + "-shape.csv"), one.shape_samples,
                     read_soft_body(one.task.body).mesh.vertices.size(), answer.answer);
       }
       if (answers.costs_known) {

@@ -42,45 +42,53 @@ Finding count(const char* name, const char* title, std::size_t value) {
           .form = analysis::JsonForm::kPlain};
 }
 
-/// Lengths in millimetres.
-void add_soft(const SoftScore& s, FindingRow& row) {
-  row.push_back(count("tetrahedra", "tetrahedra", s.tetrahedra));
-  row.push_back(
-      number("displacement_error_rms", "displacement error, RMS", 1e3 * s.root_mean_square, "mm"));
-  row.push_back(number("displacement_error_mean", "mean", 1e3 * s.mean, "mm"));
-  row.push_back(number("displacement_error_worst", "worst", 1e3 * s.worst, "mm"));
-  row.push_back(number("displacement_rms", "true displacement, RMS", 1e3 * s.moved, "mm"));
-  row.push_back(number("momentum_off", "momentum off by", s.momentum_off, ""));
-  row.push_back(count("samples_inside_out", "samples inside out", s.inside_out));
-}
-
-FindingRow row_of(const ExamScore& score, std::size_t i, const ExamCase& one) {
-  const CaseScore& s = score.cases[i];
-  FindingRow row{
+/// Whose result a row is.
+FindingRow begun_row(const ExamScore& score, std::size_t i, const ExamCase& one) {
+  return {
       {.name = "renderer", .value = score.answers.renderer, .form = analysis::JsonForm::kAbsent},
       {.name = "case", .title = "case", .value = one.name, .form = analysis::JsonForm::kPlain},
       {.name = "verdict",
        .title = "verdict",
-       .value = name_of(s.verdict),
-       .form = analysis::JsonForm::kPlain},
-      number("error_rms", "error, RMS", s.force.root_mean_square, "N"),
-      number("error_mean", "mean", s.force.mean_norm, "N"),
-      number("error_worst", "worst", s.force.worst, "N"),
-      number("error_below_10_hz", "below 10 Hz", s.bands.slow, "N"),
-      number("error_10_to_100_hz", "10 to 100 Hz", s.bands.middle, "N"),
-      number("error_above_100_hz", "above", s.bands.fast, "N"),
-      number("share_beyond_7_percent", "off by more than 7 %", s.noticeable.beyond_low, ""),
-      number("energy_given", "energy given", s.energy, "J"),
-      number("energy_given_by_truth", "by the truth", s.true_energy, "J"),
-      count("ticks_lost", "ticks lost", s.lost),
-      count("ticks_stuck", "ticks stuck", s.stuck)};
+       .value = name_of(score.cases[i].verdict),
+       .form = analysis::JsonForm::kPlain}};
+}
+
+/// The shape of a soft body, in millimetres.
+FindingRow shape_row_of(const ExamScore& score, std::size_t i, const ExamCase& one) {
+  const SoftScore& s = score.cases[i].soft;
+  FindingRow row = begun_row(score, i, one);
+  std::ranges::move(
+      FindingRow{count("tetrahedra", "tetrahedra", s.tetrahedra),
+                 number("displacement_error_rms", "error, RMS", 1e3 * s.root_mean_square, "mm"),
+                 number("displacement_error_mean", "mean", 1e3 * s.mean, "mm"),
+                 number("displacement_error_worst", "worst", 1e3 * s.worst, "mm"),
+                 number("displacement_rms", "true displacement, RMS", 1e3 * s.moved, "mm"),
+                 number("momentum_off", "momentum off by", s.momentum_off, ""),
+                 count("samples_inside_out", "samples inside out", s.inside_out)},
+      std::back_inserter(row));
+  return row;
+}
+
+FindingRow row_of(const ExamScore& score, std::size_t i, const ExamCase& one) {
+  const CaseScore& s = score.cases[i];
+  FindingRow row = begun_row(score, i, one);
+  std::ranges::move(
+      FindingRow{
+          number("error_rms", "error, RMS", s.force.root_mean_square, "N"),
+          number("error_mean", "mean", s.force.mean_norm, "N"),
+          number("error_worst", "worst", s.force.worst, "N"),
+          number("error_below_10_hz", "below 10 Hz", s.bands.slow, "N"),
+          number("error_10_to_100_hz", "10 to 100 Hz", s.bands.middle, "N"),
+          number("error_above_100_hz", "above", s.bands.fast, "N"),
+          number("share_beyond_7_percent", "off by more than 7 %", s.noticeable.beyond_low, ""),
+          number("energy_given", "energy given", s.energy, "J"),
+          number("energy_given_by_truth", "by the truth", s.true_energy, "J"),
+          count("ticks_lost", "ticks lost", s.lost), count("ticks_stuck", "ticks stuck", s.stuck)},
+      std::back_inserter(row));
   if (one.task.is_rigid()) {
     row.push_back(
         number("torque_error_rms", "torque error, RMS", s.torque.root_mean_square, "N·m"));
     row.push_back(number("torque_mean", "mean torque", s.torque.mean_force, "N·m"));
-  }
-  if (one.task.is_soft()) {
-    add_soft(s.soft, row);
   }
   return row;
 }
@@ -94,11 +102,15 @@ std::string file_name(std::string renderer) {
 
 FindingList findings_of(const ExamScore& score, const std::vector<ExamCase>& exam) {
   FindingList list{.name = file_name(score.answers.renderer), .heading = score.answers.renderer};
-  FindingTable table{"cases", "Cases"};
+  FindingTable table{"cases", "Cases"}, shapes{"shapes", "Shapes"};
   for (std::size_t i = 0; i < exam.size(); ++i) {
     table.rows.push_back(row_of(score, i, exam[i]));
+    shapes.rows.push_back(shape_row_of(score, i, exam[i]));
   }
   list.tables.push_back(std::move(table));
+  if (exam.front().task.is_soft()) {
+    list.tables.push_back(std::move(shapes));
+  }
   if (score.ridge) {
     analysis::Figure figure = failure_figure(*score.ridge);
     figure.name = "ridge-" + list.name;
@@ -152,9 +164,8 @@ std::string tetrahedra_a_second(const ExamScore& score) {
 std::vector<std::pair<std::string, std::string>> own_columns(const ExamScore& score,
                                                              ExamKind kind) {
   if (kind == ExamKind::kSoft) {
-    return {{"displacement error (% of the displacement, RMS)",
-             fmt::format("{:.1f}", 100.0 * shape_off(score))},
-            {"tetrahedra a second, fewest (10⁶)", tetrahedra_a_second(score)}};
+    return {{"shape off by (%)", fmt::format("{:.1f}", 100.0 * shape_off(score))},
+            {"tetrahedra (10⁶/s)", tetrahedra_a_second(score)}};
   }
   if (kind == ExamKind::kPoint) {
     return {{"ridges right", score.ridge
@@ -242,7 +253,7 @@ void write_scores(const std::vector<ExamScore>& scores, const std::vector<ExamCa
   std::vector<FindingTable> tables;
   for (const ExamScore& score : scores) {
     lists.push_back(findings_of(score, exam));
-    tables.push_back(lists.back().tables.front());
+    std::ranges::copy(lists.back().tables, std::back_inserter(tables));
   }
   out.write("scores.csv",
             analysis::findings_csv(

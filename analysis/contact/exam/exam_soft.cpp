@@ -23,7 +23,7 @@ struct Block {
 
 constexpr double kNear = 1e-9;  // [m]
 
-const Block kBeam{{18, 3, 3}, {0.12, 0.02, 0.02}};
+const Block kBeam{{24, 4, 4}, {0.12, 0.02, 0.02}};
 const Block kCube{{6, 6, 6}, {0.04, 0.04, 0.04}};
 const Block kPlate{{15, 15, 2}, {0.06, 0.06, 0.006}};
 

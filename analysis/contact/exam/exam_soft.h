@@ -11,6 +11,7 @@
 namespace haptrial::evaluation {
 
 /// A soft block of the exam and what happens to it while `s` goes from 0 to 1.
+/// Source: Morris 2006, §7.5, for bodies of §5.3.
 struct ExamSoft {
   std::string name;                   // "beam bent"
   SoftBody (*body)(int fine);         // cells of 1 / fine of the exam's

@@ -40,7 +40,6 @@ Vector3d force_at_tool(const SoftBody& body, ForceOf force_of) {
 class LinearElements final : public Candidate {
  public:
   void begin(const ContactTask& task) override {
-    check_kind(task, ExamKind::kSoft, kLinearElements);
     body_ = read_soft_body(task.body);
     body_.elasticity.law = deformable::Law::kLinear;
     const deformable::ElasticBody elastic(body_.mesh, body_.elasticity);
@@ -171,7 +170,6 @@ deformable::SpringConstants calibrated(const SoftBody& body, const SpringBody& s
 class MovingSprings final : public Candidate {
  public:
   void begin(const ContactTask& task) override {
-    check_kind(task, ExamKind::kSoft, kSprings);
     body_ = read_soft_body(task.body);
     springs_ = deformable::spring_body(
         body_.mesh, deformable::densities(body_.elasticity, body_.mesh.tetrahedra.size()),

@@ -8,6 +8,7 @@
 
 #include "analysis/contact/exam/exam.h"
 #include "analysis/contact/exam/exam_map.h"
+#include "analysis/contact/exam/own_candidate.h"
 #include "analysis/contact/exam/program_renderer.h"
 #include "core/base/error.h"
 #include "experiments/command/subcommand.h"
@@ -23,12 +24,13 @@ struct ExamRunOptions {
   std::string out;
 };
 
-std::unique_ptr<evaluation::Candidate> candidate_of(const ExamRunOptions& options) {
+std::unique_ptr<evaluation::Candidate> candidate_of(const ExamRunOptions& options,
+                                                    evaluation::ExamKind exam) {
   if (options.renderer.empty() == options.program.empty()) {
     throw InputError("exam run needs either RENDERER or --program");
   }
   if (options.program.empty()) {
-    return evaluation::own_candidate(options.renderer);
+    return evaluation::own_candidate(options.renderer, exam);
   }
   return std::make_unique<evaluation::ProgramRenderer>(options.program);
 }
@@ -42,11 +44,12 @@ std::string name_of(const ExamRunOptions& options) {
 
 int run_exam(const ExamRunOptions& options) {
   const auto exam = evaluation::read_exam(options.folder);
-  const auto candidate = candidate_of(options);
+  const evaluation::ExamKind kind = exam.front().task.kind();
+  const auto candidate = candidate_of(options, kind);
   const std::string name = name_of(options);
   const evaluation::ExamAnswers answers = evaluation::sit_exam(*candidate, name, exam);
   std::optional<evaluation::FailureMap> ridges;
-  if (exam.front().task.kind() == evaluation::ExamKind::kPoint) {
+  if (kind == evaluation::ExamKind::kPoint) {
     ridges = evaluation::failure_map_of(*candidate, name);
   }
   evaluation::write_answers(answers, ridges, exam, options.out);

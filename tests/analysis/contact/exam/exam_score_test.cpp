@@ -7,6 +7,7 @@
 
 #include "analysis/contact/exam/exam_bodies.h"
 #include "analysis/contact/exam/exam_tools.h"
+#include "analysis/contact/exam/own_candidate.h"
 #include "analysis/contact/truth/true_contact.h"
 #include "core/base/error.h"
 #include "core/contact/felt_body.h"
@@ -133,7 +134,7 @@ TEST(ExamTest, TheRigidToolPasses) {
   write_rigid_exam(folder / "exam");
   const auto exam = read_exam(folder / "exam");
   ASSERT_EQ(exam.size(), exam_tools().size());
-  const auto candidate = own_candidate("rigid-tool");
+  const auto candidate = own_candidate("rigid-tool", ExamKind::kRigid);
   const ExamAnswers answers = sit_exam(*candidate, "rigid-tool", exam);
   for (std::size_t i = 0; i < exam.size(); ++i) {
     const CaseScore score = score_case(exam[i], answers.cases[i].answer);
@@ -142,7 +143,7 @@ TEST(ExamTest, TheRigidToolPasses) {
     EXPECT_GT(score.torque.mean_force, 0.01) << exam[i].name << " turns against what it touches";
     EXPECT_LT(score.torque.root_mean_square, 0.1 * score.torque.mean_force) << exam[i].name;
   }
-  EXPECT_THAT(test::message_of<InputError>([&] { own_candidate("proxy")->begin(exam[0].task); }),
+  EXPECT_THAT(test::message_of<InputError>([&] { own_candidate("proxy", exam[0].task.kind()); }),
               testing::HasSubstr("proxy renders a point"));
 }
 
@@ -171,7 +172,7 @@ TEST_F(WrittenExamTest, TheProxyPassesAndThePenaltyPopsThroughTheThinPlate) {
   const auto exam = read_exam(path("exam"));
   ASSERT_EQ(exam.size(), 16u);
   const auto verdicts = [&](const char* renderer) {
-    const auto candidate = own_candidate(renderer);
+    const auto candidate = own_candidate(renderer, ExamKind::kPoint);
     const ExamAnswers answers = sit_exam(*candidate, renderer, exam);
     ExamScore score{answers, {}, {}};
     for (std::size_t i = 0; i < exam.size(); ++i) {

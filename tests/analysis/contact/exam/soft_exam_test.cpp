@@ -9,6 +9,7 @@
 
 #include "analysis/contact/exam/exam_score.h"
 #include "analysis/contact/exam/exam_soft.h"
+#include "analysis/contact/exam/own_candidate.h"
 #include "core/base/error.h"
 #include "core/deformable/body/mesh_parts.h"
 #include "tests/support/message_of.h"
@@ -216,7 +217,7 @@ TEST_F(SoftExamTest, AFreeBodyKeepsItsMomentum) {
 
 TEST_F(SoftExamTest, LinearElementsAreRightForSmallDisplacements) {
   const ExamCase& one = named("layers-pressed");
-  const auto candidate = own_candidate("linear-elements");
+  const auto candidate = own_candidate("linear-elements", ExamKind::kSoft);
   candidate->begin(one.task);
   candidate->start(one.tool.front());
   constexpr std::size_t kEarly = 100;  // of 1000 to the farthest: s = 0.024

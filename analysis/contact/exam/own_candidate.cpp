@@ -1,4 +1,4 @@
-#include "analysis/contact/exam/candidate.h"
+#include "analysis/contact/exam/own_candidate.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,7 +28,6 @@ class OwnCandidate final : public Candidate {
   explicit OwnCandidate(contact::RendererKind kind) : kind_(kind) {}
 
   void begin(const ContactTask& task) override {
-    check_kind(task, ExamKind::kPoint, contact::kind_of(kind_).word);
     renderer_.reset();
     body_.emplace(geometry::read_mesh(task.body));
     contact::RendererOptions options;
@@ -56,7 +55,6 @@ class OwnCandidate final : public Candidate {
 class RigidCandidate final : public Candidate {
  public:
   void begin(const ContactTask& task) override {
-    check_kind(task, ExamKind::kRigid, kRigidTool);
     constexpr double kContactStiffness = 1e5;  // [N/m]
     const geometry::Mesh tool = geometry::read_mesh(task.tool);
     const double spacing = geometry::bounds(tool).sizes().maxCoeff() / 20.0;
@@ -120,35 +118,33 @@ std::pair<const char*, const char*> names_of(ExamKind kind) {
                                     : std::pair{"soft bodies", "soft bodies"};
 }
 
-}  // namespace
-
-void check_kind(const ContactTask& task, ExamKind renders, std::string_view word) {
-  if (task.kind() != renders) {
+void check_kind(const std::string& word, ExamKind renders, ExamKind exam) {
+  if (renders != exam) {
     throw InputError(fmt::format("{} renders {}; allowed in an exam of {}: {}", word,
-                                 names_of(renders).first, names_of(task.kind()).second,
-                                 fmt::join(words_of(task.kind()), ", ")));
+                                 names_of(renders).first, names_of(exam).second,
+                                 fmt::join(words_of(exam), ", ")));
   }
 }
 
-std::unique_ptr<Candidate> own_candidate(const std::string& word) {
+}  // namespace
+
+std::unique_ptr<Candidate> own_candidate(const std::string& word, ExamKind exam) {
   if (word == kRigidTool) {
+    check_kind(word, ExamKind::kRigid, exam);
     return std::make_unique<RigidCandidate>();
   }
   for (const KindOfRenderer* kind : point_kinds()) {
     if (on_a_line(kind->word) == word) {
+      check_kind(word, ExamKind::kPoint, exam);
       return std::make_unique<OwnCandidate>(contact::renderer_kind(kind->word));
     }
   }
   if (auto soft = soft_candidate(word)) {
+    check_kind(word, ExamKind::kSoft, exam);
     return soft;
   }
-  std::vector<std::string> allowed;
-  for (const ExamKind kind : {ExamKind::kPoint, ExamKind::kRigid, ExamKind::kSoft}) {
-    const std::vector<std::string> words = words_of(kind);
-    allowed.insert(allowed.end(), words.begin(), words.end());
-  }
   throw InputError(fmt::format("RENDERER is '{}'; allowed: {}, or another program by --program",
-                               word, fmt::join(allowed, ", ")));
+                               word, fmt::join(words_of(exam), ", ")));
 }
 
 }  // namespace haptrial::evaluation
