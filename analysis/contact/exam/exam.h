@@ -8,6 +8,7 @@
 
 #include "analysis/contact/demo_study/failure_map.h"
 #include "analysis/contact/exam/candidate.h"
+#include "analysis/contact/exam/exam_stability.h"
 
 namespace haptrial::evaluation {
 
@@ -46,7 +47,8 @@ struct ExamAnswers {
     double preparation{0.0};                   // of the body [s]
     double median_tick{0.0}, worst_tick{0.0};  // with the way to a program and back [s]
   };
-  std::vector<Case> cases;  // as those of the exam
+  std::vector<Case> cases{};               // as those of the exam
+  std::vector<StabilityCell> stability{};  // of a point; empty: not known
   bool costs_known{true};
 };
 
@@ -55,7 +57,7 @@ ExamAnswers sit_exam(Candidate& candidate, const std::string& renderer,
                      const std::vector<ExamCase>& exam);
 
 /// Writes answers.json, CASE.csv with the forces of each case, of a soft body CASE-shape.csv, and
-/// failures.csv.
+/// failures.csv and stability.csv if they are known.
 /// @param ridges  none: no failures.csv
 /// @throws InputError when `folder` holds anything or cannot be made.
 void write_answers(const ExamAnswers& answers, const std::optional<FailureMap>& ridges,

@@ -26,7 +26,7 @@ double seconds_since(Clock::time_point start) {
 
 ExamAnswers sit_exam(Candidate& candidate, const std::string& renderer,
                      const std::vector<ExamCase>& exam) {
-  ExamAnswers answers{renderer, {}, true};
+  ExamAnswers answers{.renderer = renderer};
   for (const ExamCase& one : exam) {
     ExamAnswers::Case answer;
     const Clock::time_point start = Clock::now();
@@ -69,6 +69,9 @@ void write_answers(const ExamAnswers& answers, const std::optional<FailureMap>& 
                            {"median_tick_s", answer.median_tick},
                            {"worst_tick_s", answer.worst_tick}};
   }
+  if (!answers.stability.empty()) {
+    out.write("stability.csv", stability_csv(answers.stability));
+  }
   if (ridges) {
     out.write("failures.csv", failure_csv({*ridges}));
   }
@@ -77,7 +80,8 @@ void write_answers(const ExamAnswers& answers, const std::optional<FailureMap>& 
 }
 
 ExamAnswers read_answers(const fs::path& folder, const std::vector<ExamCase>& exam) {
-  ExamAnswers answers{fs::weakly_canonical(folder).filename().string(), {}, false};
+  ExamAnswers answers{.renderer = fs::weakly_canonical(folder).filename().string(),
+                      .costs_known = false};
   const fs::path file = folder / "answers.json";
   nlohmann::json said;
   try {
@@ -105,6 +109,9 @@ ExamAnswers read_answers(const fs::path& folder, const std::vector<ExamCase>& ex
         answer.worst_tick = cost.at("worst_tick_s");
       }
       answers.cases.push_back(std::move(answer));
+    }
+    if (const fs::path stability = folder / "stability.csv"; fs::exists(stability)) {
+      answers.stability = read_stability(stability);
     }
   } catch (const nlohmann::json::exception& error) {
     throw InputError(

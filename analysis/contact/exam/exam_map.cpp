@@ -1,38 +1,14 @@
 #include "analysis/contact/exam/exam_map.h"
 
-#include <unistd.h>
-
 #include <exception>
 
 #include "analysis/contact/demo_study/ridge.h"
-#include "core/geometry/files/mesh_io.h"
+#include "analysis/contact/exam/mesh_file.h"
 
 namespace haptrial::evaluation {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kTouch = 1e-9;  // a smaller force is none [N]
-
-/// A file that is there as long as this object.
-class MeshFile {
- public:
-  explicit MeshFile(const geometry::Mesh& mesh)
-      : path_(fs::temp_directory_path() /
-              ("haptrial-ridge-" + std::to_string(::getpid()) + ".obj")) {
-    geometry::write_mesh(path_, mesh, true);
-  }
-  ~MeshFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
-  MeshFile(const MeshFile&) = delete;
-  MeshFile& operator=(const MeshFile&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// A candidate's contact on a ridge. What it throws is kept, since a renderer may not throw.
 class RidgeCandidate final : public contact::Renderer {

@@ -160,6 +160,14 @@ std::string tetrahedra_a_second(const ExamScore& score) {
   return fmt::format("{:.2f}", 1e-6 * fewest);
 }
 
+std::string stable_words(const std::vector<StabilityCell>& cells) {
+  if (cells.empty()) {
+    return "not known";
+  }
+  return fmt::format("{} of {}", std::ranges::count_if(cells, &StabilityCell::stable),
+                     cells.size());
+}
+
 /// What stands in the summary of an exam of this kind alone.
 std::vector<std::pair<std::string, std::string>> own_columns(const ExamScore& score,
                                                              ExamKind kind) {
@@ -171,7 +179,8 @@ std::vector<std::pair<std::string, std::string>> own_columns(const ExamScore& sc
     return {{"ridges right", score.ridge
                                  ? fmt::format("{} of {}", score.ridge->count(RidgeOutcome::kRight),
                                                score.ridge->cells.size())
-                                 : "not known"}};
+                                 : "not known"},
+            {"stable with a hand", stable_words(score.answers.stability)}};
   }
   return {};
 }
@@ -216,7 +225,10 @@ constexpr const char* kRigidMethod =
 constexpr const char* kPointMethod =
     "A tool, a point, is led along eight bodies, without friction and with 0.3, at 500 N/m and "
     "1 kHz, there and back. The truth is the god object with Coulomb's friction, exact on plane "
-    "faces, spheres and cylinders. Ridges are the source's Figure 65 as a map. ";
+    "faces, spheres and cylinders. Ridges are the source's Figure 65 as a map. "
+    "A hand of 50 g and 1 N·s/m that presses the plane with 2 N at 36 stiffnesses, frictions and "
+    "rates counts as stable if it moves less than 0.1 mm across it in the last of 3 s; in 18 of "
+    "them its damping exceeds K T / 2, which makes a sampled wall passive. ";
 
 constexpr const char* kVerdicts =
     "A case pops through if a force of more than 0.2 N is missing or "

@@ -47,14 +47,15 @@ int run_exam(const ExamRunOptions& options) {
   const evaluation::ExamKind kind = exam.front().task.kind();
   const auto candidate = candidate_of(options, kind);
   const std::string name = name_of(options);
-  const evaluation::ExamAnswers answers = evaluation::sit_exam(*candidate, name, exam);
+  evaluation::ExamAnswers answers = evaluation::sit_exam(*candidate, name, exam);
   std::optional<evaluation::FailureMap> ridges;
   if (kind == evaluation::ExamKind::kPoint) {
     ridges = evaluation::failure_map_of(*candidate, name);
+    answers.stability = evaluation::stability_of(*candidate);
   }
   evaluation::write_answers(answers, ridges, exam, options.out);
   fmt::print("wrote {}: {} cases{}\n", options.out, exam.size(),
-             ridges ? " and a map of ridges" : "");
+             ridges ? ", a map of ridges and one of stability" : "");
   return 0;
 }
 
@@ -65,7 +66,7 @@ void add_exam_run(CLI::App& exam, int& status) {
       exam, "run", "Lead a tool along the bodies of an exam under a renderer",
       "haptrial exam run out/exam proxy --out out/answers-proxy",
       {"answers.json, a table of forces for each case (and of shapes of soft bodies), and "
-       "failures.csv in the folder of --out",
+       "failures.csv and stability.csv of a point in the folder of --out",
        "algorithms/exam.md"});
   auto& o = options_of<ExamRunOptions>(*sub, status, run_exam);
   sub->add_option("EXAM", o.folder, "Folder of the exam")->required();

@@ -147,6 +147,42 @@ TEST(ExamTest, TheRigidToolPasses) {
               testing::HasSubstr("proxy renders a point"));
 }
 
+/// A wall that is sampled and held is stable under a mass with a damper b if b > K T / 2, and not
+/// below (for a spring whose vibration is slow beside the rate).
+TEST(ExamTest, TheProxyIsStableWhereAWallIsPassive) {
+  const auto candidate = own_candidate("proxy", ExamKind::kPoint);
+  const auto cells = stability_of(*candidate);
+  ASSERT_EQ(cells.size(), 36u);
+  EXPECT_EQ(std::ranges::count_if(cells, &StabilityCell::passive), 18);
+  for (const StabilityCell& cell : cells) {
+    EXPECT_EQ(cell.stable(), cell.passive()) << cell.stiffness << " N/m, friction " << cell.friction
+                                             << ", " << cell.rate << " Hz: " << cell.span;
+  }
+}
+
+/// A force that comes a tick late needs three times the damping.
+class LateWall final : public Candidate {
+ public:
+  void begin(const ContactTask& task) override { stiffness_ = task.stiffness; }
+  void start(const Eigen::Isometry3d&) override { late_ = 0.0; }
+  Answer tick(double, const Eigen::Isometry3d& tool) override {
+    const double force = late_;
+    late_ = stiffness_ * std::max(0.0, -tool.translation().y());
+    return {{0.0, force, 0.0}, Vector3d::Zero(), {}};
+  }
+
+ private:
+  double stiffness_{0.0}, late_{0.0};
+};
+
+TEST(ExamTest, AWallThatIsATickLateIsStableForAThirdOfTheStiffness) {
+  LateWall wall;
+  for (const StabilityCell& cell : stability_of(wall)) {
+    EXPECT_EQ(cell.stable(), 1.0 > 1.5 * cell.stiffness / cell.rate)
+        << cell.stiffness << " N/m, " << cell.rate << " Hz: " << cell.span;
+  }
+}
+
 TEST(ExamTest, EveryBodyHasAnInside) {
   for (const ExamBody& body : exam_bodies()) {
     const contact::FeltBody felt(mesh_of(body.body, 2));
@@ -190,11 +226,13 @@ TEST_F(WrittenExamTest, TheProxyPassesAndThePenaltyPopsThroughTheThinPlate) {
 TEST_F(WrittenExamTest, AnswersComeBackAndAMissingRowGetsASentence) {
   auto exam = read_exam(path("exam"));
   exam.resize(1);
-  ExamAnswers answers{"mine", {{exam[0].truth, 0.5, 1e-6, 2e-6}}, true};
+  ExamAnswers answers{"mine", {{exam[0].truth, 0.5, 1e-6, 2e-6}}, {{500.0, 0.3, 1e3, 2e-5}}};
   write_answers(answers, FailureMap{"mine", 0.0, 0.0, {}}, exam, path("answers"));
   const ExamAnswers again = read_answers(path("answers"), exam);
   EXPECT_EQ(again.renderer, "mine");
   EXPECT_EQ(again.cases[0].worst_tick, 2e-6);
+  ASSERT_EQ(again.stability.size(), 1u);
+  EXPECT_EQ(again.stability[0].span, 2e-5);
   EXPECT_LT(score_case(exam[0], again.cases[0].answer).force.worst, 1e-6);  // the files' grain
   exam[0].tool.pop_back();
   EXPECT_THAT(test::message_of<InputError>([&] { read_answers(path("answers"), exam); }),

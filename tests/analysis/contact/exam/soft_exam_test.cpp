@@ -231,7 +231,7 @@ TEST_F(SoftExamTest, LinearElementsAreRightForSmallDisplacements) {
 
 TEST_F(SoftExamTest, AnswersComeBackAndMissingShapesGetASentence) {
   const std::vector<ExamCase> exam{named("layers-pressed")};
-  const ExamAnswers answers{"mine", {{exam[0].truth, 0.5, 1e-6, 2e-6}}, true};
+  const ExamAnswers answers{"mine", {{exam[0].truth, 0.5, 1e-6, 2e-6}}};
   write_answers(answers, {}, exam, *folder_ / "answers");
   const CaseScore score =
       score_case(exam[0], read_answers(*folder_ / "answers", exam).cases[0].answer);
