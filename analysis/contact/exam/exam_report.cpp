@@ -144,7 +144,7 @@ double shape_off(const ExamScore& score) {
     off += one.soft.root_mean_square * one.soft.root_mean_square;
     moved += one.soft.moved * one.soft.moved;
   }
-  return std::sqrt(off / moved);
+  return moved > 0.0 ? std::sqrt(off / moved) : 0.0;
 }
 
 /// The fewest tetrahedra that a case moved in a second, at its median tick, in millions.
@@ -254,6 +254,9 @@ std::vector<std::string> score_lines(const std::vector<ExamScore>& scores) {
     lines.push_back(fmt::format("{}: {} of {} cases right, error {:.4f} N (RMS)",
                                 score.answers.renderer, score.count(ExamVerdict::kRight),
                                 score.cases.size(), root_mean_square(score)));
+    if (score.cases.front().soft.tetrahedra > 0) {
+      lines.back() += fmt::format(", shape off by {:.1f} %", 100.0 * shape_off(score));
+    }
   }
   return lines;
 }
