@@ -21,6 +21,9 @@ class VirtualRig final : public Rig {
   /// @param lessons       of earlier sessions
   VirtualRig(const ForceDefinition& definition, std::uint64_t person_seed,
              std::uint64_t session_seed, std::vector<subject::Lesson> lessons);
+  /// In a first session. @param seed  person and every random number follow from it
+  VirtualRig(const ForceDefinition& definition, std::uint64_t seed)
+      : VirtualRig(definition, seed, seed, {}) {}
 
   device::Device& device() override { return device_; }
   stimulus::Observer* subject() override { return subject_.get(); }

@@ -23,7 +23,6 @@ struct TrialScore {
   std::int32_t trial{0};
   std::int32_t block{0};
   std::int32_t repetition{0};
-  std::int32_t session{1};     // of the participant
   double score{0.0};           // weighted average of the three below; 0 is perfect recall
   double alignment_cost{0.0};  // minimum path cost per path step, in the units of the error matrix
   double rms_force{0.0};       // after warping [N]
@@ -40,6 +39,8 @@ struct TrialScore {
   // squares over the run of distances in the plane at equal times.
   std::optional<double> path_error{};  // of the recall from the path [m]
   std::optional<double> kept{};        // of the led hand from the expert's, in training [m]
+
+  std::int32_t session{1};  // of the participant, from 1
 };
 
 }  // namespace haptrial::analysis
