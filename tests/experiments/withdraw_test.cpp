@@ -117,21 +117,24 @@ TEST_F(WithdrawTest, StimuliDefinitionsAndOtherStudiesStay) {
 
 /// Exports and sheets name nobody in some folders, and sessions hold words in compressed tables.
 TEST_F(WithdrawTest, FoldersWithoutNamesGoAndSessionsThatTheParticipantLedAreNamed) {
-  run("export out/mine --curves out/mine/curves");
-  run("judge prepare out/mine --out out/mine/sheets");
-  run("dry-run mine.toml --subjects 1 --trials 1 --tutor out/mine/S02.h5:1 --out out/mine/led");
-  fs::create_directories(folder_ / "out/mine/curves/S01");
-  write_text(folder_ / "out/mine/curves/S01/own.csv", "of S01 alone\n");
-  ASSERT_TRUE(fs::exists(folder_ / "out/mine/curves/002"));
-  ASSERT_TRUE(fs::exists(folder_ / "out/mine/sheets/sheet-1.html"));
-  const auto done = run("withdraw out/mine S02 --yes");
+  run("new force.toml --from force_training");
+  run("dry-run force.toml --subjects 2 --trials 3 --out force");
+  run("dry-run force.toml --subjects 1 --trials 1 --tutor force/S02.h5:1 --out force/led");
+  run("export force --curves force/curves");
+  run("judge prepare force --out force/sheets");
+  fs::create_directories(folder_ / "force/curves/S01");
+  write_text(folder_ / "force/curves/S01/own.csv", "of S01 alone\n");
+  for (const char* name : {"force/curves/002", "force/sheets/sheet-1.html", "force/led/S01.h5"}) {
+    ASSERT_TRUE(fs::exists(folder_ / name)) << name;
+  }
+  const auto done = run("withdraw force S02 --yes");
   EXPECT_EQ(done.status, 0) << done.errors;
-  EXPECT_FALSE(fs::exists(folder_ / "out/mine/curves/002"));
-  EXPECT_FALSE(fs::exists(folder_ / "out/mine/sheets"));
-  EXPECT_TRUE(fs::exists(folder_ / "out/mine/curves/S01/own.csv"));
-  EXPECT_TRUE(fs::exists(folder_ / "out/mine/led/S01.h5"));
-  EXPECT_THAT(done.output, HasSubstr("leaves, although it names the participant: "
-                                     "out/mine/led/S01.h5"));
+  EXPECT_FALSE(fs::exists(folder_ / "force/curves/002"));
+  EXPECT_FALSE(fs::exists(folder_ / "force/sheets"));
+  EXPECT_TRUE(fs::exists(folder_ / "force/curves/S01/own.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "force/led/S01.h5"));
+  EXPECT_THAT(done.output,
+              HasSubstr("leaves, although it names the participant: force/led/S01.h5"));
 }
 
 TEST_F(WithdrawTest, BytesOfCompressedFilesAreNoWords) {
