@@ -1,6 +1,7 @@
 #include "analysis/document/finding.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -122,7 +123,12 @@ std::vector<std::string> lines_of(const FindingRow& row) {
 std::vector<std::string> lines_of(const FindingList& list) {
   std::vector<std::string> lines = lines_of(list.findings);
   for (const FindingTable& table : list.tables) {
-    lines.push_back(fmt::format("{}: {} rows", table.title, table.rows.size()));
+    if (!table.in_lines) {
+      lines.push_back(fmt::format("{}: {} rows", table.title, table.rows.size()));
+    }
+    for (const FindingRow& row : table.in_lines ? table.rows : std::vector<FindingRow>{}) {
+      lines.push_back(fmt::format("{}", fmt::join(lines_of(row), "; ")));
+    }
   }
   return lines;
 }

@@ -67,6 +67,7 @@ struct FindingTable {
   std::string name;
   std::string title;
   std::vector<FindingRow> rows{};
+  bool in_lines{false};  // the terminal, too, has every row in words, not their number alone
 };
 
 /// Findings under a heading: a line each, then tables, blocks and figures.

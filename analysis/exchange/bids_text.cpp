@@ -365,8 +365,9 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
   json["SamplingFrequency"] = info.rate;
   json["StartTime"] = static_cast<double>(samples.first_sequence) / info.rate;
   json["Columns"] = Json::array();
-  for (std::size_t i = 1; i < sample_docs().size(); ++i) {
-    json["Columns"].push_back(sample_docs()[i].name);
+  const std::vector<ColumnDoc> columns = sample_docs(samples.other_devices);
+  for (std::size_t i = 1; i < columns.size(); ++i) {
+    json["Columns"].push_back(columns[i].name);
   }
   json["ManufacturersModelName"] = info.device;
   json["SoftwareVersions"] =
@@ -378,8 +379,8 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
   json["DeviceMaxForce"] = info.device_max_force;
   json["DeviceWorkspaceRadius"] = info.device_workspace_radius;
   json["MissingTicks"] = samples.missing;
-  for (std::size_t i = 1; i < sample_docs().size(); ++i) {
-    json[sample_docs()[i].name] = json_of(sample_docs()[i]);
+  for (std::size_t i = 1; i < columns.size(); ++i) {
+    json[columns[i].name] = json_of(columns[i]);
   }
   return text_of(json);
 }

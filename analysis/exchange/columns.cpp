@@ -1,7 +1,10 @@
 #include "analysis/exchange/columns.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
+#include "core/record/rows/device_row.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
 
@@ -70,6 +73,20 @@ std::string heading(const std::vector<ColumnDoc>& docs, Delimited kind) {
 
 const std::vector<ColumnDoc>& sample_docs() {
   static const std::vector<ColumnDoc> docs = samples();
+  return docs;
+}
+
+std::vector<ColumnDoc> sample_docs(std::size_t others) {
+  std::vector<ColumnDoc> docs = sample_docs();
+  for (std::size_t device = 1; device <= others; ++device) {
+    for (ColumnDoc doc : all_of(record::table_of<record::DeviceRow>().schema())) {
+      if (doc.name != "sequence" && doc.name != "device") {
+        doc.name = fmt::format("device_{}_{}", device, doc.name);
+        doc.description += fmt::format("; of device {}, counted from 0", device);
+        docs.push_back(std::move(doc));
+      }
+    }
+  }
   return docs;
 }
 

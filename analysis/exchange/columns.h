@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,6 +36,9 @@ std::string heading(const std::vector<ColumnDoc>& docs, Delimited kind);
 
 /// Columns of the exported samples: those of /samples with the time in seconds.
 const std::vector<ColumnDoc>& sample_docs();
+/// The same, and behind them those of every further device, "device_1_position_x".
+/// @param others  devices after the first
+std::vector<ColumnDoc> sample_docs(std::size_t others);
 /// Columns of the exported stimuli.
 const std::vector<ColumnDoc>& stimulus_docs();
 

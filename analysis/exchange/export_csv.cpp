@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <variant>
 
 #include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/columns.h"
+#include "analysis/exchange/other_devices.h"
 #include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
 #include "analysis/files/gzip_file.h"
@@ -152,6 +154,7 @@ class Tables {
     }
     passes += index_;
     index_ = 0;
+    other_devices = std::max(other_devices, OtherDevices(reader).count());
     RowText event_row(events, Delimited::kCsv);
     for (const auto& event : reader.events()) {
       event_row.add(session.info.subject).add(session.number).add_seconds(event.time_ns);
@@ -163,6 +166,7 @@ class Tables {
   std::string trials;
   std::string events;
   std::size_t passes{0};
+  std::size_t other_devices{0};  // after the first, of the session that has most
 
  private:
   std::size_t index_{0};
@@ -252,8 +256,9 @@ nlohmann::ordered_json described(const char* what, const Docs& docs) {
   return json;
 }
 
+/// @param other_devices  after the first, of the session that has most
 std::string dictionary(const CsvOptions& options, const std::vector<ProtocolTable>& own,
-                       bool simulated) {
+                       bool simulated, std::size_t other_devices) {
   nlohmann::ordered_json json;
   json["simulated"] = simulated;
   json["missing"] = "an empty field";
@@ -268,7 +273,8 @@ std::string dictionary(const CsvOptions& options, const std::vector<ProtocolTabl
         described(table.table->schema().description, column_docs(*table.table));
   }
   if (options.samples) {
-    files["samples/*.csv.gz"] = described("a row for each tick of the servo loop", sample_docs());
+    files["samples/*.csv.gz"] =
+        described("a row for each tick of the servo loop", sample_docs(other_devices));
     files["stimuli/*.csv.gz"] =
         described("the ideal movement and target force of each block", stimulus_docs());
     files["channels/*.csv.gz"] =
@@ -346,7 +352,7 @@ CsvSummary export_csv(std::span<const fs::path> files, const fs::path& folder,
   for (const ProtocolTable& table : own) {
     out.write(table.table->name() + ".csv", table.text);
   }
-  out.write("dictionary.json", dictionary(options, own, simulated));
+  out.write("dictionary.json", dictionary(options, own, simulated, tables.other_devices));
   if (options.samples) {
     const auto stems = file_stems(sessions);
     share_out(

@@ -10,6 +10,7 @@
 
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/export_sessions.h"
+#include "analysis/exchange/other_devices.h"
 #include "analysis/files/gzip_file.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
@@ -21,12 +22,20 @@ using record::Sample;
 using record::SessionReader;
 
 constexpr std::uint64_t kPiece = 32768;                // rows read at a time
+constexpr std::size_t kDeviceColumns = 10;             // of a further device
 constexpr std::uint64_t kMostMissing = 1'000'000'000;  // more is damage, not loss
 
 void add_vector(RowText& row, const Eigen::Vector3d& vector) {
   for (const double value : vector) {
     row.add(static_cast<float>(value));  // as the file has it
   }
+}
+
+void add_device(RowText& row, const record::DeviceRow& device) {
+  add_vector(row, device.position);
+  add_vector(row, device.velocity);
+  add_vector(row, device.force);
+  row.add(device.buttons);
 }
 
 void add_sample(RowText& row, const Sample& s, Delimited kind) {
@@ -38,22 +47,24 @@ void add_sample(RowText& row, const Sample& s, Delimited kind) {
   add_vector(row, s.velocity);
   add_vector(row, s.force);
   row.add(static_cast<float>(s.applied_force)).add(static_cast<float>(s.target_force));
-  row.add(static_cast<int>(s.saturated)).end();
+  row.add(static_cast<int>(s.saturated));
 }
 
 /// Turns one session's samples into text.
 class Writer {
  public:
   Writer(const SessionReader& reader, Delimited kind, GzipFile& file)
-      : reader_(reader), kind_(kind), file_(file) {
+      : reader_(reader), others_(reader), kind_(kind), file_(file) {
+    const std::vector<ColumnDoc> columns = sample_docs(others_.count());
     RowText row(missing_, kind);
-    for (std::size_t i = 1; i < sample_docs().size(); ++i) {
+    for (std::size_t i = 1; i < columns.size(); ++i) {
       row.add_missing();
     }
     row.end();
     if (kind == Delimited::kCsv) {
-      file.write(heading(sample_docs(), kind));
+      file.write(heading(columns, kind));
     }
+    result_.other_devices = others_.count();
     result_.runs.resize(reader.passes().size());
   }
 
@@ -63,6 +74,8 @@ class Writer {
     for (const auto& sample : samples) {
       close_gap(sample.sequence);
       add_sample(row, sample, kind_);
+      add_others(row, sample.sequence);
+      row.end();
       note_run(sample);
       note_shift(sample);
     }
@@ -72,6 +85,21 @@ class Writer {
   WrittenSamples result() { return std::move(result_); }
 
  private:
+  void add_others(RowText& row, std::uint64_t sequence) {
+    const auto rows = others_.at_tick(sequence);
+    for (std::size_t number = 1; number <= others_.count(); ++number) {
+      const auto own =
+          std::ranges::find(rows, static_cast<std::int32_t>(number), &record::DeviceRow::device);
+      if (own != rows.end()) {
+        add_device(row, *own);
+        continue;
+      }
+      for (std::size_t i = 0; i < kDeviceColumns; ++i) {
+        row.add_missing();
+      }
+    }
+  }
+
   void close_gap(std::uint64_t sequence) {
     if (!begun_) {
       begun_ = true;
@@ -120,6 +148,7 @@ class Writer {
   }
 
   const SessionReader& reader_;
+  OtherDevices others_;
   Delimited kind_;
   GzipFile& file_;
   std::string text_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -36,13 +37,15 @@ struct WrittenSamples {
   std::uint64_t missing{0};        // ticks among them without a row in the session file
   std::vector<RunSpan> runs;       // (passes)
   std::vector<ClockShift> shifts;  // of 2 ms or more, in order of time
+  std::size_t other_devices{0};    // after the first, each with columns of its own
 
   /// Time, on an even clock, of the tick that the clock read at this time [ns].
   std::int64_t even_time(std::int64_t time_ns) const;
 };
 
 /// Writes /samples as text, a piece at a time: memory does not grow with the session. Columns as
-/// sample_docs() has them. kTsv: no heading and no sequence numbers, and a row of "n/a" for every
+/// sample_docs() has them for the session's devices; nothing stands where a further device has no
+/// row for a tick. kTsv: no heading and no sequence numbers, and a row of "n/a" for every
 /// missing tick, so that row k is tick first_sequence + k. kCsv: with heading, without such rows.
 /// @throws InputError when the file is damaged; RunError when the disk is full or `counter` stops.
 WrittenSamples write_samples(const record::SessionReader& reader, Delimited kind, GzipFile& file,

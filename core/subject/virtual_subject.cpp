@@ -79,15 +79,12 @@ void VirtualSubject::observe(const stimulus::Shown& shown, const stimulus::Force
 
 void VirtualSubject::begin_pass(const Presentation& seen) noexcept {
   pass_duration_ = seen.pass_duration;
-  if (path_) {
-    path_->begin(pass_duration_, seen.block != block_);
-  }
   if (seen.block != block_) {
-    block_ = seen.block;
-    memory_.clear();
-    bar_.relax(person_.calibration_loss);
+    begin_block(seen.block);
+  } else if (path_) {
+    path_->begin(pass_duration_, false);
   }
-  memory_.drift(person_.forgetting, person_.memory_correlation / pass_duration_, random_);
+  forget();
   exposure_.clear();
   correction_ = 0.0;
   boldness_ = 1.0;
@@ -101,6 +98,44 @@ void VirtualSubject::begin_pass(const Presentation& seen) noexcept {
   for (double& shift : warp_) {
     shift = person_.timing_error * timing.next(random_);
   }
+}
+
+void VirtualSubject::begin_block(std::int32_t block) noexcept {
+  block_ = block;
+  memory_.clear();
+  bar_.relax(person_.calibration_loss);
+  if (path_) {
+    path_->begin(pass_duration_, true);
+  }
+  for (const Lesson& lesson : lessons_) {
+    if (lesson.block == block) {
+      go_through(lesson);
+    }
+  }
+}
+
+void VirtualSubject::go_through(const Lesson& lesson) noexcept {
+  for (int exposure = 0; exposure < lesson.exposures; ++exposure) {
+    exposure_.clear();
+    for (const LessonMoment& moment : lesson.moments) {
+      Sensed sensed;
+      sensed.height = moment.view.show_target_bar ? moment.view.target_force : 0.0;
+      sensed.felt = moment.force;
+      gather(moment.view, sensed);
+    }
+    end_pass();
+    forget();
+    if (path_) {
+      path_->begin(pass_duration_, false);
+    }
+  }
+  for (int session = 0; session < lesson.sessions_ago; ++session) {
+    forget();
+  }
+}
+
+void VirtualSubject::forget() noexcept {
+  memory_.drift(person_.forgetting, person_.memory_correlation / pass_duration_, random_);
 }
 
 void VirtualSubject::gather(const Presentation& seen, const Sensed& now) noexcept {

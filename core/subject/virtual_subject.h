@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/stimulus/observer.h"
 #include "core/stimulus/presentation.h"
@@ -15,6 +16,20 @@
 #include "core/subject/perception.h"
 
 namespace haptrial::subject {
+
+/// An instant of a training pass that a participant went through in an earlier session.
+struct LessonMoment {
+  stimulus::Presentation view;
+  double force{0.0};  // that was to be opposed or produced [N]
+};
+
+/// Training of a block in earlier sessions.
+struct Lesson {
+  std::int32_t block{0};
+  int exposures{0};
+  int sessions_ago{0};                // of the latest
+  std::vector<LessonMoment> moments;  // over a pass, in their order
+};
 
 /// A simulated participant: sees what the screen shows, feels what the device applies, remembers
 /// and acts through a hand. Knows the instruction, not the condition and not the target.
@@ -29,6 +44,10 @@ class VirtualSubject final : public stimulus::Observer {
                  HandModel& hand, std::uint64_t seed, double step,
                  const std::optional<PaceParameters>& pace = std::nullopt,
                  const std::optional<PathParameters>& path = std::nullopt);
+
+  /// Before the first pass. A block of a lesson begins with what its exposures left: they are
+  /// perceived and fade as in a session, and each session since counts as one more pass.
+  void remember(std::vector<Lesson> lessons) { lessons_ = std::move(lessons); }
 
   void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
                double dt) noexcept override;
@@ -46,6 +65,9 @@ class VirtualSubject final : public stimulus::Observer {
   };
 
   void begin_pass(const stimulus::Presentation& seen) noexcept;
+  void begin_block(std::int32_t block) noexcept;
+  void go_through(const Lesson& lesson) noexcept;
+  void forget() noexcept;
   void gather(const stimulus::Presentation& seen, const Sensed& now) noexcept;
   void end_pass() noexcept;
   double wrong_in_time(double progress) const noexcept;
@@ -68,6 +90,7 @@ class VirtualSubject final : public stimulus::Observer {
   BarCalibration bar_;
   ForceMemory memory_;
   Exposure exposure_;
+  std::vector<Lesson> lessons_;  // of earlier sessions
 
   std::array<Sensed, kDelayLine> past_{};
   std::uint32_t now_{0};

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/force_training/study/learned_scores.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "experiments/studies/learning_names.h"
 #include "protocols/definition/definition.h"
+#include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/training_pass.h"
 
 namespace haptrial::experiments {
@@ -41,6 +44,17 @@ std::vector<std::string> conditions_of(Table& root) {
   return design.has("conditions") ? design.texts("conditions") : std::vector<std::string>{};
 }
 
+/// Groups and sessions that a learning plan may name; none if the definition is itself wrong, which
+/// others say.
+analysis::LearningNames names_of(Table& root) {
+  try {
+    Table copy = root.unread();
+    return learning_names(protocols::read_force_definition(copy, "", nullptr));
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 /// @throws InputError with problems in it
 CurveAnalysis read_whole(Table root, bool fresh) {
   CurveAnalysis found = read_curve_analysis(root, fresh);
@@ -53,7 +67,12 @@ CurveAnalysis read_whole(Table root, bool fresh) {
 CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
   Table analysis = root.table("analysis");
   CurveAnalysis found{analysis::read_scoring(root, analysis), {}};
-  found.plan = analysis::read_analysis_plan(analysis, nameable(conditions_of(root)));
+  if (analysis.has("outcomes")) {
+    found.learning =
+        analysis::read_learning_plan(root, names_of(root), analysis::score_outcomes());
+  } else {
+    found.plan = analysis::read_analysis_plan(analysis, nameable(conditions_of(root)));
+  }
   if (fresh) {
     reject_empty_score(analysis, found.scoring);
   }

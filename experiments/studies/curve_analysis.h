@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/force_training/score/score_parameters.h"
+#include "analysis/learning/learning_plan.h"
 #include "analysis/statistics/design/analysis_plan.h"
 
 namespace haptrial {
@@ -21,7 +22,8 @@ namespace haptrial::experiments {
 /// Analysis of curves of force in a definition: its table [analysis].
 struct CurveAnalysis {
   analysis::ScoreParameters scoring;
-  analysis::AnalysisPlan plan;
+  analysis::AnalysisPlan plan;          // between conditions, right after training
+  analysis::LearningPlan learning{};    // from session to session; its tests are the planned ones
 };
 
 /// @param fresh  about to be used: a score that cannot depend on the forces is a problem

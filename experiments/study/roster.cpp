@@ -316,6 +316,9 @@ class RosterMaker {
         fmt::format("haptrial run {} --subject {}", typed(request_.definition_file), next.subject);
     next.command += roster_.sessions > 1 ? fmt::format(" --session {}", next.session) : "";
     next.command += next.resume ? " --resume" : "";
+    const bool led = !d_.tutoring.led.groups.empty() &&
+                     d_.is_led(next.session, {1, next.number - 1, next.group});
+    next.command += led ? " --tutor FILE:TRIAL" : "";
     const std::string& device = newest_.device;
     next.command += device.empty() || device == kVirtual ? "" : fmt::format(" --device {}", device);
     next.command += roster_.seed != 1 ? fmt::format(" --seed {}", roster_.seed) : "";

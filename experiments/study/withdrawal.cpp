@@ -93,6 +93,41 @@ bool names(const fs::path& file, const std::string& subject) {
   return has_word(file.string(), subject) || (has_text(file) && has_word(file_text(file), subject));
 }
 
+/// Participants of the session files that can be read, and files of other participants in whose
+/// events or definition the participant is named, such as sessions that the participant led.
+struct OtherSessions {
+  std::set<std::string> participants;
+  std::vector<fs::path> naming;
+};
+
+bool names_in(const record::SessionReader& reader, const std::string& subject) {
+  const auto events = reader.events();
+  return has_word(reader.info().definition, subject) ||
+         std::ranges::any_of(
+             events, [&](const record::EventRow& event) { return has_word(event.text, subject); });
+}
+
+OtherSessions other_sessions(const std::vector<fs::path>& files, const std::string& subject) {
+  OtherSessions others;
+  for (const fs::path& file : files) {
+    if (!is_session_file(file)) {
+      continue;
+    }
+    try {
+      const record::SessionReader reader(file);
+      if (reader.info().subject != subject) {
+        others.participants.insert(reader.info().subject);
+        if (names_in(reader, subject)) {
+          others.naming.push_back(file);
+        }
+      }
+    } catch (const std::exception&) {
+      continue;  // is_of() has judged it by its name
+    }
+  }
+  return others;
+}
+
 /// Folders that hold the participant's sessions, or something made from them.
 std::set<fs::path> folders_with(const std::vector<fs::path>& sessions,
                                 const std::vector<fs::path>& named) {
@@ -105,8 +140,32 @@ std::set<fs::path> folders_with(const std::vector<fs::path>& sessions,
   return folders;
 }
 
+bool holds_session_files(const fs::path& folder) {
+  return std::ranges::any_of(fs::directory_iterator(folder),
+                             [](const auto& each) { return is_session_file(each.path()); });
+}
+
+/// Whether a file lies in one of some folders, or below one of them in folders that neither name
+/// another participant nor are another study's: curves of an export lie in folders with numbers.
+bool lies_in(const std::set<fs::path>& folders, const fs::path& file,
+             const std::set<std::string>& others) {
+  fs::path below;  // names on the way down to the file
+  for (fs::path folder = file.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+    if (folders.contains(folder)) {
+      const std::string way = below.string();
+      return std::ranges::none_of(others,
+                                  [&](const std::string& other) { return has_word(way, other); });
+    }
+    if (holds_session_files(folder) || folder == folder.parent_path()) {
+      return false;
+    }
+    below = folder.filename() / below;
+  }
+  return false;
+}
+
 /// Sorts the files that are no sessions. A file without the participant's name counts if it lies
-/// beside one that has it, and is younger than the first session: stimuli and notes stay.
+/// beside or below one that has it, and is younger than the first session: stimuli and notes stay.
 void sort_others(const std::vector<fs::path>& files, const std::string& subject,
                  Withdrawal& found) {
   std::vector<fs::path> unnamed;
@@ -126,8 +185,10 @@ void sort_others(const std::vector<fs::path>& files, const std::string& subject,
     first = std::min(first, fs::last_write_time(session));
   }
   const std::set<fs::path> folders = folders_with(found.sessions, found.made);
+  const OtherSessions others = other_sessions(files, subject);
+  found.others.insert(found.others.end(), others.naming.begin(), others.naming.end());
   std::ranges::copy_if(unnamed, std::back_inserter(found.made), [&](const fs::path& file) {
-    return is_made(file) && folders.contains(file.parent_path()) &&
+    return is_made(file) && lies_in(folders, file, others.participants) &&
            fs::last_write_time(file) >= first;
   });
   std::ranges::sort(found.made);

@@ -16,8 +16,10 @@ struct Withdrawal {
 
 /// Looks through folders with all that is below them. A session file is the participant's if it
 /// says so, and one that cannot be read if its name does. A table, report or picture was made from
-/// sessions if it names the participant, or if it lies beside such a file or the sessions and is
-/// younger than the first of them: its numbers are partly the participant's.
+/// sessions if it names the participant, or if it lies beside or below such a file or the sessions,
+/// in no folder of another participant or study, and is younger than the first of them: its numbers
+/// are partly the participant's. Sessions of others that name the participant, such as those that
+/// the participant's recording led, are among `others`.
 /// @throws InputError for a folder that is not there, a participant without a file, or one whose
 /// session is being recorded
 Withdrawal find_withdrawal(const std::vector<std::filesystem::path>& folders,

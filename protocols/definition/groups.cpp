@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/definition/table.h"
 #include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
 
@@ -51,6 +52,29 @@ std::vector<StudyGroup> study_groups(std::string_view definition, std::string_vi
     result.push_back({kEverybody, 0, false});
   }
   return result;
+}
+
+std::vector<StudyGroup> read_groups(Table& root, int participants, std::string_view file_name) {
+  if (!root.has("groups")) {
+    return {};
+  }
+  Table table = root.table("groups");
+  constexpr long kMost = 10000;
+  long all = 0;
+  bool good = true;
+  for (const std::string& name : table.keys()) {
+    table.describe(
+        {name, "Participants of the group NAME, in the order of their numbers", "", true});
+    const long count = table.integer(name, 1, kMost);
+    good = good && count > 0;
+    all += count;
+  }
+  if (good && all != participants) {
+    root.reject("groups", fmt::format("has {} participants in all; make it {}, as in "
+                                      "design.participants",
+                                      all, participants));
+  }
+  return good ? study_groups(root.source(), file_name) : std::vector<StudyGroup>{};
 }
 
 std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject) {

@@ -4,6 +4,10 @@
 #include <string_view>
 #include <vector>
 
+namespace haptrial {
+class Table;
+}
+
 namespace haptrial::protocols {
 
 /// A group of a study, in the order in which participants belong to them.
@@ -18,6 +22,10 @@ struct StudyGroup {
 /// The [groups] of a definition's text, in its order; one group of everybody where it has none.
 /// @throws InputError for a number of participants that is none.
 std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name);
+
+/// Reads the table [groups]; problems are noted. None where the definition has no such table.
+/// @param participants  that the design has  @param file_name  without folders
+std::vector<StudyGroup> read_groups(Table& root, int participants, std::string_view file_name);
 
 /// The group of a participant from the number at the end of the identifier: participants 1 to n
 /// belong to the first group of n, those that follow to the next.

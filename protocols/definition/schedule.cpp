@@ -27,14 +27,19 @@ bool read_break_until_ready(Table& table, int break_after) {
   return ready;
 }
 
+void check_trials(Table& table, int trials, int repetitions, std::size_t conditions,
+                  std::string_view whose) {
+  const int group = repetitions * static_cast<int>(conditions);
+  if (group > 0 && trials % group != 0) {
+    table.reject("trials", fmt::format("{}", trials),
+                 fmt::format("a multiple of {} ({} repetitions of {} conditions{})", group,
+                             repetitions, conditions, whose));
+  }
+}
+
 /// Notes contradictions between the keys of a design.
 static void check_design(Table& table, Design& d) {
-  const int group = d.repetitions * static_cast<int>(d.conditions.size());
-  if (group > 0 && d.trials % group != 0) {
-    table.reject("trials", fmt::format("{}", d.trials),
-                 fmt::format("a multiple of {} ({} repetitions of {} conditions)", group,
-                             d.repetitions, d.conditions.size()));
-  }
+  check_trials(table, d.trials, d.repetitions, d.conditions.size());
   if (d.break_after >= d.trials) {
     table.reject("break_after", fmt::format("{}", d.break_after),
                  fmt::format("a whole number below the {} trials, or 0 for no break", d.trials));
@@ -54,7 +59,10 @@ const Schema<Design>& design_schema() {
       Schema<D>()
           .integer("participants", &D::participants, 1, 10000, "Participants of the study")
           .required()
-          .integer("trials", &D::trials, 1, 100000, "Trials of each participant")
+          .integer("sessions", &D::sessions, 1, 100,
+                   "Sessions of each participant, on days of their own")
+          .integer("trials", &D::trials, 1, 100000,
+                   "Trials of each session; [design.session.N] may give session N another number")
           .required()
           .integer("repetitions", &D::repetitions, 1, 1000,
                    "Trials of a block, which share stimulus and condition")
@@ -114,14 +122,14 @@ std::vector<int> shuffled_rows(std::size_t count, std::uint64_t seed, int group)
 }  // namespace
 
 std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
-                                      std::uint64_t study_seed, std::uint64_t session_seed) {
+                                      std::uint64_t study_seed, std::uint64_t person_seed) {
   const int n = static_cast<int>(design.conditions.size());
   const auto rows = williams_rows(n);
   std::vector<PlannedTrial> plan;
   for (const std::string& condition : design.conditions) {
     for (int trial = 1; trial <= design.practice; ++trial) {
       const std::uint64_t seed =
-          derived_seed(session_seed, fmt::format("practice {} {}", condition, trial));
+          derived_seed(person_seed, fmt::format("practice {} {}", condition, trial));
       const auto block = -static_cast<std::int32_t>(plan.size()) - 1;
       plan.push_back({trial, block, 1, condition, seed, true});
     }
@@ -132,7 +140,7 @@ std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
     const auto order = shuffled_rows(rows.size(), study_seed, group);
     const auto& row = rows[order[participant % static_cast<int>(rows.size())]];
     const std::string& condition = design.conditions[row[block % n]];
-    const std::uint64_t seed = derived_seed(session_seed, fmt::format("block {}", block + 1));
+    const std::uint64_t seed = derived_seed(person_seed, fmt::format("block {}", block + 1));
     for (int repetition = 1; repetition <= design.repetitions; ++repetition) {
       plan.push_back({static_cast<std::int32_t>(plan.size()) - practice + 1, block + 1, repetition,
                       condition, seed, false});

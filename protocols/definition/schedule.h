@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace haptrial {
@@ -30,6 +31,11 @@ struct Design {
 /// The keys of a [design] table; a design that does not divide is noted as a problem.
 const Schema<Design>& design_schema();
 
+/// Notes a number of trials that does not divide into blocks of each condition.
+/// @param whose  the conditions are, " of the group trained", for a sentence
+void check_trials(Table& table, int trials, int repetitions, std::size_t conditions,
+                  std::string_view whose = "");
+
 /// Reads the key `break_until` of a [design] table, "time" (as if left out) or "ready".
 /// @param break_after  that the design has; 0: no breaks
 bool read_break_until_ready(Table& table, int break_after);
@@ -55,9 +61,10 @@ std::vector<std::vector<int>> williams_rows(int conditions);
 /// participants as there are rows each row is used once in every group. Which row comes to whom is
 /// drawn from the study's seed.
 /// @param participant   from 0
-/// @param study_seed    the same for all participants
-/// @param session_seed  of this participant; stimuli derive from it
+/// @param study_seed   the same for all participants
+/// @param person_seed  of this participant; stimuli derive from it, so that those of a block are the
+///                     same in every session
 std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
-                                      std::uint64_t study_seed, std::uint64_t session_seed);
+                                      std::uint64_t study_seed, std::uint64_t person_seed);
 
 }  // namespace haptrial::protocols

@@ -20,8 +20,8 @@ const Schema<SessionPlan>& session_plan_schema() {
           .texts("groups", &P::groups, "Groups whose participants alone come to the session")
           .otherwise("all")
           .flag("gives", &P::gives,
-                "Whether the session gives what the study gives: hints, nerve monitor, forbidden "
-                "regions, a tutor; a test gives nothing");
+                "Whether the session gives what the study gives: training passes, hints, nerve "
+                "monitor, forbidden regions, a tutor; a test gives nothing");
   return schema;
 }
 

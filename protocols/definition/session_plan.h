@@ -16,7 +16,7 @@ namespace haptrial::protocols {
 struct SessionPlan {
   std::string name{};                 // for reports and tests, "pre-test"; empty: its number
   std::vector<std::string> groups{};  // whose participants alone come; empty: everybody
-  bool gives{true};  // what the study gives is given: hints, a monitor, regions, a tutor
+  bool gives{true};  // the study gives what it does: training passes, hints, a tutor …
 };
 
 /// Reads the rest of a session's table, which belongs to a protocol. @param number  from 1

@@ -127,6 +127,58 @@ void reject_gains(Table& root, const ForceDefinition& d) {
   }
 }
 
+/// Notes a number of trials that does not divide into blocks of each condition of some group.
+void check_group_trials(Table& table, int trials, const ForceDefinition& d) {
+  for (const auto& [group, conditions] : d.group_conditions) {
+    check_trials(table, trials, d.design.repetitions, conditions.size(), " of the group " + group);
+  }
+}
+
+/// The conditions of groups that have some of the design's alone.
+void read_group_conditions(Table& root, ForceDefinition& d) {
+  Table design = root.table("design");
+  if (!design.has("group_conditions")) {
+    return;
+  }
+  Table table = design.table("group_conditions");
+  for (const std::string& group : table.keys()) {
+    table.describe({group, "Conditions of the group NAME alone, of design.conditions",
+                    "design.conditions", true});
+    check_groups(root, table, group, {group});
+    std::vector<std::string> conditions = table.texts(group);
+    for (const std::string& condition : conditions) {
+      if (std::ranges::find(d.design.conditions, condition) == d.design.conditions.end()) {
+        table.reject(
+            group, fmt::format("an array with \"{}\"", condition),
+            fmt::format("conditions of the design: {}", fmt::join(d.design.conditions, ", ")));
+      }
+    }
+    if (!conditions.empty()) {
+      d.group_conditions[group] = std::move(conditions);
+    }
+  }
+}
+
+/// The sessions, of which each may have a number of trials of its own; the design has the most.
+void read_sessions(Table& root, ForceDefinition& d) {
+  const int usual = d.design.trials;
+  d.session_plans = read_session_plans(
+      root, d.design.sessions, "a name at least", [&](Table& session, int number) {
+        session.describe({"trials", "Number of trials of the session", "design.trials"});
+        d.session_trials.resize(static_cast<std::size_t>(number), usual);
+        d.session_trials.back() = session.integer_or("trials", usual, 1, 100000);
+        check_trials(session, d.session_trials.back(), d.design.repetitions,
+                     d.design.conditions.size());
+        check_group_trials(session, d.session_trials.back(), d);
+      });
+  if (d.session_trials.empty()) {
+    Table design = root.table("design");
+    check_group_trials(design, usual, d);
+  } else {
+    d.design.trials = *std::ranges::max_element(d.session_trials);
+  }
+}
+
 const Schema<ForceDefinition>& recording_schema() {
   static const auto schema =
       Schema<ForceDefinition>()
@@ -160,6 +212,9 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   d.guidance = guidance_schema().read(guidance);
   recording_schema().read(recording, d);
   d.design = design_schema().read(design);
+  d.groups = read_groups(root, d.design.participants, d.file_name);
+  read_group_conditions(root, d);
+  read_sessions(root, d);
   read_mirroring(design, d);
   d.recovery = d.guidance.recovery;
   d.display = render::trial_display_schema().read(display);
@@ -204,16 +259,60 @@ ForceDefinition parse_force_definition(std::string_view text, std::string_view f
   return d;
 }
 
+Design ForceDefinition::design_of(int session, int participant) const {
+  Design one = design;
+  const std::string group = group_of(groups, participant);
+  const auto at = static_cast<std::size_t>(session - 1);
+  if (at < session_trials.size()) {
+    one.trials = session_trials[at];
+  }
+  if (const auto own = group_conditions.find(group); own != group_conditions.end()) {
+    one.conditions = own->second;
+  }
+  for (int earlier = 1; earlier < session; ++earlier) {
+    one.practice = comes(earlier, group) ? 0 : one.practice;
+  }
+  return one;
+}
+
+std::vector<int> ForceDefinition::trainings_before(int session, int participant) const {
+  std::vector<int> trainings;
+  for (int earlier = 1; earlier < session; ++earlier) {
+    if (session_plan(earlier).gives && comes(earlier, group_of(groups, participant))) {
+      trainings.push_back(earlier);
+    }
+  }
+  return trainings;
+}
+
+/// "session 1, pre-test: 18 trials without training, about 14 min"
+static std::string describe_session(const ForceDefinition& d, int session) {
+  const protocols::SessionPlan& plan = d.session_plan(session);
+  const auto at = static_cast<std::size_t>(session - 1);
+  const int trials = at < d.session_trials.size() ? d.session_trials[at] : d.design.trials;
+  const double passes = plan.gives ? 1.0 : 0.5;  // of a trial's two
+  return fmt::format(
+      "session {}{}: {}{}{}, about {}", session, plan.name.empty() ? "" : ", " + plan.name,
+      counted(trials, "trial", "trials"), plan.gives ? "" : " without training",
+      plan.groups.empty() ? "" : fmt::format(", of {} alone", fmt::join(plan.groups, ", ")),
+      planned_minutes(passes * d.longest(trials)));
+}
+
 std::vector<std::string> ForceDefinition::description() const {
   std::vector<std::string> lines{
-      fmt::format("{}: {}, {} in {} of {}, {} {}, {} Hz", name,
+      fmt::format("{}: {}{}, {} in {} of {}, {} {}, {} Hz", name,
                   counted(design.participants, "participant", "participants"),
+                  design.sessions > 1 ? fmt::format(" with {} sessions each", design.sessions) : "",
                   counted(design.trials, "trial", "trials"),
                   counted(design.blocks(), "block", "blocks"), design.repetitions,
                   design.conditions.size() == 1 ? "condition" : "conditions",
                   fmt::join(design.conditions, ", "), rate),
-      fmt::format("about {} per participant, breaks and pages not counted",
-                  planned_minutes(longest(design.trials)))};
+      fmt::format("about {} per {}, breaks and pages not counted",
+                  planned_minutes(longest(design.trials)),
+                  design.sessions > 1 ? "session" : "participant")};
+  for (int session = 1; design.sessions > 1 && session <= design.sessions; ++session) {
+    lines.push_back(describe_session(*this, session));
+  }
   for (std::string& line : margins()) {
     lines.push_back(std::move(line));
   }

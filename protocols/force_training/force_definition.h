@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/control/handle_loop.h"
 #include "core/stimulus/stimulus.h"
@@ -12,6 +14,7 @@
 #include "core/subject/population.h"
 #include "core/subject/subject_parameters.h"
 #include "protocols/definition/definition.h"
+#include "protocols/definition/groups.h"
 #include "protocols/force_training/trajectory_pass.h"
 
 namespace haptrial {
@@ -31,6 +34,17 @@ struct ForceDefinition : Definition {
   std::optional<subject::Population<subject::PaceParameters>> pace;   // if it is not set
   std::optional<subject::Population<subject::PathParameters>> paths;  // if the recall is free
   double stimulus_rate{1000.0};                                       // [Hz]
+  std::vector<StudyGroup> groups{};  // in their order; none: everybody is alike
+  std::map<std::string, std::vector<std::string>> group_conditions{};  // where the design states any
+  std::vector<int> session_trials{};  // of each session, where the definition describes sessions
+
+  int sessions() const override { return design.sessions; }
+  /// The design of a participant's session, with its trials and the conditions of the
+  /// participant's group; practice comes before the first session alone.
+  /// @param session  from 1  @param participant  from 0
+  Design design_of(int session, int participant) const;
+  /// Sessions before one in which a participant was trained, in their order.
+  std::vector<int> trainings_before(int session, int participant) const;
 
   /// Whether a condition of training has an expert.
   bool shows_expert() const;

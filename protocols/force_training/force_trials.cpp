@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "protocols/force_training/earlier_lessons.h"
+#include "protocols/force_training/guided_passes.h"
 #include "protocols/force_training/path_drawing.h"
 #include "protocols/force_training/recorded_pass.h"
 #include "protocols/force_training/virtual_rig.h"
@@ -11,17 +13,19 @@ namespace haptrial::protocols {
 ForceTrials::ForceTrials(const ForceDefinition& definition, const SessionPlace& place)
     : d_(definition),
       place_(place),
-      plan_(plan_trials(d_.design, place.participant, place.seed, place.session_seed)),
+      plan_(planned_trials_of(d_, place)),
       pictures_(d_.display, place),
       expert_(d_.shows_expert() ? std::make_unique<ExpertLog>() : nullptr) {}
 
 std::span<const record::Phase> ForceTrials::phases() const {
   static constexpr std::array kPhases{record::Phase::kTraining, record::Phase::kTest};
-  return kPhases;
+  const bool trains = d_.session_plan(place_.session).gives;
+  return trains ? std::span(kPhases) : std::span(kPhases).last(1);
 }
 
 std::unique_ptr<Rig> ForceTrials::virtual_rig() const {
-  return std::make_unique<VirtualRig>(d_, place_.hand_session_seed);
+  return std::make_unique<VirtualRig>(d_, place_.hand_person_seed, place_.hand_session_seed,
+                                      earlier_lessons(d_, place_));
 }
 
 std::vector<stimulus::Observer*> ForceTrials::observers() {

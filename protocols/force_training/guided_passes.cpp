@@ -140,8 +140,9 @@ const GuidedTick* GuidedPass::middle_of(Stage stage) const {
   return count == 0 ? nullptr : &*(first + count / 2);
 }
 
-std::vector<PlannedTrial> planned_trials_of(const Definition& d, const SessionPlace& place) {
-  return plan_trials(d.design, place.participant, place.seed, place.session_seed);
+std::vector<PlannedTrial> planned_trials_of(const ForceDefinition& d, const SessionPlace& place) {
+  return plan_trials(d.design_of(place.session, place.participant), place.participant, place.seed,
+                     place.person_seed);
 }
 
 GuidedTrial guided_trial(const ForceDefinition& d, const SessionPlace& place, int number) {

@@ -55,7 +55,7 @@ struct GuidedTrial {
 GuidedTrial guided_trial(const ForceDefinition& definition, const SessionPlace& place, int number);
 
 /// The planned trials of a session, practice first.
-std::vector<PlannedTrial> planned_trials_of(const Definition& definition,
+std::vector<PlannedTrial> planned_trials_of(const ForceDefinition& definition,
                                             const SessionPlace& place);
 
 }  // namespace haptrial::protocols

@@ -1,9 +1,10 @@
 #include "protocols/force_training/virtual_rig.h"
 
+#include <utility>
+
 #include "core/base/random.h"
 #include "core/subject/hand.h"
 #include "core/subject/hand_cvode.h"
-#include "core/subject/virtual_subject.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -20,9 +21,10 @@ std::unique_ptr<subject::HandModel> make_hand(const ForceDefinition& d) {
 
 }  // namespace
 
-VirtualRig::VirtualRig(const ForceDefinition& d, std::uint64_t session_seed)
+VirtualRig::VirtualRig(const ForceDefinition& d, std::uint64_t person_seed,
+                       std::uint64_t session_seed, std::vector<subject::Lesson> lessons)
     : hand_(make_hand(d)), device_(d.device, *hand_, d.rate) {
-  const std::uint64_t seed = derived_seed(session_seed, "subject");
+  const std::uint64_t seed = derived_seed(person_seed, "subject");
   std::optional<subject::PaceParameters> pace;
   if (d.pace) {
     pace = d.pace->draw(seed);
@@ -31,8 +33,11 @@ VirtualRig::VirtualRig(const ForceDefinition& d, std::uint64_t session_seed)
   if (d.paths) {
     path = d.paths->draw(seed);
   }
-  subject_ = std::make_unique<subject::VirtualSubject>(d.population.draw(seed), d.hand, *hand_,
-                                                       seed, 1.0 / d.rate, pace, path);
+  auto person = std::make_unique<subject::VirtualSubject>(d.population.draw(seed), d.hand, *hand_,
+                                                          derived_seed(session_seed, "subject"),
+                                                          1.0 / d.rate, pace, path);
+  person->remember(std::move(lessons));
+  subject_ = std::move(person);
 }
 
 }  // namespace haptrial::protocols

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "core/device/virtual_device.h"
 #include "core/stimulus/observer.h"
 #include "core/subject/hand_model.h"
+#include "core/subject/virtual_subject.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/interface/rig.h"
 
@@ -14,8 +16,14 @@ namespace haptrial::protocols {
 /// A virtual device with a virtual subject's hand on it: what stands in for hardware and a person.
 class VirtualRig final : public Rig {
  public:
-  /// @param session_seed  the person, and every random number of theirs, follows from it
-  VirtualRig(const ForceDefinition& definition, std::uint64_t session_seed);
+  /// @param person_seed   the person follows from it, the same in every session
+  /// @param session_seed  every other random number of theirs does
+  /// @param lessons       of earlier sessions
+  VirtualRig(const ForceDefinition& definition, std::uint64_t person_seed,
+             std::uint64_t session_seed, std::vector<subject::Lesson> lessons);
+  /// In a first session. @param seed  person and every random number follow from it
+  VirtualRig(const ForceDefinition& definition, std::uint64_t seed)
+      : VirtualRig(definition, seed, seed, {}) {}
 
   device::Device& device() override { return device_; }
   stimulus::Observer* subject() override { return subject_.get(); }

@@ -174,6 +174,10 @@ TEST_F(LearningSessionTest, TheRosterKnowsWhoComesToWhichSession) {
   EXPECT_THAT(good("roster study.toml begun"),
               AllOf(HasSubstr("S03 (group hints), session 2 of 5"),
                     HasSubstr("S07 (group control), session 4 of 5")));
+  fs::create_directory(*folder_ / "to_lead");
+  fs::copy_file(session(5, 1), fs::path(*folder_ / "to_lead") / "S05-session-1.h5");
+  EXPECT_THAT(good("roster study.toml to_lead"),
+              HasSubstr("--subject S05 --session 2 --tutor FILE:TRIAL --out to_lead"));
 }
 
 TEST_F(LearningSessionTest, RunRefusesASessionThatIsNotForTheGroup) {
@@ -188,7 +192,7 @@ TEST_F(LearningSessionTest, TheReportComparesChangesBetweenGroups) {
   const std::string lines = good("analyze out");
   EXPECT_THAT(lines, HasSubstr("change of planned cavity removed: Planned, hints"));
   const std::string report = test::read_text(*folder_ / "out" / "report.md");
-  EXPECT_THAT(report, AllOf(HasSubstr("# Learning in drillings"), HasSubstr("## Learning"),
+  EXPECT_THAT(report, AllOf(HasSubstr("# Learning in drillings"), HasSubstr("## Learning from session"),
                             HasSubstr("change to post-test"), Not(HasSubstr("As published"))));
   const auto json = nlohmann::json::parse(test::read_text(*folder_ / "out" / "statistics.json"));
   const auto& learning = json.at("learning");

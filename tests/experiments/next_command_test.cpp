@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "core/base/file_text.h"
 #include "tests/experiments/command.h"
@@ -51,6 +52,14 @@ TEST_F(NextCommandTest, ADecidedStudyAsksForNobody) {
   EXPECT_EQ(decided.status, 0) << decided.errors;
   EXPECT_THAT(decided.output, HasSubstr("the study has ended: there is an effect"));
   EXPECT_THAT(decided.output, testing::Not(HasSubstr("next: ")));
+  const CommandResult roster = run("roster crossmodal_congruency.toml out --json roster.json");
+  EXPECT_EQ(roster.status, 0) << roster.errors;
+  EXPECT_THAT(roster.output, HasSubstr("the study has ended: there is an effect"));
+  EXPECT_THAT(roster.output, HasSubstr("nobody is next"));
+  EXPECT_THAT(roster.output, testing::Not(HasSubstr("next: ")));
+  const auto json = nlohmann::json::parse(file_text(folder_ / "roster.json"));
+  EXPECT_EQ(json["ended"], true);
+  EXPECT_TRUE(json["next"].empty());
   EXPECT_THAT(run("analyze out").output,
               HasSubstr("Mean reaction time. When the study ends: congruent < incongruent, after"));
   EXPECT_THAT(file_text(folder_ / "out/results.json"), HasSubstr("\"most_participants\": 12"));
@@ -63,6 +72,8 @@ TEST_F(NextCommandTest, BetweenLooksItGoesOn) {
   EXPECT_THAT(next().output,
               testing::AllOf(HasSubstr("not looked at yet; go on"),
                              HasSubstr("at most 12 participants"), HasSubstr("next: ")));
+  EXPECT_THAT(run("roster crossmodal_congruency.toml out").output,
+              testing::AllOf(HasSubstr("not looked at yet; go on"), HasSubstr("next: ")));
 }
 
 TEST_F(NextCommandTest, LooksThatNobodyReachesAreWarnedOf) {

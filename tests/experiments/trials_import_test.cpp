@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -105,6 +106,68 @@ class TrialsImportTest : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+/// The normal quantile by bisection of the error function.
+double quantile(double share) {
+  double low = -10.0, high = 10.0;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(-middle / std::sqrt(2.0)) < share ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Trials of a detection under a factor, and what was answered, counted while they are made.
+struct Counted {
+  std::map<std::string, int> yes, trials;  // by "P1,slow,1": participant, factor, stimulus
+  std::string table{"subject,stimulus,answer,speed\n"};
+
+  Counted() {
+    unsigned draw = 7;
+    for (const char* who : {"P1", "P2", "P3", "P4"}) {
+      for (int trial = 0; trial < 160; ++trial) {
+        const int there = trial % 2;
+        const std::string speed = trial % 4 < 2 ? "slow" : "fast";
+        draw = draw * 1664525u + 1013904223u;
+        const double chance = there == 0 ? 0.2 : speed == "slow" ? 0.5 : 0.9;
+        const bool answer = static_cast<double>(draw >> 8) / (1 << 24) < chance;
+        const std::string cell = fmt::format("{},{},{}", who, speed, there);
+        ++trials[cell];
+        yes[cell] += answer ? 1 : 0;
+        table += fmt::format("{},{},{},{}\n", who, there, answer ? "yes" : "no", speed);
+      }
+    }
+  }
+  /// Share of yes with half a trial added on each side, as a normal deviate.
+  double deviate(const std::string& cell) const {
+    return quantile((yes.at(cell) + 0.5) / (trials.at(cell) + 1.0));
+  }
+  double d_prime(const std::string& person_and_speed) const {
+    return deviate(person_and_speed + ",1") - deviate(person_and_speed + ",0");
+  }
+};
+
+/// Hits and false alarms of each participant under each level of an imported factor.
+TEST_F(TrialsImportTest, DetectionsAreComparedByTheirFactor) {
+  const Counted counted;
+  test::write_text(folder_ / "theirs.csv", counted.table);
+  const CommandResult run = run_command(
+      fmt::format("haptrial import {} --kind detection --yes yes --column level=stimulus --factor "
+                  "speed --out {} && haptrial analyze {}",
+                  path("theirs.csv"), path("study"), path("study")));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Sensitivity d'. Effect of speed: significant"));
+  std::map<std::string, double> found;
+  for (const Row& row : rows_of(folder_ / "study/estimates.csv")) {
+    if (row.at("name") == "d_prime") {
+      found[row.at("participant") + "," + row.at("speed")] = std::stod(row.at("estimate"));
+    }
+  }
+  ASSERT_EQ(found.size(), 8u);
+  for (const auto& [cell, d_prime] : found) {
+    EXPECT_NEAR(d_prime, counted.d_prime(cell), 1e-9) << cell;
+  }
+}
 
 /// A shipped experiment, factors that blocks or trials vary, and columns that it lacks.
 struct Shipped {

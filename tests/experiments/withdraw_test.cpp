@@ -115,6 +115,28 @@ TEST_F(WithdrawTest, StimuliDefinitionsAndOtherStudiesStay) {
   EXPECT_THAT(files_with("S02"), IsEmpty());
 }
 
+/// Exports and sheets name nobody in some folders, and sessions hold words in compressed tables.
+TEST_F(WithdrawTest, FoldersWithoutNamesGoAndSessionsThatTheParticipantLedAreNamed) {
+  run("new force.toml --from force_training");
+  run("dry-run force.toml --subjects 2 --trials 3 --out force");
+  run("dry-run force.toml --subjects 1 --trials 1 --tutor force/S02.h5:1 --out force/led");
+  run("export force --curves force/curves");
+  run("judge prepare force --out force/sheets");
+  fs::create_directories(folder_ / "force/curves/S01");
+  write_text(folder_ / "force/curves/S01/own.csv", "of S01 alone\n");
+  for (const char* name : {"force/curves/002", "force/sheets/sheet-1.html", "force/led/S01.h5"}) {
+    ASSERT_TRUE(fs::exists(folder_ / name)) << name;
+  }
+  const auto done = run("withdraw force S02 --yes");
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_FALSE(fs::exists(folder_ / "force/curves/002"));
+  EXPECT_FALSE(fs::exists(folder_ / "force/sheets"));
+  EXPECT_TRUE(fs::exists(folder_ / "force/curves/S01/own.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "force/led/S01.h5"));
+  EXPECT_THAT(done.output,
+              HasSubstr("leaves, although it names the participant: force/led/S01.h5"));
+}
+
 TEST_F(WithdrawTest, BytesOfCompressedFilesAreNoWords) {
   fs::create_directories(folder_ / "data/sub-S01");
   const fs::path theirs = folder_ / "data/sub-S01/sub-S01_physio.tsv.gz";

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "analysis/bone_drilling/feedback/page_frame.h"
+#include "analysis/bone_drilling/metrics/quantities.h"
 #include "analysis/document/html.h"
 
 namespace haptrial::analysis::drilling {
@@ -33,15 +34,10 @@ std::string state_of(const CurriculumStanding& standing, std::size_t place) {
                   : fmt::format("open, {}", tried);
 }
 
-std::string criterion_text(const bone::Criterion& criterion) {
-  return fmt::format("{} {} {:g}", criterion.quantity, criterion.least ? "at least" : "at most",
-                     criterion.value);
-}
-
 std::string asked_of(const CurriculumCase& of) {
   std::vector<std::string> asked;
   for (const bone::Criterion& criterion : of.pass) {
-    asked.push_back(criterion_text(criterion));
+    asked.push_back(words_of(criterion));
   }
   return fmt::format("{}{}", fmt::join(asked, "; "),
                      of.in_a_row > 1 ? fmt::format("; {} procedures in a row", of.in_a_row) : "");
@@ -53,9 +49,7 @@ std::string last_of(const CurriculumCase& of, const CaseStanding& standing) {
   }
   std::vector<std::string> values;
   for (const CheckedCriterion& each : check(of, *standing.last)) {
-    values.push_back(fmt::format("{} {}: {}", each.criterion.quantity,
-                                 each.value ? fmt::format("{:.4g}", *each.value) : "unknown",
-                                 each.met ? "met" : "missed"));
+    values.push_back(fmt::format("{}: {}", words_of(each), each.met ? "met" : "missed"));
   }
   return fmt::format("{}", fmt::join(values, "; "));
 }
@@ -91,7 +85,7 @@ Rows missed_rows(const CurriculumClass& of) {
         }
       }
       rows.push_back(
-          {own.name, criterion_text(own.pass[i]), std::to_string(tried), std::to_string(missed)});
+          {own.name, words_of(own.pass[i]), std::to_string(tried), std::to_string(missed)});
     }
   }
   return rows;
@@ -99,7 +93,21 @@ Rows missed_rows(const CurriculumClass& of) {
 
 }  // namespace
 
-std::string curriculum_section(const Curriculum& curriculum, const CurriculumStanding& standing) {
+Curriculum with_titles(Curriculum curriculum) {
+  for (CurriculumCase& each : curriculum.cases) {
+    for (bone::Criterion& criterion : each.pass) {
+      if (criterion.quantity != bone::kScoreQuantity) {
+        const QuantityWords words = words_of_quantity(criterion.quantity);
+        criterion.title = words.title;
+        criterion.unit = words.unit == "1" ? "" : words.unit;
+      }
+    }
+  }
+  return curriculum;
+}
+
+std::string curriculum_section(const Curriculum& stated, const CurriculumStanding& standing) {
+  const Curriculum curriculum = with_titles(stated);
   Rows rows;
   for (std::size_t place = 0; place < curriculum.cases.size(); ++place) {
     const CurriculumCase& own = curriculum.cases[place];
@@ -115,7 +123,9 @@ std::string curriculum_section(const Curriculum& curriculum, const CurriculumSta
          html_table({"case", "state", "to pass", "last procedure"}, rows);
 }
 
-std::string class_page(const CurriculumClass& of) {
+std::string class_page(const CurriculumClass& stated) {
+  CurriculumClass of = stated;
+  of.curriculum = with_titles(of.curriculum);
   const bool simulated = std::ranges::any_of(of.trainees, &ClassTrainee::simulated);
   std::vector<std::string> names{"trainee", "group"};
   for (const CurriculumCase& each : of.curriculum.cases) {

@@ -7,6 +7,9 @@
 
 namespace haptrial::analysis::drilling {
 
+/// The curriculum with titles and units of the quantities that its criteria ask for.
+bone::Curriculum with_titles(bone::Curriculum curriculum);
+
 /// How a trainee stands in a curriculum, as a section of a page: a row for each case with what its
 /// criteria ask for and what the last procedure reached. HTML.
 std::string curriculum_section(const bone::Curriculum& curriculum,

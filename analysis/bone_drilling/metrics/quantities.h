@@ -13,4 +13,13 @@ std::vector<std::string> quantity_names();
 /// Whether quantity() may know a name, on some bone.
 bool is_quantity(std::string_view name);
 
+/// A quantity for people.
+struct QuantityWords {
+  std::string title;  // "planned cavity removed"
+  std::string unit;   // "1": a pure number
+};
+
+/// The words of a name that is_quantity() knows. @throws std::invalid_argument for another one
+QuantityWords words_of_quantity(std::string_view name);
+
 }  // namespace haptrial::analysis::drilling

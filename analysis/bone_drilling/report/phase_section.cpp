@@ -9,6 +9,7 @@
 #include "analysis/bone_drilling/phases/phase_labels.h"
 #include "analysis/bone_drilling/report/validity_table.h"
 #include "analysis/bone_drilling/report/validity_words.h"
+#include "analysis/statistics/design/interval_word.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/document/finding_json_internal.h"
+#include "analysis/learning/learning_json_internal.h"
 #include "analysis/statistics/design/result_json_internal.h"
 
 namespace haptrial::analysis::drilling {
@@ -224,25 +225,6 @@ Json hints_of(const ValidityResult& result) {
   return {{"procedures", procedures}, {"with_less_without", effects}};
 }
 
-Json learning_of(const LearnedStudy& study) {
-  Json outcomes = Json::array();
-  for (const LearnedOutcome& outcome : study.outcomes) {
-    Json means = Json::array();
-    for (std::size_t g = 0; g < outcome.groups.size(); ++g) {
-      for (std::size_t s = 0; s < outcome.sessions.size(); ++s) {
-        means.push_back({{"group", outcome.groups[g]},
-                         {"session", outcome.sessions[s]},
-                         {"mean", to_json(outcome.means[g][s])}});
-      }
-    }
-    outcomes.push_back({{"outcome", outcome.name},
-                        {"unit", outcome.unit},
-                        {"means", means},
-                        {"changes", analysis::to_json(outcome.tests)}});
-  }
-  return {{"baseline", study.plan.baseline}, {"tests", study.plan.tests}, {"outcomes", outcomes}};
-}
-
 Json findings_of(const Validity& v, std::span<const ProcedureSummary> procedures) {
   Json root;
   root["simulated"] = v.simulated;
@@ -287,7 +269,7 @@ std::string validity_json(const ValidityResult& result, const std::vector<Findin
     root["near_structure"] = near_of(result);
   }
   if (!result.learned.outcomes.empty()) {
-    root["learning"] = learning_of(result.learned);
+    root["learning"] = learning_json(result.learned);
   }
   if (!result.hints.empty()) {
     root["hints"] = hints_of(result);

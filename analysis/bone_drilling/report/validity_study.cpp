@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/report/field_section.h"
+#include "analysis/bone_drilling/report/learned_quantities.h"
 #include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/ratings.h"
 #include "analysis/bone_drilling/report/validity.h"
@@ -124,7 +125,8 @@ ValidityResult analyze(const ValidityStudy& study) {
       region_label_test(result.procedures, study.plan.expert_groups, study.region);
   result.validity = validity(result.procedures, regions, ratings, study.plan, region_test);
   result.structure = structure_of(study, result.procedures);
-  result.learned = learned_study(result.procedures, study.learning, study.learning_names);
+  result.learned = learned_study(learned_quantities(result.procedures, study.learning.outcomes),
+                                 study.learning, study.learning_names);
   return result;
 }
 

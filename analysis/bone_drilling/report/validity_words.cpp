@@ -34,10 +34,6 @@ std::string relation_word(const Validity& v, const MetricValidity& metric) {
              : "–";
 }
 
-std::string interval_word(const Defined<MeanInterval>& m) {
-  return m ? fmt::format("{} [{}, {}]", number(m->mean), number(m->low), number(m->high)) : "–";
-}
-
 std::string area_word(const Defined<Roc>& roc) {
   if (!roc) {
     return "–";

@@ -17,8 +17,6 @@ std::string word(const Defined<double>& p);
 std::string correlation_word(const Defined<Correlation>& c);
 /// "0.63 (p = 0.18 after Holm's adjustment over 21 metrics)" or "–": R over participants' means.
 std::string relation_word(const Validity& v, const MetricValidity& metric);
-/// "3.438 [3.182, 3.693]" or "–".
-std::string interval_word(const Defined<MeanInterval>& m);
 /// "0.88 [0.73, 1.00]" or "–".
 std::string area_word(const Defined<Roc>& roc);
 /// "0.81, 95 % CI 0.62 to 0.92, F(11, 22) = 13.6, p < 0.001".

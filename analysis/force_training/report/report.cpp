@@ -55,6 +55,7 @@ Document study_report(const StudyResult& study, const std::vector<Drawing>& draw
   add_recall(document, study, drawings);
   add_tests(document, study);
   add_path(document, study);
+  add_learning_section(document, study.learned, drawings, study.simulated());
   add_learning(document, study, drawings);
   add_alignments(document, study, drawings);
   add_quality(document, study, drawings);

@@ -8,6 +8,7 @@
 #include "analysis/force_training/report/recall_frequency_findings.h"
 #include "analysis/force_training/study/identity_json_internal.h"
 #include "analysis/force_training/study/quality_summary.h"
+#include "analysis/learning/learning_json_internal.h"
 #include "analysis/statistics/design/result_json_internal.h"
 
 namespace haptrial::analysis {
@@ -195,7 +196,7 @@ Json table_1(const StudyStatistics& s) {
   return rows;
 }
 
-Json learning_json(const StudyStatistics& s) {
+Json repetitions(const StudyStatistics& s) {
   Json rows = Json::array();
   for (const auto& point : s.learning) {
     rows.push_back({{"condition", point.condition},
@@ -322,7 +323,10 @@ std::string statistics_json(const StudyResult& study, const std::vector<FindingL
                     {"participants_as_unit", to_json(study.path->tests)},
                     {"repeated_measures", repeated(*study.path)}};
   }
-  root["learning"] = learning_json(s);
+  root["learning"] = repetitions(s);
+  if (!study.learned.outcomes.empty()) {
+    root["learning_from_session_to_session"] = learning_json(study.learned);
+  }
   root["blocks"] = blocks(s);
   root["change_per_block"] = to_json(s.slope);
   if (study.curves_from.empty()) {

@@ -1,5 +1,7 @@
 #include "analysis/force_training/report/write_analysis.h"
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "analysis/document/figure_gnuplot.h"
@@ -9,6 +11,7 @@
 #include "analysis/force_training/report/study_figures.h"
 #include "analysis/force_training/report/study_json.h"
 #include "analysis/force_training/score/scores_csv.h"
+#include "analysis/force_training/study/learned_scores.h"
 #include "core/base/file_text.h"
 
 namespace haptrial::analysis {
@@ -22,10 +25,15 @@ void write_analysis(const StudyResult& study, const fs::path& folder, int paper,
                     const std::vector<FindingList>& own) {
   const Staging staging(folder);
   staging.write("scores.csv", scores_csv(study.scores, study.factors));
+  if (!study.planned_sessions.empty()) {
+    staging.write("session_scores.csv", session_scores_csv(study));
+  }
   const FindingList by_frequency = recall_frequency_findings(study.frequencies, study.simulated());
   std::vector<FindingList> lists = own;
   staging.write("statistics.json", statistics_json(study, own));
   auto figures = study_figures(study);
+  std::ranges::move(learning_figures(study.learned, study.simulated()),
+                    std::back_inserter(figures));
   write_findings(own, staging, figures);
   if (by_frequency.has_values()) {
     lists.insert(lists.begin(), by_frequency);

@@ -39,6 +39,8 @@ struct TrialScore {
   // squares over the run of distances in the plane at equal times.
   std::optional<double> path_error{};  // of the recall from the path [m]
   std::optional<double> kept{};        // of the led hand from the expert's, in training [m]
+
+  std::int32_t session{1};  // of the participant, from 1
 };
 
 }  // namespace haptrial::analysis

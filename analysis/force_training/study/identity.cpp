@@ -27,7 +27,9 @@ Identity identity_of(const record::SessionInfo& info) {
 std::vector<Identity> identities(const StudyResult& study) {
   std::vector<Identity> all;
   for (const SessionSummary& session : study.sessions) {
-    all.push_back(identity_of(session.info));
+    if (all.empty() || all.back().subject != session.info.subject) {
+      all.push_back(identity_of(session.info));
+    }
   }
   return all;
 }

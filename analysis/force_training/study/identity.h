@@ -19,7 +19,7 @@ struct Identity {
   std::map<std::string, std::string> population{};  // table of the definition, its fingerprint
 };
 
-/// Identities of a study's sessions, in their order.
+/// Identities of a study's participants, in their order.
 std::vector<Identity> identities(const StudyResult& study);
 
 /// Why two participants of the same identifier are not the same one, "virtual subjects of different

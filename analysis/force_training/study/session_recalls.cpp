@@ -291,6 +291,7 @@ class Extraction {
     score.trial = pass.trial;
     score.block = pass.block;
     score.repetition = pass.repetition;
+    score.session = static_cast<std::int32_t>(reader_.info().session);
     score.levels = {pass.condition};
     score.quality = quality_.of(pass);
     return score;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/force_training/score/path_places.h"
 #include "analysis/force_training/score/score.h"
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 struct Session {
   fs::path file;
   SessionRecalls recalls;
+  bool test{false};  // without training
 };
 
 std::vector<Session> read_all(const std::vector<fs::path>& files, const ScoreParameters& parameters,
@@ -38,19 +40,20 @@ std::vector<Session> read_all(const std::vector<fs::path>& files, const ScorePar
 }
 
 void sort_by_subject(std::vector<Session>& sessions) {
-  const auto subject = [](const Session& s) -> const std::string& {
-    return s.recalls.summary.info.subject;
+  const auto place = [](const Session& s) {
+    const record::SessionInfo& info = s.recalls.summary.info;
+    return std::pair(info.subject, info.session);
   };
   std::sort(sessions.begin(), sessions.end(), [&](const auto& a, const auto& b) {
-    return subject(a) != subject(b) ? subject(a) < subject(b) : a.file < b.file;
+    return place(a) != place(b) ? place(a) < place(b) : a.file < b.file;
   });
   const auto twin =
       std::adjacent_find(sessions.begin(), sessions.end(),
-                         [&](const auto& a, const auto& b) { return subject(a) == subject(b); });
+                         [&](const auto& a, const auto& b) { return place(a) == place(b); });
   if (twin != sessions.end()) {
     throw InputError(
         fmt::format("{} and {} are both of subject {}; keep one session file for each subject",
-                    twin->file.string(), (twin + 1)->file.string(), subject(*twin)));
+                    twin->file.string(), (twin + 1)->file.string(), place(*twin).first));
   }
 }
 
@@ -77,7 +80,9 @@ std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
   std::vector<Origin> origins;  // one for each of scores
   for (const auto& session : sessions) {
     for (const auto& pass : session.recalls.scored) {
-      origins.push_back({&session, &pass});
+      if (!session.test) {
+        origins.push_back({&session, &pass});
+      }
     }
   }
   std::vector<RecallPicture> result;
@@ -90,7 +95,8 @@ std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
 }  // namespace
 
 StudyResult analyze_study(const std::vector<fs::path>& session_files,
-                          const ScoreParameters& parameters, int jobs, const AnalysisPlan& plan) {
+                          const ScoreParameters& parameters, int jobs, const AnalysisPlan& plan,
+                          const std::vector<SessionOfStudy>& planned_sessions) {
   if (session_files.empty()) {
     throw InputError("there is no session file to analyse");
   }
@@ -100,15 +106,24 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   check(parameters);
   auto sessions = read_all(session_files, parameters, jobs);
   sort_by_subject(sessions);
+  for (Session& session : sessions) {
+    const std::size_t at = session.recalls.summary.info.session - 1;
+    session.test = at < planned_sessions.size() && !planned_sessions[at].trains;
+  }
 
   StudyResult study;
+  study.planned_sessions = planned_sessions;
   std::vector<PassTracking> tracking;
   std::vector<RecallSpectrum> spectra;  // (scores)
-  for (const auto& [file, recalls] : sessions) {
+  for (const auto& [file, recalls, test] : sessions) {
     study.sessions.push_back(recalls.summary);
     for (const auto& pass : recalls.scored) {
-      study.scores.push_back(pass.score);
-      spectra.push_back(pass.spectrum);
+      if (test) {
+        study.tests.push_back(pass.score);
+      } else {
+        study.scores.push_back(pass.score);
+        spectra.push_back(pass.spectrum);
+      }
     }
     study.exclusions.insert(study.exclusions.end(), recalls.exclusions.begin(),
                             recalls.exclusions.end());
@@ -123,7 +138,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   study.stimulus = sessions.front().recalls.stimulus;
   study.parameters = described(parameters);
   study.over_path = parameters.over_path;
-  study.alarms = quality_alarms(study.scores);
+  study.alarms = quality_alarms(study.scores);  // before a training nobody knows what to press
   return study;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,13 +11,24 @@
 #include "analysis/force_training/study/recall_picture.h"
 #include "analysis/force_training/study/session_summary.h"
 #include "analysis/force_training/study/study_statistics.h"
+#include "analysis/learning/learned_study.h"
 
 namespace haptrial::analysis {
+
+/// A session of each participant, as the definition plans it.
+struct SessionOfStudy {
+  std::string name;
+  bool trains{true};  // else it tests alone
+};
 
 /// Everything that analysing the session files of a study gave.
 struct StudyResult {
   std::vector<SessionSummary> sessions;           // by subject
-  std::vector<TrialScore> scores;                 // by subject, then trial
+  std::vector<TrialScore> scores;                 // by subject, then session and trial
+  std::vector<TrialScore> tests{};                // likewise, of sessions without training
+  std::vector<SessionOfStudy> planned_sessions{};  // none: each participant has one
+  std::map<std::string, std::string> groups{};    // by subject, if there are several sessions
+  LearnedStudy learned{};                         // without outcomes: nobody asks for changes
   std::vector<std::string> factors{"condition"};  // names; each score has a level of each
   std::vector<Exclusion> exclusions;              // by subject, then trial
   StudyStatistics statistics;

@@ -39,6 +39,9 @@ std::vector<std::string> summary_lines(const StudyResult& study) {
       lines.push_back("Path error, " + line);
     }
   }
+  for (const std::string& line : learning_lines(study.learned)) {
+    lines.push_back(line);
+  }
   return lines;
 }
 

@@ -112,11 +112,27 @@ CurriculumStanding standing(const Curriculum& curriculum, std::span<const CaseAt
   return walk.found();
 }
 
+namespace {
+
+std::string wanted(const Criterion& c) {
+  return fmt::format("{} {:g}", c.least ? "at least" : "at most", c.value);
+}
+
+const std::string& title_of(const Criterion& c) { return c.title.empty() ? c.quantity : c.title; }
+
+std::string unit_of(const Criterion& c) { return c.unit.empty() ? "" : " " + c.unit; }
+
+}  // namespace
+
+std::string words_of(const Criterion& c) {
+  return fmt::format("{} {}{}", title_of(c), wanted(c), unit_of(c));
+}
+
 std::string words_of(const CheckedCriterion& checked) {
   const Criterion& c = checked.criterion;
-  const std::string wanted = fmt::format("{} {:g}", c.least ? "at least" : "at most", c.value);
-  return checked.value ? fmt::format("{} {:.4g} ({})", c.quantity, *checked.value, wanted)
-                       : fmt::format("no {} ({})", c.quantity, wanted);
+  return checked.value ? fmt::format("{} {:.4g}{} ({})", title_of(c), *checked.value, unit_of(c),
+                                     wanted(c))
+                       : fmt::format("no {} ({})", title_of(c), wanted(c));
 }
 
 std::string why_next(const Curriculum& curriculum, const CurriculumStanding& standing) {

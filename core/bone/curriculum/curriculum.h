@@ -19,6 +19,8 @@ struct Criterion {
   std::string quantity;  // of metrics.csv without its unit, or kScoreQuantity
   bool least{true};      // else at most
   double value{0.0};     // in the quantity's unit
+  std::string title{};   // of the quantity, for people; empty: its name
+  std::string unit{};    // of it; empty: none, or not known
 };
 /// The quantity that the score of a rated study predicts (haptrial bone score).
 inline constexpr const char* kScoreQuantity = "score";
@@ -81,7 +83,9 @@ struct CurriculumStanding {
 /// one counts as an attempt at its case and moves nothing on.
 CurriculumStanding standing(const Curriculum& curriculum, std::span<const CaseAttempt> attempts);
 
-/// "cavity_removed_percent 72.1 (at least 80)"; "no score (at least 3)".
+/// "planned cavity removed at least 80 %".
+std::string words_of(const Criterion& criterion);
+/// "planned cavity removed 72.1 % (at least 80)"; "no score (at least 3)".
 std::string words_of(const CheckedCriterion& checked);
 /// Why a case comes: what was missed the last time, or how many passes are left; empty for a case
 /// that begins.

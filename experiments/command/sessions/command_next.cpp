@@ -5,11 +5,11 @@
 
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
+#include "experiments/command/sessions/next_session.h"
+#include "experiments/command/sessions/study_standing.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
-#include "experiments/studies/registry.h"
 #include "experiments/study/roster.h"
-#include "experiments/study/study_files.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -19,18 +19,6 @@ struct NextOptions {
   std::string folder;
   std::optional<int> jobs;
 };
-
-/// How the study stands; nothing while nobody has finished a session, or if it cannot end early.
-std::optional<analysis::SequentialResult> standing(const NextOptions& options) {
-  if (!holds_sessions(options.folder)) {
-    return std::nullopt;
-  }
-  AnalysisRequest request;
-  request.folder = options.folder;
-  request.files = study_files(options.folder, Pilots::kLeftOut, protocol_of);
-  request.threads = checked_jobs(options.jobs);
-  return study_of(request.files.first).sequential(request);
-}
 
 void print_who_is_next(const Roster& roster) {
   if (roster.next.empty()) {
@@ -50,11 +38,11 @@ int next(const NextOptions& options) {
   request.folder = options.folder;
   request.find_case = find_case_of(experiment, options.definition);
   const Roster roster = make_roster(request);
-  const auto result = standing(options);
+  const auto result = study_standing(experiment, options.folder, checked_jobs(options.jobs));
   if (result) {
     fmt::print("{}\n", words_of(*result));
   }
-  if (!result || result->verdict == analysis::SequentialVerdict::kGoOn) {
+  if (!has_ended(result)) {
     print_who_is_next(roster);
   }
   return 0;

@@ -13,6 +13,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/exclude.h"
 #include "experiments/command/sessions/next_session.h"
+#include "experiments/command/sessions/study_standing.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/plan/study_plan.h"
 #include "experiments/studies/experiment.h"
@@ -35,6 +36,7 @@ struct RosterOptions {
   std::string because;
   std::string rehearsal;
   std::optional<double> setup;
+  std::optional<int> jobs;
 };
 
 namespace fs = std::filesystem;
@@ -90,7 +92,9 @@ void print_persons(const Roster& roster) {
   print_table(rows);
 }
 
-void print_roster(const Roster& roster) {
+/// @param standing  of a study that may end early
+void print_roster(const Roster& roster,
+                  const std::optional<analysis::SequentialResult>& standing) {
   if (roster.persons.empty()) {
     fmt::print("nobody has a session yet\n");
   } else {
@@ -104,6 +108,13 @@ void print_roster(const Roster& roster) {
   }
   for (const std::string& remark : roster.remarks) {
     fmt::print("{}\n", remark);
+  }
+  if (standing) {
+    fmt::print("{}\n", words_of(*standing));
+  }
+  if (has_ended(standing)) {
+    fmt::print("nobody is next\n");
+    return;
   }
   for (const RosterNext& next : roster.next) {
     fmt::print("{}: {}\n      {}\n", &next == roster.next.data() ? "next" : "or",
@@ -147,8 +158,11 @@ void print_retention(const fs::path& folder) {
   }
 }
 
-std::string json_of(const Roster& roster) {
+std::string json_of(const Roster& roster,
+                    const std::optional<analysis::SequentialResult>& standing) {
   nlohmann::ordered_json json;
+  json["ended"] = has_ended(standing);
+  json["standing"] = standing ? words_of(*standing) : "";
   json["sessions"] = roster.sessions;
   json["seed"] = roster.seed;
   json["groups"] = nlohmann::ordered_json::array();
@@ -174,7 +188,7 @@ std::string json_of(const Roster& roster) {
     json["participants"].push_back(std::move(own));
   }
   json["next"] = nlohmann::ordered_json::array();
-  for (const RosterNext& next : roster.next) {
+  for (const RosterNext& next : has_ended(standing) ? std::vector<RosterNext>{} : roster.next) {
     json["next"].push_back({{"subject", next.subject},
                             {"number", next.number},
                             {"group", next.group},
@@ -235,10 +249,13 @@ int roster(const RosterOptions& options) {
     exclude(make_roster(request), options.folder, options.exclude, options.because);
   }
   const Roster roster = make_roster(request);
-  print_roster(roster);
-  print_to_come(roster, options, *experiment.definition);
+  const auto standing = study_standing(experiment, options.folder, checked_jobs(options.jobs));
+  print_roster(roster, standing);
+  if (!has_ended(standing)) {
+    print_to_come(roster, options, *experiment.definition);
+  }
   print_retention(options.folder);
-  write_new(options.json, json_of(roster));
+  write_new(options.json, json_of(roster, standing));
   write_new(options.csv, csv_of(roster));
   return 0;
 }
@@ -264,6 +281,7 @@ void add_roster(CLI::App& app, int& status) {
                   "the sessions of FOLDER)");
   sub->add_option("--setup", o.setup,
                   "Minutes in the lab between two sessions, for the time that is to come");
+  sub->add_option("--jobs", o.jobs, kJobsHelp);
   auto* exclude = sub->add_option("--exclude", o.exclude,
                                   "Participant whose files are moved into the folder excluded; the "
                                   "next new participant gets the place");

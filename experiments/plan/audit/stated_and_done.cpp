@@ -119,7 +119,8 @@ analysis::FindingTable comparison(const PlannedStudy& study) {
 }
 
 analysis::FindingTable deviation_table(const std::vector<Deviation>& deviations) {
-  analysis::FindingTable table{.name = "deviations", .title = "Deviations from the plan"};
+  analysis::FindingTable table{
+      .name = "deviations", .title = "Deviations from the plan", .in_lines = true};
   for (const Deviation& each : deviations) {
     table.rows.push_back({{.name = "kind", .title = "kind", .value = each.kind},
                           {.name = "what", .title = "deviation", .value = each.what}});

@@ -109,7 +109,7 @@ NextCase next_case_of(const protocols::BoneDefinition& d, const fs::path& folder
   const auto attempts = case_attempts(*d.curriculum, sessions, score ? &*score : nullptr);
   const bone::CurriculumStanding found = standing(*d.curriculum, attempts);
   return found.next
-             ? NextCase{d.curriculum->cases[*found.next].name, why_next(*d.curriculum, found)}
+             ? NextCase{d.curriculum->cases[*found.next].name, why_next(drilling::with_titles(*d.curriculum), found)}
              : NextCase{};
 }
 

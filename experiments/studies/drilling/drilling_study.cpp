@@ -18,6 +18,7 @@
 #include "experiments/studies/curve_analysis.h"
 #include "experiments/studies/drilling/drilling_learning.h"
 #include "experiments/studies/drilling/learn_phases.h"
+#include "experiments/studies/learning_names.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::experiments {

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "analysis/exchange/own_findings.h"
 #include "analysis/force_training/report/write_analysis.h"
+#include "analysis/force_training/study/learned_scores.h"
 #include "analysis/force_training/study/study.h"
 #include "analysis/force_training/study/study_summary.h"
 #include "core/base/definition/table.h"
@@ -16,6 +19,8 @@
 #include "experiments/studies/force/force_preview.h"
 #include "experiments/studies/force/force_study_simulation.h"
 #include "experiments/studies/force/tried_training.h"
+#include "experiments/studies/learning_names.h"
+#include "protocols/definition/groups.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 
@@ -24,13 +29,27 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Sentences about sessions that the study planned and the folder lacks.
-std::vector<std::string> what_is_missing(const fs::path& folder, std::size_t sessions,
-                                         const protocols::Definition& definition) {
+std::vector<std::string> what_is_missing(const fs::path& folder,
+                                         const analysis::StudyResult& study,
+                                         const protocols::ForceDefinition& definition) {
   std::vector<std::string> remarks;
+  std::map<std::string, std::set<int>> there;
+  for (const analysis::SessionSummary& session : study.sessions) {
+    there[session.info.subject].insert(static_cast<int>(session.info.session));
+  }
   const auto planned = static_cast<std::size_t>(definition.design.participants);
-  if (sessions != planned) {
+  if (there.size() != planned) {
     remarks.push_back(fmt::format("{} of {} planned participants {} a session in this folder.",
-                                  sessions, planned, sessions == 1 ? "has" : "have"));
+                                  there.size(), planned, there.size() == 1 ? "has" : "have"));
+  }
+  for (const auto& [subject, sessions] : there) {
+    for (int session = 1; definition.sessions() > 1 && session <= definition.sessions();
+         ++session) {
+      if (!sessions.contains(session) && definition.comes(session, study.groups.at(subject))) {
+        remarks.push_back(
+            fmt::format("{} has no session {}.", subject, definition.session_name(session)));
+      }
+    }
   }
   if (const auto unfinished = unfinished_sessions(folder); !unfinished.empty()) {
     remarks.push_back(fmt::format("Not analysed, because the session is unfinished: {}.",
@@ -53,6 +72,30 @@ analysis::ScoreParameters scoring_for(const std::filesystem::path& shares,
   return analysis::with_shares_of(shares, std::move(scoring));
 }
 
+std::vector<analysis::SessionOfStudy> planned_sessions(const protocols::Definition& definition) {
+  std::vector<analysis::SessionOfStudy> sessions;
+  for (int session = 1; definition.sessions() > 1 && session <= definition.sessions(); ++session) {
+    sessions.push_back(
+        {definition.session_name(session), definition.session_plan(session).gives});
+  }
+  return sessions;
+}
+
+/// What was learned from session to session, if the definition has several.
+void add_learned(const protocols::ForceDefinition& definition, const CurveAnalysis& curves,
+                 analysis::StudyResult& study) {
+  const auto groups = protocols::study_groups(definition.text, definition.file_name);
+  if (definition.sessions() == 1) {
+    return;
+  }
+  for (const analysis::SessionSummary& session : study.sessions) {
+    study.groups[session.info.subject] = protocols::group_of(groups, session.info.subject);
+  }
+  study.learned =
+      analysis::learned_study(analysis::learned_scores(study, curves.learning.outcomes),
+                              curves.learning, learning_names(definition));
+}
+
 analysis::StudyResult analyzed(const AnalysisRequest& request) {
   const StudyFiles& found = request.files;
   const record::SessionInfo& first = found.first;
@@ -63,12 +106,14 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
   const analysis::AnalysisPlan plan =
       plan_for(request.planned, request.reference, curves.plan, remarks);
   analysis::StudyResult study = analysis::analyze_study(
-      found.files, scoring_for(request.shares, curves.scoring, remarks), request.threads, plan);
+      found.files, scoring_for(request.shares, curves.scoring, remarks), request.threads, plan,
+      planned_sessions(definition));
   if (study.scores.empty()) {
     throw InputError(
-        fmt::format("{}: no session holds a completed test pass, so nothing can be scored",
-                    request.folder.string()));
+        fmt::format("{}: no session {}holds a completed test pass, so nothing can be scored",
+                    request.folder.string(), study.tests.empty() ? "" : "that trains "));
   }
+  add_learned(definition, curves, study);
   analysis::check_plan(study.statistics.table, plan_of(request.planned, request.reference));
   if (plan.sequential) {
     study.statistics.tests.sequential =
@@ -79,7 +124,7 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
   study.remarks = found.remarks;
   study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());
   if (request.pilots == Pilots::kLeftOut) {
-    for (std::string& remark : what_is_missing(request.folder, found.files.size(), definition)) {
+    for (std::string& remark : what_is_missing(request.folder, study, definition)) {
       study.remarks.push_back(std::move(remark));
     }
   }

@@ -174,7 +174,7 @@ class ForceStudySimulation final : public StudySimulation {
     double of_block = 0.0;
     int scored = 0;
     for (const protocols::PlannedTrial& trial :
-         plan_trials(d_.design, participant, seed, place.session_seed)) {
+         plan_trials(d_.design, participant, seed, place.person_seed)) {
       if (trial.practice) {
         continue;
       }

@@ -56,33 +56,6 @@ void read_sessions(Table& root, BoneDefinition& d) {
   }
 }
 
-void read_groups(Table& root, BoneDefinition& d) {
-  if (!root.has("groups")) {
-    return;
-  }
-  Table table = root.table("groups");
-  constexpr long kMost = 10000;
-  long all = 0;
-  bool good = true;
-  for (const std::string& name : table.keys()) {
-    table.describe(
-        {name, "Participants of the group NAME, in the order of their numbers", "", true});
-    const long participants = table.integer(name, 1, kMost);
-    good = good && participants > 0;
-    all += participants;
-  }
-  if (good && all != d.design.participants) {
-    root.reject("groups", fmt::format("has {} participants in all; make it {}, as in "
-                                      "design.participants",
-                                      all, d.design.participants));
-  }
-  if (good) {
-    for (const StudyGroup& group : study_groups(root.source(), d.file_name)) {
-      d.groups.push_back({group.name, group.participants, 0.5});
-    }
-  }
-}
-
 subject::SurgeonBurr burr_named(Table& table, const char* key, const BoneDefinition& d) {
   const std::string name = table.text(key);
   for (std::size_t tool = 0; tool < d.simulator.tools.size(); ++tool) {
@@ -284,7 +257,9 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   if (d.beginning.planned_to > 0.0 && !d.cavity) {
     bone.reject("planned_to", "needs a cavity; add a table [cavity]");
   }
-  read_groups(root, d);
+  for (const StudyGroup& group : read_groups(root, d.design.participants, d.file_name)) {
+    d.groups.push_back({group.name, group.participants, 0.5});
+  }
   read_sessions(root, d);
   if (root.has("curriculum")) {
     Table curriculum = root.table("curriculum");

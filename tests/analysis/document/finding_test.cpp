@@ -119,6 +119,10 @@ TEST(FindingTest, ListsStandBeforeTheMethods) {
   }
   EXPECT_TRUE(std::ranges::is_sorted(places)) << text;
   EXPECT_THAT(lines_of(lists.front()), ElementsAre("Mean way: 0.2500", "People: 1 rows"));
+  FindingList spelled = lists.front();
+  spelled.tables.front().in_lines = true;
+  EXPECT_THAT(lines_of(spelled),
+              ElementsAre("Mean way: 0.2500", HasSubstr("participant: P01; way: 0.2500")));
   EXPECT_EQ(json_of(lists).dump(),
             R"({"way":{"heading":"Way of the hand","findings":{"way":{"title":"Mean way",)"
             R"("estimate":0.25}},"tables":{"people":[{"participant":"P01","way":{"title":"way",)"

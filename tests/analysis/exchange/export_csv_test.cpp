@@ -26,6 +26,21 @@ void ignore(std::uint64_t) {}
 const char* const kCheck = R"(
 import json, pathlib, sys
 import h5py, numpy as np, pandas as pd
+
+def check_devices(file, samples, columns):
+    rows = file["devices"][:] if "devices" in file else np.empty(0, dtype=[("device", "i4")])
+    devices = np.unique(rows["device"])
+    names = [name for name in rows.dtype.names if name not in ("sequence", "device")]
+    assert columns == [f"device_{d}_{name}" for d in devices for name in names]
+    for device in devices:
+        own = rows[rows["device"] == device]
+        there = samples.sequence.isin(own["sequence"]).to_numpy()
+        assert there.sum() == len(own) and not there.all()
+        for name in names:
+            theirs = samples[f"device_{device}_{name}"]
+            assert np.array_equal(theirs[there].to_numpy().astype(own[name].dtype), own[name]), name
+            assert theirs[~there].isna().all(), name
+
 root = pathlib.Path(sys.argv[1])
 dictionary = json.loads((root / "dictionary.json").read_text())
 sessions = pd.read_csv(root / "sessions.csv")
@@ -51,10 +66,12 @@ for row, name in zip(sessions.itertuples(), sys.argv[2:]):
         assert [t.decode() for t in file["events"]["text"]] == list(notes.text)
         stem = row.subject if (sessions.subject == row.subject).sum() == 1 else \
             f"{row.subject}-{row.session}"
-        samples = pd.read_csv(root / "samples" / f"{stem}.csv.gz")
+        samples = pd.read_csv(root / "samples" / f"{stem}.csv.gz", float_precision="round_trip")
         assert len(samples) == len(file["samples"])
         assert (np.round(samples.time * 1e9) == file["samples"]["time_ns"]).all()
-        for column in set(samples.columns) - {"time"}:
+        further = [column for column in samples.columns if column.startswith("device_")]
+        check_devices(file, samples, further)
+        for column in set(samples.columns) - {"time"} - set(further):
             value = file["samples"][column]
             assert np.array_equal(samples[column].to_numpy().astype(value.dtype), value,
                                   equal_nan=value.dtype.kind == "f"), column
@@ -84,6 +101,18 @@ TEST(ExportCsvTest, PandasReadsWhatTheSessionFilesHold) {
     line += " '" + file.string() + "'";
   }
   line += " >'" + (folder / "log").string() + "' 2>&1";
+  EXPECT_EQ(std::system(line.c_str()), 0) << file_text(folder / "log");
+}
+
+TEST(ExportCsvTest, SamplesHaveEveryDevice) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "1.h5";
+  write_session(file, {.subject = "P01", .gap_at = 1100, .gap = 5, .other_devices = 2});
+  export_csv(std::vector{file}, folder / "out", {.samples = true}, ignore);
+  std::ofstream(folder / "check.py") << kCheck;
+  const std::string line = "/usr/bin/python3 '" + (folder / "check.py").string() + "' '" +
+                           (folder / "out").string() + "' '" + file.string() + "' >'" +
+                           (folder / "log").string() + "' 2>&1";
   EXPECT_EQ(std::system(line.c_str()), 0) << file_text(folder / "log");
 }
 

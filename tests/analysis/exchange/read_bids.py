@@ -29,7 +29,7 @@ def check(file):
     assert sidecar["SamplingFrequency"] == file.attrs["rate"]
     assert sidecar["Simulated"] == bool(file.attrs["simulated"])
     table = pd.read_csv(next(folder.glob("*_physio.tsv.gz")), sep="\t", header=None,
-                        names=sidecar["Columns"], na_values="n/a")
+                        names=sidecar["Columns"], na_values="n/a", float_precision="round_trip")
     samples = file["samples"][:]
     first = int(samples["sequence"][0])
     # Row k is tick first + k: units, rate and every value as in the session file.
@@ -42,18 +42,38 @@ def check(file):
     units = dict(zip(file["samples"].attrs["columns"], file["samples"].attrs["units"]))
     kept = table.iloc[rows]
     assert (np.round(kept.time * 1e9) == samples["time_ns"]).all()
-    for name in sidecar["Columns"][1:]:
+    own = [name for name in sidecar["Columns"][1:] if not name.startswith("device_")]
+    for name in own:
         assert np.array_equal(kept[name].to_numpy().astype(samples[name].dtype), samples[name],
                               equal_nan=samples[name].dtype.kind == "f"), name
         assert sidecar[name].get("Units", "1") == units[name], name
         assert sidecar[name]["Description"], name
     assert sidecar["time"]["Units"] == "s"
+    check_recorded_devices(file, kept, samples["sequence"], sidecar)
     check_events(file, folder, samples)
     check_stimuli(file, folder)
     if (folder.parent / "motion").exists():
         check_motion(file, folder.parent / "motion", samples)
         ours = next((folder.parent / "motion").glob("*_events.tsv")).read_text()
         assert ours == next(folder.glob("*_events.tsv")).read_text()
+
+
+def check_recorded_devices(file, table, sequences, sidecar):
+    """Every column of every further device; n/a in ticks in which it has no row."""
+    rows = file["devices"][:] if "devices" in file else np.empty(0, dtype=[("device", "i4")])
+    names = [name for name in rows.dtype.names if name not in ("sequence", "device")]
+    devices = np.unique(rows["device"])
+    further = [name for name in sidecar["Columns"] if name.startswith("device_")]
+    assert further == [f"device_{d}_{name}" for d in devices for name in names]
+    for device in devices:
+        own = rows[rows["device"] == device]
+        there = np.isin(sequences, own["sequence"])
+        assert there.sum() == len(own)
+        for name in names:
+            theirs = table[f"device_{device}_{name}"].to_numpy()
+            assert np.array_equal(theirs[there].astype(own[name].dtype), own[name]), name
+            assert np.isnan(theirs[~there]).all(), name
+            assert "counted from 0" in sidecar[f"device_{device}_{name}"]["Description"]
 
 
 def check_motion(file, folder, samples):

@@ -1,4 +1,4 @@
-#include "analysis/bone_drilling/report/learning_section.h"
+#include "analysis/learning/learned_study.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,54 +7,18 @@
 #include <array>
 #include <map>
 
-#include "analysis/bone_drilling/report/validity_words.h"
 #include "analysis/document/palette.h"
 #include "analysis/statistics/design/changes.h"
 #include "analysis/statistics/design/design_blocks.h"
 #include "analysis/statistics/design/design_lines.h"
+#include "analysis/statistics/design/interval_word.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::analysis {
 namespace {
 
 constexpr std::size_t kGroup = 0, kSession = 1;  // factors
-
-/// Title and unit of a quantity that some procedure has.
-void describe(std::span<const ProcedureSummary> procedures, LearnedOutcome& outcome) {
-  for (const MetricKind& kind : metric_kinds()) {
-    if (kind.name == outcome.name) {
-      outcome.title = kind.title;
-      outcome.unit = kind.unit;
-    }
-  }
-  for (const ProcedureSummary& p : procedures) {
-    for (const AchievedFigure& figure : figures_of(p.achieved)) {
-      if (figure.column == outcome.name) {
-        outcome.title = figure.title;
-        outcome.unit = figure.unit;
-      }
-    }
-  }
-  if (outcome.title.empty()) {
-    throw InputError(
-        fmt::format("analysis.outcomes names '{}', which no procedure has; allowed: {}",
-                    outcome.name, fmt::join(quantity_names(procedures.front()), ", ")));
-  }
-}
-
-std::vector<Observation> observations_of(std::span<const ProcedureSummary> procedures,
-                                         const std::string& name) {
-  std::vector<Observation> observations;
-  for (const ProcedureSummary& p : procedures) {
-    if (const auto value = quantity(p, name)) {
-      const std::string session =
-          p.session_name.empty() ? std::to_string(p.session_number) : p.session_name;
-      observations.push_back({p.participant, {p.group, session}, *value});
-    }
-  }
-  return observations;
-}
 
 std::vector<std::string> joined(std::vector<std::string> first,
                                 const std::vector<std::string>& second) {
@@ -82,12 +46,13 @@ void add_means(const DesignTable& table, LearnedOutcome& outcome) {
   }
 }
 
-LearnedOutcome outcome_of(std::span<const ProcedureSummary> procedures, const std::string& name,
-                          const LearningPlan& plan, const LearningNames& names) {
+LearnedOutcome outcome_of(const LearningQuantity& quantity, const LearningPlan& plan,
+                          const LearningNames& names) {
   LearnedOutcome outcome;
-  outcome.name = name;
-  describe(procedures, outcome);
-  const std::vector<Observation> all = observations_of(procedures, name);
+  outcome.name = quantity.name;
+  outcome.title = quantity.title;
+  outcome.unit = quantity.unit;
+  const std::vector<Observation>& all = quantity.values;
   const auto order = joined(names.groups, names.sessions);
   add_means(design_table(all, {"group", "session"}, order), outcome);
   std::vector<Observation> changes = changes_from(all, kSession, plan.baseline);
@@ -99,7 +64,7 @@ LearnedOutcome outcome_of(std::span<const ProcedureSummary> procedures, const st
   }
   outcome.changes = design_table(changes, {"group", "change"}, order);
   Resampling resampling;
-  resampling.stream = "learning " + name;
+  resampling.stream = "learning " + quantity.name;
   outcome.tests = design_tests(outcome.changes, plan.plan, resampling);
   return outcome;
 }
@@ -203,12 +168,12 @@ Defined<MeanInterval> mean_change(const LearnedOutcome& outcome, const std::stri
   return mean_interval(values);
 }
 
-LearnedStudy learned_study(std::span<const ProcedureSummary> procedures, const LearningPlan& plan,
+LearnedStudy learned_study(std::span<const LearningQuantity> quantities, const LearningPlan& plan,
                            const LearningNames& names) {
   LearnedStudy study{plan, {}};
   LearningPlan own = plan;
-  for (const std::string& name : plan.outcomes) {
-    study.outcomes.push_back(outcome_of(procedures, name, own, names));
+  for (const LearningQuantity& quantity : quantities) {
+    study.outcomes.push_back(outcome_of(quantity, own, names));
     for (PlannedTest& test : own.plan.tests) {  // directions are those of the first outcome
       test.tail = Tail::kTwoSided;
     }
@@ -229,7 +194,8 @@ void add_learning_section(Document& document, const LearnedStudy& study,
   if (study.outcomes.empty()) {
     return;
   }
-  document.heading(simulated ? "Learning (simulated)" : "Learning");
+  document.heading(simulated ? "Learning from session to session (simulated)"
+                             : "Learning from session to session");
   document.paragraph(fmt::format(
       "A change is a participant's mean in a test less the mean in {}. Groups are compared in "
       "their "
@@ -268,4 +234,4 @@ std::vector<std::string> learning_lines(const LearnedStudy& study) {
   return lines;
 }
 
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::analysis

@@ -1,15 +1,14 @@
-#include "analysis/bone_drilling/report/learning_plan.h"
+#include "analysis/learning/learning_plan.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "analysis/bone_drilling/metrics/quantities.h"
 #include "core/base/definition/schema.h"
 #include "core/base/nearest.h"
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::analysis {
 namespace {
 
 const Schema<LearningPlan>& learning_schema() {
@@ -17,21 +16,21 @@ const Schema<LearningPlan>& learning_schema() {
   static const auto schema =
       Schema<P>()
           .texts("outcomes", &P::outcomes,
-                 "Quantities of metrics.csv, without their units, whose changes from session to "
-                 "session the report tests; the first decides")
+                 "Quantities of metrics.csv (drillings, without their units) or of scores.csv (force "
+                 "trainings) whose changes from session to session the report tests; the first "
+                 "decides")
           .otherwise("none")
           .text("baseline", &P::baseline, "Session from which changes are counted, by its name")
           .otherwise("the first that gives nothing");
   return schema;
 }
 
-void check_outcomes(Table& table, const LearningPlan& plan) {
-  const std::vector<std::string> known = quantity_names();
+void check_outcomes(Table& table, const LearningPlan& plan, const LearningOutcomes& known) {
   for (const std::string& name : plan.outcomes) {
-    if (!is_quantity(name)) {
-      const std::string hint = did_you_mean(name, known);
+    if (!known.is_known(name)) {
+      const std::string hint = did_you_mean(name, known.names);
       table.reject("outcomes", fmt::format("names '{}'{} allowed: {}", name,
-                                           hint.empty() ? ";" : hint, fmt::join(known, ", ")));
+                                           hint.empty() ? ";" : hint, fmt::join(known.names, ", ")));
     }
   }
 }
@@ -67,7 +66,8 @@ std::vector<std::string> sides_of(const LearningNames& names, const LearningPlan
 
 }  // namespace
 
-LearningPlan read_learning_plan(Table& root, const LearningNames& names) {
+LearningPlan read_learning_plan(Table& root, const LearningNames& names,
+                                const LearningOutcomes& known) {
   LearningPlan plan;
   if (!root.has("analysis")) {
     return plan;
@@ -77,10 +77,10 @@ LearningPlan read_learning_plan(Table& root, const LearningNames& names) {
     return plan;
   }
   learning_schema().read(analysis, plan);
-  check_outcomes(analysis, plan);
+  check_outcomes(analysis, plan, known);
   choose_sessions(analysis, names, plan);
   plan.plan = read_analysis_plan(analysis, sides_of(names, plan), "the list of groups and tests");
   return plan;
 }
 
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::analysis

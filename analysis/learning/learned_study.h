@@ -4,19 +4,27 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/metrics/metrics.h"
-#include "analysis/bone_drilling/report/learning_plan.h"
 #include "analysis/document/document.h"
+#include "analysis/learning/learning_plan.h"
 #include "analysis/statistics/base/descriptive.h"
+#include "analysis/statistics/design/design_table.h"
 #include "analysis/statistics/design/design_tests.h"
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::analysis {
+
+/// An outcome of a learning plan with its values in all sessions.
+struct LearningQuantity {
+  std::string name;                 // as the plan has it
+  std::string title;                // "planned cavity removed"
+  std::string unit;                 // "1": a pure number
+  std::vector<Observation> values;  // of trials; levels: group, session
+};
 
 /// A quantity over the sessions of a study, participants as the unit.
 struct LearnedOutcome {
-  std::string name;                   // of the quantity, as in metrics.csv without its unit
-  std::string title;                  // "planned cavity removed"
-  std::string unit;                   // "1": a pure number
+  std::string name;
+  std::string title;
+  std::string unit;
   std::vector<std::string> groups;    // that have values, in the definition's order
   std::vector<std::string> sessions;  // likewise, tests and trainings
   /// (groups x sessions) over participants' means; undefined where nobody came.
@@ -31,10 +39,9 @@ struct LearnedStudy {
   std::vector<LearnedOutcome> outcomes;  // (plan.outcomes)
 };
 
-/// @param names  of the study, in their order
-/// @throws InputError for an outcome that no procedure has, and planned tests that name several
-/// things at once
-LearnedStudy learned_study(std::span<const ProcedureSummary> procedures, const LearningPlan& plan,
+/// @param quantities  (plan.outcomes)  @param names  of the study, in their order
+/// @throws InputError for planned tests that name several things at once
+LearnedStudy learned_study(std::span<const LearningQuantity> quantities, const LearningPlan& plan,
                            const LearningNames& names);
 
 /// The mean change of a group from the baseline to a test.
@@ -53,4 +60,4 @@ void add_learning_section(Document& document, const LearnedStudy& study,
 /// that decides.
 std::vector<std::string> learning_lines(const LearnedStudy& study);
 
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::analysis

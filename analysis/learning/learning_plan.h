@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/statistics/design/analysis_plan.h"
@@ -9,7 +11,7 @@ namespace haptrial {
 class Table;
 }
 
-namespace haptrial::analysis::drilling {
+namespace haptrial::analysis {
 
 /// Groups and sessions of a definition, which a learning plan may name.
 struct LearningNames {
@@ -18,10 +20,15 @@ struct LearningNames {
   std::vector<std::string> tests;     // sessions that give nothing, in their order
 };
 
-/// How a study of drillings over several sessions says what was learned: [analysis] of a
-/// definition.
+/// Quantities of trials that a learning plan may name.
+struct LearningOutcomes {
+  std::vector<std::string> names;                  // for sentences
+  std::function<bool(std::string_view)> is_known;  // whether a name may be one
+};
+
+/// How a study over several sessions says what was learned: [analysis] of a definition.
 struct LearningPlan {
-  std::vector<std::string> outcomes;  // quantities of metrics.csv, the decisive one first; or none
+  std::vector<std::string> outcomes;  // quantities of trials, the decisive one first; or none
   std::string baseline;               // session from which changes are counted
   std::vector<std::string> tests;     // sessions up to which they are, in their order
   /// Planned tests compare changes: sides are groups, tests, or "GROUP, TEST". Their directions are
@@ -31,6 +38,7 @@ struct LearningPlan {
 
 /// Reads the keys `outcomes`, `baseline` and `planned` of [analysis], and those that tests have
 /// beside them, if `outcomes` is there; problems are noted.
-LearningPlan read_learning_plan(Table& root, const LearningNames& names);
+LearningPlan read_learning_plan(Table& root, const LearningNames& names,
+                                const LearningOutcomes& known);
 
-}  // namespace haptrial::analysis::drilling
+}  // namespace haptrial::analysis

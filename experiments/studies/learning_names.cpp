@@ -1,0 +1,22 @@
+#include "experiments/studies/learning_names.h"
+
+#include "protocols/definition/definition.h"
+#include "protocols/definition/groups.h"
+
+namespace haptrial::experiments {
+
+analysis::LearningNames learning_names(const protocols::Definition& d) {
+  analysis::LearningNames names;
+  for (const protocols::StudyGroup& group : protocols::study_groups(d.text, d.file_name)) {
+    names.groups.push_back(group.name);
+  }
+  for (int session = 1; session <= d.sessions(); ++session) {
+    names.sessions.push_back(d.session_name(session));
+    if (!d.session_plan(session).gives) {
+      names.tests.push_back(d.session_name(session));
+    }
+  }
+  return names;
+}
+
+}  // namespace haptrial::experiments
