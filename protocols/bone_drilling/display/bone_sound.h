@@ -14,6 +14,7 @@
 #include "core/stimulus/observer.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
+#include "protocols/bone_drilling/live_tuning.h"
 
 namespace haptrial::protocols {
 
@@ -51,8 +52,10 @@ class InjuryChime {
 class BoneSound final : public stimulus::Observer {
  public:
   /// @param mix  what else is heard on the same card; may be empty
+  /// @param tuning  of the sound; null: it is not tuned
   /// @throws RunError where there is no sound card.
-  BoneSound(const BoneDefinition& definition, std::uint64_t seed, sound::SoundOutput::Mix mix = {});
+  BoneSound(const BoneDefinition& definition, std::uint64_t seed, sound::SoundOutput::Mix mix = {},
+            std::shared_ptr<const LiveTuning> tuning = nullptr);
   ~BoneSound() override;
 
   /// Which bone is drilled from now on.
@@ -66,6 +69,7 @@ class BoneSound final : public stimulus::Observer {
   InjuryChime injury_;
   sound::SoundOutput output_;
   std::vector<bone::ToolSpec> tools_;
+  std::shared_ptr<const LiveTuning> tuning_;
   realtime::LatestValue<bone::DrillingView> seen_;
   std::atomic<double> thickness_{1.0};  // [m]
   std::mutex mutex_;                    // never taken by the servo thread
