@@ -108,7 +108,7 @@ TEST(LiveTuningTest, TheTunedTextIsADefinitionWithTheLastValues) {
   const BoneDefinition saved = definition(tuning.view().text);
   EXPECT_EQ(saved.simulator.tools[0].as<bone::BurrTool>()->feel.second_gain, 3.0e9);
   EXPECT_EQ(saved.thin_bone.rise, 0.7);
-  EXPECT_THAT(tuning.view().text, HasSubstr("# This file holds every number"));
+  EXPECT_THAT(tuning.view().text, HasSubstr("This file holds every number"));
 }
 
 /// A pass takes changes between its ticks, the newest only, and none while a force is on its way.
