@@ -129,9 +129,12 @@ void BoneTrials::open_sound() {
       keep_out->mix(part);
     }
   };
+  BoneSound::ThinBoneNow thin;
+  if (tuning_) {
+    thin = [tuning = tuning_] { return tuning->thin_bone(); };
+  }
   try {
-    sound_ =
-        std::make_unique<BoneSound>(d_, derived_seed(place_.session_seed, "sound"), mix, tuning_);
+    sound_ = std::make_unique<BoneSound>(d_, derived_seed(place_.session_seed, "sound"), mix, thin);
   } catch (const RunError& error) {
     notice_ = error.what();
     voice_.reset();

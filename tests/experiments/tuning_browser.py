@@ -46,7 +46,8 @@ def look(page, url, folder):
     page.run("document.activeElement.blur()")
     wait("its mark", lambda: page.run("return document.querySelectorAll('.changed').length") == 2)
 
-    page.picture(folder / "tuning.png", height=1500)
+    page.run("scrollTo(0, 0)")
+    page.picture(folder / "tuning.png", height=1100)
     page.picture(folder / "tuning-narrow.png", 620, 1300)
     wide = page.run("return document.documentElement.scrollWidth > window.innerWidth")
     assert not wide, "the narrow page scrolls sideways"

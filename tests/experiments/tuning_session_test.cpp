@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/tuning_row.h"
 #include "core/record/read/integrity.h"
@@ -165,19 +166,14 @@ TEST_F(TuningSessionTest, APilotHasTheKeysThatItIsGiven) {
 TEST_F(TuningSessionTest, ATunedPilotIsNotResumed) {
   ask(*page_, kGain, 4e9);
   const fs::path file = run_pilot(definition_, folder_ / "S01.h5", page_);
-  SessionRequest request;
-  request.protocol = &protocols::bone_drilling();
-  request.definition = &definition_;
-  request.subject = "S01";
-  request.seed = 3;
-  request.pilot = true;
-  request.file = file;
-  request.resume = true;
-  fs::rename(file, file.string() + ".partial");
+  protocols::SessionPlace place;
+  place.subject = "S01";
+  protocols::give_seeds(place);
+  const auto trials = protocols::bone_drilling().trials(definition_, place);
   try {
-    run_session(request);
+    trials->check_resumed(record::SessionReader(file));
     FAIL() << "resumed";
-  } catch (const std::exception& error) {
+  } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("a tuned pilot is not resumed"));
   }
 }

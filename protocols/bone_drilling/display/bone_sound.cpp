@@ -55,7 +55,7 @@ void InjuryChime::hear(const bone::DrillingView& seen) noexcept {
 }
 
 BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed,
-                     sound::SoundOutput::Mix mix, std::shared_ptr<const LiveTuning> tuning)
+                     sound::SoundOutput::Mix mix, ThinBoneNow thin)
     : output_(definition.sound_table, definition.thin_bone, seed, "default",
               [this, others = std::move(mix)](std::span<float> part) {
                 injury_.mix(part);
@@ -64,7 +64,7 @@ BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed,
                 }
               }),
       tools_(definition.simulator.tools),
-      tuning_(std::move(tuning)),
+      thin_(std::move(thin)),
       thread_([this] { run(); }) {}
 
 BoneSound::~BoneSound() {
@@ -83,8 +83,8 @@ void BoneSound::observe(const stimulus::Shown& shown, const stimulus::Forces&, d
   seen_.write(seen);
   injury_.hear(seen);
   sound::DrillState state = sound_of(seen, tools_, thickness_.load(std::memory_order_relaxed));
-  if (tuning_) {
-    state.thin = tuning_->thin_bone();
+  if (thin_) {
+    state.thin = thin_();
   }
   output_.set(state);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -14,7 +15,6 @@
 #include "core/stimulus/observer.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
-#include "protocols/bone_drilling/live_tuning.h"
 
 namespace haptrial::protocols {
 
@@ -51,11 +51,14 @@ class InjuryChime {
 /// thread the rest; a thread of its own finds the thickness.
 class BoneSound final : public stimulus::Observer {
  public:
+  /// Servo thread: no allocation, lock or throw.
+  using ThinBoneNow = std::function<sound::ThinBone()>;
+
   /// @param mix  what else is heard on the same card; may be empty
-  /// @param tuning  of the sound; null: it is not tuned
+  /// @param thin    what is tuned of thin bone, asked on each tick; empty: nothing is
   /// @throws RunError where there is no sound card.
   BoneSound(const BoneDefinition& definition, std::uint64_t seed, sound::SoundOutput::Mix mix = {},
-            std::shared_ptr<const LiveTuning> tuning = nullptr);
+            ThinBoneNow thin = {});
   ~BoneSound() override;
 
   /// Which bone is drilled from now on.
@@ -69,7 +72,7 @@ class BoneSound final : public stimulus::Observer {
   InjuryChime injury_;
   sound::SoundOutput output_;
   std::vector<bone::ToolSpec> tools_;
-  std::shared_ptr<const LiveTuning> tuning_;
+  ThinBoneNow thin_;
   realtime::LatestValue<bone::DrillingView> seen_;
   std::atomic<double> thickness_{1.0};  // [m]
   std::mutex mutex_;                    // never taken by the servo thread
