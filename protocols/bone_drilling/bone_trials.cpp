@@ -176,10 +176,10 @@ std::vector<std::string> BoneTrials::notices() const {
                                   tears_ == 1 ? "once" : fmt::format("{} times", tears_)));
   }
   if (tuned_ > 0) {
-    notices.push_back(
-        fmt::format("{} while it ran (/tuning): the definition that the file keeps "
-                    "is that of the beginning",
-                    counted(tuned_, "key was tuned", "keys were tuned")));
+    notices.push_back(fmt::format(
+        "the pilot was tuned by {} (/tuning); the definition that the file keeps is that "
+        "of the beginning",
+        counted(tuned_, "change", "changes")));
   }
   return notices;
 }
