@@ -32,9 +32,11 @@ const Schema<ThinBone>& thin_bone_schema() {
           .number("thin_threshold", &ThinBone::threshold, {0.0, 0.1, true}, "m",
                   "Thickness of bone below which the drill sounds higher")
           .required()
+          .tunable()
           .number("thin_rise", &ThinBone::rise, {0.0, 10.0}, "",
                   "Rise of the drill's pitch, as a share, where no bone is left")
-          .required();
+          .required()
+          .tunable();
   return schema;
 }
 
@@ -50,8 +52,8 @@ DrillSound::DrillSound(SpectrumTable table, const ThinBone& thin, std::uint64_t 
 
 void DrillSound::set(const DrillState& drill) noexcept {
   const double speed = part(drill.speed);
-  harmonics_.aim(table_.at(drill.burr, drill.contact, drill.force), speed * pitch(thin_, drill),
-                 speed);
+  harmonics_.aim(table_.at(drill.burr, drill.contact, drill.force),
+                 speed * pitch(drill.thin.value_or(thin_), drill), speed);
 }
 
 float DrillSound::next() noexcept {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 
 #include "core/base/tool_state.h"
 #include "core/sound/harmonics.h"
@@ -13,15 +14,6 @@ class Schema;
 
 namespace haptrial::sound {
 
-/// Audible state of a drill. Plain data.
-struct DrillState {
-  Burr burr{Burr::kCutting};
-  double speed{0.0};      // of its full speed, 0 (off) to 1
-  bool contact{false};    // touches bone
-  double force{0.0};      // with which it presses on bone >= 0 [N]
-  double thickness{1.0};  // of the bone under the burr >= 0 [m]
-};
-
 /// Pitch against the thickness of bone: 1 where it is thick, and
 ///
 ///     1 + rise (1 - thickness / threshold)   below the threshold.
@@ -31,6 +23,18 @@ struct ThinBone {
   double threshold{2e-3};  // > 0 [m]
   double rise{0.3};        // of the pitch where no bone is left >= 0
 };
+
+/// Audible state of a drill. Plain data.
+struct DrillState {
+  Burr burr{Burr::kCutting};
+  double speed{0.0};               // of its full speed, 0 (off) to 1
+  bool contact{false};             // touches bone
+  double force{0.0};               // with which it presses on bone >= 0 [N]
+  double thickness{1.0};           // of the bone under the burr >= 0 [m]
+  std::optional<ThinBone> thin{};  // in place of the sound's own, while it is tuned
+};
+
+/// Pitch over that of thick bone.
 double pitch(const ThinBone& thin, const DrillState& drill) noexcept;
 
 /// The keys of [sound] about thin bone.
@@ -67,6 +71,8 @@ class DrillVibration {
 
   /// @returns the force of this tick on the tool in W [N]; zero where the tool is not finite.
   Eigen::Vector3d tick(const DrillState& drill, const ToolState& tool) noexcept;
+  /// Another gain from now on, finite and >= 0; lines glide to their new amplitudes.
+  void set_gain(double gain) noexcept { gain_ = gain; }
 
  private:
   SpectrumTable table_;

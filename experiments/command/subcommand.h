@@ -107,6 +107,7 @@ void add_bone_place(CLI::App& bone, int& status);
 void add_bone_page(CLI::App& bone, int& status);
 void add_bone_safe(CLI::App& bone, int& status);
 void add_bone_score(CLI::App& bone, int& status);
+void add_bone_fit_feel(CLI::App& bone, int& status);
 void add_bone_phases(CLI::App& bone, int& status);
 void add_bone_class(CLI::App& bone, int& status);
 void add_rate(CLI::App& app, int& status);

@@ -26,6 +26,7 @@
 #include "protocols/bone_drilling/nerve_page.h"
 #include "protocols/bone_drilling/replayed_hints.h"
 #include "protocols/bone_drilling/replayed_nerves.h"
+#include "protocols/bone_drilling/tuning_page.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -166,6 +167,7 @@ class BoneDrilling final : public Protocol {
     tables.push_back(&record::table_of<record::ScrewRow>());
     tables.push_back(&record::table_of<record::WorkRow>());
     tables.push_back(&record::table_of<record::CrossingRow>());
+    tables.push_back(&record::table_of<record::TuningRow>());
     return tables;
   }
   std::unique_ptr<Definition> of_case(const Definition& definition,
@@ -174,8 +176,12 @@ class BoneDrilling final : public Protocol {
         protocols::of_case(dynamic_cast<const BoneDefinition&>(definition), name));
   }
   AuxiliaryPages auxiliary_pages(const Definition& definition) const override {
-    const bool watched = dynamic_cast<const BoneDefinition&>(definition).nerves.has_value();
-    return watched ? AuxiliaryPages{std::make_shared<NervePage>()} : AuxiliaryPages{};
+    const auto& d = dynamic_cast<const BoneDefinition&>(definition);
+    AuxiliaryPages pages{std::make_shared<TuningPage>(d)};
+    if (d.nerves) {
+      pages.push_back(std::make_shared<NervePage>());
+    }
+    return pages;
   }
   std::unique_ptr<Trials> trials(const Definition& definition,
                                  const SessionPlace& place) const override {

@@ -15,6 +15,7 @@
 #include "core/record/table/schema.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/drilling_pass.h"
+#include "protocols/bone_drilling/live_tuning.h"
 #include "protocols/bone_drilling/replayed_handpiece.h"
 
 namespace haptrial::protocols {
@@ -160,7 +161,8 @@ BoneReplay::BoneReplay(const std::filesystem::path& session)
       field_(reader_.rows<record::FieldRow>()),
       pieces_(reader_.rows<record::PieceRow>()),
       screws_(reader_.rows<record::ScrewRow>()),
-      led_(reader_.rows<record::LedRow>()) {
+      led_(reader_.rows<record::LedRow>()),
+      tuning_(reader_.rows<record::TuningRow>()) {
   for (const record::BoneRecord& bone : record::recorded_bones(reader_)) {
     bones_.push_back(std::make_shared<const bone::BoneModel>(bone::model_of(bone)));
   }
@@ -206,13 +208,16 @@ std::int32_t BoneReplay::last_bone(int trial) const {
   return last;
 }
 
-std::shared_ptr<BoneStage> BoneReplay::make_stage(int trial, bool drawn) const {
+/// @param first  tick that is simulated with it
+std::shared_ptr<BoneStage> BoneReplay::make_stage(int trial, std::uint64_t first,
+                                                  bool drawn) const {
   auto stage = std::make_shared<BoneStage>();
   stage->model = bones_[static_cast<std::size_t>(std::max(trial, 1) - 1) % bones_.size()];
   const geometry::VoxelGrid& grid = stage->model->grid;
   stage->start_view = definition_.simulator.camera.start;
   stage->simulator =
       std::make_unique<bone::Simulator>(*stage->model, simulator_for(definition_, grid));
+  RecordedTuning(definition_, tuning_, first).begin(*stage->simulator);
   if (drawn) {
     stage->companions = std::make_unique<bone::SteppedCompanions>(
         *stage->simulator, companions_for(definition_, grid), rate(), false);
@@ -233,7 +238,7 @@ ReplayVerdict BoneReplay::run(int trial, const Watch& watch) const {
     }
     if (!stage || pass.repetition != bone) {
       stage.reset();  // before there is another one
-      stage = make_stage(trial, static_cast<bool>(watch));
+      stage = make_stage(trial, pass.first_sample, static_cast<bool>(watch));
       bone = pass.repetition;
     }
     ++verdict.passes;
@@ -257,7 +262,7 @@ std::shared_ptr<BoneStage> BoneReplay::restore_until(std::uint64_t ticks, int tr
   for (std::size_t row = 0; row < passes_.size() && verdict.difference.empty(); ++row) {
     const bool own = passes_[row].trial == trial && passes_[row].repetition == bone;
     if (own && (!stage || verdict.ticks < ticks)) {
-      stage = stage ? stage : make_stage(trial, false);
+      stage = stage ? stage : make_stage(trial, passes_[row].first_sample, false);
       ++verdict.passes;
       run_pass(static_cast<std::int32_t>(row), passes_[row], stage, {{}, pulse, ticks}, verdict);
     }
@@ -276,12 +281,14 @@ struct BoneReplay::Work {
   Cursor<record::TearRow> tears;
   Cursor<record::PieceRow> pieces;
   Cursor<record::ScrewRow> screws;
+  RecordedTuning tuning;
   std::vector<bone::EmptiedIn> emptied;  // on one tick of the session
   std::vector<bone::Tear> torn;
 
   /// @param first  of a tick of the session, which has its splits
   void step(std::uint64_t sequence, const bone::SimulatorInput& now, bool first) {
     bone::Simulator& simulator = *stage->simulator;
+    tuning.step(simulator, sequence);
     if (first) {
       emptied.clear();
       torn.clear();
@@ -337,6 +344,7 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
             Cursor<record::TearRow>(tears_, pass.first_sample),
             Cursor<record::PieceRow>(pieces_, pass.first_sample),
             Cursor<record::ScrewRow>(screws_, pass.first_sample),
+            RecordedTuning(definition_, tuning_, pass.first_sample),
             {},
             {}};
   if (work.reached()) {

@@ -15,6 +15,7 @@
 #include "core/bone/record/led_row.h"
 #include "core/bone/record/second_hand_row.h"
 #include "core/bone/record/tear_row.h"
+#include "core/bone/record/tuning_row.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/device_row.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
@@ -94,7 +95,7 @@ class BoneReplay {
   void run_own(const record::PassRow& pass, Work& work) const;
   void run_led(const record::PassRow& pass, Work& work) const;
   void check_end(std::int32_t row, const bone::Simulator& simulator, ReplayVerdict& verdict) const;
-  std::shared_ptr<BoneStage> make_stage(int trial, bool drawn) const;
+  std::shared_ptr<BoneStage> make_stage(int trial, std::uint64_t first, bool drawn) const;
 
   record::SessionReader reader_;
   BoneDefinition definition_;
@@ -107,7 +108,8 @@ class BoneReplay {
   std::vector<record::FieldRow> field_;
   std::vector<record::PieceRow> pieces_;
   std::vector<record::ScrewRow> screws_;
-  std::vector<record::LedRow> led_;  // none where the bone was the session's own
+  std::vector<record::LedRow> led_;        // none where the bone was the session's own
+  std::vector<record::TuningRow> tuning_;  // none where no pilot was tuned
   std::vector<std::shared_ptr<const bone::BoneModel>> bones_;
 };
 

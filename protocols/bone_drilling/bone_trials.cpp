@@ -22,6 +22,7 @@
 #include "protocols/bone_drilling/display/stage_stills.h"
 #include "protocols/bone_drilling/drilling_rig.h"
 #include "protocols/bone_drilling/procedure_rows.h"
+#include "protocols/bone_drilling/tuning_page.h"
 #include "protocols/interface/session_file.h"
 
 namespace haptrial::protocols {
@@ -69,6 +70,9 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   }
   if (d_.surgeon && !place.real) {
     work_ = std::make_unique<subject::WorkLog>();
+  }
+  if (const auto page = page_of<TuningPage>(place.auxiliary_pages)) {
+    tuning_ = page->tuning();
   }
   open_sound();
   if (d_.drilling.second) {
@@ -125,8 +129,12 @@ void BoneTrials::open_sound() {
       keep_out->mix(part);
     }
   };
+  BoneSound::ThinBoneNow thin;
+  if (tuning_) {
+    thin = [tuning = tuning_] { return tuning->thin_bone(); };
+  }
   try {
-    sound_ = std::make_unique<BoneSound>(d_, derived_seed(place_.session_seed, "sound"), mix);
+    sound_ = std::make_unique<BoneSound>(d_, derived_seed(place_.session_seed, "sound"), mix, thin);
   } catch (const RunError& error) {
     notice_ = error.what();
     voice_.reset();
@@ -166,6 +174,12 @@ std::vector<std::string> BoneTrials::notices() const {
   if (tears_ > 0) {
     notices.push_back(fmt::format("soft tissue was torn {} (/tears)",
                                   tears_ == 1 ? "once" : fmt::format("{} times", tears_)));
+  }
+  if (tuned_ > 0) {
+    notices.push_back(fmt::format(
+        "the pilot was tuned by {} (/tuning); the definition that the file keeps is that "
+        "of the beginning",
+        counted(tuned_, "change", "changes")));
   }
   return notices;
 }
@@ -210,6 +224,9 @@ record::TableList BoneTrials::tables() const {
   }
   if (d_.forbidden) {
     tables.push_back(&record::table_of<record::CrossingRow>());
+  }
+  if (tuning_) {
+    tables.push_back(&record::table_of<record::TuningRow>());
   }
   if (work_) {
     tables.push_back(&record::table_of<record::WorkRow>());
@@ -267,6 +284,9 @@ void BoneTrials::empty_logs(SessionFile& file) {
   if (d_.forbidden) {
     empty(logs_.crossings);
   }
+  if (tuning_) {
+    tell_tuning(file);
+  }
   tell_shared(file);
   if (hints_) {
     hints_->beside().settle();  // likewise
@@ -282,6 +302,14 @@ void BoneTrials::tell_hints(SessionFile& file) {
   file.add(std::span(rows));
 }
 
+void BoneTrials::tell_tuning(SessionFile& file) {
+  logs_.tunings.flush([&](std::span<const TakenTuning> taken) {
+    const std::vector<record::TuningRow> rows = tuning_->rows_of(taken);
+    tuned_ += rows.size();
+    file.add(std::span(rows));
+  });
+}
+
 /// What the virtual surgeon worked on in a pass.
 void BoneTrials::tell_work(SessionFile& file, std::int32_t pass) {
   std::vector<record::WorkRow> rows;
@@ -292,6 +320,11 @@ void BoneTrials::tell_work(SessionFile& file, std::int32_t pass) {
 }
 
 SharedSimulation* BoneTrials::share_world(bool leads) {
+  if (tuning_) {
+    throw InputError(
+        "--side-page tuning is given in a session that is linked to another, which would drill "
+        "another bone; leave it out");
+  }
   if (d_.hints) {
     throw InputError(fmt::format(
         "{}: has hints, which are given to somebody who drills alone; leave [hints] out of a "
@@ -368,6 +401,12 @@ void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> 
 
 /// A file beside the definition may have changed since: what follows would be of another.
 void BoneTrials::check_resumed(const record::SessionReader& file) const {
+  if (!file.rows<record::TuningRow>().empty()) {
+    throw InputError(fmt::format(
+        "{}: was tuned while it ran, and a tuned pilot is not resumed; begin another one with the "
+        "definition that was saved on the page",
+        file.path().string()));
+  }
   if (hints_) {
     hints_->check_resumed(file);
   }
@@ -478,8 +517,11 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
     guard_ = std::make_unique<RegionGuard>(*d_.forbidden, d_.region_maps[bone_], keep_out_chime_);
   }
   vibration_.reset();
-  if (d_.vibration_gain > 0.0) {
+  if (d_.vibration_gain > 0.0 || tuning_) {
     vibration_.emplace(d_.vibration_table, d_.vibration_gain, d_.rate, trial.stimulus_seed);
+  }
+  if (tuning_) {
+    tuning_->begin(*stage_->simulator, vibration_ ? &*vibration_ : nullptr);
   }
   if (sound_) {
     sound_->listen_to(stage_);
@@ -529,6 +571,9 @@ Pass& BoneTrials::make_drilling_pass(const PlannedTrial& trial) {
   }
   if (hints_) {
     pass_->give(hints_->beside());
+  }
+  if (tuning_) {
+    pass_->tune_by(*tuning_);
   }
   if (guard_) {
     guard_->begin_pass(d_.has_regions(place_of(trial)));

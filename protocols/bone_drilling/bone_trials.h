@@ -68,6 +68,7 @@ class BoneTrials final : public Trials {
   void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
   void open_sound();
   void tell_hints(SessionFile& file);
+  void tell_tuning(SessionFile& file);
   void tell_work(SessionFile& file, std::int32_t pass);
   void restore(const PlannedTrial& trial, SessionFile& file);
   static void begin_again(const PlannedTrial& trial, SessionFile& file);
@@ -91,6 +92,8 @@ class BoneTrials final : public Trials {
   std::shared_ptr<nerve::NerveVoice> voice_;     // of the sound card
   std::unique_ptr<TrialNerves> nerves_;          // null: nobody watches any
   std::shared_ptr<hint::Chime> chime_;           // on the sound card; null: none
+  std::shared_ptr<LiveTuning> tuning_;           // by the page of a pilot; null: there is none
+  std::uint64_t tuned_{0};                       // changes that were taken
   std::unique_ptr<TrialHints> hints_;            // null: none are given
   std::shared_ptr<hint::Chime> keep_out_chime_;  // on the sound card; null: none
   std::unique_ptr<RegionGuard> guard_;           // of the bone; null: no region is forbidden

@@ -141,6 +141,10 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   if (first_) {
     simulator_.begin(input.functions);
   }
+  if (const std::uint64_t changes = tuning_ != nullptr ? tuning_->take(simulator_, vibration_) : 0;
+      changes > 0) {
+    logs_.tunings.push({sequence_, changes});
+  }
   const bone::SimulatorOutput& done = simulator_.tick(input);
   companions_.after_tick(simulator_, dt);
   if (nerves_ != nullptr) {

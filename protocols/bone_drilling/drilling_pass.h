@@ -67,6 +67,9 @@ class DrillingPass final : public Pass {
   /// Keeps burrs out of forbidden regions; likewise. @param guard  outlives the pass
   void keep_out(RegionGuard& guard) noexcept { guard_ = &guard; }
 
+  /// Takes tuned constants; likewise. @param tuning  outlives the pass
+  void tune_by(LiveTuning& tuning) noexcept { tuning_ = &tuning; }
+
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
   std::span<const Drive> others() const noexcept override {
@@ -91,6 +94,7 @@ class DrillingPass final : public Pass {
   SharedBone* shared_{nullptr};
   hint::HintsBeside* hints_{nullptr};
   RegionGuard* guard_{nullptr};
+  LiveTuning* tuning_{nullptr};
   std::uint64_t time_limit_;  // [ticks]
   std::uint64_t ticks_;
   std::uint64_t sequence_{0};

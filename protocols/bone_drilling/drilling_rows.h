@@ -15,6 +15,7 @@
 #include "core/bone/region/crossing_row.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/realtime/block_log.h"
+#include "protocols/bone_drilling/live_tuning.h"
 #include "protocols/interface/pass.h"
 
 namespace haptrial::protocols {
@@ -37,6 +38,7 @@ class DrillingLogs final : public TickLog {
   realtime::BlockLog<record::PieceRow> pieces{256, 64};
   realtime::BlockLog<record::ScrewRow> screws{64, 16};
   realtime::BlockLog<record::CrossingRow> crossings{256, 16};
+  realtime::BlockLog<TakenTuning> tunings{64, 16};
 
   /// A row of /second_hand for every tick from now on, also between passes. Before the first tick.
   void watch_second() noexcept { two_hands_ = true; }
@@ -72,7 +74,7 @@ class DrillingLogs final : public TickLog {
     return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
            tears.dropped() + led.dropped() + second.dropped() + openings.dropped() +
            handpiece.dropped() + tool_contact.dropped() + pieces.dropped() + screws.dropped() +
-           crossings.dropped();
+           crossings.dropped() + tunings.dropped();
   }
 
  private:

@@ -22,6 +22,8 @@ class AuxiliaryPage {
   virtual std::string_view name() const = 0;
   /// Title of the page for the terminal, such as "assistant's page".
   virtual std::string_view title() const = 0;
+  /// Whether it changes what is presented, so that only a pilot may have it.
+  virtual bool is_for_pilots() const { return false; }
   /// The page. Its scripts and styles carry nonce="NONCE"; it hears /NAME/events?token=T and posts
   /// to /NAME/ask with the header X-Haptrial-Token, as the console's own page does.
   virtual std::string_view html() const = 0;

@@ -405,7 +405,7 @@ TEST(NerveCommandTest, TheTechniciansPageNeedsAMonitorAndAConsole) {
   const test::CommandResult none =
       test::run_command("haptrial run '" + plain.string() + "' --console --side-page nerves" + out);
   EXPECT_EQ(none.status, 2);
-  EXPECT_THAT(none.errors, HasSubstr("has no page 'nerves'; it has none beside the console's"));
+  EXPECT_THAT(none.errors, HasSubstr("has no page 'nerves'; it has tuning"));
   const test::TemporaryFolder other;
   const fs::path watched = write_monitored(other.path(), 1.0);
   const test::CommandResult alone =
@@ -415,7 +415,7 @@ TEST(NerveCommandTest, TheTechniciansPageNeedsAMonitorAndAConsole) {
   const test::CommandResult other_name = test::run_command("haptrial run '" + watched.string() +
                                                            "' --console --side-page nerve" + out);
   EXPECT_EQ(other_name.status, 2);
-  EXPECT_THAT(other_name.errors, HasSubstr("has no page 'nerve'; it has nerves"));
+  EXPECT_THAT(other_name.errors, HasSubstr("has no page 'nerve'; it has tuning, nerves"));
   EXPECT_THAT(test::run_command("haptrial validate '" + watched.string() + "'").output,
               HasSubstr("page beside the console: nerve monitor"));
 }

@@ -174,6 +174,9 @@ void KeyExploration::describe(std::string_view table, const KeyDescription& key)
   if (key.required) {
     required_.insert(path);
   }
+  if (key.tunable) {
+    tunable_.insert(path);
+  }
   if (!key.otherwise.empty()) {
     note_default(table, key.name, key.otherwise);
   }
@@ -232,6 +235,7 @@ std::vector<KnownKey> KeyExploration::keys() const {
     if (const auto at = defaults_.find(path); at != defaults_.end() && key.otherwise.empty()) {
       key.otherwise = at->second;
     }
+    key.tunable = tunable_.contains(path);
     if (const auto at = described_.find(path); at != described_.end()) {
       key.words = at->second;
     }

@@ -38,6 +38,7 @@ struct KnownKey {
   std::vector<std::string> when;  // "type: wall, box": only with these choices of the same table
   std::string words;              // what it is; empty: its reader has no schema
   std::vector<KeyForm> forms;     // `type` and `allowed` for programs, each type once
+  bool tunable{false};            // a pilot may change it while it runs
 
   std::string path() const { return table.empty() ? key : table + "." + key; }
 };
@@ -85,7 +86,7 @@ class KeyExploration {
   bool bound_by(const Known& known, const std::string& choice) const;
   std::unordered_map<std::string, Known> known_;                                  // by path
   std::map<std::string, std::map<std::string, std::vector<std::string>>> words_;  // table, key
-  std::unordered_set<std::string> optional_, required_, texts_;
+  std::unordered_set<std::string> optional_, required_, texts_, tunable_;
   std::unordered_map<std::string, std::string> defaults_;
   std::unordered_map<std::string, std::string> described_;  // words, by path
 };

@@ -43,6 +43,7 @@ class Schema {
                  if (key.stands_in(table, into.*member)) {
                    into.*member = table.number(key.name, bounds, unit);
                  }
+                 table.note_tunable(key, into.*member, bounds, unit);
                });
   }
   Schema& number(std::string name, std::optional<double> T::*member, const Bounds& bounds,
@@ -207,6 +208,8 @@ class Schema {
                  if (key.stands_in(table)) {
                    Table inner = table.table(key.name);
                    schema.read(inner, into.*member);
+                 } else if (std::optional<Table> inner = table.left_out(key.name)) {
+                   schema.note_tunable(*inner, into.*member);
                  }
                });
   }
@@ -248,6 +251,11 @@ class Schema {
     keys_.back().description.required = true;
     return *this;
   }
+  /// The key that was added last, a number, may be changed while a pilot runs.
+  Schema& tunable() {
+    keys_.back().description.tunable = true;
+    return *this;
+  }
   /// Words for lists of keys on the absence of the key that was added last: "none".
   Schema& otherwise(std::string words) {
     keys_.back().description.otherwise = std::move(words);
@@ -279,6 +287,14 @@ class Schema {
           shared.pass_over(name);
         }
         key.read_from(here ? own : shared, into);
+      }
+    }
+  }
+  /// Notes the defaults of tunable keys. @param left_out  as Table::left_out() gives it
+  void note_tunable(Table& left_out, T& defaults) const {
+    for (const Key& key : keys_) {
+      if (key.description.tunable) {
+        key.read_from(left_out, defaults);
       }
     }
   }

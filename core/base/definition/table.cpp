@@ -212,6 +212,16 @@ Table Table::table(std::string_view key) {
   return Table(document_, child, numbers_);
 }
 
+std::optional<Table> Table::left_out(std::string_view key) {
+  if (exploration() != nullptr) {
+    return std::nullopt;
+  }
+  const auto child =
+      std::make_shared<Node>(Node{nullptr, node_->full(key), {}, {}, node_->full_name(key)});
+  document_->nodes.push_back(child);
+  return Table(document_, child, numbers_);
+}
+
 std::vector<Table> Table::tables(std::string_view key) {
   std::vector<Table> tables;
   if (exploration() != nullptr) {

@@ -36,12 +36,22 @@ struct KeyDescription {
   std::string text;       // a noun phrase and its consequence
   std::string otherwise;  // what holds if it is left out, where no value says it: "none"
   bool required{false};
+  bool tunable{false};  // a pilot may change it while it runs
 
   /// Whether its value is to be read; an optional key may be absent.
   bool stands_in(const Table& table) const;
   /// Whether a key with a default is to be read; lists of keys show the default.
   bool stands_in(const Table& table, double usual) const;
   bool stands_in(const Table& table, std::string_view usual) const;
+};
+
+/// A tunable key of a definition, with the value that its reader took.
+struct TunableKey {
+  std::string key;   // its path: "tools.cutting.feel.second_gain"
+  std::string text;  // what it is
+  Bounds bounds{};
+  std::string unit;
+  double value{0.0};
 };
 
 /// A table of a definition file (TOML), read key by key. Each read checks presence, type and bounds
@@ -117,6 +127,9 @@ class Table {
   /// A required table within this one; an absent one is noted and reads as empty without further
   /// problems.
   Table table(std::string_view key);
+  /// A table that is left out, as an empty one and without a problem, for the defaults of its keys;
+  /// nothing while a definition is explored.
+  std::optional<Table> left_out(std::string_view key);
   /// The tables of a required array, [[key]], in their order; an absent or empty one is noted.
   /// Sentences name the second of them "key[2]".
   std::vector<Table> tables(std::string_view key);
@@ -137,6 +150,11 @@ class Table {
   /// What shown_text() gave so far, each key once, in the order of first reading. Of an entry of an
   /// array of tables the key has the name instead of the number: "response.choices.yes.label".
   std::vector<ShownText> shown_texts() const;
+  /// Notes the value of a key if it is tunable.
+  void note_tunable(const KeyDescription& key, double value, const Bounds& bounds,
+                    std::string_view unit);
+  /// The tunable keys of the document that were read so far, in that order.
+  const std::vector<TunableKey>& tunable_keys() const;
   /// The name of this table among those of its array, for keys of shown_texts().
   void name_entry(std::string_view name);
   /// A table of this one that another reader knows: its keys are not looked at here.

@@ -58,6 +58,7 @@ struct Table::Document {
   std::map<std::string, AngularUnits, std::less<>> units;  // of tables that state_in(), by path
   Translations translations;
   std::vector<ShownText> shown;
+  std::vector<TunableKey> tunable;
 };
 
 struct Table::Node {

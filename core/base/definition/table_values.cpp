@@ -348,6 +348,16 @@ void Table::translate(const Translations& translations) { document_->translation
 
 std::vector<ShownText> Table::shown_texts() const { return document_->shown; }
 
+void Table::note_tunable(const KeyDescription& key, double value, const Bounds& bounds,
+                         std::string_view unit) {
+  if (key.tunable) {
+    document_->tunable.push_back(
+        {node_->full(key.name), key.text, bounds, std::string(unit), value});
+  }
+}
+
+const std::vector<TunableKey>& Table::tunable_keys() const { return document_->tunable; }
+
 void Table::name_entry(std::string_view name) {
   const std::size_t dot = node_->named.rfind('.');
   node_->named = node_->named.substr(0, dot == std::string::npos ? 0 : dot + 1) + std::string(name);

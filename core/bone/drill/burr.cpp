@@ -312,12 +312,15 @@ const Schema<BurrParameters>& burr_schema() {
           .check(check_samples)
           .number("removal_rate", &P::removal_rate, {0.0, 1e6}, "1/(N·s)",
                   "Share of the bone within the burr that goes in a second at a force of 1 N")
+          .tunable()
           .otherwise("25 of a cutting burr, 10 of a diamond")
           .number("falloff", &P::falloff, {0.0, 1e6}, "1/(N·s·rad)",
                   "Decrease of the removal rate from the burr's equator towards its tip")
+          .tunable()
           .otherwise("12 of a cutting burr, 2 of a diamond")
           .number("tangential_gain", &P::tangential_gain, {0.0, 1e15}, "N/m^4",
                   "Strength with which the turning burr pulls along the bone")
+          .tunable()
           .otherwise("as fits kind and size of the burr")
           .number("wear_volume", &P::wear_volume, {0.0, 1.0, true}, "m3",
                   "Volume of bone after which the burr removes half as much")
@@ -351,10 +354,10 @@ Burr::Burr(const BurrParameters& parameters)
       position_[axis].push_back(rounded(kRadius * at[axis]));
       direction_[axis].push_back(rounded(kUnit * in[axis]));
     }
-    const double latitude = std::abs(std::asin(std::clamp(in.z(), -1.0, 1.0)));
-    power_.push_back(
-        static_cast<float>(std::max(0.0, parameters.removal_rate - parameters.falloff * latitude)));
+    latitude_.push_back(std::abs(std::asin(std::clamp(in.z(), -1.0, 1.0))));
   }
+  power_.resize(latitude_.size());
+  set_rates(parameters.removal_rate, parameters.falloff);
   if (half.empty()) {
     throw std::invalid_argument("Burr: no samples");
   }
@@ -364,6 +367,14 @@ Burr::Burr(const BurrParameters& parameters)
   }
   sample_volume_ =
       shape_.fullness() * std::pow(parameters.diameter, 3) / static_cast<double>(samples());
+}
+
+void Burr::set_rates(double removal_rate, double falloff) noexcept {
+  parameters_.removal_rate = removal_rate;
+  parameters_.falloff = falloff;
+  for (std::size_t s = 0; s < power_.size(); ++s) {
+    power_[s] = static_cast<float>(std::max(0.0, removal_rate - falloff * latitude_[s]));
+  }
 }
 
 /// Makes the sum of the directions along the axis zero where images alone do not.

@@ -89,6 +89,8 @@ class Burr {
   Eigen::Vector3d direction(std::int32_t sample) const;  // inwards, unit length, in T
   /// Share of the immersed volume that is removed, max(0, R_max - falloff |latitude|) [1/(N·s)].
   float power(std::int32_t sample) const { return power_[static_cast<std::size_t>(sample)]; }
+  /// Sets R_max and falloff, both finite and >= 0, from now on. Servo thread: no allocation.
+  void set_rates(double removal_rate, double falloff) noexcept;
 
   /// A cube of the burr with the samples in it, which lie one after the other.
   struct Cell {
@@ -125,6 +127,7 @@ class Burr {
   double sample_volume_{0.0};
   std::vector<std::int16_t> position_[3];
   std::vector<std::int16_t> direction_[3];
+  std::vector<double> latitude_;  // by sample, >= 0 [rad]
   std::vector<float> power_;
   std::vector<Cell> cells_;
 };

@@ -75,6 +75,10 @@ class Drill {
         InstructionSet set = best_instruction_set(), const std::array<bool, 256>& soft = {});
 
   const Burr& burr() const noexcept { return burr_; }
+  /// Burr::set_rates().
+  void set_rates(double removal_rate, double falloff) noexcept {
+    burr_.set_rates(removal_rate, falloff);
+  }
   /// Voxels that remove() empties in a tick at most.
   std::size_t most_emptied() const noexcept { return emptied_.size(); }
 

@@ -35,18 +35,23 @@ const Schema<FeelParameters>& feel_schema() {
       Schema<P>()
           .number("first_gain", &P::first_gain, kPositive, "N/m^3",
                   "Force over the immersed volume just after contact; higher feels harder")
+          .tunable()
           .otherwise("as fits the radius of the tool")
           .number("second_gain", &P::second_gain, kPositive, "N/m^3",
                   "Force over the immersed volume beyond the threshold; higher lets the tool sink "
                   "in less")
+          .tunable()
           .otherwise("as fits the radius of the tool")
           .number("threshold", &P::threshold, kPositive, "m^3",
                   "Immersed volume at which the first gain changes to the second one")
+          .tunable()
           .otherwise("as fits the radius of the tool")
           .number("force_limit", &P::force_limit, {0.0, 100.0, true}, "N",
                   "Greatest force of this contact with bone")
+          .tunable()
           .number("least_agreement", &P::least_agreement, {0.0, 1.0, true}, "",
                   "Agreement of the directions in which samples push; below it the force fades")
+          .tunable()
           .check([](Table& table, P& p) {
             if (p.second_gain < p.first_gain) {
               table.reject("second_gain", fmt::format("{}", p.second_gain), "first_gain or more");

@@ -7,6 +7,7 @@
 #include "core/bone/drill/drill.h"
 #include "core/bone/drill/feel.h"
 #include "core/bone/model/world.h"
+#include "core/bone/simulator/tuning.h"
 
 namespace haptrial::bone {
 
@@ -27,13 +28,21 @@ class FeltPart {
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool, in W [N]
     std::int32_t immersed{0};                        // samples in bone
   };
-  Felt tick(const BoneWorld& world, const ToolState& tool) noexcept;
+  /// @param transition  from the feel before feel_as() to its own
+  Felt tick(const BoneWorld& world, const ToolState& tool,
+            const ForceTransition& transition = {}) noexcept;
+  /// Another feel from now on, to which a transition leads.
+  void feel_as(const FeelParameters& feel) noexcept {
+    before_ = feel_;
+    feel_ = feel;
+  }
   /// Leaves the part unfelt until it is free.
   void wait() noexcept { waits_until_free_ = true; }
 
  private:
   double middle_;
   FeelParameters feel_;
+  FeelParameters before_;
   BurrParameters at_rest_;
   Drill drill_;
   bool waits_until_free_{true};

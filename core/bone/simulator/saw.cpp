@@ -41,6 +41,7 @@ const Schema<SawParameters>& saw_schema() {
                   "Length of the blade behind its teeth, which bone guides")
           .number("removal_rate", &P::removal_rate, {0.0, 1000.0}, "1/s",
                   "Share of the bone within a saw's teeth that goes in a second")
+          .tunable()
           .number("stiffness", &P::stiffness, {100.0, 1e5}, "N/m",
                   "Stiffness of bone under the largest side of the teeth, and of the blade")
           .number("wear_volume", &P::wear_volume, {0.0, 1.0, true}, "m3",

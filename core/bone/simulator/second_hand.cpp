@@ -38,10 +38,10 @@ void SecondHand::begin() noexcept {
   }
 }
 
-TubeOutput SecondHand::tick(const BoneWorld& world, SoftTissue& soft,
-                            const TubeInput& input) noexcept {
+TubeOutput SecondHand::tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input,
+                            const ForceTransition& transition) noexcept {
   TubeOutput out;
-  const FeltPart::Felt end = end_.tick(world, input.tool);
+  const FeltPart::Felt end = end_.tick(world, input.tool, transition);
   out.force = end.force;
   out.immersed = end.immersed;
   out.contact = end.immersed > 0;

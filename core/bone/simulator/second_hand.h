@@ -57,7 +57,10 @@ class SecondHand {
 
   void begin() noexcept;
   /// Call after the first hand's tick.
-  TubeOutput tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input) noexcept;
+  TubeOutput tick(const BoneWorld& world, SoftTissue& soft, const TubeInput& input,
+                  const ForceTransition& transition = {}) noexcept;
+  /// Bone feels otherwise to the tube's end from now on (FeltPart::feel_as()).
+  void feel_as(const FeelParameters& feel) noexcept { end_.feel_as(feel); }
   /// Force of the tube on the first hand's tool; the opposite acts on the tube. Zero where the two
   /// pass through each other.
   /// @param tool  its rods  @param velocity  of its tip [m/s]  @param dt  of the tick [s]

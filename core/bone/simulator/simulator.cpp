@@ -67,6 +67,7 @@ Eigen::Isometry3d pose_of(const ToolState& tool) noexcept {
 
 Simulator::Simulator(const BoneModel& model, const SimulatorParameters& parameters)
     : tools_(checked(parameters.tools)),
+      before_(tools_.size()),
       camera_parameters_(parameters.camera),
       structures_(model.structures),
       world_(model, parameters.pose_WB, parameters.world),
@@ -126,6 +127,7 @@ const SimulatorOutput& Simulator::tick(const SimulatorInput& input,
   const int tool = output_.tool;
   output_ = {};
   output_.tool = tool;
+  transition_.step(input.dt);
   take_separations(recorded);
   const std::uint32_t pressed = input.functions & ~functions_;
   functions_ = input.functions;
@@ -297,7 +299,7 @@ void Simulator::work_second(const SimulatorInput& input) noexcept {
   if (!second_) {
     return;
   }
-  output_.tube = second_->tick(world_, soft_, input.tube);
+  output_.tube = second_->tick(world_, soft_, input.tube, transition_);
   if (output_.tube.tore) {
     const Eigen::Isometry3d& pose = world_.pose(0);
     empty_soft(pose.inverse(Eigen::Isometry) * input.tube.tool.tip.position, tube()->radius);
@@ -382,8 +384,8 @@ void Simulator::place_for_dust(const SimulatorInput& input) noexcept {
     const double radius = burr->radius();
     const double top = drills_[in_hand()]->burr().shape().half_length();
     const double low = balls.front().z;
-    dust_tools_.tools[0] = {tip + low * axis, axis, balls.back().z - low, radius, false,
-                            output_.power > 0.0};
+    dust_tools_.tools[0] = {tip + low * axis, axis,  balls.back().z - low,
+                            radius,           false, output_.power > 0.0};
     const double thin = std::min(radius, burr->shaft ? burr->shaft->radius : tool.handle_radius);
     dust_tools_.tools[1] = {tip + top * axis, axis, tool.handle_length, thin, false};
   } else if (const auto* suction = tool.as<SuctionTool>()) {

@@ -24,6 +24,7 @@
 #include "core/bone/simulator/second_hand.h"
 #include "core/bone/simulator/simulator_tools.h"
 #include "core/bone/simulator/soft_tissue.h"
+#include "core/bone/simulator/tuning.h"
 
 namespace haptrial::bone {
 
@@ -60,6 +61,9 @@ struct SimulatorParameters {
   std::optional<HeatParameters> heat{};             // none: nothing warms up
   BleedingParameters bleeding{};                    // of the bone's structures
 };
+
+/// The constants of a simulator that may change while it ticks.
+Tuning tuning_of(const SimulatorParameters& parameters) noexcept;
 
 /// Input of one tick, all in W.
 struct SimulatorInput {
@@ -121,6 +125,11 @@ class Simulator {
 
   /// Call before the first tick of a pass: buttons that are held down are not taken as going down.
   void begin(std::uint32_t functions_held) noexcept;
+  /// Other constants from the next tick on: rates of removal at once, forces by a transition.
+  /// @param tuning  valid for these tools (check(FeelParameters))
+  void tune(const Tuning& tuning) noexcept;
+  /// The force is on its way between two tunings; the next one is to wait for its end.
+  bool is_in_transition() const noexcept { return transition_.is_on(); }
   /// @param recorded  in a replay, the parts that were separated on this tick
   const SimulatorOutput& tick(const SimulatorInput& input,
                               std::span<const RecordedSplit> recorded = {});
@@ -189,6 +198,7 @@ class Simulator {
   void carry(const SimulatorInput& input) noexcept;
   void work(const SimulatorInput& input, std::uint32_t pressed) noexcept;
   void drill(const BurrTool& tool, const SimulatorInput& input) noexcept;
+  void feel(const BurrTool& tool, const Contact& contact, double turning) noexcept;
   void yield(std::span<const BurrShape::Ball> balls, const SimulatorInput& input) noexcept;
   void work_second(const SimulatorInput& input) noexcept;
   void meet(const SimulatorInput& input) noexcept;
@@ -202,6 +212,8 @@ class Simulator {
   const Reach& reach_of(int piece) noexcept;
 
   std::vector<ToolSpec> tools_;
+  std::vector<BurrTuning> before_;  // by tool, the transition
+  ForceTransition transition_;
   MicroscopeParameters camera_parameters_;
   std::vector<Structure> structures_;
   BoneWorld world_;

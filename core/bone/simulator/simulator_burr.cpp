@@ -55,6 +55,10 @@ RodsOfTool rods_of(const ToolSpec& tool, const BurrShape* shape, const ToolState
   return rods;
 }
 
+BurrTuning tuning_of(const BurrTool& tool) noexcept {
+  return {tool.feel, tool.burr.removal_rate, tool.burr.falloff, tool.burr.tangential_gain};
+}
+
 }  // namespace
 
 bool Simulator::Reach::is_near(const Eigen::Vector3d& p_B, double radius) const noexcept {
@@ -78,6 +82,49 @@ const Simulator::Reach& Simulator::reach_of(int piece) noexcept {
     }
   }
   return reaches_[static_cast<std::size_t>(piece)];
+}
+
+Tuning tuning_of(const SimulatorParameters& parameters) noexcept {
+  Tuning tuning;
+  for (std::size_t i = 0; i < std::min(kMostTools, parameters.tools.size()); ++i) {
+    if (const auto* burr = parameters.tools[i].as<BurrTool>()) {
+      tuning.burrs[i] = tuning_of(*burr);
+    }
+  }
+  tuning.tube = parameters.tube ? parameters.tube->feel : FeelParameters{};
+  return tuning;
+}
+
+void Simulator::tune(const Tuning& tuning) noexcept {
+  for (std::size_t i = 0; i < std::min(kMostTools, tools_.size()); ++i) {
+    if (auto* burr = std::get_if<BurrTool>(&tools_[i].kind)) {
+      const BurrTuning& to = tuning.burrs[i];
+      before_[i] = tuning_of(*burr);
+      burr->feel = to.feel;
+      burr->burr.removal_rate = to.removal_rate;
+      burr->burr.falloff = to.falloff;
+      burr->burr.tangential_gain = to.tangential_gain;
+      drills_[i]->set_rates(to.removal_rate, to.falloff);
+    }
+  }
+  if (second_) {
+    second_->feel_as(tuning.tube);
+  }
+  transition_.begin();
+}
+
+/// Forces of a burr in contact.
+void Simulator::feel(const BurrTool& tool, const Contact& contact, double turning) noexcept {
+  output_.force = bone_force(contact, tool.feel, tool.burr, turning);
+  output_.drag = drag_force(contact, tool.burr, turning);
+  if (transition_.is_on()) {
+    const BurrTuning& was = before_[in_hand()];
+    BurrParameters burr = tool.burr;
+    burr.tangential_gain = was.tangential_gain;
+    const double w = transition_.weight();
+    output_.force = (1.0 - w) * bone_force(contact, was.feel, burr, turning) + w * output_.force;
+    output_.drag = (1.0 - w) * drag_force(contact, burr, turning) + w * output_.drag;
+  }
 }
 
 void Simulator::drill(const BurrTool& tool, const SimulatorInput& input) noexcept {
@@ -110,8 +157,7 @@ void Simulator::drill(const BurrTool& tool, const SimulatorInput& input) noexcep
     return;
   }
   const double turning = handpiece_.turning(input.power);
-  output_.force = bone_force(all, tool.feel, tool.burr, turning);
-  output_.drag = drag_force(all, tool.burr, turning);
+  feel(tool, all, turning);
   const double driving = removal_force(tool, output_.force, input.tool.axis());
   const double force = kForceStep * std::round(driving / kForceStep);
   const double sharp_power = input.power * handpiece_.sharpness(output_.tool);

@@ -8,11 +8,11 @@
 #include "core/base/definition/schema.h"
 #include "core/bone/simulator/plate_shapes.h"
 #include "core/bone/simulator/saw.h"
+#include "core/bone/simulator/tuning.h"
 
 namespace haptrial::bone {
 namespace {
 
-constexpr int kMostTools = 32;
 constexpr double kWidestShaft = 0.015;  // [m]
 
 /// Both keys of a shaft are needed if one is there. Which of them comes first reads both.

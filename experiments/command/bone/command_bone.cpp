@@ -18,6 +18,7 @@ void add_bone(CLI::App& app, int& status) {
   add_bone_stages(*bone, status);
   add_bone_place(*bone, status);
   add_bone_page(*bone, status);
+  add_bone_fit_feel(*bone, status);
   add_bone_safe(*bone, status);
   add_bone_score(*bone, status);
   add_bone_phases(*bone, status);

@@ -12,6 +12,7 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
+#include "experiments/command/sessions/set_option.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
@@ -50,19 +51,6 @@ fs::path fresh_folder(const std::string& name) {
       return folder;
     }
   }
-}
-
-std::vector<GivenKey> given_keys(const std::vector<std::string>& set) {
-  std::vector<GivenKey> given;
-  for (const std::string& each : set) {
-    const std::size_t at = each.find('=');
-    if (at == 0 || at == std::string::npos) {
-      throw InputError(
-          fmt::format("--set is \"{}\"; allowed: KEY=VALUE, such as observer.reaction=0.5", each));
-    }
-    given.push_back({each.substr(0, at), each.substr(at + 1)});
-  }
-  return given;
 }
 
 /// Takes --parts, and the rank of a process that mpirun or srun started. @returns the rank
@@ -251,11 +239,7 @@ void add_dry_run(CLI::App& app, int& status) {
       with_default("Number of pictures to write of each pass, as the subject saw it", o.frames));
   sub->add_option("--setup", o.setup,
                   "Minutes in the lab between two sessions, for the lab time of the whole study");
-  sub->add_option("--set", o.set,
-                  "KEY=VALUE: a key of the definition that has another value, as a definition "
-                  "writes it, such as observer.lapse=0.05; may be repeated")
-      ->expected(1)
-      ->take_all();
+  declare_set_option(*sub, o.set);
 }
 
 }  // namespace haptrial::experiments

@@ -24,6 +24,7 @@
 #include "experiments/command/sessions/run_checks.h"
 #include "experiments/command/sessions/run_command.h"
 #include "experiments/command/sessions/run_options.h"
+#include "experiments/command/sessions/set_option.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/console/console.h"
 #include "experiments/control/fatal_stop_handler.h"
@@ -138,6 +139,12 @@ protocols::AuxiliaryPages chosen_pages(const RunOptions& options,
                                        : fmt::format("it has {}", fmt::join(offered, ", "))));
     }
     chosen.push_back(all[static_cast<std::size_t>(found - offered.begin())]);
+    if (chosen.back()->is_for_pilots() && !options.pilot) {
+      throw InputError(fmt::format(
+          "--side-page {} changes the definition while somebody works, which no session of a study "
+          "may; add --pilot",
+          name));
+    }
   }
   if (!chosen.empty() && !options.console) {
     throw InputError("--side-page needs --console, which serves the page");
@@ -181,7 +188,8 @@ RunEnd run_command(const RunOptions& asked) {
   if (::isatty(STDERR_FILENO) != 0) {
     fmt::print(stderr, "preparing {}\n", options.definition);  // bones take seconds
   }
-  Experiment experiment = load_experiment(options.definition, options.language);
+  Experiment experiment =
+      load_experiment(options.definition, options.language, given_keys(options.set));
   if (const std::string chosen = choose_session(options, experiment); !chosen.empty()) {
     fmt::print("{}\n", chosen);
     std::fflush(stdout);
@@ -355,6 +363,7 @@ void declare_run_options(CLI::App& app, RunOptions& o) {
   sub->add_option("--language", o.language,
                   "Language of what the participant reads, such as de (default: the definition's)");
   sub->add_flag("--pilot", o.pilot, "Mark the session as a pilot, which analyze leaves out");
+  declare_set_option(*sub, o.set);
   sub->add_option("--handedness", o.person.handedness, "Participant's handedness");
   sub->add_option("--age-band", o.person.age_band, "Participant's age band, such as 18-25");
   sub->add_option("--sex", o.person.sex, "Participant's sex");

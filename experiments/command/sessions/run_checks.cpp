@@ -149,6 +149,10 @@ void check_run_options(const RunOptions& options) {
   }
   check_device(options);
   check_console(options);
+  if (!options.set.empty() && !options.pilot) {
+    throw InputError(
+        "--set is given without --pilot; sessions of a study have the keys of its definition");
+  }
   check_link(options);
   if (options.stream && options.stream_optional) {
     throw InputError(

@@ -42,6 +42,7 @@ struct RunOptions {
   bool stream_optional{false};
   bool resume{false};
   bool pilot{false};
+  std::vector<std::string> set{};  // KEY=VALUE, of a pilot
   std::string language;
   record::Participant person;
 };

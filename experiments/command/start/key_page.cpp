@@ -46,11 +46,16 @@ std::string bounds_of(const KnownKey& key) {
   return words;
 }
 
+/// What a key is, and whether a pilot may change it.
+std::string words_of(const KnownKey& key) {
+  return key.words + (key.tunable ? "; tunable in a pilot" : "");
+}
+
 std::string row_of(const KnownKey& key) {
   const std::string otherwise = !key.otherwise.empty() ? key.otherwise
                                 : key.optional         ? "may be left out"
                                                        : "needed";
-  std::string words = key.words;
+  std::string words = words_of(key);
   if (!key.when.empty()) {
     words += fmt::format("{}({})", words.empty() ? "" : " ", fmt::join(key.when, "; "));
   }
@@ -89,7 +94,7 @@ std::string found_keys(const std::vector<KeySection>& sections) {
     for (const KnownKey& key : section.keys) {
       text += fmt::format(
           "{}{}{}: {}; {}\n", section.protocol.empty() ? "" : section.protocol + ": ", key.path(),
-          key.unit.empty() ? "" : fmt::format(" [{}]", key.unit), key.words, bounds_of(key));
+          key.unit.empty() ? "" : fmt::format(" [{}]", key.unit), words_of(key), bounds_of(key));
     }
   }
   return text;

@@ -280,6 +280,7 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   if (folder != nullptr && root.has("drilling_hand")) {
     reject_speed(root, d, "drilling_hand", "speed", d.hand_plan.speed);
   }
+  d.tunable = root.tunable_keys();
   return d;
 }
 

@@ -103,6 +103,7 @@ struct BoneDefinition : Definition {
   std::optional<nerve::NerveSetup> nerves;     // that are watched
   std::optional<hint::HintSetup> hints;        // to who drills
   std::optional<bone::RegionSetup> forbidden;  // regions that burrs are kept out of
+  std::vector<TunableKey> tunable;             // keys that a pilot may change while it runs
   bool trainee_page{false};                    // written after a session, beside its file
   std::string experts_study;                   // folder that the page compares with; empty: nobody
   std::string score_file;                      // of a score that the page applies; empty: none

@@ -249,6 +249,7 @@ const Schema<D>& bone_sound_schema() {
                                  .flag("card", &D::sound_card, "Whether sound is played live")
                                  .number("vibration_gain", &D::vibration_gain, {0.0, 100.0}, "",
                                          "Strength of the burr's vibration in the handle; 0: none")
+                                 .tunable()
                                  .keys_of(&D::thin_bone, sound::thin_bone_schema());
   return schema;
 }

@@ -55,7 +55,7 @@ void InjuryChime::hear(const bone::DrillingView& seen) noexcept {
 }
 
 BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed,
-                     sound::SoundOutput::Mix mix)
+                     sound::SoundOutput::Mix mix, ThinBoneNow thin)
     : output_(definition.sound_table, definition.thin_bone, seed, "default",
               [this, others = std::move(mix)](std::span<float> part) {
                 injury_.mix(part);
@@ -64,6 +64,7 @@ BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed,
                 }
               }),
       tools_(definition.simulator.tools),
+      thin_(std::move(thin)),
       thread_([this] { run(); }) {}
 
 BoneSound::~BoneSound() {
@@ -81,7 +82,11 @@ void BoneSound::observe(const stimulus::Shown& shown, const stimulus::Forces&, d
   const bone::DrillingView seen = view != nullptr ? *view : bone::DrillingView{};
   seen_.write(seen);
   injury_.hear(seen);
-  output_.set(sound_of(seen, tools_, thickness_.load(std::memory_order_relaxed)));
+  sound::DrillState state = sound_of(seen, tools_, thickness_.load(std::memory_order_relaxed));
+  if (thin_) {
+    state.thin = thin_();
+  }
+  output_.set(state);
 }
 
 void BoneSound::run() {

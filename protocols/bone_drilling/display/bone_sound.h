@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -50,9 +51,14 @@ class InjuryChime {
 /// thread the rest; a thread of its own finds the thickness.
 class BoneSound final : public stimulus::Observer {
  public:
+  /// Servo thread: no allocation, lock or throw.
+  using ThinBoneNow = std::function<sound::ThinBone()>;
+
   /// @param mix  what else is heard on the same card; may be empty
+  /// @param thin    what is tuned of thin bone, asked on each tick; empty: nothing is
   /// @throws RunError where there is no sound card.
-  BoneSound(const BoneDefinition& definition, std::uint64_t seed, sound::SoundOutput::Mix mix = {});
+  BoneSound(const BoneDefinition& definition, std::uint64_t seed, sound::SoundOutput::Mix mix = {},
+            ThinBoneNow thin = {});
   ~BoneSound() override;
 
   /// Which bone is drilled from now on.
@@ -66,6 +72,7 @@ class BoneSound final : public stimulus::Observer {
   InjuryChime injury_;
   sound::SoundOutput output_;
   std::vector<bone::ToolSpec> tools_;
+  ThinBoneNow thin_;
   realtime::LatestValue<bone::DrillingView> seen_;
   std::atomic<double> thickness_{1.0};  // [m]
   std::mutex mutex_;                    // never taken by the servo thread
