@@ -5,10 +5,8 @@
 
 #include "analysis/force_training/study/learned_scores.h"
 #include "core/base/definition/table.h"
-#include "core/base/error.h"
 #include "experiments/studies/learning_names.h"
 #include "protocols/definition/definition.h"
-#include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/training_pass.h"
 
 namespace haptrial::experiments {
@@ -44,32 +42,16 @@ std::vector<std::string> conditions_of(Table& root) {
   return design.has("conditions") ? design.texts("conditions") : std::vector<std::string>{};
 }
 
-/// Groups and sessions that a learning plan may name; none if the definition is itself wrong, which
-/// others say.
-analysis::LearningNames names_of(Table& root) {
-  try {
-    Table copy = root.unread();
-    return learning_names(protocols::read_force_definition(copy, "", nullptr));
-  } catch (const InputError&) {
-    return {};
-  }
-}
-
-/// @throws InputError with problems in it
-CurveAnalysis read_whole(Table root, bool fresh) {
-  CurveAnalysis found = read_curve_analysis(root, fresh);
-  root.check();
-  return found;
-}
-
 }  // namespace
 
-CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
+CurveAnalysis read_curve_analysis(Table& root, const protocols::Definition* definition,
+                                  bool fresh) {
   Table analysis = root.table("analysis");
   CurveAnalysis found{analysis::read_scoring(root, analysis), {}};
   if (analysis.has("outcomes")) {
-    found.learning =
-        analysis::read_learning_plan(root, names_of(root), analysis::score_outcomes());
+    const auto names =
+        definition == nullptr ? analysis::LearningNames{} : learning_names(*definition);
+    found.learning = analysis::read_learning_plan(root, names, analysis::score_outcomes());
   } else {
     found.plan = analysis::read_analysis_plan(analysis, nameable(conditions_of(root)));
   }
@@ -80,15 +62,10 @@ CurveAnalysis read_curve_analysis(Table& root, bool fresh) {
 }
 
 CurveAnalysis curve_analysis_of(const protocols::Definition& definition) {
-  return read_whole(definition.root(), false);
-}
-
-CurveAnalysis parse_curve_analysis(std::string_view text, std::string_view file_name) {
-  return read_whole(Table::parse(text, file_name), false);
-}
-
-CurveAnalysis load_curve_analysis(const std::filesystem::path& file) {
-  return read_whole(Table::load(file), true);
+  Table root = definition.root();
+  CurveAnalysis found = read_curve_analysis(root, &definition, false);
+  root.check();
+  return found;
 }
 
 analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "analysis/force_training/score/score_parameters.h"
@@ -22,18 +20,16 @@ namespace haptrial::experiments {
 /// Analysis of curves of force in a definition: its table [analysis].
 struct CurveAnalysis {
   analysis::ScoreParameters scoring;
-  analysis::AnalysisPlan plan;          // between conditions, right after training
-  analysis::LearningPlan learning{};    // from session to session; its tests are the planned ones
+  analysis::AnalysisPlan plan;        // between conditions, right after training
+  analysis::LearningPlan learning{};  // from session to session; its tests are the planned ones
 };
 
-/// @param fresh  about to be used: a score that cannot depend on the forces is a problem
-CurveAnalysis read_curve_analysis(Table& root, bool fresh);
-/// Reads the table of a definition that has been read before. @throws InputError with problems in it
+/// @param definition  whose table it is; null if it cannot be read
+/// @param fresh       about to be used: a score that cannot depend on the forces is a problem
+CurveAnalysis read_curve_analysis(Table& root, const protocols::Definition* definition, bool fresh);
+/// Reads the table of a definition that has been read before. @throws InputError with problems in
+/// it
 CurveAnalysis curve_analysis_of(const protocols::Definition& definition);
-/// @throws InputError for a text without it, or with problems in it
-CurveAnalysis parse_curve_analysis(std::string_view text, std::string_view file_name);
-/// The same of a file; nothing but [analysis] is looked at.
-CurveAnalysis load_curve_analysis(const std::filesystem::path& file);
 
 /// The definition's plan, unless an analysis was given another; then `remarks` say so.
 /// @throws InputError for a test that cannot be read

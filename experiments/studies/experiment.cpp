@@ -39,7 +39,7 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
   Experiment experiment;
   experiment.study = &study_of(root);
   experiment.definition = experiment.study->protocol().read(root, file_name, folder);
-  experiment.study->read_analysis(root, folder != nullptr);
+  experiment.study->read_analysis(root, experiment.definition.get(), folder != nullptr);
   read_mark_rule(root);
   read_plan_table(root);
   protocols::check_markers(root, *experiment.definition);

@@ -45,9 +45,12 @@ class Study {
   virtual const protocols::Protocol& protocol() const = 0;
 
   /// Reads what only the analysis needs of a definition; its problems are noted.
-  /// @param fresh  about to be used; else recorded already, and a fact whatever it says
-  virtual void read_analysis(Table& root, bool fresh) const {
+  /// @param definition  just read from the same tables, problems and all; null if that failed
+  /// @param fresh       about to be used; else recorded already, and a fact whatever it says
+  virtual void read_analysis(Table& root, const protocols::Definition* definition,
+                             bool fresh) const {
     static_cast<void>(root);
+    static_cast<void>(definition);
     static_cast<void>(fresh);
   }
   /// Sentences on what spoils the analysis without a word.

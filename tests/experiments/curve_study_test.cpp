@@ -150,8 +150,8 @@ TEST_F(CurveStudyTest, WithoutNoiseRecallIsNearPerfectInEveryCondition) {
   const protocols::ForceDefinition definition = protocols::parse_force_definition(
       without_noise(test::read_text(curve_definition())), "quiet.toml");
   record_session(definition, folder_ / "S01.h5", 9);
-  const auto study = analysis::analyze_study(
-      {folder_ / "S01.h5"}, parse_curve_analysis(definition.text, definition.file_name).scoring, 1);
+  const auto study =
+      analysis::analyze_study({folder_ / "S01.h5"}, curve_analysis_of(definition).scoring, 1);
   ASSERT_EQ(study.scores.size(), 9u);
   for (const auto& score : study.scores) {
     EXPECT_LT(score.rms_unaligned, 0.5) << score.condition << ", of a pattern up to 12 N";
@@ -220,10 +220,9 @@ TEST_F(CurveStudyTest, APathThatWasRecordedGuidesOthersAlongIt) {
     EXPECT_EQ(replay.notice(), "");
     const protocols::ForceDefinition kept =
         protocols::parse_force_definition(reader.info().definition, "kept.toml");
-    EXPECT_EQ(analysis::analyze_study({folder_ / name},
-                                      parse_curve_analysis(kept.text, kept.file_name).scoring, 1)
-                  .scores.size(),
-              1u);
+    EXPECT_EQ(
+        analysis::analyze_study({folder_ / name}, curve_analysis_of(kept).scoring, 1).scores.size(),
+        1u);
     fs::rename(folder_ / "away.h5", folder_ / "teacher.h5");
   }
 }

@@ -100,9 +100,7 @@ TEST_F(RoundTripTest, ARecordedSessionDrivenAgainGivesTheSameForcesAndScores) {
   }
 
   const auto score = [this](const fs::path& file) {
-    return analysis::analyze_study(
-               {file}, parse_curve_analysis(definition_.text, definition_.file_name).scoring, 1)
-        .scores;
+    return analysis::analyze_study({file}, curve_analysis_of(definition_).scoring, 1).scores;
   };
   const auto scores = score(live);
   const auto scores_again = score(again);

@@ -31,8 +31,7 @@ analysis::StudyResult analyzed_curves(const CurveOptions& options, int threads) 
   watch_for_interrupt();
   CurveAnalysis curves;
   if (!options.definition.empty()) {
-    load_experiment(options.definition);  // all of it is good, or nothing is taken of it
-    curves = load_curve_analysis(options.definition);
+    curves = curve_analysis_of(*load_experiment(options.definition).definition);
   }
   std::vector<std::string> remarks;
   const analysis::AnalysisPlan plan =

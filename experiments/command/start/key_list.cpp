@@ -181,7 +181,7 @@ std::vector<KnownKey> keys_of(const Study& study) {
     } catch (const std::exception&) {
       // What the analysis asks for is asked for all the same.
     }
-    study.read_analysis(root, true);
+    study.read_analysis(root, definition.get(), true);
     read_mark_rule(root);
     read_plan_table(root);
     if (root.has("power")) {

@@ -96,9 +96,10 @@ std::shared_ptr<const Procedure> DrillingFigures::of_earlier_run(const record::P
 class BoneStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::bone_drilling(); }
-  void read_analysis(Table& root, bool) const override {
-    read_drilling_learning(root);
-    check_curriculum(root);
+  void read_analysis(Table& root, const protocols::Definition* definition, bool) const override {
+    const auto* d = dynamic_cast<const protocols::BoneDefinition*>(definition);
+    read_drilling_learning(root, d);
+    check_curriculum(root, d);
   }
   std::optional<NextCase> next_case(const protocols::Definition& definition, const fs::path& folder,
                                     const std::vector<fs::path>& sessions) const override {

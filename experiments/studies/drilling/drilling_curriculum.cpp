@@ -108,30 +108,24 @@ NextCase next_case_of(const protocols::BoneDefinition& d, const fs::path& folder
   const auto score = sessions.empty() ? std::nullopt : score_for(d, folder);
   const auto attempts = case_attempts(*d.curriculum, sessions, score ? &*score : nullptr);
   const bone::CurriculumStanding found = standing(*d.curriculum, attempts);
-  return found.next
-             ? NextCase{d.curriculum->cases[*found.next].name, why_next(drilling::with_titles(*d.curriculum), found)}
-             : NextCase{};
+  return found.next ? NextCase{d.curriculum->cases[*found.next].name,
+                               why_next(drilling::with_titles(*d.curriculum), found)}
+                    : NextCase{};
 }
 
-void check_curriculum(Table& root) {
-  if (!root.has("curriculum")) {
+void check_curriculum(Table& root, const protocols::BoneDefinition* definition) {
+  if (definition == nullptr || !definition->curriculum) {
     return;
   }
   Table curriculum = root.table("curriculum");
   std::vector<std::string> bad;
-  try {
-    Table copy = root.unread();  // what is wrong with it was noted by who read the definition
-    const auto d = protocols::read_bone_definition(copy, "", nullptr);
-    for (const bone::CurriculumCase& each : d.curriculum->cases) {
-      for (const bone::Criterion& criterion : each.pass) {
-        if (criterion.quantity != bone::kScoreQuantity &&
-            !drilling::is_quantity(criterion.quantity)) {
-          bad.push_back(criterion.quantity);
-        }
+  for (const bone::CurriculumCase& each : definition->curriculum->cases) {
+    for (const bone::Criterion& criterion : each.pass) {
+      if (criterion.quantity != bone::kScoreQuantity &&
+          !drilling::is_quantity(criterion.quantity)) {
+        bad.push_back(criterion.quantity);
       }
     }
-  } catch (const InputError&) {
-    return;
   }
   const std::vector<std::string> known = drilling::quantity_names();
   for (const std::string& name : bad) {

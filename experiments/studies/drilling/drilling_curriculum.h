@@ -24,7 +24,8 @@ NextCase next_case_of(const protocols::BoneDefinition& definition,
                       std::span<const std::filesystem::path> sessions);
 
 /// Notes criteria about quantities that no procedure has.
-void check_curriculum(Table& root);
+/// @param definition  read from the same tables; null if it cannot be read
+void check_curriculum(Table& root, const protocols::BoneDefinition* definition);
 
 /// The score that a definition names, if its criteria ask for one.
 std::optional<analysis::drilling::ScoreModel> score_for(const protocols::BoneDefinition& definition,

@@ -106,7 +106,7 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
   drilling::ValidityStudy study;
   const auto definition = protocols::parse_bone_definition(first.definition, first.definition_name);
   Table root = definition.root();
-  study.learning = read_drilling_learning(root);
+  study.learning = read_drilling_learning(root, &definition);
   study.learning_names = learning_names(definition);
   const bool learns = !study.learning.outcomes.empty();
   study.title = learns                 ? "Learning in drillings"

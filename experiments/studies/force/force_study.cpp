@@ -29,8 +29,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Sentences about sessions that the study planned and the folder lacks.
-std::vector<std::string> what_is_missing(const fs::path& folder,
-                                         const analysis::StudyResult& study,
+std::vector<std::string> what_is_missing(const fs::path& folder, const analysis::StudyResult& study,
                                          const protocols::ForceDefinition& definition) {
   std::vector<std::string> remarks;
   std::map<std::string, std::set<int>> there;
@@ -75,8 +74,7 @@ analysis::ScoreParameters scoring_for(const std::filesystem::path& shares,
 std::vector<analysis::SessionOfStudy> planned_sessions(const protocols::Definition& definition) {
   std::vector<analysis::SessionOfStudy> sessions;
   for (int session = 1; definition.sessions() > 1 && session <= definition.sessions(); ++session) {
-    sessions.push_back(
-        {definition.session_name(session), definition.session_plan(session).gives});
+    sessions.push_back({definition.session_name(session), definition.session_plan(session).gives});
   }
   return sessions;
 }
@@ -91,9 +89,8 @@ void add_learned(const protocols::ForceDefinition& definition, const CurveAnalys
   for (const analysis::SessionSummary& session : study.sessions) {
     study.groups[session.info.subject] = protocols::group_of(groups, session.info.subject);
   }
-  study.learned =
-      analysis::learned_study(analysis::learned_scores(study, curves.learning.outcomes),
-                              curves.learning, learning_names(definition));
+  study.learned = analysis::learned_study(analysis::learned_scores(study, curves.learning.outcomes),
+                                          curves.learning, learning_names(definition));
 }
 
 analysis::StudyResult analyzed(const AnalysisRequest& request) {
@@ -105,9 +102,9 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
   std::vector<std::string> remarks;
   const analysis::AnalysisPlan plan =
       plan_for(request.planned, request.reference, curves.plan, remarks);
-  analysis::StudyResult study = analysis::analyze_study(
-      found.files, scoring_for(request.shares, curves.scoring, remarks), request.threads, plan,
-      planned_sessions(definition));
+  analysis::StudyResult study =
+      analysis::analyze_study(found.files, scoring_for(request.shares, curves.scoring, remarks),
+                              request.threads, plan, planned_sessions(definition));
   if (study.scores.empty()) {
     throw InputError(
         fmt::format("{}: no session {}holds a completed test pass, so nothing can be scored",
@@ -134,7 +131,10 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
 class ForceStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::force_training(); }
-  void read_analysis(Table& root, bool fresh) const override { read_curve_analysis(root, fresh); }
+  void read_analysis(Table& root, const protocols::Definition* definition,
+                     bool fresh) const override {
+    read_curve_analysis(root, definition, fresh);
+  }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override {
     const CurveAnalysis curves = curve_analysis_of(d);
     std::vector<std::string> warnings = warnings_of(curves.scoring);
@@ -143,7 +143,8 @@ class ForceStudy final : public Study {
     return warnings;
   }
   std::optional<CurveAnalysis> curves(const record::SessionInfo& session) const override {
-    return parse_curve_analysis(session.definition, session.definition_name);
+    return curve_analysis_of(
+        protocols::parse_force_definition(session.definition, session.definition_name));
   }
   void add_preview(const protocols::Definition& definition, const PreviewRequest& request,
                    Preview& preview) const override {

@@ -235,18 +235,10 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   return defaults;
 }
 
-analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
-  PlanDefaults defaults;
-  bool scripted = false;
-  try {
-    // A document of its own: what is wrong with it was noted by who read the definition.
-    Table copy = root.unread();
-    const auto definition = protocols::trials_protocol().read(copy, "", nullptr);
-    scripted = dynamic_cast<const protocols::TrialsDefinition&>(*definition).script.has_value();
-    defaults = plan_defaults(dynamic_cast<const protocols::TrialsDefinition&>(*definition));
-  } catch (const InputError&) {
-    defaults = {};
-  }
+analysis::trials::TrialsPlan read_trials_analysis(Table& root,
+                                                  const protocols::TrialsDefinition* definition) {
+  const PlanDefaults defaults = definition == nullptr ? PlanDefaults{} : plan_defaults(*definition);
+  const bool scripted = definition != nullptr && definition->script.has_value();
   analysis::trials::TrialsPlan plan = analysis::trials::read_trials_plan(root, defaults);
   // Levels that follow from answers pull both tests from 0; a script cannot be asked again.
   plan.serial = plan.serial && !scripted;
@@ -255,7 +247,7 @@ analysis::trials::TrialsPlan read_trials_analysis(Table& root) {
 
 analysis::trials::TrialsPlan plan_of(const protocols::TrialsDefinition& definition) {
   Table root = definition.root();
-  analysis::trials::TrialsPlan plan = read_trials_analysis(root);
+  analysis::trials::TrialsPlan plan = read_trials_analysis(root, &definition);
   root.check();
   return plan;
 }

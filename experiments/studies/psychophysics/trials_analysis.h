@@ -17,7 +17,9 @@ namespace haptrial::experiments {
 analysis::trials::PlanDefaults plan_defaults(const protocols::TrialsDefinition& definition);
 
 /// The table [analysis] of a definition. Problems are noted.
-analysis::trials::TrialsPlan read_trials_analysis(Table& root);
+/// @param definition  whose table it is; null if it cannot be read
+analysis::trials::TrialsPlan read_trials_analysis(Table& root,
+                                                  const protocols::TrialsDefinition* definition);
 
 /// The plan of a definition that was read. @throws InputError for what is wrong with the table
 analysis::trials::TrialsPlan plan_of(const protocols::TrialsDefinition& definition);

@@ -160,7 +160,9 @@ void add_missing(const AnalysisRequest& request, const TrialsDefinition& definit
 class TrialsStudy final : public Study {
  public:
   const protocols::Protocol& protocol() const override { return protocols::trials_protocol(); }
-  void read_analysis(Table& root, bool) const override { read_trials_analysis(root); }
+  void read_analysis(Table& root, const protocols::Definition* definition, bool) const override {
+    read_trials_analysis(root, dynamic_cast<const protocols::TrialsDefinition*>(definition));
+  }
   std::vector<std::string> analysis_warnings(const protocols::Definition& d) const override;
   void add_preview(const protocols::Definition& definition, const PreviewRequest& request,
                    Preview& preview) const override {

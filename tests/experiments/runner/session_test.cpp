@@ -225,8 +225,7 @@ TEST_P(WithoutNoiseTest, RecallIsNearPerfectInEveryCondition) {
         applied.force.push_back(s.applied_force);
       }
     }
-    const auto score = analysis::score_recall(
-        target, applied, parse_curve_analysis(quiet.text, quiet.file_name).scoring);
+    const auto score = analysis::score_recall(target, applied, curve_analysis_of(quiet).scoring);
     // 3 % of the pattern's range; what is left is the lag of muscle and posture.
     EXPECT_LT(score.rms_unaligned, 0.3) << pass.condition << " trial " << pass.trial;
     ++tested[pass.condition];

@@ -46,7 +46,7 @@ TEST(DefinitionTest, TheShippedStudyIsTheSourcesStudy) {
   EXPECT_EQ(d.guidance.trajectory.damping, 100.0);
   EXPECT_EQ(d.guidance.plane.stiffness, 2000.0);
   EXPECT_EQ(d.guidance.plane.damping, 300.0);
-  const CurveAnalysis curves = load_curve_analysis(test::shipped_definition());
+  const CurveAnalysis curves = curve_analysis_of(d);
   EXPECT_EQ(curves.scoring.samples, 1000);
   EXPECT_EQ(curves.scoring.filter_width, 0.1);
   ASSERT_EQ(curves.plan.tests.size(), 2u);  // §4.4
