@@ -8,11 +8,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "analysis/psychophysics/study/trials_study.h"
 #include "core/base/random.h"
 #include "core/psychometric/procedure/quest_plus.h"
+#include "core/psychometric/procedure/threshold_surface.h"
 #include "tests/support/null_levels.h"
 
 namespace haptrial::analysis::trials::surface_comparison_test {
@@ -50,13 +52,18 @@ struct People {
   std::size_t count{8};
   int trials{40};                  // under each condition
   double offset{0.0}, slope{0.0};  // of "on" less "off"
+  bool smooth{false};              // a surface without a formula is fitted, not a line
 };
 
 /// One trial of a person with a line.
-StudyTrial answered(double x, double y, double offset, double slope, RandomStream& random) {
+StudyTrial answered(double x, double y, double offset, double slope, bool smooth,
+                    RandomStream& random) {
   const double yes = random.uniform() < share_of_yes(x, y, offset, slope) ? 1.0 : 0.0;
   StudyTrial trial;
   trial.levels = {{"search", "x", x, x, yes}, {"search", "y", y, y, yes}};
+  if (smooth) {  // its thresholds are of the first variable
+    std::swap(trial.levels[0], trial.levels[1]);
+  }
   return trial;
 }
 
@@ -75,7 +82,7 @@ TrialsData data_of(const People& people, std::size_t study) {
       for (int i = 0; i < people.trials; ++i) {
         const double x = xs[static_cast<std::size_t>(random.uniform() * 5.0)];
         const double y = ys[static_cast<std::size_t>(random.uniform() * 9.0)];
-        StudyTrial trial = answered(x, y, own_offset, own_slope, random);
+        StudyTrial trial = answered(x, y, own_offset, own_slope, people.smooth, random);
         trial.session = p;
         trial.trial = static_cast<int>(data.trials.size()) + 1;
         trial.variables = {{"light", 0, kNotKnown, on ? "on" : "off"}};
@@ -84,6 +91,17 @@ TrialsData data_of(const People& people, std::size_t study) {
     }
   }
   return data;
+}
+
+std::unique_ptr<psychometric::Procedure> surface_of(const People& people) {
+  if (people.smooth) {
+    psychometric::SurfaceParameters p;
+    p.variables = {{"y", even(0.0, 2.0, 9), true}, {"x", even(0.0, 1.0, 5), false}};
+    p.trials = people.trials;
+    return std::make_unique<psychometric::ThresholdSurface>(p);
+  }
+  static const auto tables = std::make_shared<const psychometric::QuestTables>(line());
+  return std::make_unique<psychometric::QuestPlus>(tables, psychometric::QuestStop{60, 0.0});
 }
 
 TrialsResult analyzed(const People& people, std::size_t study) {
@@ -95,13 +113,8 @@ TrialsResult analyzed(const People& people, std::size_t study) {
   plan.resamples = 0;
   plan.permutations = 0;
   plan.plan = parse_analysis_plan({"on != off"}, "", "tests");
-  const auto tables = std::make_shared<const psychometric::QuestTables>(line());
   return analyze(
-      data_of(people, study), plan,
-      [&tables](const std::string&) {
-        return std::make_unique<psychometric::QuestPlus>(tables, psychometric::QuestStop{60, 0.0});
-      },
-      1);
+      data_of(people, study), plan, [&](const std::string&) { return surface_of(people); }, 1);
 }
 
 const Quantity& quantity_of(const TrialsResult& result, const std::string& name) {
@@ -126,26 +139,35 @@ TEST(SurfaceComparisonTest, DifferencesAreThoseOfThePeoplesLines) {
   }
 }
 
-/// With HAPTRIAL_EVERY_STUDY 200 studies, else none: a study takes more than a second.
-TEST(SurfaceComparisonTest, TestsKeepTheirLevelInNullStudies) {
-  if (std::getenv("HAPTRIAL_EVERY_STUDY") == nullptr) {
+/// With HAPTRIAL_EVERY_STUDY 200 studies, or as many as it says; else none: a study takes more than
+/// a second.
+void count_null_studies(const People& people) {
+  const char* asked = std::getenv("HAPTRIAL_EVERY_STUDY");
+  if (asked == nullptr) {
     GTEST_SKIP() << "set HAPTRIAL_EVERY_STUDY=1 to count 200 null studies, which take minutes";
   }
-  constexpr std::size_t kStudies = 200;
-  const auto levels = test::null_levels(kStudies, 2, [](std::size_t number) {
-    const TrialsResult result = analyzed({}, number);
+  const std::size_t studies = std::max<std::size_t>(200, std::strtoul(asked, nullptr, 10));
+  const int threads = studies > 200 ? 1 : 2;
+  const auto levels = test::null_levels(studies, threads, [&](std::size_t number) {
+    const TrialsResult result = analyzed(people, number);
     test::NullLevels noted;
     for (const char* name : {"surface_threshold", "surface_slope"}) {
       noted.note(name, true, test_of(result, name).p < 0.05);
     }
     return noted;
   });
-  const auto band = test::binomial_band(kStudies, 1.0 - 1e-4);
+  const auto band = test::binomial_band(studies, 1.0 - 1e-4);
   for (const auto& level : levels) {
     std::printf("%s: %zu of %zu\n", level.test.c_str(), level.found, level.replications);
     EXPECT_GE(level.found, band.low) << level.test;
     EXPECT_LE(level.found, band.high) << level.test;
   }
+}
+
+TEST(SurfaceComparisonTest, TestsOfLinesKeepTheirLevelInNullStudies) { count_null_studies({}); }
+
+TEST(SurfaceComparisonTest, TestsOfSmoothSurfacesKeepTheirLevelInNullStudies) {
+  count_null_studies({.smooth = true});
 }
 
 }  // namespace
