@@ -60,6 +60,8 @@ TEST_F(NextCommandTest, ADecidedStudyAsksForNobody) {
   const auto json = nlohmann::json::parse(file_text(folder_ / "roster.json"));
   EXPECT_EQ(json["ended"], true);
   EXPECT_TRUE(json["next"].empty());
+  EXPECT_THAT(run("start crossmodal_congruency.toml --check --out out").output,
+              HasSubstr("the study has ended: there is an effect"));
   EXPECT_THAT(run("analyze out").output,
               HasSubstr("Mean reaction time. When the study ends: congruent < incongruent, after"));
   EXPECT_THAT(file_text(folder_ / "out/results.json"), HasSubstr("\"most_participants\": 12"));

@@ -15,6 +15,7 @@
 #include "experiments/command/sessions/channel_checks.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/sessions/run_checks.h"
+#include "experiments/command/sessions/study_standing.h"
 #include "experiments/command/start/doctor_checks.h"
 #include "experiments/runner/devices.h"
 #include "experiments/study/session_length.h"
@@ -224,6 +225,23 @@ MachineCheck check_backup(const std::string& folder, const fs::path& files, doub
   return space;
 }
 
+/// A study that may end early is not to go on past its end by oversight; who has begun may finish.
+std::vector<MachineCheck> check_end_of_study(const RunOptions& options,
+                                             const Experiment& experiment) {
+  if (options.pilot) {
+    return {};
+  }
+  try {
+    const auto standing = study_standing(experiment, options.out, 1);
+    if (!standing) {
+      return {};
+    }
+    return {{"study", has_ended(standing) ? State::kLimited : State::kReady, words_of(*standing)}};
+  } catch (const InputError& error) {
+    return {{"study", State::kLimited, error.what()}};
+  }
+}
+
 /// The machine's checks that matter for this session: not other devices, nor what it does without.
 std::vector<MachineCheck> check_machine(const RunOptions& options, const Definition& d,
                                         const fs::path& files, const Listings& devices) {
@@ -259,6 +277,7 @@ SessionChecks session_checks(RunOptions& options, const Experiment& experiment) 
   found.subject = options.subject;
   found.session = options.session.value_or(1);
   found.seconds = session_seconds(d, options.trials.value_or(d.design.trials));
+  add(check_end_of_study(options, experiment));
   found.checks.push_back(check_duration(options.out, d, found.seconds));
   add(check_definition(options, experiment));
   found.checks.push_back(check_consent(options, d));
