@@ -15,10 +15,11 @@ const Schema<LearningPlan>& learning_schema() {
   using P = LearningPlan;
   static const auto schema =
       Schema<P>()
-          .texts("outcomes", &P::outcomes,
-                 "Quantities of metrics.csv (drillings, without their units) or of scores.csv (force "
-                 "trainings) whose changes from session to session the report tests; the first "
-                 "decides")
+          .texts(
+              "outcomes", &P::outcomes,
+              "Quantities of metrics.csv (drillings, without their units) or of scores.csv (force "
+              "trainings) whose changes from session to session the report tests; the first "
+              "decides")
           .otherwise("none")
           .text("baseline", &P::baseline, "Session from which changes are counted, by its name")
           .otherwise("the first that gives nothing");
@@ -29,8 +30,9 @@ void check_outcomes(Table& table, const LearningPlan& plan, const LearningOutcom
   for (const std::string& name : plan.outcomes) {
     if (!known.is_known(name)) {
       const std::string hint = did_you_mean(name, known.names);
-      table.reject("outcomes", fmt::format("names '{}'{} allowed: {}", name,
-                                           hint.empty() ? ";" : hint, fmt::join(known.names, ", ")));
+      table.reject("outcomes",
+                   fmt::format("names '{}'{} allowed: {}", name, hint.empty() ? ";" : hint,
+                               fmt::join(known.names, ", ")));
     }
   }
 }

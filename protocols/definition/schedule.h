@@ -62,7 +62,8 @@ std::vector<std::vector<int>> williams_rows(int conditions);
 /// drawn from the study's seed.
 /// @param participant   from 0
 /// @param study_seed   the same for all participants
-/// @param person_seed  of this participant; stimuli derive from it, so that those of a block are the
+/// @param person_seed  of this participant; stimuli derive from it, so that those of a block are
+/// the
 ///                     same in every session
 std::vector<PlannedTrial> plan_trials(const Design& design, int participant,
                                       std::uint64_t study_seed, std::uint64_t person_seed);

@@ -11,9 +11,9 @@
 #include "core/base/definition/schema.h"
 #include "core/base/nearest.h"
 #include "core/control/loop_margin.h"
-#include "protocols/definition/mirroring.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/definition/lab_file.h"
+#include "protocols/definition/mirroring.h"
 #include "protocols/force_training/recorded_path.h"
 #include "protocols/force_training/training_pass.h"
 

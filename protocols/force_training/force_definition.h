@@ -35,7 +35,8 @@ struct ForceDefinition : Definition {
   std::optional<subject::Population<subject::PathParameters>> paths;  // if the recall is free
   double stimulus_rate{1000.0};                                       // [Hz]
   std::vector<StudyGroup> groups{};  // in their order; none: everybody is alike
-  std::map<std::string, std::vector<std::string>> group_conditions{};  // where the design states any
+  std::map<std::string, std::vector<std::string>>
+      group_conditions{};             // where the design states any
   std::vector<int> session_trials{};  // of each session, where the definition describes sessions
 
   int sessions() const override { return design.sessions; }

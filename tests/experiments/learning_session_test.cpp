@@ -192,8 +192,9 @@ TEST_F(LearningSessionTest, TheReportComparesChangesBetweenGroups) {
   const std::string lines = good("analyze out");
   EXPECT_THAT(lines, HasSubstr("change of planned cavity removed: Planned, hints"));
   const std::string report = test::read_text(*folder_ / "out" / "report.md");
-  EXPECT_THAT(report, AllOf(HasSubstr("# Learning in drillings"), HasSubstr("## Learning from session"),
-                            HasSubstr("change to post-test"), Not(HasSubstr("As published"))));
+  EXPECT_THAT(report,
+              AllOf(HasSubstr("# Learning in drillings"), HasSubstr("## Learning from session"),
+                    HasSubstr("change to post-test"), Not(HasSubstr("As published"))));
   const auto json = nlohmann::json::parse(test::read_text(*folder_ / "out" / "statistics.json"));
   const auto& learning = json.at("learning");
   EXPECT_EQ(learning.at("baseline"), "pre-test");

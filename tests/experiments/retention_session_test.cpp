@@ -111,8 +111,7 @@ class RetentionSessionTest : public testing::Test {
   /// The mean of a group's participants' means in a session, from the table of scores.
   static double mean(const std::string& group, const std::string& session) {
     std::map<std::string, std::pair<double, int>> sums;
-    for (const Score& each :
-         scores_of(test::read_text(*folder_ / "out" / "session_scores.csv"))) {
+    for (const Score& each : scores_of(test::read_text(*folder_ / "out" / "session_scores.csv"))) {
       if (each.group == group && each.session == session) {
         sums[each.subject].first += each.value;
         ++sums[each.subject].second;
@@ -207,8 +206,7 @@ TEST_F(RetentionSessionTest, TheReportComparesChangesBetweenGroups) {
   ASSERT_EQ(outcome.at("changes").at("planned").size(), 2u);
   const std::string report = test::read_text(*folder_ / "out" / "report.md");
   EXPECT_THAT(report, AllOf(HasSubstr("## Learning from session to session"),
-                            HasSubstr("change to retention"),
-                            HasSubstr("learning-score")));
+                            HasSubstr("change to retention"), HasSubstr("learning-score")));
   // The conditions are compared right after training alone: two groups of two people, six trials.
   EXPECT_EQ(json.at("trials"), 24);
   EXPECT_EQ(json.at("participants"), 4);

@@ -122,7 +122,9 @@ TEST_F(StudyPlanTest, ReportsOfForcesOpenWithIt) {
   }
   EXPECT_THAT(kinds, testing::ElementsAre("people_missing", "trials_dropped", "trials_dropped",
                                           "tests_changed"));
-  EXPECT_THAT(done.output, HasSubstr("kind: people_missing; deviation: 2 participants took part, 12 were stated"));
+  EXPECT_THAT(
+      done.output,
+      HasSubstr("kind: people_missing; deviation: 2 participants took part, 12 were stated"));
 }
 
 TEST_F(StudyPlanTest, ReportsOfDrillingsOpenWithIt) {

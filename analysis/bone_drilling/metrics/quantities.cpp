@@ -45,8 +45,7 @@ QuantityWords words_of_quantity(std::string_view name) {
     throw std::invalid_argument("words_of_quantity: no quantity " + std::string(name));
   }
   constexpr std::string_view kBefore = "bone_left_", kBehind = "_mm";
-  std::string structure(
-      name.substr(kBefore.size(), name.size() - kBefore.size() - kBehind.size()));
+  std::string structure(name.substr(kBefore.size(), name.size() - kBefore.size() - kBehind.size()));
   std::ranges::replace(structure, '_', ' ');
   return {"bone left over " + structure, "mm"};
 }

@@ -7,12 +7,12 @@
 
 #include "analysis/bone_drilling/report/achieved_section.h"
 #include "analysis/bone_drilling/report/field_section.h"
-#include "analysis/learning/learned_study.h"
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/bone_drilling/report/validity_words.h"
+#include "analysis/learning/learned_study.h"
 #include "analysis/statistics/design/interval_word.h"
 #include "analysis/statistics/design/wording.h"
 

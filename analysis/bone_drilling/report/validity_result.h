@@ -9,9 +9,9 @@
 #include "analysis/bone_drilling/report/crossing_section.h"
 #include "analysis/bone_drilling/report/hint_findings.h"
 #include "analysis/bone_drilling/report/hint_section.h"
-#include "analysis/learning/learned_study.h"
 #include "analysis/bone_drilling/report/nerve_findings.h"
 #include "analysis/bone_drilling/report/validity_findings.h"
+#include "analysis/learning/learned_study.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -13,7 +13,7 @@ struct ScoreOutcome {
   const char* name;
   const char* title;
   const char* unit;
-  double TrialScore::* value;
+  double TrialScore::*value;
 };
 
 using S = TrialScore;

@@ -23,14 +23,14 @@ struct SessionOfStudy {
 
 /// Everything that analysing the session files of a study gave.
 struct StudyResult {
-  std::vector<SessionSummary> sessions;           // by subject
-  std::vector<TrialScore> scores;                 // by subject, then session and trial
-  std::vector<TrialScore> tests{};                // likewise, of sessions without training
+  std::vector<SessionSummary> sessions;            // by subject
+  std::vector<TrialScore> scores;                  // by subject, then session and trial
+  std::vector<TrialScore> tests{};                 // likewise, of sessions without training
   std::vector<SessionOfStudy> planned_sessions{};  // none: each participant has one
-  std::map<std::string, std::string> groups{};    // by subject, if there are several sessions
-  LearnedStudy learned{};                         // without outcomes: nobody asks for changes
-  std::vector<std::string> factors{"condition"};  // names; each score has a level of each
-  std::vector<Exclusion> exclusions;              // by subject, then trial
+  std::map<std::string, std::string> groups{};     // by subject, if there are several sessions
+  LearnedStudy learned{};                          // without outcomes: nobody asks for changes
+  std::vector<std::string> factors{"condition"};   // names; each score has a level of each
+  std::vector<Exclusion> exclusions;               // by subject, then trial
   StudyStatistics statistics;
   /// The same tests of path_error [mm], where the path was recalled, too.
   std::optional<StudyStatistics> path{};

@@ -130,9 +130,9 @@ std::string words_of(const Criterion& c) {
 
 std::string words_of(const CheckedCriterion& checked) {
   const Criterion& c = checked.criterion;
-  return checked.value ? fmt::format("{} {:.4g}{} ({})", title_of(c), *checked.value, unit_of(c),
-                                     wanted(c))
-                       : fmt::format("no {} ({})", title_of(c), wanted(c));
+  return checked.value
+             ? fmt::format("{} {:.4g}{} ({})", title_of(c), *checked.value, unit_of(c), wanted(c))
+             : fmt::format("no {} ({})", title_of(c), wanted(c));
 }
 
 std::string why_next(const Curriculum& curriculum, const CurriculumStanding& standing) {

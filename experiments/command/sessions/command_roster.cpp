@@ -93,8 +93,7 @@ void print_persons(const Roster& roster) {
 }
 
 /// @param standing  of a study that may end early
-void print_roster(const Roster& roster,
-                  const std::optional<analysis::SequentialResult>& standing) {
+void print_roster(const Roster& roster, const std::optional<analysis::SequentialResult>& standing) {
   if (roster.persons.empty()) {
     fmt::print("nobody has a session yet\n");
   } else {

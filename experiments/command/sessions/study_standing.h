@@ -8,8 +8,8 @@
 
 namespace haptrial::experiments {
 
-/// How a study that may end early stands, by its finished sessions; nothing if its definition has no
-/// [analysis.sequential], or nobody has finished a session.
+/// How a study that may end early stands, by its finished sessions; nothing if its definition has
+/// no [analysis.sequential], or nobody has finished a session.
 /// @throws InputError for sessions that cannot be analysed
 std::optional<analysis::SequentialResult> study_standing(const Experiment& experiment,
                                                          const std::filesystem::path& folder,
