@@ -8,7 +8,7 @@
 
 namespace haptrial::protocols {
 
-/// What a virtual participant was taught in earlier sessions of the blocks of this one; nothing in
+/// Lessons that a virtual participant had in earlier sessions of the blocks of this one; nothing in
 /// a first session. The earlier sessions are taken as done as planned by a hand that made no error.
 /// @param place  of the session
 std::vector<subject::Lesson> earlier_lessons(const ForceDefinition& definition,

@@ -175,7 +175,7 @@ TEST_F(RetentionSessionTest, ThePatternsOfAParticipantAreThoseOfTheTraining) {
   EXPECT_NE(pattern(1, 2, 1), pattern(1, 2, 2));
 }
 
-/// Who was trained recalls in later sessions, and who was not does not.
+/// Trained participants recall in later sessions, the others do not.
 TEST_F(RetentionSessionTest, VirtualParticipantsKeepWhatTheyWereTaught) {
   for (const char* group : {"seen", "seen-and-felt"}) {
     const double before = mean(group, "pre-test");

@@ -135,7 +135,7 @@ std::vector<Isometry3d> poses_of(const analysis::CsvTable& table, bool rigid) {
   return poses;
 }
 
-/// Every so many samples from one on.
+/// Samples from one on, at equal distances.
 std::vector<std::size_t> samples_of(const nlohmann::json& said, std::size_t samples) {
   const std::size_t first = said.at("first_sample"), every = said.at("every");
   if (every == 0 || first >= samples) {

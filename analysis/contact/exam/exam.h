@@ -19,8 +19,8 @@ struct ExamCase {
   std::vector<Eigen::Isometry3d>
       tool;  // (n), the first one in the air, the last one the same; a point is not turned
   std::vector<Answer> truth;  // (n)
-  // Of a soft body alone: the share of its forces that acts (n), and samples at which its shape is
-  // asked, ascending; the truth has no shape of a body that nothing holds.
+  // A soft body alone has these: the share of its forces that acts (n), and samples at which its
+  // shape is asked, ascending; the truth has no shape of a body that nothing holds.
   std::vector<double> load{};
   std::vector<std::size_t> shape_samples{};
 };

@@ -42,7 +42,7 @@ Finding count(const char* name, const char* title, std::size_t value) {
           .form = analysis::JsonForm::kPlain};
 }
 
-/// Whose result a row is.
+/// A row begins with the renderer, the case and the verdict.
 FindingRow begun_row(const ExamScore& score, std::size_t i, const ExamCase& one) {
   return {
       {.name = "renderer", .value = score.answers.renderer, .form = analysis::JsonForm::kAbsent},
@@ -168,7 +168,7 @@ std::string stable_words(const std::vector<StabilityCell>& cells) {
                      cells.size());
 }
 
-/// What stands in the summary of an exam of this kind alone.
+/// The columns of the summary that this kind of exam alone has.
 std::vector<std::pair<std::string, std::string>> own_columns(const ExamScore& score,
                                                              ExamKind kind) {
   if (kind == ExamKind::kSoft) {

@@ -111,7 +111,7 @@ std::vector<std::string> words_of(ExamKind kind) {
   return words;
 }
 
-/// What an exam is of, and what its candidates render.
+/// The word for the bodies of an exam, and what its candidates render.
 std::pair<const char*, const char*> names_of(ExamKind kind) {
   return kind == ExamKind::kPoint   ? std::pair{"a point", "points"}
          : kind == ExamKind::kRigid ? std::pair{"rigid tools", "rigid tools"}

@@ -7,7 +7,7 @@
 
 namespace haptrial::evaluation {
 
-/// What is judged of a soft body beside the force at the tool.
+/// Judgement of a soft body beside the force at the tool.
 struct SoftScore {
   std::size_t tetrahedra{0};
   double mean{0.0};  // distance of a vertex from the truth, over vertices and samples [m]

@@ -46,7 +46,7 @@ std::string bounds_of(const KnownKey& key) {
   return words;
 }
 
-/// What a key is, and whether a pilot may change it.
+/// The description of a key; it says if a pilot may change the key.
 std::string words_of(const KnownKey& key) {
   return key.words + (key.tunable ? "; tunable in a pilot" : "");
 }

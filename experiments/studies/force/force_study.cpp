@@ -79,7 +79,7 @@ std::vector<analysis::SessionOfStudy> planned_sessions(const protocols::Definiti
   return sessions;
 }
 
-/// What was learned from session to session, if the definition has several.
+/// Changes from session to session, if the definition has several.
 void add_learned(const protocols::ForceDefinition& definition, const CurveAnalysis& curves,
                  analysis::StudyResult& study) {
   const auto groups = protocols::study_groups(definition.text, definition.file_name);

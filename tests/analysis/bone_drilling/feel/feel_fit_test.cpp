@@ -26,7 +26,7 @@ using testing::HasSubstr;
 constexpr double kRadius = 2e-3;
 constexpr double kPi = std::numbers::pi;
 
-/// What the simulator's own burr feels and takes at places on flat bone, drilling at every other.
+/// Forces and removal of the simulator's own burr at places on flat bone, drilling at every other.
 std::vector<FeelSample> recorded(const bone::BurrParameters& burr,
                                  const bone::FeelParameters& feel) {
   std::vector<FeelSample> samples;
