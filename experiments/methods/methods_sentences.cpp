@@ -133,10 +133,9 @@ void add_participants(const std::vector<MethodsSession>& sessions, const protoco
       counted(analysed, "session", "sessions"),
       d.design.participants == 1 ? std::string("1 was")
                                  : fmt::format("{} were", d.design.participants));
-  const auto groups = protocols::study_groups(d.text, d.file_name);
-  if (groups.size() > 1) {
+  if (d.groups.size() > 1) {
     words += fmt::format(" Groups: {}.", over_people(people, [&](const auto& info) {
-                           return protocols::group_of(groups, info.subject);
+                           return protocols::group_of(d.groups, info.subject);
                          }));
   }
   if (!simulated) {

@@ -134,8 +134,7 @@ std::unique_ptr<protocols::Trials> trials_of(const SessionRequest& request,
   if (request.tutor) {
     const auto led = [&d = *request.definition, participant = place.participant,
                       session = place.session](int trial) {
-      const auto groups = protocols::study_groups(d.text, d.file_name);
-      return d.is_led(session, {trial, participant, protocols::group_of(groups, participant)});
+      return d.is_led(session, {trial, participant, protocols::group_of(d.groups, participant)});
     };
     return protocols::tutored(std::move(trials), options, *request.tutor, led);
   }

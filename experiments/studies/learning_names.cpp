@@ -7,7 +7,7 @@ namespace haptrial::experiments {
 
 analysis::LearningNames learning_names(const protocols::Definition& d) {
   analysis::LearningNames names;
-  for (const protocols::StudyGroup& group : protocols::study_groups(d.text, d.file_name)) {
+  for (const protocols::StudyGroup& group : d.groups) {
     names.groups.push_back(group.name);
   }
   for (int session = 1; session <= d.sessions(); ++session) {

@@ -78,10 +78,7 @@ std::string typed(const std::string& path) {
 
 class RosterMaker {
  public:
-  explicit RosterMaker(const RosterRequest& request)
-      : request_(request),
-        d_(*request.definition),
-        groups_(protocols::study_groups(d_.text, d_.file_name)) {}
+  explicit RosterMaker(const RosterRequest& request) : request_(request), d_(*request.definition) {}
 
   Roster make() {
     roster_.sessions = d_.sessions();
@@ -154,17 +151,9 @@ class RosterMaker {
   }
 
   std::string group_of(int number) const {
-    return groups_.size() > 1 && number > 0 && number <= planned()
-               ? protocols::group_of(groups_, std::to_string(number))
+    return d_.groups.size() > 1 && number > 0 && number <= d_.design.participants
+               ? protocols::group_of(d_.groups, std::to_string(number))
                : std::string();
-  }
-  /// Participants: of all groups, or where there is one of everybody, as [design] says.
-  int planned() const {
-    int all = 0;
-    for (const StudyGroup& group : groups_) {
-      all += group.participants;
-    }
-    return all > 0 ? all : d_.design.participants;
   }
 
   void complete(RosterPerson& person) const {
@@ -198,19 +187,20 @@ class RosterMaker {
   }
 
   void add_groups() {
-    for (const StudyGroup& group : groups_) {
-      const std::string name = groups_.size() > 1 ? group.name : "";
-      roster_.groups.push_back({name, group.participants > 0 ? group.participants : planned(), 0, 0,
-                                d_.sessions_of(name)});
+    for (const StudyGroup& group : d_.groups) {
+      const std::string name = d_.groups.size() > 1 ? group.name : "";
+      roster_.groups.push_back(
+          {name, group.participants > 0 ? group.participants : d_.design.participants, 0, 0,
+           d_.sessions_of(name)});
     }
     std::map<int, std::string> holders;
     for (const RosterPerson& person : roster_.persons) {
       if (person.pilot || person.excluded || person.never_took_part()) {
         continue;
       }
-      if (person.number < 1 || person.number > planned()) {
+      if (person.number < 1 || person.number > d_.design.participants) {
         roster_.remarks.push_back(fmt::format("{} has no place in the plan of {} participants.",
-                                              person.subject, planned()));
+                                              person.subject, d_.design.participants));
         continue;
       }
       const auto [holder, fresh] = holders.emplace(person.number, person.subject);
@@ -253,7 +243,7 @@ class RosterMaker {
       return a->begun * b->planned < b->begun * a->planned;
     });
     for (const RosterGroup* group : open) {
-      for (int number = 1; number <= planned(); ++number) {
+      for (int number = 1; number <= d_.design.participants; ++number) {
         if (!taken_.contains(number) && group_of(number) == group->name) {
           RosterNext next{subject_for(number), number, group->name, first_of(group->name)};
           next.next_case = request_.find_case ? request_.find_case({}) : NextCase{};
@@ -328,7 +318,6 @@ class RosterMaker {
 
   const RosterRequest& request_;
   const protocols::Definition& d_;
-  std::vector<StudyGroup> groups_;
   std::optional<std::uint64_t> seed_;
   record::SessionInfo newest_;  // of the study
   std::set<int> taken_;         // numbers

@@ -271,10 +271,9 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
 
 std::vector<PlannedSession> planned_sessions(const protocols::Definition& definition,
                                              int participants, int session) {
-  const auto groups = protocols::study_groups(definition.text, definition.file_name);
   std::vector<PlannedSession> all;
   for (int participant = 0; participant < participants; ++participant) {
-    const std::string group = protocols::group_of(groups, participant);
+    const std::string group = protocols::group_of(definition.groups, participant);
     for (int each = 1; each <= definition.sessions(); ++each) {
       if ((session == 0 || each == session) && definition.comes(each, group)) {
         all.push_back({participant, each});

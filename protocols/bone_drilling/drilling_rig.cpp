@@ -70,10 +70,10 @@ DrillingRig::DrillingRig(const BoneDefinition& d, const SessionPlace& place, sub
   const std::uint64_t seed = derived_seed(place.hand_session_seed, "subject");
   if (d.surgeon && !d.charts.empty()) {
     subject::SurgeonParameters person = *d.surgeon;
-    const ParticipantGroup* group = group_of(d, place.participant);
-    person.skill = group != nullptr ? group->skill : person.skill;
-    person.earlier =
-        d.procedures_before(place.session, group != nullptr ? group->name : std::string_view());
+    const std::string group = group_of(d.groups, place.participant);
+    const auto skill = d.group_skills.find(group);
+    person.skill = skill != d.group_skills.end() ? skill->second : person.skill;
+    person.earlier = d.procedures_before(place.session, group);
     subject_ = std::make_unique<subject::DrillingSurgeon>(
         person, charts_of(d), hand_, device_, d.drilling.scale,
         derived_seed(place.hand_person_seed, "subject"), 1.0 / d.rate, work);

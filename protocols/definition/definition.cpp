@@ -98,6 +98,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   definition.text = root.source();
   definition.document = std::make_shared<Table>(root.unread());
   definition.file_name = std::filesystem::path(file_name).filename().string();
+  definition.groups = read_groups(root);
   experiment_schema().read(experiment, definition);
   definition.envelope = device::envelope_schema().read(envelope);
   definition.device = device::virtual_device_schema().read(device);
@@ -147,8 +148,8 @@ std::string Definition::session_name(int session) const {
 }
 
 bool Definition::comes(int session, std::string_view group) const {
-  const std::vector<std::string>& groups = session_plan(session).groups;
-  return groups.empty() || std::ranges::find(groups, group) != groups.end();
+  const std::vector<std::string>& coming = session_plan(session).groups;
+  return coming.empty() || std::ranges::find(coming, group) != coming.end();
 }
 
 int Definition::sessions_of(std::string_view group) const {
@@ -164,6 +165,7 @@ bool Definition::is_led(int session, const GivenPlace& place) const {
 }
 
 void check_common(Table& root, const Definition& definition) {
+  check_group_sizes(root, definition.groups, definition.design.participants);
   Table envelope = root.table("envelope");
   if (definition.envelope.max_force > definition.device.max_force) {
     envelope.reject("max_force", fmt::format("{}", definition.envelope.max_force),

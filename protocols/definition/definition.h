@@ -23,6 +23,7 @@
 #include "core/subject/hand_parameters.h"
 #include "protocols/definition/button_use.h"
 #include "protocols/definition/device_arm.h"
+#include "protocols/definition/groups.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/definition/session_plan.h"
@@ -57,6 +58,7 @@ struct Definition {
   std::string name;
   double rate{1000.0};  // of the servo loop [Hz]
   Design design;
+  std::vector<StudyGroup> groups{};          // in their order; one of everybody if none is stated
   std::vector<SessionPlan> session_plans{};  // (sessions()) or none: nothing is said of them
   bool mirror_left_handed{false};  // left-handed participants have the mirror image at x = 0
   double recovery{3.0};            // without force after an abort [s]

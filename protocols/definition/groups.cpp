@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "core/base/definition/table.h"
-#include "core/base/definition/toml_text_internal.h"
 #include "core/base/error.h"
 
 namespace haptrial::protocols {
@@ -26,55 +23,38 @@ std::optional<int> number_at_end(const std::string& subject) {
 
 }  // namespace
 
-std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name) {
-  const toml::table root = parse_toml(definition, file_name);
-  std::vector<std::pair<toml::source_position, StudyGroup>> found;
-  if (const toml::table* groups = root["groups"].as_table()) {
-    for (const auto& [key, value] : *groups) {
-      const auto count = value.value<std::int64_t>();
-      constexpr std::int64_t kMost = 10000;
-      if (!value.is_integer() || *count < 1 || *count > kMost) {
-        throw InputError(
-            fmt::format("{}: groups.{} is not a number of participants; allowed: 1 to {}",
-                        file_name, key.str(), kMost));
-      }
-      found.push_back({key.source().begin,
-                       {std::string(key.str()), static_cast<int>(*count), key.str() != kNovices}});
-    }
-  }
-  std::sort(found.begin(), found.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<StudyGroup> result;
-  for (auto& [position, group] : found) {
-    result.push_back(std::move(group));
-  }
-  if (result.empty()) {
-    result.push_back({kEverybody, 0, false});
-  }
-  return result;
-}
-
-std::vector<StudyGroup> read_groups(Table& root, int participants, std::string_view file_name) {
+std::vector<StudyGroup> read_groups(Table& root) {
   if (!root.has("groups")) {
-    return {};
+    return {{kEverybody, 0, false}};
   }
   Table table = root.table("groups");
   constexpr long kMost = 10000;
-  long all = 0;
-  bool good = true;
-  for (const std::string& name : table.keys()) {
+  std::vector<StudyGroup> groups;
+  for (const std::string& name : table.keys_as_written()) {
     table.describe(
         {name, "Participants of the group NAME, in the order of their numbers", "", true});
     const long count = table.integer(name, 1, kMost);
-    good = good && count > 0;
-    all += count;
+    groups.push_back({name, static_cast<int>(count), name != kNovices});
   }
-  if (good && all != participants) {
+  if (groups.empty()) {
+    root.reject("groups", "an empty table", "a group and its number of participants");
+  }
+  return groups;
+}
+
+void check_group_sizes(Table& root, const std::vector<StudyGroup>& groups, int participants) {
+  int all = 0;
+  for (const StudyGroup& group : groups) {
+    if (group.participants == 0) {
+      return;  // none is stated, or wrongly
+    }
+    all += group.participants;
+  }
+  if (all != participants) {
     root.reject("groups", fmt::format("has {} participants in all; make it {}, as in "
                                       "design.participants",
                                       all, participants));
   }
-  return good ? study_groups(root.source(), file_name) : std::vector<StudyGroup>{};
 }
 
 std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject) {
@@ -95,14 +75,19 @@ std::string group_of(const std::vector<StudyGroup>& groups, const std::string& s
                   subject, last));
 }
 
-std::string group_of(const std::vector<StudyGroup>& groups, int participant) {
+const StudyGroup* find_group(const std::vector<StudyGroup>& groups, int participant) {
   for (const StudyGroup& group : groups) {
-    if (groups.size() > 1 && participant >= 0 && participant < group.participants) {
-      return group.name;
+    if (participant >= 0 && participant < group.participants) {
+      return &group;
     }
     participant -= group.participants;
   }
-  return "";
+  return nullptr;
+}
+
+std::string group_of(const std::vector<StudyGroup>& groups, int participant) {
+  const StudyGroup* group = find_group(groups, participant);
+  return group != nullptr ? group->name : std::string();
 }
 
 }  // namespace haptrial::protocols

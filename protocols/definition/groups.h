@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace haptrial {
@@ -19,21 +18,23 @@ struct StudyGroup {
   bool operator==(const StudyGroup&) const = default;
 };
 
-/// The [groups] of a definition's text, in its order; one group of everybody where it has none.
-/// @throws InputError for a number of participants that is none.
-std::vector<StudyGroup> study_groups(std::string_view definition, std::string_view file_name);
+/// Reads the table [groups] in its order; problems are noted. One group of everybody, without a
+/// number of participants, where the definition has no such table.
+std::vector<StudyGroup> read_groups(Table& root);
 
-/// Reads the table [groups]; problems are noted. None where the definition has no such table.
-/// @param participants  that the design has  @param file_name  without folders
-std::vector<StudyGroup> read_groups(Table& root, int participants, std::string_view file_name);
+/// Notes that the groups have more or fewer participants in all than the design.
+void check_group_sizes(Table& root, const std::vector<StudyGroup>& groups, int participants);
 
 /// The group of a participant from the number at the end of the identifier: participants 1 to n
 /// belong to the first group of n, those that follow to the next.
 /// @throws InputError for a number beyond the last group, or none where there are several groups.
 std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject);
 
-/// The group of a participant; empty where the study has none for that number.
 /// @param participant  from 0
+/// @returns null where the study states no groups, or none for the number
+const StudyGroup* find_group(const std::vector<StudyGroup>& groups, int participant);
+
+/// The name of that group; empty where there is none.
 std::string group_of(const std::vector<StudyGroup>& groups, int participant);
 
 }  // namespace haptrial::protocols

@@ -212,7 +212,6 @@ ForceDefinition read_force_definition(Table& root, std::string_view file_name,
   d.guidance = guidance_schema().read(guidance);
   recording_schema().read(recording, d);
   d.design = design_schema().read(design);
-  d.groups = read_groups(root, d.design.participants, d.file_name);
   read_group_conditions(root, d);
   read_sessions(root, d);
   read_mirroring(design, d);

@@ -14,7 +14,6 @@
 #include "core/subject/population.h"
 #include "core/subject/subject_parameters.h"
 #include "protocols/definition/definition.h"
-#include "protocols/definition/groups.h"
 #include "protocols/force_training/trajectory_pass.h"
 
 namespace haptrial {
@@ -34,7 +33,6 @@ struct ForceDefinition : Definition {
   std::optional<subject::Population<subject::PaceParameters>> pace;   // if it is not set
   std::optional<subject::Population<subject::PathParameters>> paths;  // if the recall is free
   double stimulus_rate{1000.0};                                       // [Hz]
-  std::vector<StudyGroup> groups{};  // in their order; none: everybody is alike
   std::map<std::string, std::vector<std::string>>
       group_conditions{};             // where the design states any
   std::vector<int> session_trials{};  // of each session, where the definition describes sessions

@@ -140,6 +140,17 @@ TEST_F(CommandTest, ValidateWarnsOfAReferenceFarFromTheLevels) {
   EXPECT_THAT(said_of("2.0"), testing::Not(HasSubstr("lies outside")));
 }
 
+TEST_F(CommandTest, SetSaysThatADefinitionIsNotValidAnyMore) {
+  const std::string study = (folder_ / "study.toml").string();
+  fs::copy_file(HAPTRIAL_SOURCE_DIR "/experiments/force_discrimination.toml", study);
+  const CommandResult odd = run_command("haptrial set " + study + " procedure.stepp 2");
+  EXPECT_EQ(odd.status, 0) << "a change in several steps may pass through it";
+  EXPECT_THAT(odd.errors, testing::AllOf(HasSubstr("procedure.stepp is not a known key"),
+                                         HasSubstr("is written, and is not valid any more")));
+  const CommandResult mended = run_command("haptrial set " + study + " procedure.stepp --remove");
+  EXPECT_EQ(mended.errors, "");
+}
+
 TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {
   const std::string source = "source '" HAPTRIAL_SOURCE_DIR "/experiments/completion.bash'\n";
   const CommandResult names =

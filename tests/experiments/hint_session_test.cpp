@@ -172,8 +172,7 @@ TEST_F(HintSessionTest, HintsAreAboutTheRemovalsThatThePageCallsFaulty) {
   experts.add_study(*folder_ / "experts");
   const auto learned = drilling::experts_of(experts.for_feedback(), "", options);
   const record::SessionReader reader(session());
-  const auto setup = procedure_setup(
-      reader, protocols::study_groups(reader.info().definition, reader.info().definition_name));
+  const auto setup = procedure_setup(reader);
   const std::vector<HintRow> hints = reader.rows<HintRow>();
   std::map<hint::HintKind, int> compared;
   for (const drilling::Procedure& procedure : load_procedures(reader, setup, &bones)) {

@@ -8,6 +8,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <regex>
@@ -110,8 +111,15 @@ bool LiveCommand::reaches(const std::function<bool()>& condition,
         holds = condition();
         return holds || ended;
       },
-      where);
+      where, [this] { return last_words(); });
   return holds;
+}
+
+/// The end of what the command has said.
+std::string LiveCommand::last_words() {
+  constexpr std::size_t kMost = 500;
+  const std::string all = output() + "\n" + errors() + "\n";
+  return all.substr(all.size() - std::min(kMost, all.size()));
 }
 
 std::string LiveCommand::line_after(const std::string& start) {

@@ -53,6 +53,7 @@ class LiveCommand {
  private:
   void start_on_terminal(const std::string& script);
   void start_in_background(const std::string& script);
+  std::string last_words();
   void read_screen();
   bool reap(int options);
 

@@ -53,10 +53,7 @@ std::string OsteotomySessionTest::output_;
 
 TEST_F(OsteotomySessionTest, TheFragmentComesToItsPlannedPlaceAndIsHeldByScrews) {
   const record::SessionReader reader(file());
-  const record::SessionInfo& info = reader.info();
-  const auto procedures = drilling::load_procedures(
-      reader,
-      procedure_setup(reader, protocols::study_groups(info.definition, info.definition_name)));
+  const auto procedures = drilling::load_procedures(reader, procedure_setup(reader));
   ASSERT_EQ(procedures.size(), 1U);
   drilling::StudyBones bones;
   const drilling::Achieved achieved = drilling::summarize(procedures[0], {}, bones).achieved;

@@ -257,8 +257,13 @@ TEST(ContactSheet, PutsEveryPictureInItsPlace) {
 }
 
 TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
-  const auto groups =
-      protocols::study_groups("[groups]\nsurgeons = 4\nresidents = 4\nnovices = 7\n", "d.toml");
+  const auto read = [](const char* text) {
+    Table root = Table::parse(text, "d.toml");
+    auto groups = protocols::read_groups(root);
+    root.finish();
+    return groups;
+  };
+  const auto groups = read("[groups]\nsurgeons = 4\nresidents = 4\nnovices = 7\n");
   const std::vector<protocols::StudyGroup> expected{
       {"surgeons", 4, true}, {"residents", 4, true}, {"novices", 7, false}};
   EXPECT_EQ(groups, expected);
@@ -269,9 +274,9 @@ TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
   for (const char* subject : {"S16", "S00", "Ann", "S99999999"}) {
     EXPECT_THAT(message_of([&] { group_of(groups, subject); }), HasSubstr("belongs to no group"));
   }
-  EXPECT_EQ(group_of(protocols::study_groups("x = 1", "d.toml"), "Ann"), "participants");
-  EXPECT_THAT(message_of([] { protocols::study_groups("[groups]\na = 0\n", "d.toml"); }),
-              HasSubstr("groups.a is not a number of participants"));
+  EXPECT_EQ(group_of(read(""), "Ann"), "participants");
+  EXPECT_THAT(message_of([&] { read("[groups]\na = 0\n"); }),
+              HasSubstr("groups.a is 0; allowed: 1 to 10000"));
 }
 
 }  // namespace

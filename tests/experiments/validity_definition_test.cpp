@@ -47,12 +47,12 @@ TEST(ValidityDefinitionTest, TheShippedStudyIsThatOfTheSource) {
   EXPECT_EQ(d.groups[2].participants, 7);
   EXPECT_EQ(d.design.trials, 2);
   EXPECT_DOUBLE_EQ(d.practice, 900.0);
-  EXPECT_GT(d.groups[0].skill, d.groups[1].skill);
-  EXPECT_GT(d.groups[1].skill, d.groups[2].skill);
-  EXPECT_EQ(group_of(d, 3), &d.groups[0]);
-  EXPECT_EQ(group_of(d, 4), &d.groups[1]);
-  EXPECT_EQ(group_of(d, 14), &d.groups[2]);
-  EXPECT_EQ(group_of(d, 15), nullptr);
+  EXPECT_GT(d.group_skills.at("surgeons"), d.group_skills.at("residents"));
+  EXPECT_GT(d.group_skills.at("residents"), d.group_skills.at("novices"));
+  EXPECT_EQ(find_group(d.groups, 3), &d.groups[0]);
+  EXPECT_EQ(find_group(d.groups, 4), &d.groups[1]);
+  EXPECT_EQ(find_group(d.groups, 14), &d.groups[2]);
+  EXPECT_EQ(find_group(d.groups, 15), nullptr);
   ASSERT_TRUE(d.surgeon);
   EXPECT_EQ(d.simulator.tools[static_cast<std::size_t>(d.surgeon->fine.tool)].name, "diamond");
 }

@@ -12,14 +12,16 @@ constexpr std::chrono::milliseconds kPause{10};
 
 }  // namespace
 
-void wait_until(const std::function<bool()>& condition, const std::source_location& where) {
+void wait_until(const std::function<bool()>& condition, const std::source_location& where,
+                const std::function<std::string()>& state) {
   constexpr std::chrono::minutes kSilence{1};
   auto said = Clock::now();
   while (!condition()) {
     std::this_thread::sleep_for(kPause);
     if (Clock::now() - said > kSilence) {
       said = Clock::now();
-      std::fprintf(stderr, "%s:%u: still waiting\n", where.file_name(), where.line());
+      std::fprintf(stderr, "%s:%u: still waiting\n%s", where.file_name(), where.line(),
+                   state ? state().c_str() : "");
     }
   }
 }

@@ -180,8 +180,7 @@ std::string chosen(RunOptions& options, const Experiment& experiment) {
 void check_place(const RunOptions& options, const protocols::Definition& d) {
   const int session = options.session.value_or(1);
   const int number = options.participant.value_or(number_of_subject(options.subject));
-  const auto groups = protocols::study_groups(d.text, d.file_name);
-  const std::string group = protocols::group_of(groups, number - 1);
+  const std::string group = protocols::group_of(d.groups, number - 1);
   if (!options.pilot && !d.comes(session, group)) {
     throw InputError(
         fmt::format("{}: session {} is for {}, and {} is of {}; choose another "

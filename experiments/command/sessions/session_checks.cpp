@@ -64,12 +64,11 @@ MachineCheck check_participant(RunOptions& options, const Experiment& experiment
 
 /// The group that the number at the end of the identifier says; empty: the study has none.
 MachineCheck check_group(const RunOptions& options, const Definition& d, std::string& group) {
-  const auto groups = protocols::study_groups(d.text, d.file_name);
-  if (groups.size() < 2 || options.subject.empty()) {
+  if (d.groups.size() < 2 || options.subject.empty()) {
     return {"group", State::kUnused, "the study has one group of everybody"};
   }
   try {
-    group = protocols::group_of(groups, options.subject);
+    group = protocols::group_of(d.groups, options.subject);
     return {"group", State::kReady, group};
   } catch (const InputError& error) {
     return {"group", options.pilot ? State::kLimited : State::kBroken, error.what()};

@@ -12,6 +12,7 @@
 #include "core/base/file_text.h"
 #include "core/base/whole_file.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/studies/experiment.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -57,6 +58,29 @@ std::string edited(const SetOptions& o, const std::string& text) {
                : with_values(text, o.file, std::span(&o.given, 1));
 }
 
+/// What keeps the file from being an experiment; empty: nothing.
+std::string problem_of(const std::string& file) {
+  try {
+    load_experiment(file);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+/// Writes the text, and says what was in order before and is no longer. A change in several steps
+/// may pass through such a file, so that it is written all the same.
+void write_edited(const SetOptions& o, const std::string& text) {
+  const std::string file = o.output.empty() ? o.file : o.output;
+  const bool was_valid = problem_of(o.file).empty();
+  write_whole(file, text);
+  const std::string problem = was_valid ? problem_of(file) : "";
+  if (!problem.empty()) {
+    fmt::print(stderr, "haptrial: {}\nhaptrial: {} is written, and is not valid any more\n",
+               problem, file);
+  }
+}
+
 int set(const SetOptions& options) {
   if (options.list) {
     print_keys(options, file_text(options.file));
@@ -66,7 +90,7 @@ int set(const SetOptions& options) {
   if (options.output == "-") {
     fmt::print("{}", text);
   } else {
-    write_whole(options.output.empty() ? options.file : options.output, text);
+    write_edited(options, text);
   }
   return 0;
 }

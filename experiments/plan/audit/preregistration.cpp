@@ -66,13 +66,11 @@ std::string looks_of(const StudyPlan& plan) {
 }
 
 std::vector<PlannedGroup> planned_groups(const protocols::Definition& definition) {
-  const auto groups = protocols::study_groups(definition.text, definition.file_name);
-  if (groups.size() < 2) {
-    const int stated = groups.empty() ? 0 : groups.front().participants;
-    return {{"", stated > 0 ? stated : definition.design.participants, definition.sessions()}};
+  if (definition.groups.size() < 2) {
+    return {{"", definition.design.participants, definition.sessions()}};
   }
   std::vector<PlannedGroup> planned;
-  for (const protocols::StudyGroup& group : groups) {
+  for (const protocols::StudyGroup& group : definition.groups) {
     planned.push_back({group.name, group.participants, definition.sessions_of(group.name)});
   }
   return planned;

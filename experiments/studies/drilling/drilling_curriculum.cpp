@@ -47,8 +47,7 @@ class CaseSession {
   void add_attempts(const bone::Curriculum& curriculum, std::vector<bone::CaseAttempt>& all) {
     const record::SessionInfo& info = reader_.info();
     const auto definition = protocols::parse_bone_definition(info.definition, info.definition_name);
-    const auto setup =
-        procedure_setup(reader_, protocols::study_groups(info.definition, info.definition_name));
+    const auto setup = procedure_setup(reader_);
     drilling::StudyBones bones;
     for (const drilling::Procedure& procedure : load_procedures(reader_, setup, &bones)) {
       const bone::CurriculumCase* of = curriculum.case_of(conditions_[procedure.number]);

@@ -101,8 +101,6 @@ std::vector<drilling::StudyPicture> visibility_pictures(
 
 std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
   const record::SessionInfo& first = request.files.first;
-  const std::vector<protocols::StudyGroup> groups =
-      protocols::study_groups(first.definition, first.definition_name);
   drilling::ValidityStudy study;
   const auto definition = protocols::parse_bone_definition(first.definition, first.definition_name);
   Table root = definition.root();
@@ -124,10 +122,8 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
     study.checklist = request.folder / kChecklistFile;
     study.checked = request.folder / kCheckedFile;
   }
-  study.setup = [&](const record::SessionReader& session) {
-    return procedure_setup(session, groups);
-  };
-  for (const protocols::StudyGroup& group : groups) {
+  study.setup = [&](const record::SessionReader& session) { return procedure_setup(session); };
+  for (const protocols::StudyGroup& group : definition.groups) {
     study.plan.groups.push_back(group.name);
     if (group.expert && !learns) {
       study.plan.expert_groups.push_back(group.name);

@@ -29,9 +29,7 @@ void ExpertSessions::add(const fs::path& file) {
     return;  // named, and of the study as well
   }
   const record::SessionReader reader(file);
-  const record::SessionInfo& info = reader.info();
-  const auto setup =
-      procedure_setup(reader, protocols::study_groups(info.definition, info.definition_name));
+  const auto setup = procedure_setup(reader);
   for (const drilling::Procedure& procedure : load_procedures(reader, setup, &bones_)) {
     procedures_.push_back({file, procedure.number, procedure.bone,
                            drilling::expert_procedure(procedure, options_, bones_)});
@@ -46,7 +44,8 @@ void ExpertSessions::add_study(const fs::path& folder) {
     if (info.pilot || !record::drills(reader)) {
       continue;
     }
-    const auto groups = protocols::study_groups(info.definition, info.definition_name);
+    const auto groups =
+        protocols::parse_bone_definition(info.definition, info.definition_name).groups;
     const std::string own = protocols::group_of(groups, info.subject);
     const bool expert = std::any_of(groups.begin(), groups.end(), [&own](const auto& group) {
       return group.expert && group.name == own;

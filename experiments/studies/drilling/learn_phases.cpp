@@ -52,9 +52,7 @@ std::vector<drilling::PhaseSpan> spans_of(const drilling::Procedure& p) {
 
 std::vector<Observed> observe(const fs::path& file, drilling::StudyBones& bones) {
   const record::SessionReader reader(file);
-  const record::SessionInfo& info = reader.info();
-  const auto setup =
-      procedure_setup(reader, protocols::study_groups(info.definition, info.definition_name));
+  const auto setup = procedure_setup(reader);
   const std::set<int> left_out = record::trials_left_out(reader);
   std::vector<Observed> observed;
   for (const drilling::Procedure& p : load_procedures(reader, setup, &bones)) {

@@ -35,13 +35,12 @@ class KeptPlans {
 
 }  // namespace
 
-drilling::ProcedureSetup procedure_setup(const record::SessionReader& session,
-                                         const std::vector<protocols::StudyGroup>& groups) {
+drilling::ProcedureSetup procedure_setup(const record::SessionReader& session) {
   const record::SessionInfo& info = session.info();
   const auto definition = protocols::parse_bone_definition(info.definition, info.definition_name);
   drilling::ProcedureSetup setup = procedure_setup(definition);
   setup.session_name = definition.session_plan(static_cast<int>(info.session)).name;
-  setup.group = protocols::group_of(groups, info.subject);
+  setup.group = protocols::group_of(definition.groups, info.subject);
   return setup;
 }
 

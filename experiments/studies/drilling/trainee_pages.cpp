@@ -35,13 +35,11 @@ namespace drilling = analysis::drilling;
 struct Session {
   explicit Session(const fs::path& file) : path(file), reader(file) {
     const record::SessionInfo& info = reader.info();
-    groups = protocols::study_groups(info.definition, info.definition_name);
     definition = protocols::parse_bone_definition(info.definition, info.definition_name);
   }
 
   fs::path path;
   record::SessionReader reader;
-  std::vector<protocols::StudyGroup> groups;
   protocols::BoneDefinition definition;
 };
 
@@ -179,7 +177,7 @@ void Pages::require_room(std::size_t procedures) const {
 
 drilling::Procedure Pages::load(const Session& session, int trial) {
   for (drilling::Procedure& procedure :
-       load_procedures(session.reader, procedure_setup(session.reader, session.groups), &bones_)) {
+       load_procedures(session.reader, procedure_setup(session.reader), &bones_)) {
     if (procedure.number == trial) {
       return std::move(procedure);
     }

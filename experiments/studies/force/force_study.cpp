@@ -82,12 +82,12 @@ std::vector<analysis::SessionOfStudy> planned_sessions(const protocols::Definiti
 /// Changes from session to session, if the definition has several.
 void add_learned(const protocols::ForceDefinition& definition, const CurveAnalysis& curves,
                  analysis::StudyResult& study) {
-  const auto groups = protocols::study_groups(definition.text, definition.file_name);
   if (definition.sessions() == 1) {
     return;
   }
   for (const analysis::SessionSummary& session : study.sessions) {
-    study.groups[session.info.subject] = protocols::group_of(groups, session.info.subject);
+    study.groups[session.info.subject] =
+        protocols::group_of(definition.groups, session.info.subject);
   }
   study.learned = analysis::learned_study(analysis::learned_scores(study, curves.learning.outcomes),
                                           curves.learning, learning_names(definition));

@@ -84,13 +84,13 @@ void read_surgeons(Table& root, BoneDefinition& d) {
   p.fine = burr_named(table, "fine", d);
   surgeon_schema().read(table, p);
   table.describe({"skill", "Skill of virtual surgeons, from 0 to 1", ""});
-  if (d.groups.empty()) {
+  if (!root.has("groups")) {
     p.skill = table.number("skill", kFraction, "");
   } else {
     Table skill = table.table("skill");
-    for (ParticipantGroup& group : d.groups) {
+    for (const StudyGroup& group : d.groups) {
       skill.describe({group.name, "Skill of the virtual surgeons of a group, from 0 to 1", ""});
-      group.skill = skill.number(group.name, kFraction, "");
+      d.group_skills[group.name] = skill.number(group.name, kFraction, "");
     }
   }
   if (!root.has("cavity")) {
@@ -257,9 +257,6 @@ BoneDefinition read_bone_definition(Table& root, std::string_view file_name,
   if (d.beginning.planned_to > 0.0 && !d.cavity) {
     bone.reject("planned_to", "needs a cavity; add a table [cavity]");
   }
-  for (const StudyGroup& group : read_groups(root, d.design.participants, d.file_name)) {
-    d.groups.push_back({group.name, group.participants, 0.5});
-  }
   read_sessions(root, d);
   if (root.has("curriculum")) {
     Table curriculum = root.table("curriculum");
@@ -306,16 +303,6 @@ int BoneDefinition::procedures_before(int session, std::string_view group) const
     all += comes(earlier, group) ? procedures_in(earlier) : 0;
   }
   return all;
-}
-
-const ParticipantGroup* group_of(const BoneDefinition& d, int participant) {
-  for (const ParticipantGroup& group : d.groups) {
-    if (participant < group.participants) {
-      return participant < 0 ? nullptr : &group;
-    }
-    participant -= group.participants;
-  }
-  return nullptr;
 }
 
 BoneDefinition of_case(const BoneDefinition& d, const std::string& name) {

@@ -36,13 +36,6 @@ inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [e
 inline constexpr const char* kMonitor = "monitor";  // in conditions: "monitor on", "monitor off"
 inline constexpr const char* kTutor = "tutor";  // likewise, where the definition says who is led
 
-/// Participants of one kind. The first ones belong to the first group, and so on.
-struct ParticipantGroup {
-  std::string name;
-  int participants{0};
-  double skill{0.5};  // of virtual ones, 0 to 1
-};
-
 /// A procedure of a study, by its place in it.
 struct ProcedurePlace {
   int trial{1};        // of the session, from 1; practice: 0
@@ -71,9 +64,9 @@ struct BoneDefinition : Definition {
   bone::SimulatorParameters simulator;  // but for the pose
   bone::CompanionParameters companions;
   DrillingParameters drilling;
-  subject::DrillingHandParameters hand_plan;  // of the virtual hand
-  Eigen::Vector3d beside{0.003, 0.003, 0.0};  // the burr, where its other one holds the tube [m]
-  std::vector<ParticipantGroup> groups;       // none: everybody is alike
+  subject::DrillingHandParameters hand_plan;   // of the virtual hand
+  Eigen::Vector3d beside{0.003, 0.003, 0.0};   // the burr, where its other one holds the tube [m]
+  std::map<std::string, double> group_skills;  // of virtual surgeons, 0 to 1; none: all are alike
   std::vector<int> procedures;  // of each session, where the definition describes sessions
   std::optional<bone::Curriculum> curriculum;  // nothing: bones come in turn
   std::string case_name;                       // of it, which the session is of; empty: none
@@ -154,9 +147,6 @@ struct BoneDefinition : Definition {
 
 /// Whether a source of bones is a recorded session.
 bool is_session(std::string_view source);
-
-/// @param participant  from 0. @returns null where there are no groups, or none for the number
-const ParticipantGroup* group_of(const BoneDefinition& definition, int participant);
 
 /// Definition from the text that a session file keeps, without bones.
 BoneDefinition parse_bone_definition(std::string_view text, std::string_view file_name);

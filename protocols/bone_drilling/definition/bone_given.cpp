@@ -36,7 +36,7 @@ bool pauses(const BoneDefinition& d) {
 }
 
 GivenPlace given_place(const BoneDefinition& d, const ProcedurePlace& place) {
-  const ParticipantGroup* group = group_of(d, place.participant);
+  const StudyGroup* group = find_group(d.groups, place.participant);
   return {place.trial, place.participant, group != nullptr ? group->name : std::string_view()};
 }
 

@@ -255,9 +255,6 @@ void leave_to_others(Table& root) {
   if (root.has("power")) {
     root.leave("power");  // of who simulates it
   }
-  root.describe({"groups", "Participants of each group, in the order of their numbers: NAME = 8",
-                 "one group of everybody", false});
-  root.leave("groups");
 }
 
 void read_all_objects(Table& root, TrialsDefinition& d) {
@@ -304,7 +301,6 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.protocol = kTrials;
   read_display(root, d);
   d.hands = read_devices(root);
-  d.groups = study_groups(root.source(), file_name);
   read_all_objects(root, d);
   d.questions = read_questions(root, d.keys);
   check_marks(root, d);

@@ -8,7 +8,6 @@
 #include "core/psychometric/definition/track.h"
 #include "core/sound/cue.h"
 #include "protocols/definition/definition.h"
-#include "protocols/definition/groups.h"
 #include "protocols/psychophysics/definition/block.h"
 #include "protocols/psychophysics/definition/measure.h"
 #include "protocols/psychophysics/definition/question.h"
@@ -52,7 +51,6 @@ struct TrialsDefinition : Definition {
   std::vector<std::string> stages;           // names, in their order
   std::vector<int> stage_markers;            // the code of each; 0: the one of its place
   std::vector<std::uint32_t> stage_buttons;  // that each waits for, a bit each
-  std::vector<StudyGroup> groups;
   std::vector<TrialDevice> hands;  // in the order of the session's devices; empty: one, unnamed
   std::vector<TrialObject> objects;
   TrialsView view;
