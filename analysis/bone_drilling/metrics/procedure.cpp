@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "analysis/bone_drilling/metrics/counted_passes.h"
 #include "analysis/bone_drilling/metrics/study_bones.h"
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
@@ -23,29 +24,6 @@ namespace haptrial::analysis::drilling {
 namespace {
 
 constexpr std::uint64_t kAtOnce = 65536;  // rows of samples in memory
-
-struct Pass {
-  std::size_t row;
-  record::PassRow pass;
-};
-
-/// The passes of each trial on its last bone.
-std::map<std::int32_t, std::vector<Pass>> passes_by_trial(const record::SessionReader& file) {
-  std::map<std::int32_t, std::vector<Pass>> trials;
-  const std::vector<record::PassRow> passes = file.passes();
-  for (std::size_t row = 0; row < passes.size(); ++row) {
-    const record::PassRow& pass = passes[row];
-    if (pass.practice || pass.phase != record::kDrillingPhase) {
-      continue;
-    }
-    std::vector<Pass>& own = trials[pass.trial];
-    if (!own.empty() && own.back().pass.repetition < pass.repetition) {
-      own.clear();
-    }
-    own.push_back({row, pass});
-  }
-  return trials;
-}
 
 /// The rows of one table, in the order of their sequence numbers.
 template <class Row>
@@ -97,7 +75,7 @@ class Loader {
     }
   }
 
-  Procedure load(int trial, const std::vector<Pass>& passes) const {
+  Procedure load(int trial, const std::vector<CountedPass>& passes) const {
     Procedure procedure;
     procedure.session = file_.path().filename().string();
     procedure.participant = file_.info().subject;
@@ -114,18 +92,20 @@ class Loader {
     }
     procedure.tools = setup_.tools;
     procedure.plans = setup_.plans ? setup_.plans(procedure.bone) : ProcedurePlans{};
-    for (const Pass& pass : passes) {
+    for (const CountedPass& pass : passes) {
       add(pass.pass, procedure);
     }
     for (const record::FieldRow& field : fields_) {  // the last is of the end
-      if (std::any_of(passes.begin(), passes.end(),
-                      [&](const Pass& pass) { return std::cmp_equal(field.pass, pass.row); })) {
+      if (std::any_of(passes.begin(), passes.end(), [&](const CountedPass& pass) {
+            return std::cmp_equal(field.pass, pass.row);
+          })) {
         procedure.field = field;
       }
     }
     for (const record::WorkRow& row : works_) {
-      if (std::any_of(passes.begin(), passes.end(),
-                      [&](const Pass& pass) { return std::cmp_equal(row.pass, pass.row); })) {
+      if (std::any_of(passes.begin(), passes.end(), [&](const CountedPass& pass) {
+            return std::cmp_equal(row.pass, pass.row);
+          })) {
         procedure.work.push_back({row.time, std::string(record::word_of(row.work))});
       }
     }
@@ -147,11 +127,11 @@ class Loader {
 
   /// Number of a trial's bone. /procedures has it, unless the session was killed before the end of
   /// a pass: then procedures have taken the bones in turn.
-  std::size_t bone_of_trial(int trial, const std::vector<Pass>& passes) const {
+  std::size_t bone_of_trial(int trial, const std::vector<CountedPass>& passes) const {
     auto bone = static_cast<std::int64_t>(trial - 1) %
                 static_cast<std::int64_t>(std::max<std::size_t>(models_.size(), 1));
     for (const record::ProcedureRow& end : ends_) {
-      for (const Pass& pass : passes) {
+      for (const CountedPass& pass : passes) {
         bone = std::cmp_equal(end.pass, pass.row) ? end.bone : bone;
       }
     }
@@ -249,7 +229,7 @@ std::vector<Procedure> load_procedures(const record::SessionReader& file,
   record::check_phases(file, std::array{record::kDrillingPhase});
   const Loader loader(file, setup, bones);
   std::vector<Procedure> procedures;
-  for (const auto& [trial, passes] : passes_by_trial(file)) {
+  for (const auto& [trial, passes] : counted_passes(file)) {
     procedures.push_back(loader.load(trial, passes));
   }
   return procedures;

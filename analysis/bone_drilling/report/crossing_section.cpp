@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <map>
 
+#include "analysis/bone_drilling/metrics/counted_passes.h"
 #include "analysis/files/delimited.h"
 #include "core/base/counted.h"
-#include "core/base/definition/given_in.h"
 #include "core/bone/region/crossing_row.h"
 #include "core/bone/region/region_setup.h"
 #include "core/record/read/session_reader.h"
@@ -87,31 +87,14 @@ std::vector<CrossingProcedure> load_crossings(const record::SessionReader& file,
     return {};
   }
   const auto rows = file.rows<record::CrossingRow>();
-  const std::vector<record::PassRow> passes = file.passes();
+  const auto passes = counted_passes(file);
   std::vector<CrossingProcedure> procedures;
   for (const ProcedureSummary& summary : summaries) {
-    CrossingProcedure p{summary.session,
-                        summary.participant,
-                        summary.group,
-                        "",
-                        summary.number,
-                        summary.simulated,
-                        true,
-                        summary.usage.drilling,
-                        {}};
-    std::int32_t bone = 0;  // of one that was begun anew only the last counts
-    for (const record::PassRow& pass : passes) {
-      if (!pass.practice && pass.trial == p.number) {
-        bone = std::max(bone, pass.repetition);
-        p.condition = pass.condition;
-      }
+    const std::vector<CountedPass>& own = passes.at(summary.number);
+    CrossingProcedure p{given_procedure(summary, own.back().pass.condition, bone::kRegions), {}};
+    for (const CountedPass& each : own) {
+      add_rows(rows, each.pass, file.info().rate, *summary.bone, p);
     }
-    for (const record::PassRow& pass : passes) {
-      if (!pass.practice && pass.trial == p.number && pass.repetition == bone) {
-        add_rows(rows, pass, file.info().rate, *summary.bone, p);
-      }
-    }
-    p.given = !says_off(p.condition, bone::kRegions);
     procedures.push_back(std::move(p));
   }
   return procedures;

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/metrics/metrics.h"
 #include "analysis/bone_drilling/report/with_without.h"
 #include "analysis/document/document.h"
 
@@ -23,15 +22,7 @@ struct Crossings {
 };
 
 /// One procedure of a session with forbidden regions; crossings are recorded in all of them.
-struct CrossingProcedure {
-  std::string session;
-  std::string participant;
-  std::string group;
-  std::string condition;
-  int number{1};
-  bool simulated{true};
-  bool given{true};                   // the participant felt or heard the regions
-  double drilling{0.0};               // the burr turned in bone [s]
+struct CrossingProcedure : GivenProcedure {
   std::vector<Crossings> structures;  // by label; those that were crossed
 
   int count() const;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/base/definition/given_in.h"
+#include "analysis/bone_drilling/metrics/counted_passes.h"
 #include "core/bone/hint/hint_rows.h"
 #include "core/record/read/session_reader.h"
 
@@ -45,32 +45,14 @@ std::vector<HintProcedure> load_hints(const record::SessionReader& file,
     return {};
   }
   const auto rows = file.rows<record::HintRow>();
-  const std::vector<record::PassRow> passes = file.passes();
+  const auto passes = counted_passes(file);
   std::vector<HintProcedure> procedures;
   for (const ProcedureSummary& summary : summaries) {
-    HintProcedure p{summary.session,
-                    summary.participant,
-                    summary.group,
-                    "",
-                    summary.number,
-                    summary.simulated,
-                    true,
-                    summary.usage.drilling,
-                    {}};
-    std::int32_t bone = 0;  // of one that was begun anew only the last counts
-    for (const record::PassRow& pass : passes) {
-      if (!pass.practice && pass.trial == p.number) {
-        bone = std::max(bone, pass.repetition);
-        p.condition = pass.condition;
-      }
+    const std::vector<CountedPass>& own = passes.at(summary.number);
+    HintProcedure p{given_procedure(summary, own.back().pass.condition, hint::kHints), {}};
+    for (const CountedPass& each : own) {
+      count(rows, each.pass, file.info().rate, p);
     }
-    for (const record::PassRow& pass : passes) {
-      if (!pass.practice && pass.trial == p.number && pass.repetition == bone &&
-          pass.last_sample >= pass.first_sample) {
-        count(rows, pass, file.info().rate, p);
-      }
-    }
-    p.shown = !says_off(p.condition, hint::kHints);
     procedures.push_back(std::move(p));
   }
   return procedures;
@@ -85,7 +67,7 @@ std::string hints_csv(std::span<const HintProcedure> procedures) {
       const HintCounts& counts = p.of(kind);
       text +=
           fmt::format("{},{},{},{},{},\"{}\",{},{:.3f},{},{},{},{:.3f}\n", p.session, p.participant,
-                      p.group, p.number, p.simulated ? 1 : 0, p.condition, p.shown ? 1 : 0,
+                      p.group, p.number, p.simulated ? 1 : 0, p.condition, p.given ? 1 : 0,
                       p.drilling, hint::name_of(kind), counts.hints, counts.removals, counts.time);
     }
   }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/report/with_without.h"
 #include "core/bone/hint/hint_setup.h"
 
 namespace haptrial::record {
@@ -23,15 +23,7 @@ struct HintCounts {
 };
 
 /// One procedure of a session that gives hints. Hints that were not shown are recorded as well.
-struct HintProcedure {
-  std::string session;
-  std::string participant;
-  std::string group;
-  std::string condition;
-  int number{1};
-  bool simulated{true};
-  bool shown{true};                                // the participant saw hints
-  double drilling{0.0};                            // the burr turned in bone [s]
+struct HintProcedure : GivenProcedure {
   std::array<HintCounts, hint::kHintKinds> kinds;  // by hint::HintKind
 
   const HintCounts& of(hint::HintKind kind) const { return kinds[static_cast<std::size_t>(kind)]; }

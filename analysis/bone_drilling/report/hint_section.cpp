@@ -26,7 +26,7 @@ std::vector<std::string> conditions_of(std::span<const HintProcedure> hints) {
   std::vector<std::string> conditions;
   for (const bool shown : {true, false}) {
     for (const HintProcedure& p : hints) {
-      if (p.shown == shown &&
+      if (p.given == shown &&
           std::find(conditions.begin(), conditions.end(), p.condition) == conditions.end()) {
         conditions.push_back(p.condition);
       }
@@ -80,7 +80,7 @@ std::vector<HintEffect> hint_effects(std::span<const HintProcedure> hints,
   std::vector<GivenValue> rates;
   for (const HintProcedure& p : hints) {
     rates.push_back(
-        {p.participant, p.shown,
+        {p.participant, p.given,
          p.drilling > 0.0 ? std::optional(60.0 * p.hints() / p.drilling) : std::nullopt});
   }
   if (!has_both(rates)) {
@@ -92,7 +92,7 @@ std::vector<HintEffect> hint_effects(std::span<const HintProcedure> hints,
     if (kind.name == "near_force" || kind.name == "near_speed" || kind.name == "visible_share") {
       std::vector<GivenValue> values;
       for (const HintProcedure& p : hints) {
-        values.push_back({p.participant, p.shown, metric_in(summaries, p, kind.name.c_str())});
+        values.push_back({p.participant, p.given, metric_in(summaries, p, kind.name.c_str())});
       }
       effects.push_back(effect_of(kind, values));
     }

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <utility>
 
+#include "analysis/bone_drilling/metrics/counted_passes.h"
 #include "core/base/definition/given_in.h"
 #include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/drilling_tables.h"
@@ -37,7 +37,7 @@ class Session {
         thresholds_(file.rows<record::NerveThresholdRow>()),
         discharges_(file.rows<record::NerveDischargeRow>()) {}
 
-  NerveProcedure procedure(int trial, const std::vector<record::PassRow>& passes) const;
+  NerveProcedure procedure(int trial, const std::vector<CountedPass>& passes) const;
 
  private:
   std::vector<bool> drills(const Stretch& pass) const;
@@ -206,20 +206,20 @@ void Session::hold_against(const Stretch& pass, NerveProcedure& p) const {
   p.detection.add(d);
 }
 
-NerveProcedure Session::procedure(int trial, const std::vector<record::PassRow>& passes) const {
+NerveProcedure Session::procedure(int trial, const std::vector<CountedPass>& passes) const {
   NerveProcedure p;
   p.session = file_.path().filename().string();
   p.participant = file_.info().subject;
   p.number = trial;
   p.simulated = file_.info().simulated;
-  p.condition = passes.back().condition;
+  p.condition = passes.back().pass.condition;
   for (const record::NerveChannelRow& channel : channels_) {
     if (p.nerves.empty() || p.nerves.back().nerve != channel.nerve) {
       p.nerves.push_back({channel.nerve});
     }
   }
-  for (const record::PassRow& row : passes) {
-    const Stretch pass{row.first_sample, row.last_sample};
+  for (const CountedPass& each : passes) {
+    const Stretch pass{each.pass.first_sample, each.pass.last_sample};
     if (pass.last < pass.first) {
       continue;
     }
@@ -282,18 +282,12 @@ std::vector<NerveProcedure> load_nerves(const record::SessionReader& file,
   if (!file.has(record::table_of<record::NerveEventRow>())) {
     return {};
   }
-  std::map<int, std::vector<record::PassRow>> by_trial;
-  for (const record::PassRow& pass : file.passes()) {
-    if (!pass.practice) {
-      by_trial[pass.trial].push_back(pass);
-    }
-  }
   const Session session(file);
   std::vector<NerveProcedure> procedures;
-  for (const auto& [trial, passes] : by_trial) {
+  for (const auto& [trial, passes] : counted_passes(file)) {
     procedures.push_back(session.procedure(trial, passes));
     procedures.back().group = group;
-    procedures.back().heard = !says_off(procedures.back().condition, "monitor");
+    procedures.back().given = !says_off(procedures.back().condition, "monitor");
   }
   return procedures;
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/bone_drilling/report/with_without.h"
+
 namespace haptrial::record {
 class SessionReader;
 }
@@ -45,16 +47,8 @@ struct NerveReaction {
 };
 
 /// One procedure beside watched nerves.
-struct NerveProcedure {
-  std::string session;
-  std::string participant;
-  std::string group;
-  std::string condition;
-  int number{1};
-  bool simulated{true};
-  bool heard{true};      // the participant heard the monitor
+struct NerveProcedure : GivenProcedure {
   double duration{0.0};  // [s]
-  double drilling{0.0};  // the burr turned in bone [s]
   std::vector<NerveCounts> nerves;
   /// Reactions from the first event of each stretch of drilling to the stretch's end.
   std::vector<NerveReaction> reactions;

@@ -25,7 +25,7 @@ std::vector<std::pair<std::string, Some>> by_condition(
     auto at = std::find_if(groups.begin(), groups.end(),
                            [&](const auto& group) { return group.first == p.condition; });
     if (at == groups.end()) {
-      at = groups.insert(p.heard ? groups.begin() : groups.end(), {p.condition, {}});
+      at = groups.insert(p.given ? groups.begin() : groups.end(), {p.condition, {}});
     }
     at->second.push_back(&p);
   }
@@ -111,7 +111,7 @@ std::vector<GivenValue> values_of(const std::vector<NerveProcedure>& procedures,
                                   std::optional<double> (*value)(const NerveProcedure&)) {
   std::vector<GivenValue> values;
   for (const NerveProcedure& p : procedures) {
-    values.push_back({p.participant, p.heard, value(p)});
+    values.push_back({p.participant, p.given, value(p)});
   }
   return values;
 }

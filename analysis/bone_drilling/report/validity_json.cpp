@@ -206,7 +206,7 @@ Json hints_of(const ValidityResult& result) {
   for (const HintProcedure& p : result.hints) {
     Json row{{"session", p.session},  {"participant", p.participant},
              {"procedure", p.number}, {"condition", p.condition},
-             {"shown", p.shown},      {"drilling_s", p.drilling}};
+             {"shown", p.given},      {"drilling_s", p.drilling}};
     for (const auto kind : hint::kAllHintKinds) {
       const HintCounts& counts = p.of(kind);
       row[std::string(hint::name_of(kind))] = {

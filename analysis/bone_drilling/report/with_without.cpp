@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "analysis/statistics/design/wording.h"
+#include "core/base/definition/given_in.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -22,6 +23,18 @@ struct Mean {
 };
 
 }  // namespace
+
+GivenProcedure given_procedure(const ProcedureSummary& summary, const std::string& condition,
+                               std::string_view what) {
+  return {summary.session,
+          summary.participant,
+          summary.group,
+          condition,
+          summary.number,
+          summary.simulated,
+          !says_off(condition, what),
+          summary.usage.drilling};
+}
 
 WithWithout with_less_without(const std::vector<GivenValue>& values) {
   std::map<std::string, std::pair<Mean, Mean>> people;  // with, without

@@ -3,11 +3,31 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/metrics.h"
 #include "analysis/statistics/tests/t_tests.h"
 
 namespace haptrial::analysis::drilling {
+
+/// One procedure of a session in which something was given or not: hints, a monitor of nerves,
+/// forbidden regions. What would have been given is recorded in all of them.
+struct GivenProcedure {
+  std::string session;  // name of the file
+  std::string participant;
+  std::string group;
+  std::string condition;
+  int number{1};
+  bool simulated{true};
+  bool given{true};
+  double drilling{0.0};  // the burr turned in bone [s]
+};
+
+/// @param condition  of the procedure's last pass that counts
+/// @param what       as conditions name it, such as "hints"
+GivenProcedure given_procedure(const ProcedureSummary& summary, const std::string& condition,
+                               std::string_view what);
 
 /// A value of one procedure, in which something was given or not.
 struct GivenValue {
