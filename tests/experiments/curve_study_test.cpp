@@ -20,6 +20,7 @@
 #include "protocols/force_training/force_replay.h"
 #include "protocols/force_training/recorded_path.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::curve_study_test {
@@ -33,14 +34,6 @@ namespace fs = std::filesystem;
 
 fs::path curve_definition() {
   return fs::path(HAPTRIAL_SOURCE_DIR) / "experiments" / "force_training_curve.toml";
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  if (at == std::string::npos) {
-    throw std::invalid_argument("the definition has no " + what);
-  }
-  return text.replace(at, what.size(), by);
 }
 
 std::string without_noise(std::string text) {
@@ -252,8 +245,8 @@ TEST_F(CurveStudyTest, RecordedPathsThatAreNoneGetASentence) {
   const auto from = text.find("length_x");
   text.replace(from, text.find("speed = 0.016") - from, "from = \"teacher.h5:1\"\n");
   test::write_text(folder_ / "small.toml",
-                   replaced(text, "workspace_radius = 0.075  # [m]\nmax_speed",
-                            "workspace_radius = 0.02\nmax_speed"));
+                   test::replaced(text, "workspace_radius = 0.075  # [m]\nmax_speed",
+                                  "workspace_radius = 0.02\nmax_speed"));
   try {
     protocols::load_force_definition(folder_ / "small.toml");
     FAIL();
@@ -274,11 +267,11 @@ TEST_F(CurveStudyTest, DefinitionsThatMixTheKindsAreRefused) {
   };
   const std::string curve = test::read_text(curve_definition());
   EXPECT_EQ(problem(curve), "");
-  EXPECT_THAT(problem(replaced(curve, "kind = \"curve\"", "kind = \"trajectory\"")),
+  EXPECT_THAT(problem(test::replaced(curve, "kind = \"curve\"", "kind = \"trajectory\"")),
               HasSubstr("[pace] is not a known table"));
-  EXPECT_THAT(problem(replaced(curve, "[pace]", "[pase]")),
+  EXPECT_THAT(problem(test::replaced(curve, "[pace]", "[pase]")),
               HasSubstr("the table [pace] is missing"));
-  EXPECT_THAT(problem(replaced(curve, "median = 0.011", "median = 0.0")),
+  EXPECT_THAT(problem(test::replaced(curve, "median = 0.011", "median = 0.0")),
               HasSubstr("pace.pace.median is 0; allowed: a number of at least 0.001"));
 }
 

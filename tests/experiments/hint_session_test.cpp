@@ -24,6 +24,7 @@
 #include "protocols/bone_drilling/replayed_hints.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::hint_session_test {
@@ -36,41 +37,35 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string with(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), by);
-}
-
 /// The shipped study of validity on a coarse bone, in short.
 std::string short_study(double seconds) {
   std::string text =
       test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/construct_validity.toml");
-  text = with(text, "time_limit = 500.0", "time_limit = " + std::to_string(seconds));
-  text = with(text, "seed = 1 ", "spacing = 0.0008\nseed = 1 ");
-  text = with(text, "card = true", "card = false");
-  return with(text, "vibration_gain = 1.0", "vibration_gain = 0.0");
+  text = test::replaced(text, "time_limit = 500.0", "time_limit = " + std::to_string(seconds));
+  text = test::replaced(text, "seed = 1 ", "spacing = 0.0008\nseed = 1 ");
+  text = test::replaced(text, "card = true", "card = false");
+  return test::replaced(text, "vibration_gain = 1.0", "vibration_gain = 0.0");
 }
 
 /// Two surgeons, one procedure each, as experts to learn from.
 std::string experts_text() {
   std::string text = short_study(60.0);
-  text = with(text, "participants = 15", "participants = 2");
-  text = with(text, "procedures = 2 ", "procedures = 1 ");
-  text = with(text, "break_after = 1", "break_after = 0");
-  text = with(text, "surgeons = 4\nresidents = 4\nnovices = 7", "surgeons = 2");
-  return with(text, "surgeons = 0.9\nresidents = 0.65\nnovices = 0.15", "surgeons = 0.9");
+  text = test::replaced(text, "participants = 15", "participants = 2");
+  text = test::replaced(text, "procedures = 2 ", "procedures = 1 ");
+  text = test::replaced(text, "break_after = 1", "break_after = 0");
+  text = test::replaced(text, "surgeons = 4\nresidents = 4\nnovices = 7", "surgeons = 2");
+  return test::replaced(text, "surgeons = 0.9\nresidents = 0.65\nnovices = 0.15", "surgeons = 0.9");
 }
 
 /// A trainee without much skill, with hints in every other procedure.
 std::string trainee_text(const std::string& hints, const std::string& heeds) {
   std::string text = short_study(30.0);
-  text = with(text, "participants = 15", "participants = 2");
-  text = with(text, "[groups]", "[hints]\n" + hints + "\n[groups]");
-  text = with(text, "surgeons = 4\nresidents = 4\nnovices = 7", "novices = 2");
-  text = with(text, "[virtual_surgeons.skill]",
-              "heeds_hints = " + heeds + "\n[virtual_surgeons.skill]");
-  return with(text, "surgeons = 0.9\nresidents = 0.65\nnovices = 0.15", "novices = 0.15");
+  text = test::replaced(text, "participants = 15", "participants = 2");
+  text = test::replaced(text, "[groups]", "[hints]\n" + hints + "\n[groups]");
+  text = test::replaced(text, "surgeons = 4\nresidents = 4\nnovices = 7", "novices = 2");
+  text = test::replaced(text, "[virtual_surgeons.skill]",
+                        "heeds_hints = " + heeds + "\n[virtual_surgeons.skill]");
+  return test::replaced(text, "surgeons = 0.9\nresidents = 0.65\nnovices = 0.15", "novices = 0.15");
 }
 
 class HintSessionTest : public testing::Test {
@@ -289,10 +284,10 @@ TEST_F(HintSessionTest, WhoHeedsHintsGetsFewerOfThem) {
 
 TEST_F(HintSessionTest, HintsThatAreOnlyRecordedChangeNothing) {
   const auto briefly = [](const std::string& text) {
-    return with(text, "time_limit = 30.", "time_limit = 10.");
+    return test::replaced(text, "time_limit = 30.", "time_limit = 10.");
   };
   write("none.toml", briefly(trainee_text("file = \"safe.toml\"\nshown_in = \"none\"\n", "1.0")));
-  write("plain.toml", briefly(with(trainee_text("", "1.0"), "[hints]\n", "")));
+  write("plain.toml", briefly(test::replaced(trainee_text("", "1.0"), "[hints]\n", "")));
   good("dry-run none.toml --subjects 1 --out none");
   good("dry-run plain.toml --subjects 1 --out plain");
   const record::SessionReader none(*folder_ / "none/S01.h5");

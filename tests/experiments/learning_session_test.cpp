@@ -19,6 +19,7 @@
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::learning_session_test {
@@ -33,22 +34,16 @@ using testing::Not;
 const fs::path kStudy =
     fs::path(HAPTRIAL_SOURCE_DIR) / "docs" / "worked" / "teaching" / "learning_study.toml";
 
-std::string with(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), by);
-}
-
 /// The study with a few seconds on a coarse bone, and two participants in each group.
 std::string short_study() {
   std::string text = test::read_text(kStudy);
-  text = with(text, "time_limit = 500.0", "time_limit = 4.0");
-  text = with(text, "seed = 1 ", "spacing = 0.0012\nseed = 1 ");
-  text = with(text, "card = true", "card = false");
-  text = with(text, "vibration_gain = 1.0", "vibration_gain = 0.0");
-  text = with(text, "participants = 16", "participants = 8");
-  return with(text, "alone = 4\nhints = 4\nled = 4\ncontrol = 4",
-              "alone = 2\nhints = 2\nled = 2\ncontrol = 2");
+  text = test::replaced(text, "time_limit = 500.0", "time_limit = 4.0");
+  text = test::replaced(text, "seed = 1 ", "spacing = 0.0012\nseed = 1 ");
+  text = test::replaced(text, "card = true", "card = false");
+  text = test::replaced(text, "vibration_gain = 1.0", "vibration_gain = 0.0");
+  text = test::replaced(text, "participants = 16", "participants = 8");
+  return test::replaced(text, "alone = 4\nhints = 4\nled = 4\ncontrol = 4",
+                        "alone = 2\nhints = 2\nled = 2\ncontrol = 2");
 }
 
 using Row = std::map<std::string, std::string>;
@@ -84,7 +79,7 @@ class LearningSessionTest : public testing::Test {
     folder_ = std::make_unique<test::TemporaryFolder>();
     test::write_text(*folder_ / "study.toml", short_study());
     test::write_text(*folder_ / "expert.toml",
-                     with(short_study(), "led_in = [\"led\"]", "led_in = \"all\""));
+                     test::replaced(short_study(), "led_in = [\"led\"]", "led_in = \"all\""));
     good("dry-run expert.toml --subjects 1 --session 1 --out expert");
     good("dry-run study.toml --tutor expert/S01-session-1.h5:1 --out out");
   }
@@ -225,7 +220,7 @@ TEST_F(LearningSessionTest, TheReportComparesChangesBetweenGroups) {
 
 TEST_F(LearningSessionTest, AMistakeInThePlanGetsASentence) {
   const auto refusal = [](const std::string& what, const std::string& by) {
-    test::write_text(*folder_ / "bad.toml", with(short_study(), what, by));
+    test::write_text(*folder_ / "bad.toml", test::replaced(short_study(), what, by));
     return refused("validate bad.toml");
   };
   EXPECT_THAT(refusal("shown_in = [\"hints\"]", "shown_in = [\"hint\"]"),

@@ -23,6 +23,7 @@
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
 #include "tests/support/wait.h"
@@ -37,12 +38,6 @@ using testing::HasSubstr;
 
 constexpr int kWidth = 640;  // of the window
 constexpr int kHeight = 480;
-
-std::string with(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
-}
 
 using Rows = std::vector<record::ToolRow>;
 constexpr double kLimit = 3600.0;  // of a drilling, which the finish key ends [s]
@@ -75,15 +70,16 @@ class LiveDrillingWindowTest : public testing::Test {
          {"full_screen", "full_screen = false"},
          {"stereo", std::string("stereo = ") + (stereo ? "true" : "false") + "\nstills = 2"}});
     std::string text = test::read_text(file);
-    text =
-        with(text, "[tools.diamond]\ntype = \"burr\"\nkind = \"diamond\"\ndiameter = 0.003  # [m]",
-             "[tools.saw]\ntype = \"cut_plane\"\nwidth = 0.06\nheight = 0.04\ndepth = "
-             "0.01\n[tools.miniplate]\ntype = \"plate\"\n"
-             "shape = \"straight\"\n[tools.forceps]\ntype = \"grip\"\nreach = 0.01");
-    text = with(text, "zoom_out = [\"O\"]", "zoom_out = [\"O\"]\nstill = [\"B\"]");
-    text = with(text, "photodiode = \"off\"", "photodiode = \"off\"\nparticipant_steers = true");
-    text = with(text, "width = 1280", "width = " + std::to_string(kWidth));
-    text = with(text, "height = 720", "height = " + std::to_string(kHeight));
+    text = test::replaced(
+        text, "[tools.diamond]\ntype = \"burr\"\nkind = \"diamond\"\ndiameter = 0.003  # [m]",
+        "[tools.saw]\ntype = \"cut_plane\"\nwidth = 0.06\nheight = 0.04\ndepth = "
+        "0.01\n[tools.miniplate]\ntype = \"plate\"\n"
+        "shape = \"straight\"\n[tools.forceps]\ntype = \"grip\"\nreach = 0.01");
+    text = test::replaced(text, "zoom_out = [\"O\"]", "zoom_out = [\"O\"]\nstill = [\"B\"]");
+    text = test::replaced(text, "photodiode = \"off\"",
+                          "photodiode = \"off\"\nparticipant_steers = true");
+    text = test::replaced(text, "width = 1280", "width = " + std::to_string(kWidth));
+    text = test::replaced(text, "height = 720", "height = " + std::to_string(kHeight));
     test::write_text(file,
                      text +
                          "\n[cavity]\nbeside = \"facial nerve\"\noffset = [0.0, 0.0025, 0.0]\n"

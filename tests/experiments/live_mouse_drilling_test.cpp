@@ -15,6 +15,7 @@
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/virtual_display.h"
 #include "tests/support/wait.h"
@@ -36,24 +37,18 @@ constexpr const char* kTitle = "haptrial";
 /// kept there.
 const char* kept_pictures() { return std::getenv("HAPTRIAL_KEEP_PICTURES"); }
 
-std::string with(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
-}
-
 class LiveMouseDrillingTest : public testing::Test {
  protected:
   void SetUp() override {
     display_.emplace(width_, height_);
     std::string text =
         test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/first_drilling.toml");
-    text = with(text, "card = true", "card = false");
-    text = with(text, "time_limit = 120.0", "time_limit = 3600.0");
+    text = test::replaced(text, "card = true", "card = false");
+    text = test::replaced(text, "time_limit = 120.0", "time_limit = 3600.0");
     if (kept_pictures() == nullptr) {  // what takes time
-      text = with(text, "width = 1280", "width = " + std::to_string(width_));
-      text = with(text, "height = 720", "height = " + std::to_string(height_));
-      text = with(text, "seed = 1 ", "spacing = 0.0008\nseed = 1 ");
+      text = test::replaced(text, "width = 1280", "width = " + std::to_string(width_));
+      text = test::replaced(text, "height = 720", "height = " + std::to_string(height_));
+      text = test::replaced(text, "seed = 1 ", "spacing = 0.0008\nseed = 1 ");
     }
     test::write_text(folder_ / "study.toml", text);
   }

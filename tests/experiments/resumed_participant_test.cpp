@@ -22,6 +22,7 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/replaced.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 
@@ -29,12 +30,6 @@ namespace haptrial::experiments::resumed_participant_test {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string replaced(std::string text, const std::string& what, const std::string& instead) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), instead);
-}
 
 class ResumedParticipantTest : public testing::Test {
  protected:
@@ -173,11 +168,12 @@ TEST_F(ResumedParticipantTest, AnAnswerWhosePassIsLostIsGivenAgain) {
 
 std::string short_curl_field() {
   std::string text = test::read_text(HAPTRIAL_SOURCE_DIR "/experiments/curl_field.toml");
-  text = replaced(text, "for = [0.3, 0.6]", "for = [0.02, 0.04]");
-  text = replaced(text, "duration = 0.8", "duration = 0.25");
-  text = replaced(text, "inside = \"start\", for = 0.2", "inside = \"start\", for = 0.02");
-  text = replaced(text, "duration = 0.5 }", "duration = 0.3 }");
-  text = replaced(text, "name = \"baseline\"\ntrials = 64", "name = \"baseline\"\ntrials = 2");
+  text = test::replaced(text, "for = [0.3, 0.6]", "for = [0.02, 0.04]");
+  text = test::replaced(text, "duration = 0.8", "duration = 0.25");
+  text = test::replaced(text, "inside = \"start\", for = 0.2", "inside = \"start\", for = 0.02");
+  text = test::replaced(text, "duration = 0.5 }", "duration = 0.3 }");
+  text =
+      test::replaced(text, "name = \"baseline\"\ntrials = 64", "name = \"baseline\"\ntrials = 2");
   return text;
 }
 

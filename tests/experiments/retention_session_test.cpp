@@ -18,6 +18,7 @@
 #include "core/record/rows/session_types.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::retention_session_test {
@@ -32,20 +33,14 @@ using testing::HasSubstr;
 const fs::path kStudy =
     fs::path(HAPTRIAL_SOURCE_DIR) / "docs" / "worked" / "teaching" / "force_retention.toml";
 
-std::string with(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return at == std::string::npos ? text : text.replace(at, what.size(), by);
-}
-
 /// The study with fewer patterns, along a faster path, and two participants in each group.
 std::string short_study() {
   std::string text = test::read_text(kStudy);
-  text = with(text, "participants = 12", "participants = 6");
-  text = with(text, "trials = 12 ", "trials = 6 ");
-  text = with(text, "seen = 4\nseen-and-felt = 4\ncontrol = 4",
-              "seen = 2\nseen-and-felt = 2\ncontrol = 2");
-  return with(text, "speed = 0.016 ", "speed = 0.032 ");
+  text = test::replaced(text, "participants = 12", "participants = 6");
+  text = test::replaced(text, "trials = 12 ", "trials = 6 ");
+  text = test::replaced(text, "seen = 4\nseen-and-felt = 4\ncontrol = 4",
+                        "seen = 2\nseen-and-felt = 2\ncontrol = 2");
+  return test::replaced(text, "speed = 0.016 ", "speed = 0.032 ");
 }
 
 struct Score {
@@ -249,7 +244,7 @@ TEST_F(RetentionSessionTest, AMissingSessionIsNamed) {
 
 TEST_F(RetentionSessionTest, AMistakeInThePlanGetsASentence) {
   const auto refusal = [](const std::string& what, const std::string& by) {
-    test::write_text(*folder_ / "bad.toml", with(short_study(), what, by));
+    test::write_text(*folder_ / "bad.toml", test::replaced(short_study(), what, by));
     return refused("validate bad.toml");
   };
   EXPECT_THAT(refusal("seen = [\"visual\"]", "seen = [\"haptic\"]"),

@@ -11,6 +11,7 @@
 #include "protocols/bone_drilling/display/stage_stills.h"
 #include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {
@@ -20,12 +21,6 @@ using testing::HasSubstr;
 
 std::filesystem::path shipped() {
   return std::filesystem::path(HAPTRIAL_SOURCE_DIR) / "experiments" / "construct_validity.toml";
-}
-
-std::string with(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
 }
 
 std::string refusal(const std::string& text) {
@@ -94,22 +89,25 @@ TEST(ValidityDefinitionTest, TheCavityIsBoneWithItsMarginsAndLeadsInward) {
 TEST(ValidityDefinitionTest, WhatDoesNotFitIsSaid) {
   const std::string text = test::read_text(shipped());
   EXPECT_EQ(refusal(text), "");
-  EXPECT_THAT(refusal(with(text, "novices = 7\n", "novices = 8\n")),
+  EXPECT_THAT(refusal(test::replaced(text, "novices = 7\n", "novices = 8\n")),
               HasSubstr("make it 15, as in design.participants"));
-  EXPECT_THAT(refusal(with(text, "rough = \"cutting\"", "rough = \"suction\"")),
+  EXPECT_THAT(refusal(test::replaced(text, "rough = \"cutting\"", "rough = \"suction\"")),
               HasSubstr("a burr of tools.in_hand"));
-  EXPECT_THAT(refusal(with(text, "novices = 0.15", "novices = 1.5")), HasSubstr("skill.novices"));
-  EXPECT_THAT(refusal(with(text, "margins = [0.002, 0.002, 0.0015]", "margins = [0.002]")),
-              HasSubstr("write one for each of the 3 structures"));
+  EXPECT_THAT(refusal(test::replaced(text, "novices = 0.15", "novices = 1.5")),
+              HasSubstr("skill.novices"));
+  EXPECT_THAT(
+      refusal(test::replaced(text, "margins = [0.002, 0.002, 0.0015]", "margins = [0.002]")),
+      HasSubstr("write one for each of the 3 structures"));
 }
 
 TEST(ValidityDefinitionTest, ABoneWithoutTheStructureIsRefused) {
   const test::TemporaryFolder folder;
-  test::write_text(folder / "study.toml",
-                   with(test::read_text(shipped()), "beside = \"incus\"", "beside = \"tooth\""));
+  test::write_text(
+      folder / "study.toml",
+      test::replaced(test::read_text(shipped()), "beside = \"incus\"", "beside = \"tooth\""));
   EXPECT_THROW(protocols::load_bone_definition(folder / "study.toml"), InputError);
-  test::write_text(folder / "study.toml",
-                   with(test::read_text(shipped()), "\"facial nerve\"", "\"facial nerv\""));
+  test::write_text(folder / "study.toml", test::replaced(test::read_text(shipped()),
+                                                         "\"facial nerve\"", "\"facial nerv\""));
   try {
     protocols::load_bone_definition(folder / "study.toml");
     ADD_FAILURE() << "a margin to nothing was taken";

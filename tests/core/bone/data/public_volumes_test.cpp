@@ -16,6 +16,7 @@
 #include "tests/core/bone/data/volume_bytes.h"
 #include "tests/support/dicom_series.h"
 #include "tests/support/message_of.h"
+#include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::bone::public_volumes_test {
@@ -92,17 +93,11 @@ Matrix3d tilted(double degrees) {
   return columns(Vector3d::UnitX(), {0, std::cos(tilt), -std::sin(tilt)}, Vector3d::UnitZ());
 }
 
-std::string with(std::string bytes, const std::string& from, const std::string& to) {
-  const std::size_t at = bytes.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return bytes.replace(at, from.size(), to);
-}
-
 /// The head of an NRRD file with other values behind it.
 template <class T>
 std::string nrrd_with(const std::string& type, bool big = false) {
   const PlainVolume volume = body();
-  std::string bytes = with(nrrd_of(volume), "int16", type);
+  std::string bytes = test::replaced(nrrd_of(volume), "int16", type);
   bytes.resize(bytes.size() - sizeof(std::int16_t) * volume.values.size());
   for (const std::int16_t stored : volume.values) {
     const auto value = static_cast<T>(stored);
@@ -113,12 +108,12 @@ std::string nrrd_with(const std::string& type, bool big = false) {
     }
     bytes.append(raw.data(), raw.size());
   }
-  return big ? with(bytes, "endian: little", "endian: big") : bytes;
+  return big ? test::replaced(bytes, "endian: little", "endian: big") : bytes;
 }
 
 std::string nrrd_as_text() {
   const PlainVolume volume = body();
-  std::string bytes = with(nrrd_of(volume), "encoding: raw", "encoding: ascii");
+  std::string bytes = test::replaced(nrrd_of(volume), "encoding: raw", "encoding: ascii");
   bytes.resize(bytes.size() - sizeof(std::int16_t) * volume.values.size());
   for (const std::int16_t value : volume.values) {
     bytes += fmt::format("{}\n", value);
@@ -197,20 +192,21 @@ std::vector<File> nrrd_files() {
   PlainVolume anterior = body();
   anterior.steps.row(1) *= -1.0;
   anterior.origin.y() *= -1.0;
-  const std::string list =
-      with(with(with(with(bytes, "dimension: 3", "dimension: 4"), "sizes: ", "sizes: 1 "),
-                "space directions: ", "space directions: none "),
-           "kinds: ", "kinds: list ");
-  const std::string series = with(
-      with(
-          with(with(bytes, "dimension: 3", "dimension: 4"), "sizes: 44 44 44", "sizes: 2 22 44 44"),
-          "\nkinds", " none\nkinds"),
+  const std::string list = test::replaced(
+      test::replaced(test::replaced(test::replaced(bytes, "dimension: 3", "dimension: 4"),
+                                    "sizes: ", "sizes: 1 "),
+                     "space directions: ", "space directions: none "),
+      "kinds: ", "kinds: list ");
+  const std::string series = test::replaced(
+      test::replaced(test::replaced(test::replaced(bytes, "dimension: 3", "dimension: 4"),
+                                    "sizes: 44 44 44", "sizes: 2 22 44 44"),
+                     "\nkinds", " none\nkinds"),
       "kinds: domain domain domain", "kinds: domain domain domain time");
   return {
       {"along the patient's axes", "v.nrrd", bytes},
       {"right, anterior, superior, compressed", "v.nrrd", nrrd_of(plain, true, true)},
       {"left, anterior, superior", "v.nrrd",
-       with(nrrd_of(anterior), "left-posterior-superior", "left-anterior-superior")},
+       test::replaced(nrrd_of(anterior), "left-posterior-superior", "left-anterior-superior")},
       {"axes in another order", "v.nrrd", nrrd_of(body(columns(z, x, y)))},
       {"axes the other way", "v.nrrd", nrrd_of(body(columns(-x, y, -z)))},
       {"left-handed", "v.nrrd", nrrd_of(body(columns(x, -y, z)))},

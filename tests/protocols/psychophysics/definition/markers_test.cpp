@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "protocols/psychophysics/definition/read_definition.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
+#include "tests/support/replaced.h"
 
 namespace haptrial::protocols::markers_test {
 namespace {
@@ -31,10 +32,6 @@ std::string problem(const std::string& text) {
   return "none";
 }
 
-std::string with(std::string text, const std::string& what, const std::string& instead) {
-  return text.replace(text.find(what), what.size(), instead);
-}
-
 const std::string kBeep = R"([sounds.beep]
 type = "tone"
 frequency = 800.0
@@ -55,9 +52,9 @@ TEST(TrialMarkersTest, CodesCountOnWithinTheirKind) {
 
 TEST(TrialMarkersTest, AStageMayStateItsCode) {
   TrialsDefinition d;
-  read_marked(
-      with(small_trials(kSmallStaircase, ""), "name = \"press\"", "name = \"press\"\nmarker = 17"),
-      d);
+  read_marked(test::replaced(small_trials(kSmallStaircase, ""), "name = \"press\"",
+                             "name = \"press\"\nmarker = 17"),
+              d);
   EXPECT_TRUE(d.markers.used) << "without [markers], too";
   EXPECT_THAT(markers::words_of(d.marker_meanings()), HasSubstr("stage press 17"));
 }
@@ -71,8 +68,8 @@ TEST(TrialMarkersTest, WithoutMarkersThereAreNone) {
 
 TEST(TrialMarkersTest, MistakesGetASentence) {
   const auto marked = [](const std::string& code) {
-    return with(small_trials(kSmallStaircase, "[markers]\n"), "name = \"press\"",
-                "name = \"press\"\nmarker = " + code);
+    return test::replaced(small_trials(kSmallStaircase, "[markers]\n"), "name = \"press\"",
+                          "name = \"press\"\nmarker = " + code);
   };
   EXPECT_THAT(problem(marked("0")), HasSubstr("marker is 0; allowed: "));
   EXPECT_THAT(problem(marked("256")), HasSubstr("marker is 256"));
@@ -84,10 +81,11 @@ TEST(TrialMarkersTest, MistakesGetASentence) {
 
 TEST(TrialMarkersTest, SoundsAreFoundByTheirNames) {
   TrialsDefinition d;
-  read_marked(with(small_trials(kSmallStaircase,
-                                kBeep + "[display]\nsound_right = \"beep\"\n"
-                                        "[sounds.masking]\nlevel = -40.0\nstages = [\"press\"]\n"),
-                   "name = \"press\"", "name = \"press\"\nsound = \"beep\""),
+  read_marked(test::replaced(
+                  small_trials(kSmallStaircase,
+                               kBeep + "[display]\nsound_right = \"beep\"\n"
+                                       "[sounds.masking]\nlevel = -40.0\nstages = [\"press\"]\n"),
+                  "name = \"press\"", "name = \"press\"\nsound = \"beep\""),
               d);
   EXPECT_TRUE(d.markers.used) << "when a sound began is recorded";
   ASSERT_NE(d.sounds(), nullptr);
@@ -98,8 +96,8 @@ TEST(TrialMarkersTest, SoundsAreFoundByTheirNames) {
 
 TEST(TrialMarkersTest, SoundsThatAreNotThereGetASentence) {
   const auto sounding = [](const std::string& name, const std::string& more) {
-    return with(small_trials(kSmallStaircase, more), "name = \"press\"",
-                "name = \"press\"\nsound = \"" + name + "\"");
+    return test::replaced(small_trials(kSmallStaircase, more), "name = \"press\"",
+                          "name = \"press\"\nsound = \"" + name + "\"");
   };
   EXPECT_THAT(problem(sounding("chime", kBeep)), HasSubstr("a sound: beep"));
   EXPECT_THAT(problem(sounding("chime", "")), HasSubstr("the definition states none"));

@@ -7,6 +7,7 @@
 #include "protocols/definition/window_keys.h"
 #include "protocols/psychophysics/definition/every_value.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
+#include "tests/support/replaced.h"
 
 namespace haptrial::protocols::mistakes_test {
 namespace {
@@ -17,13 +18,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-std::string with(const std::string& text, const std::string& what, const std::string& instead) {
-  std::string changed = text;
-  const auto at = changed.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return changed.replace(at, what.size(), instead);
-}
-
 const std::string kSmall = small_trials(kSmallStaircase);
 
 TEST(TrialMistakesTest, AGoodDefinitionHasNone) {
@@ -31,28 +25,30 @@ TEST(TrialMistakesTest, AGoodDefinitionHasNone) {
 }
 
 TEST(TrialMistakesTest, UnknownVariable) {
-  EXPECT_THAT(
-      problems_of_trials(with(kSmall, "stiffness = \"$stiffness\"", "stiffness = \"$stifness\"")),
-      Contains(AllOf(HasSubstr("small.toml:10: fields.floor.stiffness is \"$stifness\""),
-                     HasSubstr("there is no variable stifness; allowed: "))));
-  EXPECT_THAT(
-      problems_of_trials(with(kSmall, "stiffness = \"$level\"", "stiffness = \"$lvl + 1\"")),
-      Contains(HasSubstr("no variable lvl")));
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, "stiffness = \"$stiffness\"",
+                                                "stiffness = \"$stifness\"")),
+              Contains(AllOf(HasSubstr("small.toml:10: fields.floor.stiffness is \"$stifness\""),
+                             HasSubstr("there is no variable stifness; allowed: "))));
+  EXPECT_THAT(problems_of_trials(
+                  test::replaced(kSmall, "stiffness = \"$level\"", "stiffness = \"$lvl + 1\"")),
+              Contains(HasSubstr("no variable lvl")));
 }
 
 TEST(TrialMistakesTest, AStartIsComparedWithARangeThatIsOne) {
   EXPECT_THAT(
-      problems_of_trials(with(kSmall, "range = [310.0, 600.0]", "range = [610.0, 900.0]")),
+      problems_of_trials(
+          test::replaced(kSmall, "range = [310.0, 600.0]", "range = [610.0, 900.0]")),
       ElementsAre(HasSubstr("start is 500; allowed: a number within the range, 610 to 900")));
-  EXPECT_THAT(problems_of_trials(with(kSmall, "range = [310.0, 600.0]", "range = [600.0, 310.0]")),
+  EXPECT_THAT(problems_of_trials(
+                  test::replaced(kSmall, "range = [310.0, 600.0]", "range = [600.0, 310.0]")),
               ElementsAre(HasSubstr("range is another list; allowed: [lowest, highest]")));
 }
 
 TEST(TrialMistakesTest, OfAnUnknownProcedureNothingElseIsSaid) {
   EXPECT_THAT(
-      problems_of_trials(with(kSmall, "kind = \"staircase\"", "kind = \"stairs\"")),
+      problems_of_trials(test::replaced(kSmall, "kind = \"staircase\"", "kind = \"stairs\"")),
       ElementsAre(HasSubstr("procedure.kind is 'stairs'; allowed: staircase, limits, pest")));
-  EXPECT_THAT(problems_of_trials(with(kSmall, "kind = \"staircase\"\n", "")),
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, "kind = \"staircase\"\n", "")),
               ElementsAre(HasSubstr("procedure.kind is missing")));
 }
 
@@ -68,7 +64,7 @@ TEST(TrialMistakesTest, WithoutBlocksNoStageIsCalledUnknown) {
 }
 
 TEST(TrialMistakesTest, MistakesOfFormulas) {
-  EXPECT_THAT(problems_of_trials(with(kSmall, "\"$stiffness\"", "\"$stiffness * (2\"")),
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, "\"$stiffness\"", "\"$stiffness * (2\"")),
               Contains(HasSubstr("fields.floor.stiffness is \"$stiffness * (2\"")));
   EXPECT_THAT(
       problems_of_trials(small_trials(kSmallStaircase, "[variables]\na = \"$b\"\nb = \"$a\"\n")),
@@ -91,30 +87,31 @@ TEST(TrialMistakesTest, ABlockThatGivesAVariableNoValueIsToldWhatToWrite) {
   const std::string blocks =
       "[[blocks]]\nname = \"main\"\ntouched = \"floor\"\n[[blocks]]\nname = \"bare\"\n";
   EXPECT_THAT(
-      problems_of_trials(with(small_trials(kSmallStaircase, blocks), "fields = [\"floor\"]",
-                              "fields = [\"$touched\"]")),
+      problems_of_trials(test::replaced(small_trials(kSmallStaircase, blocks),
+                                        "fields = [\"floor\"]", "fields = [\"$touched\"]")),
       Contains(HasSubstr(
           "touched has no value yet; write touched = VALUE in the block, or let a factor")));
 }
 
 TEST(TrialMistakesTest, AWordIsNoNumber) {
-  EXPECT_THAT(
-      problems_of_trials(with(kSmall, "{ stiffness = 300.0 }", "{ stiffness = \"'soft'\" }")),
-      Contains(HasSubstr("it is the word 'soft', not a number")));
+  EXPECT_THAT(problems_of_trials(
+                  test::replaced(kSmall, "{ stiffness = 300.0 }", "{ stiffness = \"'soft'\" }")),
+              Contains(HasSubstr("it is the word 'soft', not a number")));
 }
 
 TEST(TrialMistakesTest, StagesWithoutAnEnd) {
-  EXPECT_THAT(problems_of_trials(with(kSmall, "until = { time = 0.2 }", "until = {}")),
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, "until = { time = 0.2 }", "until = {}")),
               Contains(HasSubstr("stages[1].until names no end of the stage")));
-  EXPECT_THAT(
-      problems_of_trials(with(kSmall, "until = { time = 0.2 }", "until = { contact = \"floor\" }")),
-      Contains(HasSubstr("may never come; add timeout")));
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, "until = { time = 0.2 }",
+                                                "until = { contact = \"floor\" }")),
+              Contains(HasSubstr("may never come; add timeout")));
 }
 
 TEST(TrialMistakesTest, AKeyThatEndsAStageIsNamedAndMayAnswerNothing) {
   const auto ended_by = [](const std::string& keys) {
-    return with(kSmall, "until = { time = 0.2 }",
-                "timeout = { after = 9.0, then = \"abort\" }\nuntil = { keys = " + keys + " }");
+    return test::replaced(
+        kSmall, "until = { time = 0.2 }",
+        "timeout = { after = 9.0, then = \"abort\" }\nuntil = { keys = " + keys + " }");
   };
   TrialsDefinition d;
   read_small(ended_by("[\"enter\"]"), d);
@@ -137,15 +134,15 @@ TEST(TrialMistakesTest, AKeyThatPausesAPlaybackHasNoOtherFunction) {
 }
 
 TEST(TrialMistakesTest, ResponsesWithoutChoices) {
-  EXPECT_THAT(problems_of_trials(
-                  with(kSmall, "choices = [{ value = \"first\" }, { value = \"second\" }]\n", "")),
+  EXPECT_THAT(problems_of_trials(test::replaced(
+                  kSmall, "choices = [{ value = \"first\" }, { value = \"second\" }]\n", "")),
               Contains(HasSubstr("response.question has no one way to be answered; state one of "
                                  "choices, scale, number")));
-  EXPECT_THAT(problems_of_trials(with(kSmall, ", { value = \"second\" }]", "]")),
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, ", { value = \"second\" }]", "]")),
               Contains(HasSubstr("response.choices is a list of 1; allowed: 2 to 12 choices")));
   EXPECT_THAT(
-      problems_of_trials(
-          with(kSmall, "{ value = \"second\" }", "{ value = \"second\", keys = [\"1\"] }")),
+      problems_of_trials(test::replaced(kSmall, "{ value = \"second\" }",
+                                        "{ value = \"second\", keys = [\"1\"] }")),
       Contains(HasSubstr("response.choices[2].keys is that of choices[1]; allowed: a choice "
                          "whose value, keys, buttons")));
 }
@@ -153,11 +150,11 @@ TEST(TrialMistakesTest, ResponsesWithoutChoices) {
 TEST(TrialMistakesTest, AWordThatNothingEverIsGetsAWarning) {
   const std::string formula = "correct = \"$block == 'main' ? 1 : 2\"";
   TrialsDefinition fits, strays;
-  read_small(with(kSmall, "correct = \"$interval.comparison\"", formula), fits);
+  read_small(test::replaced(kSmall, "correct = \"$interval.comparison\"", formula), fits);
   EXPECT_THAT(fits.warnings(), IsEmpty());
-  read_small(
-      with(kSmall, "correct = \"$interval.comparison\"", "correct = \"$block == 'mian' ? 1 : 2\""),
-      strays);
+  read_small(test::replaced(kSmall, "correct = \"$interval.comparison\"",
+                            "correct = \"$block == 'mian' ? 1 : 2\""),
+             strays);
   EXPECT_THAT(strays.warnings(), ElementsAre(HasSubstr("compares with 'mian', which nothing in the "
                                                        "definition ever is; did you mean main?")));
 }
@@ -173,9 +170,9 @@ radius = 0.01
 )";
 
 std::string with_choices(const std::string& choices, const std::string& more = "") {
-  return with(small_trials(kSmallStaircase, kBoxes),
-              "choices = [{ value = \"first\" }, { value = \"second\" }]",
-              "choices = " + choices + "\n" + more);
+  return test::replaced(small_trials(kSmallStaircase, kBoxes),
+                        "choices = [{ value = \"first\" }, { value = \"second\" }]",
+                        "choices = " + choices + "\n" + more);
 }
 
 TEST(TrialMistakesTest, AnswersByPlaceAndPedal) {
@@ -184,8 +181,8 @@ TEST(TrialMistakesTest, AnswersByPlaceAndPedal) {
   EXPECT_THAT(
       problems_of_trials(with_choices("[{ value = \"a\", touch = \"nea\" }, { value = \"b\" }]")),
       Contains(HasSubstr("response.choices[1].touch is \"nea\"; allowed: a region: far, near")));
-  EXPECT_THAT(problems_of_trials(
-                  with(kSmall, "{ value = \"first\" }", "{ value = \"first\", touch = \"near\" }")),
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, "{ value = \"first\" }",
+                                                "{ value = \"first\", touch = \"near\" }")),
               Contains(HasSubstr("no region: the definition states none; add [regions.NAME]")));
   EXPECT_THAT(problems_of_trials(with_choices(
                   "[{ value = \"a\", touch = \"near\" }, { value = \"b\", touch = \"near\" }]")),
@@ -214,14 +211,16 @@ TEST(TrialMistakesTest, LimitsOfReactionTimes) {
 TEST(TrialMistakesTest, RepeatedTrialsThatMayBreakTheOrderGetAWarning) {
   const std::string rule = "[design]\nmost_in_a_row = 2\n";
   TrialsDefinition goes_on, repeats, free;
-  read_small(with(with(kSmall, "[design]\n", rule), "correct =", "too_slow = 2.0\ncorrect ="),
+  read_small(test::replaced(test::replaced(kSmall, "[design]\n", rule),
+                            "correct =", "too_slow = 2.0\ncorrect ="),
              goes_on);
   EXPECT_THAT(goes_on.warnings(), IsEmpty());
   const std::string again = "too_slow = 2.0\nout_of_time = \"repeat\"\ncorrect =";
-  read_small(with(with(kSmall, "[design]\n", rule), "correct =", again), repeats);
+  read_small(test::replaced(test::replaced(kSmall, "[design]\n", rule), "correct =", again),
+             repeats);
   EXPECT_THAT(repeats.warnings(),
               ElementsAre(HasSubstr("more trials than design.most_in_a_row says")));
-  read_small(with(kSmall, "correct =", again), free);
+  read_small(test::replaced(kSmall, "correct =", again), free);
   EXPECT_THAT(free.warnings(), IsEmpty());
 }
 
@@ -263,9 +262,10 @@ lapse = [0.02]
 TEST(TrialMistakesTest, ARegionOutOfReachIsRefused) {
   const std::string far =
       "[regions.start]\ntype = \"sphere\"\ncentre = [0.0, 0.3, 0.0]\nradius = 0.01\n";
-  EXPECT_THAT(problems_of_trials(with(small_trials(kSmallStaircase, far), "until = { time = 0.2 }",
-                                      "until = { inside = \"start\" }\n"
-                                      "timeout = { after = 5.0, then = \"abort\" }")),
+  EXPECT_THAT(problems_of_trials(test::replaced(small_trials(kSmallStaircase, far),
+                                                "until = { time = 0.2 }",
+                                                "until = { inside = \"start\" }\n"
+                                                "timeout = { after = 5.0, then = \"abort\" }")),
               Contains(HasSubstr("stage press waits until the tool is inside regions.start")));
 }
 
@@ -276,11 +276,12 @@ TEST(TrialMistakesTest, AHandThatIsLedBesideTheRegionGetsAWarning) {
         "\nstiffness = 150.0\ndamping = 8.0\nlimit = 3.0\n"
         "[regions.start]\ntype = \"sphere\"\ncentre = [0.01, 0.0, 0.0]\nradius = 0.008\n";
     TrialsDefinition d;
-    read_small(with(with(small_trials(kSmallStaircase, more), "until = { time = 0.2 }",
-                         "until = { inside = \"start\" }\n"
-                         "timeout = { after = 5.0, then = \"abort\" }"),
-                    "fields = [\"floor\"]", "fields = [\"floor\", \"guide\"]"),
-               d);
+    read_small(
+        test::replaced(test::replaced(small_trials(kSmallStaircase, more), "until = { time = 0.2 }",
+                                      "until = { inside = \"start\" }\n"
+                                      "timeout = { after = 5.0, then = \"abort\" }"),
+                       "fields = [\"floor\"]", "fields = [\"floor\", \"guide\"]"),
+        d);
     return check_every_value(d).warnings;
   };
   EXPECT_THAT(warnings_if_led_to("[0.005, 0.0, 0.0]"), IsEmpty());
@@ -294,8 +295,8 @@ TEST(TrialMistakesTest, AHandThatIsLedOutOfTheWorkspaceGetsAWarning) {
     const std::string more = "[fields.guide]\ntype = \"minimum_jerk\"\nto = " + to +
                              "\nduration = 0.5\nstiffness = 150.0\ndamping = 8.0\n";
     TrialsDefinition d;
-    read_small(with(small_trials(kSmallStaircase, more), "fields = [\"floor\"]",
-                    "fields = [\"floor\", \"guide\"]"),
+    read_small(test::replaced(small_trials(kSmallStaircase, more), "fields = [\"floor\"]",
+                              "fields = [\"floor\", \"guide\"]"),
                d);
     return check_every_value(d).warnings;
   };
@@ -311,9 +312,9 @@ TEST(TrialMistakesTest, ARegionToWhichNothingLeadsGetsAWarning) {
     const std::string more =
         "[regions.start]\ntype = \"sphere\"\ncentre = " + centre + "\nradius = 0.008\n" + observer;
     TrialsDefinition d;
-    read_small(with(small_trials(kSmallStaircase, more), "until = { time = 0.2 }",
-                    "until = { inside = \"start\" }\n"
-                    "timeout = { after = 5.0, then = \"abort\" }"),
+    read_small(test::replaced(small_trials(kSmallStaircase, more), "until = { time = 0.2 }",
+                              "until = { inside = \"start\" }\n"
+                              "timeout = { after = 5.0, then = \"abort\" }"),
                d);
     return check_every_value(d).warnings;
   };
@@ -331,10 +332,11 @@ TEST(TrialMistakesTest, ARegionToWhichNothingLeadsGetsAWarning) {
 TEST(TrialMistakesTest, ABlockThatCannotBeginIsNamed) {
   const std::string blocks =
       "[[blocks]]\nname = \"bare\"\n[[blocks]]\nname = \"main\"\ntouched = \"floor\"\n";
-  EXPECT_THAT(problems_of_trials(with(small_trials(kSmallStaircase, blocks), "fields = [\"floor\"]",
-                                      "fields = [\"$touched\"]\n")),
-              Contains(AllOf(HasSubstr(".toml:"), HasSubstr("cannot begin with the block bare: "
-                                                            "touched has no value yet"))));
+  EXPECT_THAT(
+      problems_of_trials(test::replaced(small_trials(kSmallStaircase, blocks),
+                                        "fields = [\"floor\"]", "fields = [\"$touched\"]\n")),
+      Contains(AllOf(HasSubstr(".toml:"), HasSubstr("cannot begin with the block bare: "
+                                                    "touched has no value yet"))));
 }
 
 TEST(TrialMistakesTest, AnAnswerThatAProcedureCannotLearnFromIsRefused) {
@@ -367,23 +369,24 @@ TEST(TrialMistakesTest, ATrackThatEndsBeforeItsFirstTrialIsRefused) {
 TEST(TrialMistakesTest, FeedbackForNoTimeGetsAWarning) {
   const std::string no_time = "[display]\nfeedback_time = 0.0\n";
   TrialsDefinition silent, told, late;
-  read_small(
-      with(small_trials(kSmallStaircase, no_time), "correct =", "feedback = \"never\"\ncorrect ="),
-      silent);
+  read_small(test::replaced(small_trials(kSmallStaircase, no_time),
+                            "correct =", "feedback = \"never\"\ncorrect ="),
+             silent);
   EXPECT_THAT(silent.warnings(), IsEmpty());
-  read_small(
-      with(small_trials(kSmallStaircase, no_time), "correct =", "feedback = \"always\"\ncorrect ="),
-      told);
+  read_small(test::replaced(small_trials(kSmallStaircase, no_time),
+                            "correct =", "feedback = \"always\"\ncorrect ="),
+             told);
   EXPECT_THAT(told.warnings(), ElementsAre(HasSubstr("display.feedback_time is 0 s")));
-  read_small(with(small_trials(kSmallStaircase, no_time), "correct =", "too_slow = 2.0\ncorrect ="),
+  read_small(test::replaced(small_trials(kSmallStaircase, no_time),
+                            "correct =", "too_slow = 2.0\ncorrect ="),
              late);
   EXPECT_THAT(late.warnings(), ElementsAre(HasSubstr("so that nothing is shown")));
 }
 
 TEST(TrialMistakesTest, ARightAnswerThatIsNoChoice) {
-  EXPECT_THAT(
-      problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"", "correct = \"3\"")),
-      Contains(HasSubstr("is 3 (\"3\"), which is no choice")));
+  EXPECT_THAT(problems_of_trials(
+                  test::replaced(kSmall, "correct = \"$interval.comparison\"", "correct = \"3\"")),
+              Contains(HasSubstr("is 3 (\"3\"), which is no choice")));
 }
 
 TEST(TrialMistakesTest, AStepOfLimitsThatRoundingWouldHold) {
@@ -396,7 +399,7 @@ TEST(TrialMistakesTest, AStepOfLimitsThatRoundingWouldHold) {
 
 TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
   std::string two = kSmallStaircase;
-  two = with(two, "[procedure]", "[[procedures]]");
+  two = test::replaced(two, "[procedure]", "[[procedures]]");
   EXPECT_THAT(
       problems_of_trials(small_trials(two + two)),
       Contains(HasSubstr("procedures set level twice in the block main, by track 1 and by track "
@@ -404,8 +407,8 @@ TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
 }
 
 TEST(TrialMistakesTest, TracksOfSeveralProceduresMayEachNameTheirVariable) {
-  std::string tracks = with(kSmallStaircase, "[procedure]", "[[procedures]]");
-  tracks = with(tracks, "variable = \"level\"\n", "");
+  std::string tracks = test::replaced(kSmallStaircase, "[procedure]", "[[procedures]]");
+  tracks = test::replaced(tracks, "variable = \"level\"\n", "");
   const std::string named = "[[procedures.tracks]]\nvariable = \"level\"\n";
   EXPECT_THAT(problems_of_trials(small_trials(tracks + named)), IsEmpty());
   EXPECT_THAT(
@@ -434,7 +437,7 @@ TEST(TrialMistakesTest, LevelsOutsideOfTheDevice) {
 TEST(TrialMistakesTest, AFieldThatTheHandDoesNotCarryGetsAWarningAndOneThatNoHandCarriesIsRefused) {
   const auto words = [](const char* stiffness) {
     TrialsDefinition definition;
-    read_small(with(kSmall, "\"$stiffness\"", stiffness), definition);
+    read_small(test::replaced(kSmall, "\"$stiffness\"", stiffness), definition);
     return check_every_value(definition);
   };
   EXPECT_THAT(words("400.0").warnings, IsEmpty());
@@ -447,7 +450,7 @@ TEST(TrialMistakesTest, AFieldThatTheHandDoesNotCarryGetsAWarningAndOneThatNoHan
   EXPECT_THAT(words("20000.0").warnings,
               ElementsAre(AllOf(HasSubstr("add up to 20000 N/m"),
                                 HasSubstr("the hand of [hand] has 0.8 kg"))));
-  EXPECT_THAT(problems_of_trials(with(kSmall, "\"$stiffness\"", "90000.0")),
+  EXPECT_THAT(problems_of_trials(test::replaced(kSmall, "\"$stiffness\"", "90000.0")),
               Contains(AllOf(HasSubstr("no hand of up to 2 kg carries that at 1000 Hz"),
                              HasSubstr("allowed: less of it"))));
 }
@@ -455,8 +458,9 @@ TEST(TrialMistakesTest, AFieldThatTheHandDoesNotCarryGetsAWarningAndOneThatNoHan
 /// A mass m on a spring k swings at sqrt(k / m) / 2 pi, which is 9 Hz for 5000 N/m and 1.5 kg.
 TEST(TrialMistakesTest, AWallThatSwingsAsSlowlyAsATremorIsRefused) {
   const auto problems = [](const char* rate, const char* delay) {
-    return problems_of_trials(with(with(kSmall, "\"$stiffness\"", "5000.0"), "[experiment]\n",
-                                   fmt::format("[experiment]\nrate = {}\n", rate)) +
+    return problems_of_trials(test::replaced(test::replaced(kSmall, "\"$stiffness\"", "5000.0"),
+                                             "[experiment]\n",
+                                             fmt::format("[experiment]\nrate = {}\n", rate)) +
                               fmt::format("[device]\nforce_delay = {}\n", delay));
   };
   EXPECT_THAT(problems("1000.0", "1"), IsEmpty());
@@ -467,12 +471,12 @@ TEST(TrialMistakesTest, AWallThatSwingsAsSlowlyAsATremorIsRefused) {
 
 TEST(TrialMistakesTest, AWallIsJudgedByTheDelayOfTheDeviceThatFeelsIt) {
   const auto problems = [](const std::string& device) {
-    return problems_of_trials(with(with(with(kSmall, "\"$stiffness\"", "5000.0"), "[experiment]\n",
-                                        "[experiment]\nrate = 500.0\n"),
-                                   "[fields.floor]\n",
-                                   "[fields.floor]\ndevice = \"" + device + "\"\n") +
-                              "[devices.near]\nstart = [0.0, 0.0, 0.0]\n"
-                              "[devices.far]\nstart = [0.0, 0.0, 0.0]\nforce_delay = 3\n");
+    return problems_of_trials(
+        test::replaced(test::replaced(test::replaced(kSmall, "\"$stiffness\"", "5000.0"),
+                                      "[experiment]\n", "[experiment]\nrate = 500.0\n"),
+                       "[fields.floor]\n", "[fields.floor]\ndevice = \"" + device + "\"\n") +
+        "[devices.near]\nstart = [0.0, 0.0, 0.0]\n"
+        "[devices.far]\nstart = [0.0, 0.0, 0.0]\nforce_delay = 3\n");
   };
   EXPECT_THAT(problems("near"), IsEmpty());
   EXPECT_THAT(problems("far"), Contains(AllOf(HasSubstr("fields on far add up to 5000 N/m"),
@@ -482,11 +486,12 @@ TEST(TrialMistakesTest, AWallIsJudgedByTheDelayOfTheDeviceThatFeelsIt) {
 TEST(TrialMistakesTest, ARegionOutsideOfThePictureGetsAWarning) {
   const auto warnings = [](const std::string& more) {
     TrialsDefinition definition;
-    read_small(with(kSmall, "fields = [\"floor\"]", "fields = [\"floor\"]\nshow = [\"start\"]") +
-                   "[regions.start]\ntype = \"sphere\"\ncentre = [0.0, 0.045, 0.0]\nradius = "
-                   "0.008\n" +
-                   more,
-               definition);
+    read_small(
+        test::replaced(kSmall, "fields = [\"floor\"]", "fields = [\"floor\"]\nshow = [\"start\"]") +
+            "[regions.start]\ntype = \"sphere\"\ncentre = [0.0, 0.045, 0.0]\nradius = "
+            "0.008\n" +
+            more,
+        definition);
     return check_every_value(definition).warnings;
   };
   EXPECT_THAT(warnings(""), ElementsAre(AllOf(HasSubstr("region start lies partly outside"),
@@ -495,19 +500,22 @@ TEST(TrialMistakesTest, ARegionOutsideOfThePictureGetsAWarning) {
 }
 
 TEST(TrialMistakesTest, NothingToLearnFrom) {
-  EXPECT_THAT(problems_of_trials(with(kSmall, "correct = \"$interval.comparison\"\n", "")),
-              Contains(HasSubstr("no response says which is right")));
+  EXPECT_THAT(
+      problems_of_trials(test::replaced(kSmall, "correct = \"$interval.comparison\"\n", "")),
+      Contains(HasSubstr("no response says which is right")));
 }
 
 TEST(TrialMistakesTest, AProcedureWithoutAnEnd) {
-  EXPECT_THAT(problems_of_trials(with(kSmall, "reversals = 6, trials = 40", "reversals = 6")),
-              Contains(HasSubstr("procedure.stop names no number of trials, so a session might "
-                                 "never end")));
+  EXPECT_THAT(
+      problems_of_trials(test::replaced(kSmall, "reversals = 6, trials = 40", "reversals = 6")),
+      Contains(HasSubstr("procedure.stop names no number of trials, so a session might "
+                         "never end")));
 }
 
 TEST(TrialMistakesTest, UnknownKeysAndTables) {
   EXPECT_THAT(
-      problems_of_trials(with(kSmall, "start = 500.0", "start = 500.0\nresolutoin = 3.0")),
+      problems_of_trials(
+          test::replaced(kSmall, "start = 500.0", "start = 500.0\nresolutoin = 3.0")),
       Contains(HasSubstr("procedure.resolutoin is not a known key; did you mean resolution?")));
   EXPECT_THAT(problems_of_trials(small_trials(kSmallStaircase, "[variabels]\n")),
               Contains(HasSubstr("[variabels] is not a known table; did you mean variables?")));
@@ -515,14 +523,15 @@ TEST(TrialMistakesTest, UnknownKeysAndTables) {
 
 TEST(TrialMistakesTest, AFieldThatAFactorNames) {
   const std::string factor = "[factors]\nfield = [\"floor\", \"flor\"]\n";
-  EXPECT_THAT(problems_of_trials(with(small_trials(kSmallStaircase, factor), "fields = [\"floor\"]",
-                                      "fields = [\"$field\"]")),
+  EXPECT_THAT(problems_of_trials(test::replaced(small_trials(kSmallStaircase, factor),
+                                                "fields = [\"floor\"]", "fields = [\"$field\"]")),
               Contains(AllOf(HasSubstr("stages[1].fields is \"flor\""), HasSubstr("floor"))));
 }
 
 std::string on_days(const std::string& days) {
   const std::string blocks = "[[blocks]]\nname = \"a\"\n[[blocks]]\nname = \"b\"\n";
-  return with(kSmall, "participants = 4", "participants = 4\nsessions = 2") + blocks + days;
+  return test::replaced(kSmall, "participants = 4", "participants = 4\nsessions = 2") + blocks +
+         days;
 }
 
 TEST(TrialMistakesTest, SessionsOnSeveralDays) {
@@ -533,9 +542,9 @@ TEST(TrialMistakesTest, SessionsOnSeveralDays) {
   EXPECT_THAT(problems_of_trials(on_days(first)),
               Contains(HasSubstr("design.session says nothing of session 2; add "
                                  "[design.session.2] with its blocks")));
-  EXPECT_THAT(problems_of_trials(on_days(first + with(second, "\"b\"", "\"a\""))),
+  EXPECT_THAT(problems_of_trials(on_days(first + test::replaced(second, "\"b\"", "\"a\""))),
               ElementsAre(HasSubstr("leaves out the block \"b\"")));
-  EXPECT_THAT(problems_of_trials(on_days(first + with(second, "\"b\"", "\"b\", \"c\""))),
+  EXPECT_THAT(problems_of_trials(on_days(first + test::replaced(second, "\"b\"", "\"b\", \"c\""))),
               ElementsAre(AllOf(HasSubstr("design.session.2.blocks is an array with \"c\""),
                                 HasSubstr("allowed: blocks of the definition: a, b"))));
   EXPECT_THAT(
