@@ -127,8 +127,8 @@ NodeName=HOST NodeAddr=127.0.0.1 CPUs=4 RealMemory=8192 State=UNKNOWN
     test::write_text(folder_ / "power.toml",
                      "[power]\ndefinition = \"" + test::shipped_definition().string() + R"("
 watch = "planned: visuohaptic < visual, paired t"
-replications = 1000
-null_replications = 1000
+replications = 600
+null_replications = 600
 block = 5
 [power.responses]
 mean = 2.0
@@ -162,7 +162,7 @@ TEST_F(SlurmTest, AnArrayThatIsKilledAndRequeuedGivesTheBytesOfOneThread) {
   EXPECT_EQ(requeued.status, 0) << requeued.errors;
   slurm("scancel --batch --signal=KILL " + first + "_3");
   slurm("scancel --batch --signal=TERM " + first + "_4");  // as --signal before the limit
-  EXPECT_LT(parts(), 400) << "nothing was left to be broken off";
+  EXPECT_LT(parts(), 240) << "nothing was left to be broken off";
   const auto over = [&] {  // a requeued task would wait two minutes
     slurm("scontrol update JobId=" + first + "_2 StartTime=now 2>/dev/null");
     return in_queue() == 0;
