@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "analysis/bone_drilling/metrics/study_bones.h"
 #include "analysis/files/csv.h"
 #include "core/record/read/session_reader.h"
+#include "experiments/studies/drilling/expert_sessions.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
@@ -181,6 +183,12 @@ TEST_F(MarkedTrialsReportTest, DrillingsFollowTheRule) {
   EXPECT_THAT(kept.first, HasSubstr("analysed all the same: 1 trial"));
   EXPECT_THAT(left.first, HasSubstr("left out of the analysis"));
   EXPECT_EQ(left.second, kept.second - 1);
+  analysis::drilling::StudyBones bones;
+  ExpertSessions experts({}, bones);
+  experts.add(out_ / "S01.h5");
+  experts.add(out_ / "S02.h5");
+  EXPECT_EQ(experts.procedures().size(), 2u);
+  EXPECT_EQ(experts.for_feedback().size(), 1u) << "nobody learns from the one that is marked";
 }
 
 TEST_F(MarkedTrialsReportTest, WordsAloneAreRefused) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "analysis/bone_drilling/feedback/curriculum_page.h"
 #include "analysis/bone_drilling/metrics/quantities.h"
@@ -12,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/base/whole_file.h"
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/learn_score.h"
@@ -48,10 +50,11 @@ class CaseSession {
     const record::SessionInfo& info = reader_.info();
     const auto definition = protocols::parse_bone_definition(info.definition, info.definition_name);
     const auto setup = procedure_setup(reader_);
+    const std::set<int> left_out = record::trials_left_out(reader_);
     drilling::StudyBones bones;
     for (const drilling::Procedure& procedure : load_procedures(reader_, setup, &bones)) {
       const bone::CurriculumCase* of = curriculum.case_of(conditions_[procedure.number]);
-      if (of == nullptr || !procedure.completed) {
+      if (of == nullptr || !procedure.completed || left_out.contains(procedure.number)) {
         continue;
       }
       const drilling::ProcedureSummary summary = summarize(procedure, {}, bones);

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_run.h"
@@ -30,8 +32,10 @@ void ExpertSessions::add(const fs::path& file) {
   }
   const record::SessionReader reader(file);
   const auto setup = procedure_setup(reader);
+  const std::set<int> left_out = record::trials_left_out(reader);
   for (const drilling::Procedure& procedure : load_procedures(reader, setup, &bones_)) {
     procedures_.push_back({file, procedure.number, procedure.bone,
+                           left_out.contains(procedure.number),
                            drilling::expert_procedure(procedure, options_, bones_)});
   }
 }
@@ -65,7 +69,9 @@ void ExpertSessions::add_study(const fs::path& folder) {
 std::vector<drilling::ExpertProcedure> ExpertSessions::for_feedback() const {
   std::vector<drilling::ExpertProcedure> procedures;
   for (const ExpertSession& each : procedures_) {
-    procedures.push_back(each.procedure);
+    if (!each.left_out) {
+      procedures.push_back(each.procedure);
+    }
   }
   return procedures;
 }

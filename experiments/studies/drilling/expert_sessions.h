@@ -17,6 +17,7 @@ struct ExpertSession {
   std::filesystem::path file;
   int trial{1};
   std::shared_ptr<const bone::BoneModel> bone;
+  bool left_out{false};  // marked as bad, by the rule of the session's definition
   analysis::drilling::ExpertProcedure procedure;
 };
 
@@ -35,7 +36,7 @@ class ExpertSessions {
   void add_study(const std::filesystem::path& folder);
 
   const std::vector<ExpertSession>& procedures() const { return procedures_; }
-  /// The same as feedback takes them.
+  /// Those that are not left out, as feedback takes them.
   std::vector<analysis::drilling::ExpertProcedure> for_feedback() const;
 
  private:

@@ -7,7 +7,6 @@
 
 #include "analysis/bone_drilling/report/ratings.h"
 #include "core/base/error.h"
-#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/expert_sessions.h"
@@ -58,13 +57,13 @@ std::optional<double> mean_rating(const std::vector<drilling::Rating>& ratings,
 /// Rated procedures of a session.
 void add_session(const fs::path& file, const std::vector<drilling::Rating>& ratings,
                  ExpertSessions& sessions, std::vector<drilling::RatedSummary>& rated) {
-  const std::set<int> left_out = record::trials_left_out(record::SessionReader(file));
   const std::size_t before = sessions.procedures().size();
   sessions.add(file);
   for (std::size_t n = before; n < sessions.procedures().size(); ++n) {
-    const drilling::ProcedureSummary& summary = sessions.procedures()[n].procedure.summary;
+    const ExpertSession& each = sessions.procedures()[n];
+    const drilling::ProcedureSummary& summary = each.procedure.summary;
     const auto rating = mean_rating(ratings, summary);
-    if (rating && !left_out.contains(summary.number)) {
+    if (rating && !each.left_out) {
       rated.push_back({summary, *rating});
     }
   }
