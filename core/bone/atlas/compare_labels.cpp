@@ -34,8 +34,7 @@ std::vector<std::uint8_t> sampled(const BoneModel& truth, std::size_t of, std::u
       const int y = nearest(truth.grid, 1, grid.coordinate(1, j));
       for (int i = 0; i < grid.size[0]; ++i) {
         const int x = nearest(truth.grid, 0, grid.coordinate(0, i));
-        const bool in = x >= 0 && y >= 0 && z >= 0 &&
-                        truth.labels[truth.grid.index(x, y, z)] == of;
+        const bool in = x >= 0 && y >= 0 && z >= 0 && truth.labels[truth.grid.index(x, y, z)] == of;
         labels.push_back(in ? label : 0);
       }
     }

@@ -117,8 +117,7 @@ std::vector<std::span<const std::uint8_t>> ears_with(
   return having;
 }
 
-void take_labels(const Leaders& leaders, BoneModel& model,
-                 std::vector<CarriedStructure>& carried) {
+void take_labels(const Leaders& leaders, BoneModel& model, std::vector<CarriedStructure>& carried) {
   std::vector<std::size_t> counts(model.structures.size(), 0);
   for (std::size_t at = 0; at < model.labels.size(); ++at) {
     const std::uint8_t label = leaders.labels[at];
@@ -147,8 +146,8 @@ std::vector<CarriedStructure> fuse_labels(std::span<const std::vector<std::uint8
                   Field(model.labels.size(), 0.0F)};
   std::vector<CarriedStructure> carried;
   for (std::size_t number = 1; number < model.structures.size(); ++number) {
-    geometry::report_share(report, static_cast<double>(number) /
-                                       static_cast<double>(model.structures.size()));
+    geometry::report_share(
+        report, static_cast<double>(number) / static_cast<double>(model.structures.size()));
     const auto label = static_cast<std::uint8_t>(number);
     const auto having = ears_with(ears, label);
     if (having.empty() || model.structures[number].name == kPlainBone) {

@@ -20,12 +20,12 @@ struct CarriedStructure {
   std::optional<double> margin;
 };
 
-/// Gives a bone the labels on which several ears agree best. With φ_i the signed distance of a voxel
-/// from a structure as ear i has it, negative inside and cut off at 1 mm (2 voxels if that is more),
-/// the voxel belongs to the structure with the least mean φ over the ears that reach there, if that
-/// is below 0. A mean keeps the shape of thin structures better than votes, and the cut keeps an ear
-/// that is far off from outweighing the others. Voxels that the bone has as a structure other than
-/// plain bone keep it; others take density 1.
+/// Gives a bone the labels on which several ears agree best. With φ_i the signed distance of a
+/// voxel from a structure as ear i has it, negative inside and cut off at 1 mm (2 voxels if that is
+/// more), the voxel belongs to the structure with the least mean φ over the ears that reach there,
+/// if that is below 0. A mean keeps the shape of thin structures better than votes, and the cut
+/// keeps an ear that is far off from outweighing the others. Voxels that the bone has as a
+/// structure other than plain bone keep it; others take density 1.
 ///
 /// The margin is the 95th percentile of how far the voxels of the structure of one ear lie outside
 /// of the one that the other ears give without it, over all ears.
@@ -35,8 +35,8 @@ struct CarriedStructure {
 ///                 kBeyondEar
 /// @param threads  0: one per processor; the result is the same
 /// @returns the structures that some ear has, by label, plain bone left out
-std::vector<CarriedStructure> fuse_labels(
-    std::span<const std::vector<std::uint8_t>> ears, BoneModel& model, int threads = 0,
-    const geometry::WorkReport& report = {});
+std::vector<CarriedStructure> fuse_labels(std::span<const std::vector<std::uint8_t>> ears,
+                                          BoneModel& model, int threads = 0,
+                                          const geometry::WorkReport& report = {});
 
 }  // namespace haptrial::bone

@@ -63,8 +63,7 @@ std::string source_words(const BoneModel& model, const std::vector<CarriedStruct
 }  // namespace
 
 CarriedLabels label_scan(BoneModel& scan, EarSide side, std::vector<BoneModel> ears,
-                         const RegistrationOptions& options,
-                         const geometry::WorkReport& report) {
+                         const RegistrationOptions& options, const geometry::WorkReport& report) {
   for (BoneModel& ear : ears) {
     turn_to_side(side, ear);
   }

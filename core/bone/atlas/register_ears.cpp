@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 constexpr int kResolutions = 3;
 
-/// What the three steps share. Labels are carried by the nearest voxel (order 0), and beyond the ear
-/// there is kBeyondEar.
+/// What the three steps share. Labels are carried by the nearest voxel (order 0), and beyond the
+/// ear there is kBeyondEar.
 constexpr const char* kEveryStep = R"((FixedInternalImagePixelType "float")
 (MovingInternalImagePixelType "float")
 (FixedImageDimension 3)
@@ -59,16 +59,15 @@ struct Step {
   const char* file;
   const char* parameters;
 };
-constexpr std::array kSteps{
-    Step{"rigid.txt", R"((Transform "EulerTransform")
+constexpr std::array kSteps{Step{"rigid.txt", R"((Transform "EulerTransform")
 (AutomaticTransformInitialization "true")
 (AutomaticTransformInitializationMethod "CenterOfGravity")
 (ImagePyramidSchedule 8 8 8 4 4 4 2 2 2)
 )"},
-    Step{"affine.txt", R"((Transform "AffineTransform")
+                            Step{"affine.txt", R"((Transform "AffineTransform")
 (ImagePyramidSchedule 8 8 8 4 4 4 2 2 2)
 )"},
-    Step{"splines.txt", R"((Transform "BSplineTransform")
+                            Step{"splines.txt", R"((Transform "BSplineTransform")
 (FinalGridSpacingInPhysicalUnits 4.0)
 (GridSpacingSchedule 4 2 1)
 (NumberOfJacobianMeasurements 1000)
@@ -96,20 +95,20 @@ template <class T>
 void write_image(const fs::path& folder, const std::string& name, const geometry::VoxelGrid& grid,
                  const std::vector<T>& values) {
   const Eigen::Vector3d origin = 1e3 * grid.origin;
-  std::ofstream(folder / (name + ".mhd"))
-      << fmt::format(
-             "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
-             "DimSize = {} {} {}\nElementSpacing = {} {} {}\nOffset = {} {} {}\n"
-             "ElementType = {}\nElementDataFile = {}.raw\n",
-             grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, 1e3 * grid.spacing,
-             1e3 * grid.spacing, origin.x(), origin.y(), origin.z(),
-             sizeof(T) == 1 ? "MET_UCHAR" : "MET_FLOAT", name);
+  std::ofstream(folder / (name + ".mhd")) << fmt::format(
+      "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+      "DimSize = {} {} {}\nElementSpacing = {} {} {}\nOffset = {} {} {}\n"
+      "ElementType = {}\nElementDataFile = {}.raw\n",
+      grid.size[0], grid.size[1], grid.size[2], 1e3 * grid.spacing, 1e3 * grid.spacing,
+      1e3 * grid.spacing, origin.x(), origin.y(), origin.z(),
+      sizeof(T) == 1 ? "MET_UCHAR" : "MET_FLOAT", name);
   std::ofstream raw(folder / (name + ".raw"), std::ios::binary);
   raw.write(reinterpret_cast<const char*>(values.data()),
             static_cast<std::streamsize>(values.size() * sizeof(T)));
   raw.close();
   if (!raw) {
-    throw RunError(fmt::format("{}: cannot be written; is the disk full?", (folder / name).string()));
+    throw RunError(
+        fmt::format("{}: cannot be written; is the disk full?", (folder / name).string()));
   }
 }
 
@@ -156,9 +155,10 @@ std::string run(const std::vector<std::string>& words, const fs::path& folder,
     }
     return said;
   } catch (const std::system_error& error) {
-    throw RunError(fmt::format("labels of other ears need elastix, which could not be started ({}); "
-                               "install Debian's package elastix",
-                               error.code().message()));
+    throw RunError(
+        fmt::format("labels of other ears need elastix, which could not be started ({}); "
+                    "install Debian's package elastix",
+                    error.code().message()));
   }
 }
 
@@ -191,7 +191,7 @@ RegisteredEar register_ear(const BoneModel& scan, const BoneModel& ear, const fs
   write_image(folder, "ear", ear.grid, bone_density(ear));
   write_image(folder, "labels", ear.grid, ear.labels);
   // One thread: sums of several would be rounded differently on another machine.
-  std::vector<std::string> words{"elastix", "-threads", "1",   "-f",  "../scan.mhd",
+  std::vector<std::string> words{"elastix", "-threads", "1",    "-f", "../scan.mhd",
                                  "-m",      "ear.mhd",  "-out", "."};
   for (const Step& step : kSteps) {
     words.insert(words.end(), {"-p", fmt::format("../{}", step.file)});

@@ -20,9 +20,9 @@ struct RegisteredEar {
   double correlation{0.0};           // of the densities of bone at the end, 1 at best
 };
 
-/// Registers ears to a scan and carries their labels to it: rigid, affine, then cubic B-splines with
-/// nodes 4 mm apart, each at three resolutions, by the normalized correlation of how dense bone is.
-/// Voxels of soft structures and of the labyrinth count as empty, as a scan shows them.
+/// Registers ears to a scan and carries their labels to it: rigid, affine, then cubic B-splines
+/// with nodes 4 mm apart, each at three resolutions, by the normalized correlation of how dense
+/// bone is. Voxels of soft structures and of the labyrinth count as empty, as a scan shows them.
 /// elastix does it, a process of its own for each ear, and with the same seed each time.
 /// Source: Klein et al. 2010; docs/algorithms/atlas.md.
 ///

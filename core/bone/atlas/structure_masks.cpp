@@ -60,8 +60,7 @@ StructureMasks masks_of(const geometry::VoxelGrid& grid,
     auto to = mask.labels.begin();
     for (int k = 0; k < extent.z(); ++k) {
       for (int j = 0; j < extent.y(); ++j, to += extent.x()) {
-        const std::size_t from =
-            grid.index(masks.low.x(), masks.low.y() + j, masks.low.z() + k);
+        const std::size_t from = grid.index(masks.low.x(), masks.low.y() + j, masks.low.z() + k);
         std::ranges::transform(labels.subspan(from, static_cast<std::size_t>(extent.x())), to,
                                [label](std::uint8_t one) {
                                  return one == label        ? StructureMasks::kIn
@@ -77,9 +76,8 @@ StructureMasks masks_of(const geometry::VoxelGrid& grid,
 
 BoneModel mask_like(const StructureMasks& masks, const std::vector<bool>& in) {
   BoneModel mask = empty_mask(masks.grid);
-  std::ranges::transform(in, mask.labels.begin(), [](bool one) {
-    return one ? StructureMasks::kIn : StructureMasks::kOut;
-  });
+  std::ranges::transform(in, mask.labels.begin(),
+                         [](bool one) { return one ? StructureMasks::kIn : StructureMasks::kOut; });
   return mask;
 }
 

@@ -60,8 +60,7 @@ std::string or_none(const std::optional<double>& value, double unit, int digits)
   return value ? fmt::format("{:.{}f}", *value / unit, digits) : "-";
 }
 
-void print_carried(const bone::BoneModel& model,
-                   const std::vector<bone::CarriedStructure>& carried,
+void print_carried(const bone::BoneModel& model, const std::vector<bone::CarriedStructure>& carried,
                    const std::optional<bone::BoneModel>& truth) {
   fmt::print("{:28} {:>8} {:>10}{}\n", "structure", "voxels", "margin mm",
              truth ? "   Dice  distance mm   held %" : "");
@@ -70,16 +69,16 @@ void print_carried(const bone::BoneModel& model,
                or_none(one.margin, kMillimetre, 2));
     if (truth) {
       if (const auto match = bone::compare_label(model, one.label, *truth, one.margin)) {
-        fmt::print("   {:4.2f} {:>12} {:>8}", match->dice,
-                   or_none(match->distance, kMillimetre, 2), or_none(match->held, 0.01, 1));
+        fmt::print("   {:4.2f} {:>12} {:>8}", match->dice, or_none(match->distance, kMillimetre, 2),
+                   or_none(match->held, 0.01, 1));
       }
     }
     fmt::print("\n");
   }
 }
 
-void print_doubts(const bone::BoneModel& model,
-                  const std::vector<bone::CarriedStructure>& carried, std::size_t ears) {
+void print_doubts(const bone::BoneModel& model, const std::vector<bone::CarriedStructure>& carried,
+                  std::size_t ears) {
   for (const bone::CarriedStructure& one : carried) {
     if (one.voxels == 0) {
       fmt::print("WARNING: nothing is left of '{}': the ears do not agree where it lies\n",
@@ -128,10 +127,10 @@ int bone_atlas(const BoneAtlasOptions& options) {
 }  // namespace
 
 void add_bone_atlas(CLI::App& bone, int& status) {
-  CLI::App* sub = subcommand(
-      bone, "atlas", "Label a scan by other ears, whose labels are known",
-      "haptrial bone atlas scan.nii.gz ear.nrrd --side left --around=-60,10,5,60 --ears ears/*.nrrd",
-      {"the bone OUT", "algorithms/atlas.md"});
+  CLI::App* sub = subcommand(bone, "atlas", "Label a scan by other ears, whose labels are known",
+                             "haptrial bone atlas scan.nii.gz ear.nrrd --side left "
+                             "--around=-60,10,5,60 --ears ears/*.nrrd",
+                             {"the bone OUT", "algorithms/atlas.md"});
   auto& o = options_of<BoneAtlasOptions>(*sub, status, bone_atlas);
   add_bone_input(*sub, o);
   add_bone_output(*sub, o);

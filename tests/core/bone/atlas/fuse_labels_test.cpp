@@ -30,8 +30,8 @@ TEST(FuseLabelsTest, EarsThatAgreeAreTakenAsTheyAre) {
 }
 
 // Edges at 30, 32 and 34 mm have their mean at 32 mm. Those of the first two have it at 31 mm, and
-// the last three voxels of the third ear lie 1, 2 and 3 mm beyond; all 15 others lie inside what the
-// rest of the ears give. Of 18 values 95 % are up to the last but one.
+// the last three voxels of the third ear lie 1, 2 and 3 mm beyond; all 15 others lie inside what
+// the rest of the ears give. Of 18 values 95 % are up to the last but one.
 TEST(FuseLabelsTest, TheEdgeIsTheMeanAndTheMarginThatOfEarsLeftOut) {
   BoneModel model = bone_in_a_row(60);
   const Ears ears{slab(60, 26, 30), slab(60, 26, 32), slab(60, 26, 34)};

@@ -31,8 +31,8 @@ BoneModel made_ear(std::uint64_t seed) {
 Eigen::Vector3d place_in_ear(const Eigen::Vector3d& p, const Eigen::Vector3d& middle) {
   const Eigen::AngleAxisd turn(0.105, Eigen::Vector3d(1.0, 2.0, -1.0).normalized());
   const Eigen::Vector3d bent =
-      1.5e-3 * Eigen::Vector3d(std::sin(p.y() / 6.4e-3), std::sin(p.z() / 6.4e-3),
-                               std::sin(p.x() / 6.4e-3));
+      1.5e-3 *
+      Eigen::Vector3d(std::sin(p.y() / 6.4e-3), std::sin(p.z() / 6.4e-3), std::sin(p.x() / 6.4e-3));
   return middle + turn * (p - middle) + Eigen::Vector3d(3e-3, -2e-3, 2e-3) + bent;
 }
 
@@ -53,8 +53,8 @@ BoneModel warped(const BoneModel& ear) {
             voxel.z() < size[2]) {
           const std::size_t there = ear.grid.index(voxel.x(), voxel.y(), voxel.z());
           scan.labels[at] = ear.labels[there];
-          scan.density[at] = ear.density.empty() ? (ear.labels[there] != 0 ? 1.0F : 0.0F)
-                                                 : ear.density[there];
+          scan.density[at] =
+              ear.density.empty() ? (ear.labels[there] != 0 ? 1.0F : 0.0F) : ear.density[there];
         }
       }
     }
@@ -116,14 +116,12 @@ TEST(LabelScanTest, EarsOfEitherSideLabelAnotherEar) {
   const BoneModel truth = warped(made_ear(2));
   BoneModel scan = as_scanned(truth);
   const CarriedLabels carried =
-      label_scan(scan, EarSide::kRight, {made_ear(3), mirrored(made_ear(4)), made_ear(5)},
-                 kQuick);
+      label_scan(scan, EarSide::kRight, {made_ear(3), mirrored(made_ear(4)), made_ear(5)}, kQuick);
   for (const std::string& name : kLarge) {
     EXPECT_GT(match_of(scan, truth, name).dice, 0.6) << name;
   }
   const std::uint8_t nerve = label_of(scan, "facial nerve");
-  const auto found =
-      std::ranges::find(carried.structures, nerve, &CarriedStructure::label);
+  const auto found = std::ranges::find(carried.structures, nerve, &CarriedStructure::label);
   ASSERT_NE(found, carried.structures.end());
   ASSERT_TRUE(found->margin);
   EXPECT_GT(match_of(scan, truth, "facial nerve", found->margin).held.value_or(0.0), 0.9);
@@ -151,8 +149,7 @@ TEST(LabelScanTest, WithoutElastixOneSentenceSaysWhatToInstall) {
     label_scan(scan, EarSide::kRight, ears, kQuick);
     ADD_FAILURE() << "nothing was refused";
   } catch (const RunError& error) {
-    EXPECT_NE(std::string(error.what()).find("install Debian's package elastix"),
-              std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("install Debian's package elastix"), std::string::npos)
         << error.what();
   }
   setenv("PATH", path.c_str(), 1);
