@@ -19,6 +19,7 @@ struct CarriedLabels {
 /// Labels a scan by other ears: those of the other side are mirrored, all are registered, and their
 /// labels are fused. Structures have the names that the ears give them; what the scan has as a
 /// structure already stays.
+/// Source: Morris 2006, §8.3.2.1 (which leaves it open); docs/algorithms/atlas.md.
 /// @param scan  with plain bone at least; receives the labels, and its source says by what
 /// @throws InputError for an ear whose structures do not tell its side, or without any structure;
 /// as register_ears() does.

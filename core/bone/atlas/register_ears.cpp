@@ -25,6 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kResolutions = 3;
+/// Places at which the splines' derivatives are measured before the first step, for the lengths of
+/// steps; they take as long as the steps themselves.
+constexpr int kMeasurementsPerIteration = 30;
 
 /// What the three steps share. Labels are carried by the nearest voxel (order 0), and beyond the
 /// ear there is kBeyondEar.
@@ -70,7 +73,6 @@ constexpr std::array kSteps{Step{"rigid.txt", R"((Transform "EulerTransform")
                             Step{"splines.txt", R"((Transform "BSplineTransform")
 (FinalGridSpacingInPhysicalUnits 4.0)
 (GridSpacingSchedule 4 2 1)
-(NumberOfJacobianMeasurements 1000)
 (ImagePyramidSchedule 4 4 4 2 2 2 1 1 1)
 )"}};
 
@@ -213,7 +215,8 @@ std::vector<RegisteredEar> register_ears(const BoneModel& scan, std::span<const 
   for (const Step& step : kSteps) {
     std::ofstream(folder.path() / step.file)
         << kEveryStep << step.parameters
-        << fmt::format("(MaximumNumberOfIterations {})\n", options.iterations);
+        << fmt::format("(MaximumNumberOfIterations {})\n(NumberOfJacobianMeasurements {})\n",
+                       options.iterations, kMeasurementsPerIteration * options.iterations);
   }
   std::vector<RegisteredEar> registered(ears.size());
   Progress progress;

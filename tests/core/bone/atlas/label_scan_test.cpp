@@ -18,7 +18,7 @@
 namespace haptrial::bone::label_scan_test {
 namespace {
 
-constexpr RegistrationOptions kQuick{.iterations = 40, .threads = 2};
+constexpr RegistrationOptions kQuick{.iterations = 25, .threads = 2};
 
 BoneModel made_ear(std::uint64_t seed) {
   BoneModel ear = make_temporal_bone({.seed = seed, .spacing = 1e-3});
