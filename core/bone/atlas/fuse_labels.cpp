@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/base/parallel.h"
+#include "core/bone/atlas/scan_look.h"
 #include "core/bone/atlas/structure_masks.h"
 
 namespace haptrial::bone {
@@ -117,12 +118,22 @@ std::vector<std::span<const std::uint8_t>> ears_with(
   return having;
 }
 
+/// Whether a voxel of the bone may become of a structure.
+bool may_take(const BoneModel& model, std::size_t at, const Structure& structure) {
+  constexpr float kDense = 0.5F;
+  const std::uint8_t label = model.labels[at];
+  if (label == 0) {
+    return true;
+  }
+  const bool dense = model.density.empty() || model.density[at] >= kDense;
+  return model.structures[label].name == kPlainBone && (looks_like_bone(structure) || !dense);
+}
+
 void take_labels(const Leaders& leaders, BoneModel& model, std::vector<CarriedStructure>& carried) {
   std::vector<std::size_t> counts(model.structures.size(), 0);
   for (std::size_t at = 0; at < model.labels.size(); ++at) {
     const std::uint8_t label = leaders.labels[at];
-    const std::uint8_t before = model.labels[at];
-    if (label == 0 || (before != 0 && model.structures[before].name != kPlainBone)) {
+    if (label == 0 || !may_take(model, at, model.structures[label])) {
       continue;
     }
     model.labels[at] = label;

@@ -25,7 +25,8 @@ struct CarriedStructure {
 /// more), the voxel belongs to the structure with the least mean φ over the ears that reach there,
 /// if that is below 0. A mean keeps the shape of thin structures better than votes, and the cut
 /// keeps an ear that is far off from outweighing the others. Voxels that the bone has as a
-/// structure other than plain bone keep it; others take density 1.
+/// structure other than plain bone keep it; so does plain bone of at least half the full density
+/// where the structure is one that a scan does not show as bone. Others take density 1.
 ///
 /// The margin is the 95th percentile of how far the voxels of the structure of one ear lie outside
 /// of the one that the other ears give without it, over all ears.

@@ -52,7 +52,7 @@ std::string source_words(const BoneModel& model, const std::vector<CarriedStruct
   const char* before = ", 95 % of each expected within";
   for (const CarriedStructure& one : carried) {
     if (one.margin && one.voxels > 0) {
-      words += fmt::format("{} {:.1f} mm of {}", before, 1e3 * *one.margin,
+      words += fmt::format("{} {:.1f} mm ({})", before, 1e3 * *one.margin,
                            model.structures[one.label].name);
       before = ",";
     }

@@ -18,6 +18,7 @@
 #include "core/base/file_text.h"
 #include "core/base/parallel.h"
 #include "core/base/scratch_folder.h"
+#include "core/bone/atlas/scan_look.h"
 
 namespace haptrial::bone {
 namespace {
@@ -75,11 +76,6 @@ constexpr std::array kSteps{Step{"rigid.txt", R"((Transform "EulerTransform")
 (GridSpacingSchedule 4 2 1)
 (ImagePyramidSchedule 4 4 4 2 2 2 1 1 1)
 )"}};
-
-/// Whether a scan shows a structure as bone. Fluid fills the labyrinth.
-bool looks_like_bone(const Structure& structure) {
-  return structure.hardness >= 1.0 && structure.name != "bony labyrinth";
-}
 
 std::vector<float> bone_density(const BoneModel& model) {
   std::vector<float> image(model.labels.size(), 0.0F);

@@ -62,6 +62,18 @@ TEST(FuseLabelsTest, TheNearerStructureWinsAndStructuresOfTheBoneStay) {
   EXPECT_EQ(carried[0].voxels, 7U);
 }
 
+TEST(FuseLabelsTest, DenseBoneStaysBoneUnlessTheStructureIsBone) {
+  BoneModel model = bone_in_a_row(40);
+  model.density[15] = model.density[25] = 0.5F;
+  Ears ears(2, slab(40, 12, 20));
+  ears[0][25] = ears[1][25] = 3;
+  fuse_labels(ears, model);
+  EXPECT_EQ(model.labels[14], 2);
+  EXPECT_EQ(model.labels[15], 1);
+  EXPECT_EQ(model.density[15], 0.5F);
+  EXPECT_EQ(model.labels[25], 3);
+}
+
 TEST(FuseLabelsTest, EarsThatDisagreeLeaveNothing) {
   BoneModel model = bone_in_a_row(60);
   const auto carried = fuse_labels(Ears{slab(60, 5, 8), slab(60, 30, 33), slab(60, 50, 53)}, model);
