@@ -90,7 +90,8 @@ std::optional<double> surface_distance(const StructureMasks& masks) {
   if (there.count == 0 || back.count == 0) {
     return std::nullopt;
   }
-  return (there.total + back.total) / static_cast<double>(there.count + back.count);
+  const double mean = (there.total + back.total) / static_cast<double>(there.count + back.count);
+  return std::isfinite(mean) ? std::optional(mean) : std::nullopt;
 }
 
 double share_held(const StructureMasks& masks, double margin) {

@@ -12,7 +12,7 @@ namespace haptrial::bone {
 struct LabelMatch {
   double dice{0.0};                // 2 |A and B| / (|A| + |B|), 0 to 1
   std::optional<double> distance;  // mean between the two surfaces, both ways; nothing if one is
-                                   // empty [m]
+                                   // empty or over 20 mm away [m]
   std::optional<double> held;      // share of the true voxels within the margin of the label
 };
 

@@ -1,6 +1,7 @@
 #include "core/bone/atlas/fuse_labels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "core/base/parallel.h"
@@ -80,7 +81,8 @@ std::optional<double> margin_of(const StructureMasks& masks, const std::vector<F
   }
   const auto rank = static_cast<std::ptrdiff_t>(kShare * static_cast<double>(all.size() - 1));
   std::ranges::nth_element(all, all.begin() + rank);
-  return static_cast<double>(all[static_cast<std::size_t>(rank)]);
+  const auto margin = static_cast<double>(all[static_cast<std::size_t>(rank)]);
+  return std::isfinite(margin) ? std::optional(margin) : std::nullopt;
 }
 
 /// Labels and mean distances of the structures that lead so far.

@@ -16,7 +16,7 @@ struct CarriedStructure {
   std::uint8_t label{0};  // in the bone
   std::size_t voxels{0};
   /// 95 % of the true structure is expected within this distance of its label [m]; nothing if only
-  /// one ear has the structure, as nothing says then how far ears differ.
+  /// one ear has the structure, or so few agree that ears without one of them lose it.
   std::optional<double> margin;
 };
 

@@ -1,6 +1,7 @@
 #include "core/bone/atlas/structure_masks.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/bone/model/distance_field.h"
 
@@ -91,7 +92,8 @@ std::vector<float> distances_to(const BoneModel& mask, std::uint8_t label) {
   for (int k = 0; k < mask.grid.size[2]; ++k) {
     for (int j = 0; j < mask.grid.size[1]; ++j) {
       for (int i = 0; i < mask.grid.size[0]; ++i) {
-        distances.push_back(static_cast<float>(field.at(Voxel(i, j, k)).value_or(reach)));
+        distances.push_back(static_cast<float>(
+            field.at(Voxel(i, j, k)).value_or(std::numeric_limits<double>::infinity())));
       }
     }
   }

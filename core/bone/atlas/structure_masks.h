@@ -31,8 +31,8 @@ StructureMasks masks_of(const geometry::VoxelGrid& grid,
 /// The same part with other voxels in it.
 BoneModel mask_like(const StructureMasks& masks, const std::vector<bool>& in);
 
-/// Distance between centres from each voxel of the part to the nearest one with
-/// the label [m]. What is farther than 20 mm or 250 voxels, or is not there, counts as that far.
+/// Distance between centres from each voxel of the part to the nearest one with the label [m];
+/// infinite beyond 20 mm or 250 voxels, and where there is none.
 std::vector<float> distances_to(const BoneModel& mask, std::uint8_t label);
 
 }  // namespace haptrial::bone
