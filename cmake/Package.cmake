@@ -17,7 +17,7 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME haptrial)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS TRUE)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_DEPENDS "libosmesa6, gnuplot-nox | gnuplot, fonts-dejavu-core, fonts-noto-core")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "ffmpeg, libjs-codemirror, xdg-utils")
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS libespeak-ng1)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "libespeak-ng1, elastix")
 set(CPACK_COMPONENT_COMMAND_DESCRIPTION "Psychophysics experiments on a
 haptic device or with virtual participants, from a definition file: sessions,
 a recording of every tick, and the analysis.")

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -15,6 +14,7 @@
 #include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/scratch_folder.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -271,28 +271,6 @@ void draw_script(const std::string& script, const fs::path& folder) {
   }
 }
 
-/// A folder of this process alone, gone at the end.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "haptrial-figures-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw RunError(fmt::format("{}: could not be made: {}", name, std::strerror(errno)));
-    }
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 [[noreturn]] void fail_unfinished(const fs::path& file) {
   throw RunError(
       fmt::format("{}: gnuplot did not finish this picture; is the disk full?", file.string()));
@@ -352,7 +330,7 @@ std::vector<Drawing> drawn(const std::vector<Figure>& figures) {
   if (figures.empty()) {
     return drawings;
   }
-  const ScratchFolder folder;
+  const ScratchFolder folder("figures");
   std::string script;
   for (const Figure& figure : figures) {
     check(figure);

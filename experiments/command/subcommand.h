@@ -97,6 +97,7 @@ void add_spectrum(CLI::App& app, int& status);
 // bone: bones, and drillings in them
 void add_bone(CLI::App& app, int& status);
 void add_bone_import(CLI::App& bone, int& status);
+void add_bone_atlas(CLI::App& bone, int& status);
 void add_bone_info(CLI::App& bone, int& status);
 void add_bone_structures(CLI::App& bone, int& status);
 void add_bone_export(CLI::App& bone, int& status);

@@ -1,13 +1,13 @@
 #include "experiments/power/power_unit.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <memory>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "core/base/scratch_folder.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/study_run.h"
@@ -15,28 +15,6 @@
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
 namespace {
-
-/// A folder for session files that is gone at the end.
-class SessionsFolder {
- public:
-  SessionsFolder() {
-    std::string name = (fs::temp_directory_path() / "haptrial-power-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw RunError(name + ": a folder for sessions cannot be made");
-    }
-    path_ = name;
-  }
-  ~SessionsFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  SessionsFolder(const SessionsFolder&) = delete;
-  SessionsFolder& operator=(const SessionsFolder&) = delete;
-  fs::path sessions() const { return path_ / "sessions"; }
-
- private:
-  fs::path path_;
-};
 
 /// A cell's definition, and what simulates it.
 struct ReadyCell {
@@ -60,11 +38,11 @@ ReadyCell ready(const PowerQuestion& question, const PowerUnit& unit) {
 }
 
 SimulatedStudy in_full(const PowerQuestion& question, const ReadyCell& cell, std::uint64_t seed) {
-  const SessionsFolder folder;
+  const ScratchFolder folder("power");
   DryRun dry;
   dry.participants = cell.definition->design.participants;
   dry.seed = seed;
-  dry.folder = folder.sessions();
+  dry.folder = folder.path() / "sessions";
   run_dry(question.study->protocol(), *cell.definition, dry);
   return cell.study_simulation->sessions(session_files(dry.folder));
 }

@@ -70,6 +70,26 @@ TEST_F(BoneCommandTest, AnImportedBoneCanBeResampledAndPutInPlaceOfItself) {
   EXPECT_THAT(result.output, HasSubstr("voxels of 2 mm"));
 }
 
+TEST_F(BoneCommandTest, AScanGetsTheLabelsOfAnotherEar) {
+  ASSERT_EQ(run("haptrial bone make temporal known.nrrd --seed 3 --spacing 2").status, 0);
+  ASSERT_EQ(run("haptrial bone make temporal true.nrrd --seed 2 --spacing 2").status, 0);
+  ASSERT_EQ(run("haptrial bone import true.nrrd scan.nrrd --without 'facial nerve,incus'").status,
+            0);
+  const auto result =
+      run("haptrial bone atlas scan.nrrd ear.nrrd --side right --iterations 10 --against true.nrrd "
+          "--ears known.nrrd && haptrial bone info ear.nrrd");
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("known.nrrd: correlation 0."), HasSubstr("one ear says nothing"),
+                    HasSubstr("labels of 1 registered ear"), HasSubstr("facial nerve")));
+  expect_refusal("haptrial bone atlas scan.nrrd new.nrrd --side up --ears known.nrrd",
+                 "--side is 'up'; allowed: right, left");
+  expect_refusal("haptrial bone atlas scan.nrrd new.nrrd --side left --ears absent.nrrd",
+                 "absent.nrrd: no such file or folder");
+  expect_refusal("haptrial bone atlas scan.nrrd ear.nrrd --side left --ears known.nrrd",
+                 "ear.nrrd");
+}
+
 TEST_F(BoneCommandTest, WhatIsWrongIsRefusedInASentence) {
   ASSERT_EQ(run("haptrial bone make temporal ear.nrrd --spacing 2").status, 0);
   std::ofstream(folder_ / "text.nrrd") << "nothing";

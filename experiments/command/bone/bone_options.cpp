@@ -59,6 +59,43 @@ void add_bone_input(CLI::App& sub, BoneInput& o) {
   sub.add_option("--max-memory", o.max_memory, kMemoryHelp);
 }
 
+void add_bone_box(CLI::App& sub, BoneBox& o) {
+  sub.add_option("--crop", o.crop, "Box to keep: X0,X1,Y0,Y1,Z0,Z1 [mm], as info prints places")
+      ->delimiter(',');
+  sub.add_option("--around", o.around, "Cube to keep about a point: X,Y,Z,EDGE [mm]")
+      ->delimiter(',');
+}
+
+std::optional<Eigen::AlignedBox3d> chosen_box(const BoneBox& options) {
+  const auto finite = [](const std::vector<double>& numbers) {
+    return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                             static_cast<Eigen::Index>(numbers.size()))
+        .allFinite();
+  };
+  const std::vector<double>& crop = options.crop;
+  const std::vector<double>& around = options.around;
+  if (crop.empty() && around.empty()) {
+    return std::nullopt;
+  }
+  if (!crop.empty() && !around.empty()) {
+    throw InputError("--crop and --around both choose a part; write one of them");
+  }
+  if (!around.empty()) {
+    if (around.size() != 4 || !finite(around) || !(around[3] > 0.0)) {
+      throw InputError("--around is not a place and an edge; allowed: X,Y,Z,EDGE [mm]");
+    }
+    const Eigen::Vector3d middle = kMillimetre * Eigen::Vector3d(around[0], around[1], around[2]);
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * kMillimetre * around[3]);
+    return Eigen::AlignedBox3d(middle - half, middle + half);
+  }
+  const bool six = crop.size() == 6 && finite(crop);
+  if (!six || !(crop[0] < crop[1] && crop[2] < crop[3] && crop[4] < crop[5])) {
+    throw InputError("--crop is not a box; allowed: X0,X1,Y0,Y1,Z0,Z1 [mm], the lower first");
+  }
+  return Eigen::AlignedBox3d(kMillimetre * Eigen::Vector3d(crop[0], crop[2], crop[4]),
+                             kMillimetre * Eigen::Vector3d(crop[1], crop[3], crop[5]));
+}
+
 void add_bone_output(CLI::App& sub, BoneOutput& o) {
   sub.add_option("OUT", o.out, "New bone (.nrrd)")->required();
   sub.add_flag("--overwrite", o.overwrite, "Overwrite an existing file");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,15 @@ struct BoneInput {
   std::optional<double> max_memory;  // [GB]
 };
 void add_bone_input(CLI::App& sub, BoneInput& o);
+
+/// A part of a volume.
+struct BoneBox {
+  std::vector<double> crop;    // [mm]
+  std::vector<double> around;  // [mm]
+};
+void add_bone_box(CLI::App& sub, BoneBox& o);
+/// The box of --crop or --around, in B. @throws InputError
+std::optional<Eigen::AlignedBox3d> chosen_box(const BoneBox& options);
 
 /// A bone that is written.
 struct BoneOutput {

@@ -10,6 +10,7 @@ void add_bone(CLI::App& app, int& status) {
                  "haptrial bone make temporal ear.nrrd --seed 3", {"", "guide-bone.md"});
   bone->require_subcommand(1);
   add_bone_import(*bone, status);
+  add_bone_atlas(*bone, status);
   add_bone_info(*bone, status);
   add_bone_structures(*bone, status);
   add_bone_export(*bone, status);

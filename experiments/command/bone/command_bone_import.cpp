@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 
 #include "analysis/document/figure_gnuplot.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
+#include "core/base/scratch_folder.h"
 #include "core/bone/model/crop.h"
 #include "core/bone/model/tidy.h"
 #include "experiments/command/arguments.h"
@@ -18,9 +18,7 @@
 namespace haptrial::experiments {
 namespace {
 
-struct BoneImportOptions : BoneInput, BoneOutput {
-  std::vector<double> crop;
-  std::vector<double> around;
+struct BoneImportOptions : BoneInput, BoneOutput, BoneBox {
   std::string segmentation;
   std::vector<std::string> structures;
   std::string mesh_axes{"auto"};
@@ -30,37 +28,6 @@ struct BoneImportOptions : BoneInput, BoneOutput {
 };
 
 namespace fs = std::filesystem;
-
-/// The box of --crop or --around. @throws InputError
-std::optional<Eigen::AlignedBox3d> chosen_box(const BoneImportOptions& options) {
-  const auto finite = [](const std::vector<double>& numbers) {
-    return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
-                                             static_cast<Eigen::Index>(numbers.size()))
-        .allFinite();
-  };
-  const std::vector<double>& crop = options.crop;
-  const std::vector<double>& around = options.around;
-  if (crop.empty() && around.empty()) {
-    return std::nullopt;
-  }
-  if (!crop.empty() && !around.empty()) {
-    throw InputError("--crop and --around both choose a part; write one of them");
-  }
-  if (!around.empty()) {
-    if (around.size() != 4 || !finite(around) || !(around[3] > 0.0)) {
-      throw InputError("--around is not a place and an edge; allowed: X,Y,Z,EDGE [mm]");
-    }
-    const Eigen::Vector3d middle = kMillimetre * Eigen::Vector3d(around[0], around[1], around[2]);
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * kMillimetre * around[3]);
-    return Eigen::AlignedBox3d(middle - half, middle + half);
-  }
-  const bool six = crop.size() == 6 && finite(crop);
-  if (!six || !(crop[0] < crop[1] && crop[2] < crop[3] && crop[4] < crop[5])) {
-    throw InputError("--crop is not a box; allowed: X0,X1,Y0,Y1,Z0,Z1 [mm], the lower first");
-  }
-  return Eigen::AlignedBox3d(kMillimetre * Eigen::Vector3d(crop[0], crop[2], crop[4]),
-                             kMillimetre * Eigen::Vector3d(crop[1], crop[3], crop[5]));
-}
 
 /// "NAME=FILE" for each. @throws InputError
 std::vector<bone::MeshStructure> meshes_of(const BoneImportOptions& options) {
@@ -141,27 +108,18 @@ analysis::Figure histogram_figure(const bone::GreyFindings& findings, const std:
 
 /// Draws NAME.svg or NAME.png elsewhere and brings the one that is asked for.
 void draw_histogram(const BoneImportOptions& options, const bone::GreyFindings& findings) {
-  std::string folder = (fs::temp_directory_path() / "haptrial-histogram-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw RunError(fmt::format("{}: cannot be made", folder));
-  }
-  std::error_code ignored;
+  const ScratchFolder folder("histogram");
+  analysis::draw_figures({histogram_figure(findings, fs::path(options.in).filename().string())},
+                         folder.path());
   try {
-    analysis::draw_figures({histogram_figure(findings, fs::path(options.in).filename().string())},
-                           folder);
     const fs::path ending = fs::path(options.histogram).extension();
-    fs::copy_file(fs::path(folder) / ("histogram" + ending.string()), options.histogram,
+    fs::copy_file(folder.path() / ("histogram" + ending.string()), options.histogram,
                   fs::copy_options::overwrite_existing);
   } catch (const fs::filesystem_error& error) {
-    fs::remove_all(folder, ignored);
     throw InputError(
         fmt::format("{}: cannot be written ({}); choose a folder with write permission",
                     options.histogram, error.code().message()));
-  } catch (...) {
-    fs::remove_all(folder, ignored);
-    throw;
   }
-  fs::remove_all(folder, ignored);
   fmt::print("histogram   {}: a threshold of {:.6g} is suggested\n", options.histogram,
              findings.suggested);
 }
@@ -212,10 +170,7 @@ void add_bone_import(CLI::App& bone, int& status) {
   auto& o = options_of<BoneImportOptions>(*sub, status, bone_import);
   add_bone_input(*sub, o);
   add_bone_output(*sub, o);
-  sub->add_option("--crop", o.crop, "Box to keep: X0,X1,Y0,Y1,Z0,Z1 [mm], as info prints places")
-      ->delimiter(',');
-  sub->add_option("--around", o.around, "Cube to keep about a point: X,Y,Z,EDGE [mm]")
-      ->delimiter(',');
+  add_bone_box(*sub, o);
   sub->add_option("--segmentation", o.segmentation,
                   "Structures of the scan as 3D Slicer saves them (.seg.nrrd)");
   sub->add_option("--structure", o.structures,

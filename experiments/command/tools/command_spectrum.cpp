@@ -10,6 +10,7 @@
 #include "analysis/document/figure_gnuplot.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
+#include "core/base/scratch_folder.h"
 #include "core/base/whole_file.h"
 #include "core/sound/power_spectrum.h"
 #include "core/sound/wav.h"
@@ -163,26 +164,17 @@ void draw(const SpectrumOptions& options, const sound::PowerSpectrum& recorded,
   figure.series.push_back(
       curve(made, "from its peaks", {.color = "#c8553d", .dash = "(6,3)", .width = 1.5}, kHighest));
   figure.height = 0.45;
-  std::string folder = (fs::temp_directory_path() / "haptrial-spectrum-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw RunError(fmt::format("{}: cannot be made", folder));
-  }
-  std::error_code ignored;
+  const ScratchFolder folder("spectrum");
+  analysis::draw_figures({figure}, folder.path());
   try {
-    analysis::draw_figures({figure}, folder);
     const fs::path drawn =
-        fs::path(folder) / ("spectrum" + fs::path(options.picture).extension().string());
+        folder.path() / ("spectrum" + fs::path(options.picture).extension().string());
     fs::copy_file(drawn, options.picture, fs::copy_options::overwrite_existing);
   } catch (const fs::filesystem_error& error) {
-    fs::remove_all(folder, ignored);
     throw InputError(
         fmt::format("{}: cannot be written ({}); choose a folder with write permission",
                     options.picture, error.code().message()));
-  } catch (...) {
-    fs::remove_all(folder, ignored);
-    throw;
   }
-  fs::remove_all(folder, ignored);
 }
 
 int spectrum(const SpectrumOptions& options) {
