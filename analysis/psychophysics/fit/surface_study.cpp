@@ -15,7 +15,7 @@ namespace haptrial::analysis::trials {
 namespace {
 
 constexpr std::size_t kPoints = 9;        // of the contour, in tables
-constexpr std::size_t kDrawnPoints = 33;  // of a contour without a formula
+constexpr std::size_t kDrawnPoints = 17;  // of a contour without a formula; every other is told
 
 void add_contour(SurfaceCondition& one, const psychometric::QuestDefinition& definition) {
   if (one.variables.size() != 2) {
@@ -55,7 +55,7 @@ Contour contour_of(const std::vector<double>& over,
 }
 
 std::vector<psychometric::SurfaceThreshold> thresholds_over(
-    const psychometric::ThresholdSurface& surface, const std::vector<double>& over) {
+    const psychometric::SurfacePosterior& surface, const std::vector<double>& over) {
   std::vector<psychometric::Level> others;
   for (const double each : over) {
     others.push_back({each});
@@ -78,11 +78,10 @@ double end_of(double level) {
 }
 
 /// A surface without a formula, from the answers of all sessions.
-void fit_smooth(SurfaceCondition& one, psychometric::SurfaceParameters parameters) {
-  parameters.trials = static_cast<int>(one.trials.size());
-  psychometric::ThresholdSurface surface(parameters);
+void fit_smooth(SurfaceCondition& one, const psychometric::SurfaceParameters& parameters) {
+  psychometric::SurfacePosterior surface(parameters);
   for (const SurfaceTrial& trial : one.trials) {
-    surface.report(static_cast<double>(trial.outcome), trial.stimulus);
+    surface.report(trial.outcome == 1, trial.stimulus);
   }
   one.fit = SurfaceFit{one.trials.size(), {}, {}};
   one.share = parameters.target;
@@ -91,11 +90,11 @@ void fit_smooth(SurfaceCondition& one, psychometric::SurfaceParameters parameter
     return;
   }
   const std::vector<double>& levels = parameters.variables[1].levels;
-  const std::vector<double> drawn = spaced(levels, kDrawnPoints), told = spaced(levels, kPoints);
-  one.contour = contour_of(drawn, thresholds_over(surface, drawn), one.share);
-  const auto found = thresholds_over(surface, told);
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    ContourPoint point{told[i], {}, end_of(found[i].low), end_of(found[i].high)};
+  const std::vector<double> drawn = spaced(levels, kDrawnPoints);
+  const auto found = thresholds_over(surface, drawn);
+  one.contour = contour_of(drawn, found, one.share);
+  for (std::size_t i = 0; i < drawn.size(); i += kDrawnPoints / kPoints) {
+    ContourPoint point{drawn[i], {}, end_of(found[i].low), end_of(found[i].high)};
     if (std::isfinite(found[i].median)) {
       point.second = {found[i].median};
     }
