@@ -77,19 +77,30 @@ double end_of(double level) {
   return std::isfinite(level) ? level : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Thresholds over several other variables, at a few of their levels.
+void place_thresholds(SurfaceCondition& one, const psychometric::SurfacePosterior& surface) {
+  const std::vector<psychometric::Level> others = surface.told_at();
+  const auto found = surface.thresholds(others);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    one.placed.push_back(
+        {others[i], end_of(found[i].median), end_of(found[i].low), end_of(found[i].high)});
+  }
+  one.no_contour = "it is drawn over two variables; a table has thresholds at a few levels";
+}
+
 /// A surface without a formula, from the answers of all sessions.
-void fit_smooth(SurfaceCondition& one, const psychometric::SurfaceParameters& parameters) {
-  psychometric::SurfacePosterior surface(parameters);
+/// @param surface  before any answer
+void fit_smooth(SurfaceCondition& one, psychometric::SurfacePosterior surface) {
   for (const SurfaceTrial& trial : one.trials) {
     surface.report(trial.outcome == 1, trial.stimulus);
   }
   one.fit = SurfaceFit{one.trials.size(), {}, {}};
-  one.share = parameters.target;
+  one.share = surface.parameters().target;
   if (one.variables.size() != 2) {
-    one.no_contour = "it is drawn over two variables; the thresholds stand with the procedures";
+    place_thresholds(one, surface);
     return;
   }
-  const std::vector<double>& levels = parameters.variables[1].levels;
+  const std::vector<double>& levels = surface.parameters().variables[1].levels;
   const std::vector<double> drawn = spaced(levels, kDrawnPoints);
   const auto found = thresholds_over(surface, drawn);
   one.contour = contour_of(drawn, found, one.share);
@@ -109,7 +120,7 @@ void fit_smooth(SurfaceCondition& one, const psychometric::SurfaceParameters& pa
 
 void fit(SurfaceCondition& one, const psychometric::Procedure* procedure) {
   if (const auto* smooth = dynamic_cast<const psychometric::ThresholdSurface*>(procedure)) {
-    fit_smooth(one, smooth->parameters());
+    fit_smooth(one, smooth->posterior());
     return;
   }
   const auto* quest = dynamic_cast<const psychometric::QuestPlus*>(procedure);

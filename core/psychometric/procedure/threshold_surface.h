@@ -30,6 +30,8 @@ class ThresholdSurface final : public Procedure {
   std::vector<SurfaceThreshold> thresholds(const std::vector<Level>& others) const {
     return posterior_.thresholds(others);
   }
+  /// What the answers so far say, without the choice of a stimulus.
+  const SurfacePosterior& posterior() const noexcept { return posterior_; }
   const SurfaceParameters& parameters() const noexcept { return posterior_.parameters(); }
 
  private:
