@@ -9,6 +9,7 @@
 
 #include "core/base/counted.h"
 #include "experiments/methods/study_methods.h"
+#include "experiments/study/session_name.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
@@ -118,6 +119,52 @@ std::string loop_words(const std::vector<MethodsSession>& sessions) {
                                   overruns);
 }
 
+/// Trials of a session that a tutor led, and all; those that count alone.
+std::array<int, 2> led_trials(const MethodsSession& session, const protocols::Definition& d,
+                              const std::string& group) {
+  std::set<int> led, all;
+  const int participant = std::max(1, number_of_subject(session.facts.info.subject)) - 1;
+  for (const record::PassRow& pass : session.passes) {
+    if (!pass.practice) {
+      all.insert(pass.trial);
+      if (!session.tutor.empty() && d.is_led(static_cast<int>(session.facts.info.session),
+                                             {pass.trial, participant, group})) {
+        led.insert(pass.trial);
+      }
+    }
+  }
+  return {static_cast<int>(led.size()), static_cast<int>(all.size())};
+}
+
+/// Who was led, by group; nothing without a tutor.
+void add_led(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
+             Document& document) {
+  std::map<std::string, std::array<int, 2>> counts;
+  std::set<std::string> tutors;
+  for (const MethodsSession& session : sessions) {
+    if (session.analysed) {
+      const std::string group =
+          d.groups.size() > 1 ? protocols::group_of(d.groups, session.facts.info.subject) : "";
+      const auto [led, all] = led_trials(session, d, group);
+      counts[group][0] += led;
+      counts[group][1] += all;
+      if (led > 0) {
+        tutors.insert(session.tutor);
+      }
+    }
+  }
+  if (tutors.empty()) {
+    return;
+  }
+  std::vector<std::string> words;
+  for (const auto& [group, count] : counts) {
+    words.push_back(fmt::format("{}{} of {}", group.empty() ? "" : group + " ", count[0],
+                                counted(static_cast<std::size_t>(count[1]), "trial", "trials")));
+  }
+  document.paragraph(fmt::format("A tutor led the hand ({}): {}.", fmt::join(tutors, "; "),
+                                 fmt::join(words, ", ")));
+}
+
 }  // namespace
 
 void add_participants(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
@@ -189,7 +236,8 @@ void add_apparatus(const std::vector<MethodsSession>& sessions, const protocols:
       })));
 }
 
-void add_done(const std::vector<MethodsSession>& sessions, Document& document) {
+void add_done(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
+              Document& document) {
   std::map<std::string, std::array<int, 2>> passes;  // completed, aborted
   std::vector<std::vector<std::string>> rows;
   for (const MethodsSession& session : sessions) {
@@ -217,6 +265,7 @@ void add_done(const std::vector<MethodsSession>& sessions, Document& document) {
   constexpr std::size_t kMany = 24;
   document.table({"condition", "pass", "completed", "aborted"}, conditions,
                  conditions.size() > kMany ? "Passes of each condition" : "");
+  add_led(sessions, d, document);
   document.table({"participant", "session", "trials planned at most", "done", "skipped",
                   "never completed", "ended early"},
                  rows, rows.size() > kMany ? "Trials of each session" : "");

@@ -17,6 +17,11 @@ void read_rest(MethodsSession& session) {
   const record::SessionReader reader(session.facts.file);
   session.passes = reader.passes();
   session.seen = !reader.frames().empty();
+  for (const record::EventRow& event : reader.events()) {
+    if (event.kind == "tutor" && !event.text.ends_with("teaches")) {
+      session.tutor = event.text.substr(0, event.text.find(" from "));
+    }
+  }
   for (const record::RunRow& run : reader.runs()) {
     session.ticks += run.counts.ticks;
     session.overruns += run.counts.overruns;
@@ -64,7 +69,7 @@ analysis::FindingList study_methods(const std::vector<fs::path>& analysed) {
   add_participants(sessions, *experiment.definition, document);
   add_apparatus(sessions, *experiment.definition, document);
   experiment.study->add_methods(*experiment.definition, info.seed, document);
-  add_done(sessions, document);
+  add_done(sessions, *experiment.definition, document);
   lower_headings(document);
   list.blocks = std::move(document.blocks);
   return list;

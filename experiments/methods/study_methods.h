@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "analysis/document/finding.h"
@@ -15,6 +16,7 @@ struct MethodsSession {
   bool analysed{false};
   std::vector<record::PassRow> passes{};  // none of a session that is not analysed
   std::uint64_t ticks{0}, overruns{0};    // of the servo loop; 0 ticks: the file does not say
+  std::string tutor{};                    // recorded run or session that led the hand; empty: none
   bool seen{false};                       // frames of the participant's window are recorded
 };
 
@@ -30,7 +32,9 @@ void add_participants(const std::vector<MethodsSession>& sessions,
                       const protocols::Definition& definition, analysis::Document& document);
 void add_apparatus(const std::vector<MethodsSession>& sessions,
                    const protocols::Definition& definition, analysis::Document& document);
-void add_done(const std::vector<MethodsSession>& sessions, analysis::Document& document);
+/// Trials as planned and as done, and in how many of each group a tutor led the hand.
+void add_done(const std::vector<MethodsSession>& sessions, const protocols::Definition& definition,
+              analysis::Document& document);
 
 /// Adds study_methods() to what analyses find. A second call does nothing.
 void add_study_methods();

@@ -1,7 +1,5 @@
 #include "protocols/force_training/force_trials.h"
 
-#include <array>
-
 #include "protocols/force_training/earlier_lessons.h"
 #include "protocols/force_training/guided_passes.h"
 #include "protocols/force_training/path_drawing.h"
@@ -18,9 +16,7 @@ ForceTrials::ForceTrials(const ForceDefinition& definition, const SessionPlace& 
       expert_(d_.shows_expert() ? std::make_unique<ExpertLog>() : nullptr) {}
 
 std::span<const record::Phase> ForceTrials::phases() const {
-  static constexpr std::array kPhases{record::Phase::kTraining, record::Phase::kTest};
-  const bool trains = d_.session_plan(place_.session).gives;
-  return trains ? std::span(kPhases) : std::span(kPhases).last(1);
+  return passes_of(d_, place_.session);
 }
 
 std::unique_ptr<Rig> ForceTrials::virtual_rig() const {

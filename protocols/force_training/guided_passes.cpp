@@ -101,7 +101,7 @@ GuidedPass guided_pass(const ForceDefinition& d, const GuidedTrial& trial, Phase
 Eigen::Vector3d force_aside(const ForceDefinition& d, const GuidedTrial& trial,
                             const Eigen::Vector3d& offset) {
   constexpr double kIntoRun = 0.1;  // [s]
-  PassRunner runner(d, trial.plan, trial.stimulus, Phase::kTraining);
+  PassRunner runner(d, trial.plan, trial.stimulus, trial.passes.front().phase);
   int left = static_cast<int>(kIntoRun * d.rate);
   while (left > 0 && runner.runs()) {
     left -= runner.tick().stage == Stage::kRun ? 1 : 0;
@@ -140,6 +140,12 @@ const GuidedTick* GuidedPass::middle_of(Stage stage) const {
   return count == 0 ? nullptr : &*(first + count / 2);
 }
 
+std::span<const Phase> passes_of(const ForceDefinition& d, int session) {
+  static constexpr std::array kPhases{Phase::kTraining, Phase::kTest};
+  const std::span all(kPhases);
+  return d.session_plan(session).gives ? all : all.last(1);
+}
+
 std::vector<PlannedTrial> planned_trials_of(const ForceDefinition& d, const SessionPlace& place) {
   return plan_trials(d.design_of(place.session, place.participant), place.participant, place.seed,
                      place.person_seed);
@@ -157,7 +163,7 @@ GuidedTrial guided_trial(const ForceDefinition& d, const SessionPlace& place, in
   const PlannedTrial& trial = plan[static_cast<std::size_t>(number - 1)];
   GuidedTrial guided{
       most, trial, stimulus::make_stimulus(d.trajectory, d.force_pattern, trial.stimulus_seed), {}};
-  for (const Phase& phase : {Phase::kTraining, Phase::kTest}) {
+  for (const Phase& phase : passes_of(d, place.session)) {
     guided.passes.push_back(guided_pass(d, guided, phase));
   }
   guided.aside = forces_aside(d, guided);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "core/base/point_state.h"
@@ -43,8 +44,8 @@ struct GuidedTrial {
   int most{1};  // trials of the session, practice included
   PlannedTrial plan;
   stimulus::Stimulus stimulus;
-  std::vector<GuidedPass> passes;   // training and test
-  std::vector<ForceAside> aside{};  // of the training's run, shortly after it has begun
+  std::vector<GuidedPass> passes;   // those of the session: training and test, or the test alone
+  std::vector<ForceAside> aside{};  // of the first pass's run, shortly after it has begun
 };
 
 /// Runs the passes of a trial with a hand that waits at the start, follows the path exactly, and
@@ -53,6 +54,9 @@ struct GuidedTrial {
 /// @param number  of the trial in the session, practice included, from 1
 /// @throws InputError for a number beyond the session
 GuidedTrial guided_trial(const ForceDefinition& definition, const SessionPlace& place, int number);
+
+/// The passes of each trial of a session, in their order: one that gives nothing only tests.
+std::span<const record::Phase> passes_of(const ForceDefinition& definition, int session);
 
 /// The planned trials of a session, practice first.
 std::vector<PlannedTrial> planned_trials_of(const ForceDefinition& definition,

@@ -190,6 +190,8 @@ TEST_F(LearningSessionTest, TheReportComparesChangesBetweenGroups) {
   EXPECT_THAT(report,
               AllOf(HasSubstr("# Learning in drillings"), HasSubstr("## Learning from session"),
                     HasSubstr("change to post-test"), Not(HasSubstr("As published"))));
+  EXPECT_THAT(report, testing::ContainsRegex("A tutor led the hand .S01-session-1.h5 trial 1.: "
+                                             "alone 0 of .* led [1-9]"));
   const auto json = nlohmann::json::parse(test::read_text(*folder_ / "out" / "statistics.json"));
   const auto& learning = json.at("learning");
   EXPECT_EQ(learning.at("baseline"), "pre-test");

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 using test::CommandResult;
 using test::run_command;
 using testing::HasSubstr;
+using testing::Not;
 
 class NextCommandTest : public testing::Test {
  protected:
@@ -51,17 +52,23 @@ TEST_F(NextCommandTest, ADecidedStudyAsksForNobody) {
   const CommandResult decided = next();
   EXPECT_EQ(decided.status, 0) << decided.errors;
   EXPECT_THAT(decided.output, HasSubstr("the study has ended: there is an effect"));
-  EXPECT_THAT(decided.output, testing::Not(HasSubstr("next: ")));
+  EXPECT_THAT(decided.output, Not(HasSubstr("next: ")));
   const CommandResult roster = run("roster crossmodal_congruency.toml out --json roster.json");
   EXPECT_EQ(roster.status, 0) << roster.errors;
   EXPECT_THAT(roster.output, HasSubstr("the study has ended: there is an effect"));
   EXPECT_THAT(roster.output, HasSubstr("nobody is next"));
-  EXPECT_THAT(roster.output, testing::Not(HasSubstr("next: ")));
+  EXPECT_THAT(roster.output, Not(HasSubstr("next: ")));
   const auto json = nlohmann::json::parse(file_text(folder_ / "roster.json"));
   EXPECT_EQ(json["ended"], true);
   EXPECT_TRUE(json["next"].empty());
   EXPECT_THAT(run("start crossmodal_congruency.toml --check --out out").output,
               HasSubstr("the study has ended: there is an effect"));
+  EXPECT_THAT(run("run crossmodal_congruency.toml --out more --subject S06 --trials 1").output,
+              Not(HasSubstr("the study has ended")))
+      << "nobody has come there";
+  EXPECT_THAT(run("run crossmodal_congruency.toml --out out --subject S06 --trials 1").output,
+              testing::ContainsRegex("warning: congruent < incongruent, .*the study has ended: "
+                                     "there is an effect.*recording "));
   EXPECT_THAT(run("analyze out").output,
               HasSubstr("Mean reaction time. When the study ends: congruent < incongruent, after"));
   EXPECT_THAT(file_text(folder_ / "out/results.json"), HasSubstr("\"most_participants\": 12"));

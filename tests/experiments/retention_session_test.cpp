@@ -205,6 +205,11 @@ TEST_F(RetentionSessionTest, TheReportComparesChangesBetweenGroups) {
   // The conditions are compared right after training alone: two groups of two people, six trials.
   EXPECT_EQ(json.at("trials"), 24);
   EXPECT_EQ(json.at("participants"), 4);
+  const auto& judged = json.at("quality").at("participants");
+  ASSERT_EQ(judged.size(), 4u) << "the control group is not judged before a training";
+  for (const auto& participant : judged) {
+    EXPECT_EQ(participant.at("trials"), 18) << "one training and two tests of six trials after it";
+  }
 }
 
 TEST_F(RetentionSessionTest, ASessionOfOneAloneIsTheSameAsInTheWholeRehearsal) {

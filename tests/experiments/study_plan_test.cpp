@@ -69,10 +69,9 @@ TEST_F(StudyPlanTest, IsWrittenOnceAndNamesWhatChanged) {
 }
 
 TEST_F(StudyPlanTest, PowerIsThatOfTheTestOrOfASimulation) {
-  write_study("effect = 0.9\nretain_until = \"2020-02-29\"\n");
+  write_study("effect = 0.9\nretain_until = \"2120-02-29\"\n");
   const auto planned = run("plan study.toml");
   ASSERT_EQ(planned.status, 0) << planned.errors;
-  EXPECT_THAT(planned.output, HasSubstr("was to be kept until 2020-02-29, which is over"));
   const auto closed = run("power t --design paired --delta 0.9 --sd 1 --n 12");
   ASSERT_EQ(closed.status, 0) << closed.errors;
   const double power = std::stod(closed.output.substr(closed.output.find("power ") + 6));
@@ -90,6 +89,27 @@ TEST_F(StudyPlanTest, PowerIsThatOfTheTestOrOfASimulation) {
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.errors, HasSubstr("is of the study stiffness_discrimination"));
   EXPECT_EQ(run("plan study.toml --out other --power .").status, 2);
+}
+
+/// A new plan has a day that is to come; one that was made long ago says when its day is over.
+TEST_F(StudyPlanTest, DataIsKeptUntilADayThatIsToCome) {
+  write_study("retain_until = \"2020-02-29\"\n");
+  const auto refused = run("plan study.toml");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("study.toml: plan.retain_until is 2020-02-29, which is "
+                                        "over; allowed: a date from today on"));
+  EXPECT_FALSE(fs::exists(folder_ / "study.plan.json"));
+  write_study("retain_until = \"2120-02-29\"\n");
+  ASSERT_EQ(run("plan study.toml").status, 0);
+  std::string aged = file_text(folder_ / "study.plan.json");
+  for (auto at = aged.find("2120-02-29"); at != std::string::npos; at = aged.find("2120-02-29")) {
+    aged.replace(at, 10, "2020-02-29");
+  }
+  test::write_text(folder_ / "study.plan.json", aged);
+  write_study("retain_until = \"2020-02-29\"\n");
+  const auto over = run("plan study.toml");
+  EXPECT_THAT(over.output + over.errors, HasSubstr("2020-02-29, which is over"));
+  EXPECT_EQ(over.status, 0) << over.errors;
 }
 
 TEST_F(StudyPlanTest, MistakesOfATableAreNamed) {

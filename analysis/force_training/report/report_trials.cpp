@@ -48,17 +48,22 @@ void add_participant_quality(Document& document,
       rows);
 }
 
-void add_flagged(Document& document, const StudyResult& study) {
+/// @param trials  whose quality is judged
+void add_flagged(Document& document, const std::vector<TrialScore>& trials, bool several_sessions) {
   Rows rows;
   std::size_t flagged = 0;
-  for (const TrialScore& score : study.scores) {
+  for (const TrialScore& score : trials) {
     std::string reasons;
     for (const TrialFlag& flag : flags_of(score.quality)) {
       reasons += (reasons.empty() ? "" : "; ") + flag.reason;
     }
     flagged += reasons.empty() ? 0 : 1;
     if (!reasons.empty() && rows.size() < kMostRows) {
-      rows.push_back({score.subject, std::to_string(score.trial), score.condition, reasons});
+      rows.push_back({score.subject,
+                      several_sessions
+                          ? fmt::format("{} of session {}", score.trial, score.session)
+                          : std::to_string(score.trial),
+                      score.condition, reasons});
     }
   }
   if (flagged == 0) {
@@ -84,8 +89,12 @@ void add_trial_quality(Document& document, const StudyResult& study) {
       "a "
       "number is far from what the shipped studies give; a flag excludes nothing by itself. "
       "scores.csv has these numbers, and more, for each trial.");
-  add_participant_quality(document, participant_quality(study.scores));
-  add_flagged(document, study);
+  const std::vector<TrialScore> trials = judged_trials(study.scores, study.tests);
+  if (!study.tests.empty()) {
+    document.paragraph("Tests of participants whom no session had trained yet are not judged.");
+  }
+  add_participant_quality(document, participant_quality(trials));
+  add_flagged(document, trials, !study.planned_sessions.empty());
 }
 
 }  // namespace haptrial::analysis

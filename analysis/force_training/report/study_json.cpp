@@ -271,7 +271,8 @@ Json to_json(const std::optional<Spread>& s) {
 
 Json quality(const StudyResult& study) {
   Json all{{"participants", Json::array()}, {"flagged", Json::array()}};
-  for (const ParticipantQuality& p : participant_quality(study.scores)) {
+  const std::vector<TrialScore> trials = judged_trials(study.scores, study.tests);
+  for (const ParticipantQuality& p : participant_quality(trials)) {
     all["participants"].push_back({{"subject", p.subject},
                                    {"trials", p.trials},
                                    {"flagged", p.flagged},
@@ -280,9 +281,10 @@ Json quality(const StudyResult& study) {
                                    {"duration_s", to_json(p.duration)},
                                    {"lag_s", to_json(p.lag)}});
   }
-  for (const TrialScore& score : study.scores) {
+  for (const TrialScore& score : trials) {
     for (const TrialFlag& flag : flags_of(score.quality)) {
       all["flagged"].push_back({{"subject", score.subject},
+                                {"session", score.session},
                                 {"trial", score.trial},
                                 {"flag", flag.name},
                                 {"reason", flag.reason}});

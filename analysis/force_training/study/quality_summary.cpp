@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <map>
 
 #include "analysis/statistics/base/descriptive.h"
@@ -86,6 +87,22 @@ void add_few_trials(std::vector<std::string>& alarms, std::span<const TrialScore
 }
 
 }  // namespace
+
+std::vector<TrialScore> judged_trials(std::span<const TrialScore> scores,
+                                      std::span<const TrialScore> tests) {
+  std::map<std::string, std::int32_t> first_training;
+  for (const TrialScore& score : scores) {
+    const auto [at, fresh] = first_training.emplace(score.subject, score.session);
+    at->second = std::min(at->second, score.session);
+  }
+  std::vector<TrialScore> judged(scores.begin(), scores.end());
+  std::ranges::copy_if(tests, std::back_inserter(judged), [&](const TrialScore& test) {
+    const auto trained = first_training.find(test.subject);
+    return trained != first_training.end() && test.session > trained->second;
+  });
+  std::ranges::stable_sort(judged, {}, &TrialScore::subject);
+  return judged;
+}
 
 std::vector<ParticipantQuality> participant_quality(std::span<const TrialScore> scores) {
   std::vector<std::string> order;

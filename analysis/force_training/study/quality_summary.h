@@ -27,6 +27,11 @@ struct ParticipantQuality {
   std::optional<Spread> lag;                  // [s]
 };
 
+/// The trials whose quality is judged: those of sessions that train, and of tests that came after a
+/// training of the participant. Before a training nobody knows what to press.
+std::vector<TrialScore> judged_trials(std::span<const TrialScore> scores,
+                                      std::span<const TrialScore> tests);
+
 /// Quality by subject, in the order of the scores. Quantities are empty if no trial has them.
 std::vector<ParticipantQuality> participant_quality(std::span<const TrialScore> scores);
 

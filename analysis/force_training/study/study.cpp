@@ -138,7 +138,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
   study.stimulus = sessions.front().recalls.stimulus;
   study.parameters = described(parameters);
   study.over_path = parameters.over_path;
-  study.alarms = quality_alarms(study.scores);  // before a training nobody knows what to press
+  study.alarms = quality_alarms(judged_trials(study.scores, study.tests));
   return study;
 }
 

@@ -15,7 +15,7 @@ namespace haptrial::analysis::trials {
 namespace {
 
 constexpr std::size_t kPoints = 9;        // of the contour, in tables
-constexpr std::size_t kDrawnPoints = 33;  // of a contour without a formula
+constexpr std::size_t kDrawnPoints = 17;  // of a contour without a formula; every other is told
 
 void add_contour(SurfaceCondition& one, const psychometric::QuestDefinition& definition) {
   if (one.variables.size() != 2) {
@@ -55,7 +55,7 @@ Contour contour_of(const std::vector<double>& over,
 }
 
 std::vector<psychometric::SurfaceThreshold> thresholds_over(
-    const psychometric::ThresholdSurface& surface, const std::vector<double>& over) {
+    const psychometric::SurfacePosterior& surface, const std::vector<double>& over) {
   std::vector<psychometric::Level> others;
   for (const double each : over) {
     others.push_back({each});
@@ -77,25 +77,35 @@ double end_of(double level) {
   return std::isfinite(level) ? level : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Thresholds over several other variables, at a few of their levels.
+void place_thresholds(SurfaceCondition& one, const psychometric::SurfacePosterior& surface) {
+  const std::vector<psychometric::Level> others = surface.told_at();
+  const auto found = surface.thresholds(others);
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    one.placed.push_back(
+        {others[i], end_of(found[i].median), end_of(found[i].low), end_of(found[i].high)});
+  }
+  one.no_contour = "it is drawn over two variables; a table has thresholds at a few levels";
+}
+
 /// A surface without a formula, from the answers of all sessions.
-void fit_smooth(SurfaceCondition& one, psychometric::SurfaceParameters parameters) {
-  parameters.trials = static_cast<int>(one.trials.size());
-  psychometric::ThresholdSurface surface(parameters);
+/// @param surface  before any answer
+void fit_smooth(SurfaceCondition& one, psychometric::SurfacePosterior surface) {
   for (const SurfaceTrial& trial : one.trials) {
-    surface.report(static_cast<double>(trial.outcome), trial.stimulus);
+    surface.report(trial.outcome == 1, trial.stimulus);
   }
   one.fit = SurfaceFit{one.trials.size(), {}, {}};
-  one.share = parameters.target;
+  one.share = surface.parameters().target;
   if (one.variables.size() != 2) {
-    one.no_contour = "it is drawn over two variables; the thresholds stand with the procedures";
+    place_thresholds(one, surface);
     return;
   }
-  const std::vector<double>& levels = parameters.variables[1].levels;
-  const std::vector<double> drawn = spaced(levels, kDrawnPoints), told = spaced(levels, kPoints);
-  one.contour = contour_of(drawn, thresholds_over(surface, drawn), one.share);
-  const auto found = thresholds_over(surface, told);
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    ContourPoint point{told[i], {}, end_of(found[i].low), end_of(found[i].high)};
+  const std::vector<double>& levels = surface.parameters().variables[1].levels;
+  const std::vector<double> drawn = spaced(levels, kDrawnPoints);
+  const auto found = thresholds_over(surface, drawn);
+  one.contour = contour_of(drawn, found, one.share);
+  for (std::size_t i = 0; i < drawn.size(); i += kDrawnPoints / kPoints) {
+    ContourPoint point{drawn[i], {}, end_of(found[i].low), end_of(found[i].high)};
     if (std::isfinite(found[i].median)) {
       point.second = {found[i].median};
     }
@@ -110,7 +120,7 @@ void fit_smooth(SurfaceCondition& one, psychometric::SurfaceParameters parameter
 
 void fit(SurfaceCondition& one, const psychometric::Procedure* procedure) {
   if (const auto* smooth = dynamic_cast<const psychometric::ThresholdSurface*>(procedure)) {
-    fit_smooth(one, smooth->parameters());
+    fit_smooth(one, smooth->posterior());
     return;
   }
   const auto* quest = dynamic_cast<const psychometric::QuestPlus*>(procedure);

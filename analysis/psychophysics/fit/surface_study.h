@@ -13,6 +13,12 @@
 
 namespace haptrial::analysis::trials {
 
+/// A threshold of the first variable without a formula; NaN beyond its levels.
+struct PlacedThreshold {
+  psychometric::Level others;  // levels of the other variables
+  double median, low, high;    // of 95 %
+};
+
 /// A function of several stimulus variables, of one participant under one condition.
 struct SurfaceCondition {
   std::string participant;
@@ -26,6 +32,7 @@ struct SurfaceCondition {
   double share{0.5};  // of answers 1 at the threshold
   std::optional<Contour> contour;
   std::vector<ContourPoint> points;
+  std::vector<PlacedThreshold> placed;  // of three variables or four, without a formula
   std::string no_contour;  // why there is none
 };
 

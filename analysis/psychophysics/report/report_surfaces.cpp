@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/statistics/design/wording.h"
 
@@ -40,6 +41,8 @@ void add_parameters(Document& document, const std::vector<SurfaceCondition>& sur
   }
 }
 
+std::string end_words(double value) { return std::isnan(value) ? "open" : number(value); }
+
 std::string second_of(const ContourPoint& point) {
   if (point.second.empty()) {
     return "none in the range";
@@ -51,8 +54,7 @@ std::string second_of(const ContourPoint& point) {
   if (values.size() > 1) {
     return fmt::format("{}", fmt::join(values, " and "));
   }
-  const auto end = [](double value) { return value == value ? number(value) : "open"; };
-  return fmt::format("{} [{}, {}]", values.front(), end(point.low), end(point.high));
+  return fmt::format("{} [{}, {}]", values.front(), end_words(point.low), end_words(point.high));
 }
 
 /// @param unit  of both variables; empty if the definition states none
@@ -82,6 +84,28 @@ void add_points(Document& document, const std::vector<SurfaceCondition>& surface
     document.table({"participant", "at", "threshold of",
                     unit.empty() ? "level [95 %]" : fmt::format("level [95 %] ({})", unit)},
                    rows, "The threshold over both variables");
+  }
+}
+
+/// Thresholds over several other variables, at a few of their levels.
+void add_placed(Document& document, const std::vector<SurfaceCondition>& surfaces) {
+  Rows rows;
+  for (const SurfaceCondition& one : surfaces) {
+    for (const PlacedThreshold& each : one.placed) {
+      std::string at;
+      for (std::size_t k = 0; k < each.others.size(); ++k) {
+        at += fmt::format("{}{} = {:.4g}", at.empty() ? "" : ", ", one.variables[k + 1],
+                          each.others[k]);
+      }
+      rows.push_back({condition_name(one), at, one.variables.front(),
+                      fmt::format("{} [{}, {}]",
+                                  std::isnan(each.median) ? "none in the range" : number(each.median),
+                                  end_words(each.low), end_words(each.high))});
+    }
+  }
+  if (!rows.empty()) {
+    document.table({"participant", "at", "threshold of", "level [95 %]"}, rows,
+                   "The threshold over all variables");
   }
 }
 
@@ -117,6 +141,7 @@ void add_surfaces(Document& document, const TrialsResult& result,
   }
   add_parameters(document, result.surfaces);
   add_points(document, result.surfaces, result.plan.function.axis.unit);
+  add_placed(document, result.surfaces);
   document.paragraph(
       method_of(result.surfaces) +
       fmt::format(" The threshold is where the probability of the answer 1 is {:g} %; its interval "
@@ -127,7 +152,7 @@ void add_surfaces(Document& document, const TrialsResult& result,
                   result.plan.by.empty()
                       ? ""
                       : " Conditions are compared in the mean of each participant's threshold over "
-                        "the other variable, and in its slope by least squares."));
+                        "the other variables, and over a single one in its slope by least squares."));
 }
 
 }  // namespace haptrial::analysis::trials

@@ -35,6 +35,17 @@ Json points_json(const SurfaceCondition& one) {
   return all;
 }
 
+Json placed_json(const SurfaceCondition& one) {
+  Json all = Json::array();
+  for (const PlacedThreshold& each : one.placed) {
+    all.push_back({{"others", each.others},
+                   {"threshold", known(each.median)},
+                   {"low_95", known(each.low)},
+                   {"high_95", known(each.high)}});
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string surfaces_csv(const TrialsResult& result) {
@@ -66,7 +77,7 @@ std::string surfaces_json(const TrialsResult& result) {
               {"trials", one.trials.size()},    {"threshold_share", one.share}};
     if (one.fit) {
       made["parameters"] = parameters_json(*one.fit);
-      made["threshold"] = points_json(one);
+      made["threshold"] = one.placed.empty() ? points_json(one) : placed_json(one);
     } else {
       made["not_defined"] = one.fit.because();
     }

@@ -307,6 +307,23 @@ void add_times(TrialsResult& result) {
   }
 }
 
+/// The mean threshold of surfaces over several other variables; nothing is known of those with a
+/// threshold beyond the levels, which are left out as open.
+std::vector<QuantityValue> placed_values(const TrialsResult& result) {
+  std::vector<QuantityValue> values;
+  for (const SurfaceCondition& one : result.surfaces) {
+    double sum = 0.0;
+    for (const PlacedThreshold& each : one.placed) {
+      sum += each.median;
+    }
+    if (!one.placed.empty()) {
+      values.push_back({one.participant, one.levels, sum / static_cast<double>(one.placed.size()),
+                        std::isnan(sum)});
+    }
+  }
+  return values;
+}
+
 /// A number of each surface's threshold over its other variable; nothing is known of surfaces whose
 /// threshold is not single everywhere, which are left out as open.
 template <class Value>
@@ -343,9 +360,17 @@ double threshold_slope(const std::vector<ContourPoint>& points) {
   return products / squares;
 }
 
-/// Conditions are compared in the mean threshold of each participant over the other variable, and
-/// in its slope.
+/// Conditions are compared in the mean threshold of each participant over the other variables, and
+/// in its slope over a single one.
 void add_surface_quantities(TrialsResult& result) {
+  const auto placed =
+      std::ranges::find_if(result.surfaces, [](const auto& one) { return !one.placed.empty(); });
+  if (!result.plan.by.empty() && placed != result.surfaces.end()) {
+    result.quantities.push_back(quantity(
+        "surface_threshold", "mean threshold of " + placed->variables.front() + " over the others",
+        result.plan.function.axis.unit, placed_values(result), result.plan));
+    return;
+  }
   const auto drawn =
       std::ranges::find_if(result.surfaces, [](const auto& one) { return !one.points.empty(); });
   if (result.plan.by.empty() || drawn == result.surfaces.end()) {

@@ -24,6 +24,7 @@
 #include "experiments/command/sessions/run_checks.h"
 #include "experiments/command/sessions/run_command.h"
 #include "experiments/command/sessions/run_options.h"
+#include "experiments/command/sessions/session_checks.h"
 #include "experiments/command/sessions/set_option.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/console/console.h"
@@ -177,6 +178,15 @@ void keep_backup(const RunOptions& options, const protocols::Definition& setup,
   std::fflush(stdout);
 }
 
+/// Says that a study which may end early has ended, unless the checklist has said it.
+void warn_of_ended_study(const RunOptions& options, const Experiment& experiment) {
+  const auto end = options.checked ? std::nullopt : check_end_of_study(options, experiment);
+  if (end && end->state == MachineCheck::State::kLimited) {
+    fmt::print("warning: {}\n", end->found);
+    std::fflush(stdout);
+  }
+}
+
 }  // namespace
 
 RunEnd run_command(const RunOptions& asked) {
@@ -194,6 +204,7 @@ RunEnd run_command(const RunOptions& asked) {
     fmt::print("{}\n", chosen);
     std::fflush(stdout);
   }
+  warn_of_ended_study(options, experiment);
   if (!options.case_name.empty()) {
     experiment.definition =
         experiment.study->protocol().of_case(*experiment.definition, options.case_name);

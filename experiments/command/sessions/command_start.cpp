@@ -181,6 +181,7 @@ int start(const StartOptions& asked) {
     fmt::print("nothing was recorded\n");
     return 1;
   }
+  options.checked = true;
   print_next(options, run_command(options));
   return 0;
 }

@@ -224,23 +224,6 @@ MachineCheck check_backup(const std::string& folder, const fs::path& files, doub
   return space;
 }
 
-/// A study that may end early is not to go on past its end by oversight; who has begun may finish.
-std::vector<MachineCheck> check_end_of_study(const RunOptions& options,
-                                             const Experiment& experiment) {
-  if (options.pilot) {
-    return {};
-  }
-  try {
-    const auto standing = study_standing(experiment, options.out, 1);
-    if (!standing) {
-      return {};
-    }
-    return {{"study", has_ended(standing) ? State::kLimited : State::kReady, words_of(*standing)}};
-  } catch (const InputError& error) {
-    return {{"study", State::kLimited, error.what()}};
-  }
-}
-
 /// The machine's checks that matter for this session: not other devices, nor what it does without.
 std::vector<MachineCheck> check_machine(const RunOptions& options, const Definition& d,
                                         const fs::path& files, const Listings& devices) {
@@ -264,6 +247,23 @@ bool SessionChecks::ready() const {
   return std::ranges::find(checks, State::kBroken, &MachineCheck::state) == checks.end();
 }
 
+std::optional<MachineCheck> check_end_of_study(const RunOptions& options,
+                                               const Experiment& experiment) {
+  if (options.pilot || options.resume) {
+    return std::nullopt;
+  }
+  try {
+    const auto standing = study_standing(experiment, session_folder(options), 1);
+    if (!standing) {
+      return std::nullopt;
+    }
+    return MachineCheck{"study", has_ended(standing) ? State::kLimited : State::kReady,
+                        words_of(*standing)};
+  } catch (const InputError& error) {
+    return MachineCheck{"study", State::kLimited, error.what()};
+  }
+}
+
 SessionChecks session_checks(RunOptions& options, const Experiment& experiment) {
   const Definition& d = *experiment.definition;
   options.out = session_folder(options);
@@ -276,7 +276,9 @@ SessionChecks session_checks(RunOptions& options, const Experiment& experiment) 
   found.subject = options.subject;
   found.session = options.session.value_or(1);
   found.seconds = session_seconds(d, options.trials.value_or(d.design.trials));
-  add(check_end_of_study(options, experiment));
+  if (auto end = check_end_of_study(options, experiment)) {
+    found.checks.push_back(std::move(*end));
+  }
   found.checks.push_back(check_duration(options.out, d, found.seconds));
   add(check_definition(options, experiment));
   found.checks.push_back(check_consent(options, d));

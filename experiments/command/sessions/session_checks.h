@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,10 @@ struct SessionChecks {
 /// the channels for a moment and no device.
 /// @param options  filled in with who is next, if they name nobody
 SessionChecks session_checks(RunOptions& options, const Experiment& experiment);
+
+/// How a study that may end early stands: one that has ended is not to go on by oversight. Nothing
+/// for a pilot, for who has begun and may finish, and for a study without such a rule.
+std::optional<MachineCheck> check_end_of_study(const RunOptions& options,
+                                               const Experiment& experiment);
 
 }  // namespace haptrial::experiments

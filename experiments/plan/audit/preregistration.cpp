@@ -198,6 +198,11 @@ bool write_plan(const StudyPlan& plan, const fs::path& file,
     }
     return false;
   }
+  if (!plan.retain_until.empty() && plan.retain_until < plan.made_utc.substr(0, 10)) {
+    throw InputError(
+        fmt::format("{}: plan.retain_until is {}, which is over; allowed: a date from today on",
+                    plan.definition_name, plan.retain_until));
+  }
   WholeFile whole(file);
   whole.write(plan_json(plan));
   whole.finish();

@@ -27,7 +27,8 @@ analysis::Document preregistration(const StudyPlan& plan,
 
 /// Writes the plan as NAME.plan.json, .html and .md. A file that is there is never changed.
 /// @returns whether it was written; false: the same plan is there
-/// @throws InputError if the folder has another plan of this name; says what differs
+/// @throws InputError if the folder has another plan of this name, and says what differs, or for a
+/// new plan whose data was to be kept until a day that is over
 bool write_plan(const StudyPlan& plan, const std::filesystem::path& file,
                 const std::vector<std::string>& description);
 

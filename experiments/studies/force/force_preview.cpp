@@ -75,9 +75,10 @@ void add_timeline(const ForceDefinition& d, const GuidedTrial& trial, const Prev
   preview.document.paragraph(fmt::format(
       "Trial {} of {} in the session: {} {} of block {}, condition {}. Durations are those of a "
       "hand that waits at the start and follows the path exactly. Trials of this protocol have no "
-      "sounds and no questions; questionnaires stand beside the trials.",
+      "sounds and no questions; questionnaires stand beside the trials.{}",
       request.trial, trial.most, trial.plan.practice ? "practice" : "trial", trial.plan.trial,
-      trial.plan.block, trial.plan.condition));
+      trial.plan.block, trial.plan.condition,
+      d.session_plan(1).gives ? "" : " The first session only tests, and trains nobody."));
   preview.add(timeline_figure(bars.size()), timeline_svg(bars));
   preview.document.table({"stage", "lasts [s]", "ends"}, rows);
 }
@@ -150,7 +151,8 @@ void add_course(const ForceDefinition& d, const GuidedPass& pass, Preview& previ
 void add_aside(const GuidedTrial& trial, Preview& preview) {
   analysis::Figure figure;
   figure.name = "force-aside";
-  figure.title = "Force beside the path: training";
+  figure.title =
+      fmt::format("Force beside the path: {}", record::name_of(trial.passes.front().phase));
   figure.x_label = "offset from the path [mm]";
   figure.y_label = "force on the hand [N]";
   figure.height = 0.42;
@@ -189,6 +191,19 @@ void add_gains(const ForceDefinition& d, Preview& preview) {
                   g.force_limit));
 }
 
+/// Sessions that give nothing, for a methods section.
+std::string words_of_tests(const ForceDefinition& d) {
+  std::vector<std::string> names;
+  for (int session = 1; session <= d.sessions(); ++session) {
+    if (!d.session_plan(session).gives) {
+      names.push_back(d.session_name(session));
+    }
+  }
+  return names.empty() ? ""
+                       : fmt::format(" Sessions without training had the test pass alone: {}.",
+                                     fmt::join(names, ", "));
+}
+
 void add_plan(const ForceDefinition& d, std::uint64_t seed, analysis::Document& document) {
   add_fixed_plan(
       d,
@@ -204,10 +219,11 @@ void add_force_methods(const ForceDefinition& d, std::uint64_t seed, analysis::D
   const protocols::GuidanceParameters& g = d.guidance;
   document.heading("Stimuli and procedure");
   document.paragraph(fmt::format(
-      "A trial was a training pass and then a test pass, in which the force was recalled. The plan "
+      "A trial was a training pass and then a test pass, in which the force was recalled.{} The "
+      "plan "
       "has {} blocks, each with one path and one pattern of force {} times under one condition of "
       "training ({}). {}{}",
-      d.design.blocks(), d.design.repetitions, fmt::join(d.design.conditions, ", "),
+      words_of_tests(d), d.design.blocks(), d.design.repetitions, fmt::join(d.design.conditions, ", "),
       d.design.break_after > 0 ? fmt::format("Breaks of {:g} s came after every {} trials. ",
                                              d.design.break_duration, d.design.break_after)
                                : std::string(),

@@ -11,16 +11,14 @@
 
 #include "analysis/exchange/own_findings.h"
 #include "analysis/force_training/report/write_analysis.h"
-#include "analysis/force_training/study/learned_scores.h"
 #include "analysis/force_training/study/study.h"
 #include "analysis/force_training/study/study_summary.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/studies/force/force_preview.h"
 #include "experiments/studies/force/force_study_simulation.h"
+#include "experiments/studies/force/learned_training.h"
 #include "experiments/studies/force/tried_training.h"
-#include "experiments/studies/learning_names.h"
-#include "protocols/definition/groups.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 
@@ -71,46 +69,22 @@ analysis::ScoreParameters scoring_for(const std::filesystem::path& shares,
   return analysis::with_shares_of(shares, std::move(scoring));
 }
 
-std::vector<analysis::SessionOfStudy> planned_sessions(const protocols::Definition& definition) {
-  std::vector<analysis::SessionOfStudy> sessions;
-  for (int session = 1; definition.sessions() > 1 && session <= definition.sessions(); ++session) {
-    sessions.push_back({definition.session_name(session), definition.session_plan(session).gives});
-  }
-  return sessions;
-}
-
-/// Changes from session to session, if the definition has several.
-void add_learned(const protocols::ForceDefinition& definition, const CurveAnalysis& curves,
-                 analysis::StudyResult& study) {
-  if (definition.sessions() == 1) {
-    return;
-  }
-  for (const analysis::SessionSummary& session : study.sessions) {
-    study.groups[session.info.subject] =
-        protocols::group_of(definition.groups, session.info.subject);
-  }
-  study.learned = analysis::learned_study(analysis::learned_scores(study, curves.learning.outcomes),
-                                          curves.learning, learning_names(definition));
-}
-
 analysis::StudyResult analyzed(const AnalysisRequest& request) {
   const StudyFiles& found = request.files;
   const record::SessionInfo& first = found.first;
   const auto definition =
       protocols::parse_force_definition(first.definition, first.definition_name);
-  const CurveAnalysis curves = curve_analysis_of(definition);
+  CurveAnalysis curves = curve_analysis_of(definition);
   std::vector<std::string> remarks;
-  const analysis::AnalysisPlan plan =
-      plan_for(request.planned, request.reference, curves.plan, remarks);
-  analysis::StudyResult study =
-      analysis::analyze_study(found.files, scoring_for(request.shares, curves.scoring, remarks),
-                              request.threads, plan, planned_sessions(definition));
+  curves.plan = plan_for(request.planned, request.reference, curves.plan, remarks);
+  curves.scoring = scoring_for(request.shares, curves.scoring, remarks);
+  const analysis::AnalysisPlan& plan = curves.plan;
+  analysis::StudyResult study = analyze_training(definition, curves, found.files, request.threads);
   if (study.scores.empty()) {
     throw InputError(
         fmt::format("{}: no session {}holds a completed test pass, so nothing can be scored",
                     request.folder.string(), study.tests.empty() ? "" : "that trains "));
   }
-  add_learned(definition, curves, study);
   analysis::check_plan(study.statistics.table, plan_of(request.planned, request.reference));
   if (plan.sequential) {
     study.statistics.tests.sequential =
@@ -179,9 +153,8 @@ class ForceStudy final : public Study {
                                                     const std::string& asked_in,
                                                     const std::string& watched) const override {
     static_cast<void>(watched);  // all of its tests are quick
-    const CurveAnalysis curves = curve_analysis_of(definition);
     return force_study_simulation(dynamic_cast<const protocols::ForceDefinition&>(definition),
-                                  asked_in, curves.scoring, curves.plan);
+                                  asked_in, curve_analysis_of(definition));
   }
 };
 

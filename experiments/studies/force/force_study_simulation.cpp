@@ -7,11 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include "analysis/force_training/study/study.h"
 #include "analysis/force_training/study/study_statistics.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
+#include "experiments/studies/force/learned_training.h"
 #include "experiments/study/study_run.h"
 #include "protocols/interface/trials.h"
 
@@ -111,14 +111,28 @@ SimulatedStudy of_statistics(const StudyStatistics& study, std::size_t trials) {
   return r;
 }
 
+/// The tests of changes from session to session, as the report names them.
+void note_learned(const analysis::LearnedStudy& learned, SimulatedStudy& r) {
+  for (const analysis::LearnedOutcome& outcome : learned.outcomes) {
+    const std::string of = fmt::format("change of {}, ", outcome.title);
+    for (const auto& effect : outcome.tests.effects) {
+      if (effect) {
+        r.tests.push_back({of + effect->factor + ": " + effect->test, effect->p});
+      }
+    }
+    analysis::TestFamily planned = outcome.tests.planned;
+    planned.name = of + planned.name;
+    note_tests(planned, r);
+  }
+}
+
 class ForceStudySimulation final : public StudySimulation {
  public:
   ForceStudySimulation(const protocols::ForceDefinition& definition, std::string asked_in,
-                       analysis::ScoreParameters scoring, analysis::AnalysisPlan plan)
+                       CurveAnalysis curves)
       : d_(definition),
         asked_in_(std::move(asked_in)),
-        scoring_(std::move(scoring)),
-        plan_(std::move(plan)),
+        curves_(std::move(curves)),
         parts_(read_parts(definition)) {
     hours_of_trial_ = d_.longest(d_.design.trials) / d_.design.trials / 3600.0;
   }
@@ -128,6 +142,12 @@ class ForceStudySimulation final : public StudySimulation {
   }
 
   SimulatedStudy responses(std::uint64_t seed) const override {
+    if (d_.sessions() > 1) {
+      throw InputError(
+          fmt::format("{}: responses alone do not simulate force trainings of several sessions; "
+                      "give power.depth = \"sessions\"",
+                      asked_in_));
+    }
     if (!parts_) {
       throw InputError(
           fmt::format("{}: power.responses is missing; give mean, participant, interaction, block "
@@ -139,13 +159,16 @@ class ForceStudySimulation final : public StudySimulation {
       add_session(p, seed, scores);
     }
     analysis::StudyQuestions questions;
-    questions.plan = plan_;
+    questions.plan = curves_.plan;
     return with_hours(of_statistics(analysis::study_statistics(scores, questions), scores.size()));
   }
 
   SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
-    const analysis::StudyResult study = analysis::analyze_study(files, scoring_, 1, plan_);
-    return with_hours(of_statistics(study.statistics, study.scores.size()));
+    const analysis::StudyResult study = analyze_training(d_, curves_, files, 1);
+    SimulatedStudy r =
+        of_statistics(study.statistics, study.scores.size() + study.tests.size());
+    note_learned(study.learned, r);
+    return with_hours(std::move(r));
   }
 
  private:
@@ -198,8 +221,7 @@ class ForceStudySimulation final : public StudySimulation {
 
   const protocols::ForceDefinition& d_;
   std::string asked_in_;  // file with [power]
-  analysis::ScoreParameters scoring_;
-  analysis::AnalysisPlan plan_;
+  CurveAnalysis curves_;
   std::optional<ScoreParts> parts_;
   double hours_of_trial_{0.0};
 };
@@ -208,8 +230,8 @@ class ForceStudySimulation final : public StudySimulation {
 
 std::unique_ptr<StudySimulation> force_study_simulation(
     const protocols::ForceDefinition& definition, const std::string& asked_in,
-    const analysis::ScoreParameters& scoring, const analysis::AnalysisPlan& plan) {
-  return std::make_unique<ForceStudySimulation>(definition, asked_in, scoring, plan);
+    CurveAnalysis curves) {
+  return std::make_unique<ForceStudySimulation>(definition, asked_in, std::move(curves));
 }
 
 }  // namespace haptrial::experiments

@@ -3,9 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/force_training/score/score_parameters.h"
-#include "analysis/statistics/design/analysis_plan.h"
 #include "core/base/definition/table.h"
+#include "experiments/studies/curve_analysis.h"
 #include "experiments/studies/study_simulation.h"
 #include "protocols/force_training/force_definition.h"
 
@@ -23,11 +22,14 @@ namespace haptrial::experiments {
 ///     participant, interaction, block, trial   standard deviations of the parts
 ///     [effects]                 CONDITION = number, as the difference from the mean
 ///
+/// Studies of several sessions are simulated in full alone: as a dry run runs them and the report
+/// analyses them, with the tests of changes from the baseline.
+///
 /// @param definition  outlives what comes back
 /// @param asked_in    file with [power]
 /// @throws InputError for keys that are missing or no conditions of the definition
 std::unique_ptr<StudySimulation> force_study_simulation(
     const protocols::ForceDefinition& definition, const std::string& asked_in,
-    const analysis::ScoreParameters& scoring, const analysis::AnalysisPlan& plan);
+    CurveAnalysis curves);
 
 }  // namespace haptrial::experiments

@@ -12,6 +12,7 @@ namespace haptrial::experiments {
 namespace {
 
 using protocols::ForceDefinition;
+using protocols::GuidedPass;
 using protocols::GuidedTrial;
 using record::Phase;
 
@@ -23,13 +24,17 @@ class TriedTraining final : public TriedPass {
   }
 
   std::vector<std::string> stages() const override {
-    return {Phase::kTraining.name(), Phase::kTest.name()};
+    std::vector<std::string> names;
+    for (const GuidedPass& pass : trial_.passes) {
+      names.emplace_back(pass.phase.name());
+    }
+    return names;
   }
   std::vector<SpaceObject> objects() const override {
     return {{"path", 0, lines_of(trial_.stimulus.path.points())}};
   }
   void choose(std::size_t stage) override {
-    phase_ = stage == 0 ? Phase::kTraining : Phase::kTest;
+    phase_ = trial_.passes[stage].phase;
     begin(
         make_pass(trial_.plan.condition, phase_, trial_.stimulus, d_.guidance, trial_.plan.block));
   }

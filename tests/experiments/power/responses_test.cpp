@@ -161,6 +161,29 @@ TEST(PowerQuestion, WhatHandsProduceIsWatchedInFullSessionsAlone) {
   expect_refused(produced_power("depth = \"sessions\"\n"), "\"constant error: target\"");
 }
 
+/// Of the study of retention, six trials a session and two people a group.
+std::string retention_power(const std::string& rest) {
+  std::string text = file_text(kSource / "docs/worked/teaching/force_retention.toml");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("participants = 12", "participants = 6");
+  replace("trials = 12 ", "trials = 4 ");
+  replace("repetitions = 3 ", "repetitions = 1 ");
+  replace("seen = 4\nseen-and-felt = 4\ncontrol = 4", "seen = 2\nseen-and-felt = 2\ncontrol = 2");
+  replace("speed = 0.016 ", "speed = 0.032 ");
+  return text + "\n[power]\nwatch = \"no such test\"\n" + rest +
+         "[[power.vary]]\nkey = \"subject.forgetting.median\"\nvalues = [0.3]\n";
+}
+
+TEST(PowerQuestion, ForceTrainingsOfSeveralSessionsAreWatchedByTheirChanges) {
+  expect_refused(retention_power(""),
+                 "do not simulate force trainings of several sessions; give power.depth = "
+                 "\"sessions\"");
+  expect_refused(retention_power("depth = \"sessions\"\n"),
+                 "\"change of recall error, planned: seen-and-felt, retention < seen, retention, Welch's t\"");
+}
+
 TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {
   const TemporaryFolder folder;
   const PowerQuestion q = question_of(

@@ -95,10 +95,9 @@ TrialsData data_of(const People& people, std::size_t study) {
 
 std::unique_ptr<psychometric::Procedure> surface_of(const People& people) {
   if (people.smooth) {
-    psychometric::SurfaceParameters p;
-    p.variables = {{"y", even(0.0, 2.0, 9), true}, {"x", even(0.0, 1.0, 5), false}};
-    p.trials = people.trials;
-    return std::make_unique<psychometric::ThresholdSurface>(p);
+    static const psychometric::ThresholdSurface begun({.variables = {
+        {"y", even(0.0, 2.0, 9), true}, {"x", even(0.0, 1.0, 5), false}}});
+    return std::make_unique<psychometric::ThresholdSurface>(begun);
   }
   static const auto tables = std::make_shared<const psychometric::QuestTables>(line());
   return std::make_unique<psychometric::QuestPlus>(tables, psychometric::QuestStop{60, 0.0});
@@ -168,6 +167,122 @@ TEST(SurfaceComparisonTest, TestsOfLinesKeepTheirLevelInNullStudies) { count_nul
 
 TEST(SurfaceComparisonTest, TestsOfSmoothSurfacesKeepTheirLevelInNullStudies) {
   count_null_studies({.smooth = true});
+}
+
+// --- three variables and four -------------------------------------------------------------------
+
+struct Hyperplane {
+  std::size_t others{2};  // variables beside the first
+  int trials{40};
+  double shift{0.0};  // of "on" less "off"
+  double threshold(const std::vector<double>& level) const {
+    double sum = 0.0;
+    for (std::size_t k = 1; k < level.size(); ++k) {
+      sum += level[k] - 0.5;
+    }
+    return 1.0 + 0.2 * sum;
+  }
+};
+
+/// Eight people whose thresholds lie on planes that differ in height.
+TrialsData data_of(const Hyperplane& plane, std::size_t study) {
+  TrialsData data;
+  const auto first = even(0.0, 2.0, 9), other = even(0.0, 1.0, 4);
+  RandomStream random(study, "planes of people");
+  for (std::size_t p = 0; p < 8; ++p) {
+    const std::string name = fmt::format("P{:02}", p + 1);
+    data.sessions.push_back({name + ".h5", name, "", "simulated", true, false});
+    const double own = 0.1 * random.normal();
+    for (const bool on : {false, true}) {
+      const double height = own + 0.05 * random.normal() + (on ? plane.shift : 0.0);
+      for (int i = 0; i < plane.trials; ++i) {
+        std::vector<double> level{first[random.below(first.size())]};
+        for (std::size_t k = 0; k < plane.others; ++k) {
+          level.push_back(other[random.below(other.size())]);
+        }
+        const double yes =
+            random.uniform() < share_of_yes(0.0, level[0], plane.threshold(level) + height, 0.0)
+                ? 1.0
+                : 0.0;
+        StudyTrial trial;
+        for (std::size_t k = 0; k < level.size(); ++k) {
+          trial.levels.push_back({"search", std::string(1, "abcd"[k]), level[k], level[k], yes});
+        }
+        trial.session = p;
+        trial.trial = static_cast<int>(data.trials.size()) + 1;
+        trial.variables = {{"light", 0, kNotKnown, on ? "on" : "off"}};
+        data.trials.push_back(std::move(trial));
+      }
+    }
+  }
+  return data;
+}
+
+TrialsResult analyzed(const Hyperplane& plane, std::size_t study,
+                      const psychometric::ThresholdSurface& begun) {
+  TrialsPlan plan;
+  plan.kind = AnalysisKind::kPsychometric;
+  plan.functions = true;
+  plan.by = {"light"};
+  plan.threshold_at = 0.5;
+  plan.resamples = 0;
+  plan.permutations = 0;
+  plan.plan = parse_analysis_plan({"on != off"}, "", "tests");
+  return analyze(
+      data_of(plane, study), plan,
+      [&](const std::string&) { return std::make_unique<psychometric::ThresholdSurface>(begun); },
+      1);
+}
+
+psychometric::ThresholdSurface surface_of(const Hyperplane& plane) {
+  psychometric::SurfaceParameters p{.variables = {{"a", even(0.0, 2.0, 9), true}}};
+  for (std::size_t k = 0; k < plane.others; ++k) {
+    p.variables.push_back({std::string(1, "bcd"[k]), even(0.0, 1.0, 4), false});
+  }
+  return psychometric::ThresholdSurface(p);
+}
+
+/// The mean of a plane over a symmetric grid is its height in the middle.
+TEST(SurfaceComparisonTest, MeansOverTwoOtherVariablesDifferAsThePeoplesPlanesDo) {
+  const Hyperplane plane{.others = 2, .trials = 120, .shift = 0.25};
+  const TrialsResult result = analyzed(plane, 1, surface_of(plane));
+  ASSERT_EQ(result.surfaces.front().placed.size(), 9u);
+  const TTest& test = test_of(result, "surface_threshold");
+  EXPECT_NEAR(test.difference, 0.25, 4.0 * test.error);
+  EXPECT_LT(test.error, 0.25 * 0.25);
+}
+
+void count_null_studies(const Hyperplane& plane) {
+  const char* asked = std::getenv("HAPTRIAL_EVERY_STUDY");
+  if (asked == nullptr) {
+    GTEST_SKIP() << "set HAPTRIAL_EVERY_STUDY=1 to count 200 null studies, which take minutes";
+  }
+  const std::size_t studies = std::max<std::size_t>(200, std::strtoul(asked, nullptr, 10));
+  const auto begun = surface_of(plane);
+  std::size_t done = 0, found = 0;
+  const auto levels = test::null_levels(studies, 1, [&](std::size_t number) {
+    test::NullLevels noted;
+    const TrialsResult result = analyzed(plane, number, begun);
+    const bool below = test_of(result, "surface_threshold").p < 0.05;
+    noted.note("surface_threshold", true, below);
+    found += below ? 1 : 0;
+    if (++done % 20 == 0) {
+      std::printf("%zu of %zu\n", found, done);
+      std::fflush(stdout);
+    }
+    return noted;
+  });
+  const auto band = test::binomial_band(studies, 1.0 - 1e-4);
+  EXPECT_GE(levels.front().found, band.low);
+  EXPECT_LE(levels.front().found, band.high);
+}
+
+TEST(SurfaceComparisonTest, TestsOfThreeVariablesKeepTheirLevelInNullStudies) {
+  count_null_studies(Hyperplane{.others = 2});
+}
+
+TEST(SurfaceComparisonTest, TestsOfFourVariablesKeepTheirLevelInNullStudies) {
+  count_null_studies(Hyperplane{.others = 3});
 }
 
 }  // namespace
