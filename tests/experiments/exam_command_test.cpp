@@ -201,6 +201,23 @@ done
   EXPECT_THAT(both.errors, HasSubstr("--rigid excludes --soft"));
 }
 
+/// Words of the other program may look like options, known or not.
+TEST_F(ExamCommandTest, AProgramGetsItsWordsWhateverTheyBeginWith) {
+  ASSERT_EQ(run("make exam").status, 0);
+  std::ofstream(folder_ / "words.sh") << R"(echo "$0 $*" > words.txt
+while read -r word rest; do
+  case $word in tick) echo 0 0 0;; *) echo ready;; esac
+done
+)";
+  const auto sat = run("run exam --out a --program sh words.sh -u --out b --no-such 3");
+  EXPECT_EQ(sat.status, 0) << sat.errors;
+  std::ifstream file(folder_ / "words.txt");
+  std::string words;
+  std::getline(file, words);
+  EXPECT_EQ(words, "words.sh -u --out b --no-such 3");
+  EXPECT_EQ(run("run exam --out c --progam sh words.sh").status, 2);
+}
+
 TEST_F(ExamCommandTest, BadInputGetsASentence) {
   ASSERT_EQ(run("make exam").status, 0);
   const std::pair<const char*, const char*> bad[] = {
