@@ -41,6 +41,15 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
+/// A label of a tick, which gnuplot takes for a format.
+std::string tick_label(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    result += c == '%' ? "%%" : std::string(1, c);
+  }
+  return quoted(result);
+}
+
 std::vector<const std::vector<double>*> columns(const Series& s) {
   switch (s.mark) {
     case Mark::kBars:
@@ -119,7 +128,7 @@ std::string axes(const Figure& figure) {
   if (!figure.x_names.empty()) {
     std::string names;
     for (const auto& [at, name] : figure.x_names) {
-      names += fmt::format("{}{} {:.6g}", names.empty() ? "" : ", ", quoted(name), at);
+      names += fmt::format("{}{} {:.6g}", names.empty() ? "" : ", ", tick_label(name), at);
     }
     text += "set xtics (" + names + ")\n";
   }

@@ -24,8 +24,7 @@ ElementForces::ElementForces(const ElasticBody& body) {
   for (std::size_t p = 0; p < layout.patches(); ++p) {
     const std::int32_t first = layout.first_tet[p], end = layout.first_tet[p + 1];
     const std::size_t some = to_place(layout.tets[to_place(first)]);
-    const std::size_t material =
-        elasticity.material_of.empty() ? 0 : elasticity.material_of[some];
+    const std::size_t material = elasticity.material_of.empty() ? 0 : elasticity.material_of[some];
     patches_.push_back({first, 0.0, moduli(elasticity.materials[material])});
     most = std::max(most, end - first);
     for (std::int32_t t = first; t < end; ++t) {

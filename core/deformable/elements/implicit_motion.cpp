@@ -18,7 +18,8 @@ namespace {
 using Row = MeshFactor::Row;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr double kMostStiffness = 1.2;  // of the elements at rest, as H sees it; above 2 it diverges
+constexpr double kMostStiffness =
+    1.2;  // of the elements at rest, as H sees it; above 2 it diverges
 constexpr int kMostStiffenings = 8;
 constexpr int kPowers = 40;  // of the power iteration that finds it
 constexpr int kRoundsOfStep = 2;
@@ -33,18 +34,18 @@ Vector3d vector_of(const Row& row) { return row.head<3>().matrix().cast<double>(
 
 void check_options(const ImplicitOptions& options, std::size_t vertices) {
   if (!std::isfinite(options.step) || options.step <= 0.0) {
-    throw InputError(fmt::format("an implicit body: the step is {} s; allowed: above 0",
-                                 options.step));
+    throw InputError(
+        fmt::format("an implicit body: the step is {} s; allowed: above 0", options.step));
   }
   if (!std::isfinite(options.decay) || options.decay < 0.0) {
-    throw InputError(fmt::format("an implicit body: the decay is {} 1/s; allowed: at least 0",
-                                 options.decay));
+    throw InputError(
+        fmt::format("an implicit body: the decay is {} 1/s; allowed: at least 0", options.decay));
   }
   for (const auto* list : {&options.held, &options.pressed}) {
     for (const std::int32_t vertex : *list) {
       if (vertex < 0 || slot(vertex) >= vertices) {
-        throw InputError(fmt::format("an implicit body: the vertex {} is not one of 0 to {}", vertex,
-                                     vertices - 1));
+        throw InputError(fmt::format("an implicit body: the vertex {} is not one of 0 to {}",
+                                     vertex, vertices - 1));
       }
     }
   }
@@ -57,12 +58,12 @@ Triplets laplacian(const ElasticBody& elastic, std::span<const std::int32_t> fre
   Triplets entries;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const geometry::Tetrahedron& c = mesh.tetrahedra[t];
-    const Moduli m =
-        moduli(elasticity.materials[elasticity.material_of.empty() ? 0 : elasticity.material_of[t]]);
+    const Moduli m = moduli(
+        elasticity.materials[elasticity.material_of.empty() ? 0 : elasticity.material_of[t]]);
     Eigen::Matrix3d edges;
     for (int i = 0; i < 3; ++i) {
-      edges.col(i) = mesh.vertices[slot(c[static_cast<std::size_t>(i) + 1])] -
-                     mesh.vertices[slot(c[0])];
+      edges.col(i) =
+          mesh.vertices[slot(c[static_cast<std::size_t>(i) + 1])] - mesh.vertices[slot(c[0])];
     }
     Eigen::Matrix<double, 3, 4> b;
     b.rightCols<3>() = edges.inverse().transpose();
@@ -159,8 +160,8 @@ void ImplicitBody::factorize(const ElasticBody& elastic) {
   const Triplets entries = laplacian(elastic, free_);
   springs.setFromTriplets(entries.begin(), entries.end());
   for (int i = 0; i < kMostStiffenings; ++i) {
-    factor_ = std::make_unique<MeshFactor>(
-        Eigen::SparseMatrix<double>(stiffening_ * springs + inertia));
+    factor_ =
+        std::make_unique<MeshFactor>(Eigen::SparseMatrix<double>(stiffening_ * springs + inertia));
     const double share = largest_share(stiffness, *factor_, free_);
     if (share <= kMostStiffness) {
       break;

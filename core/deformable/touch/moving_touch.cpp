@@ -147,7 +147,8 @@ bool MovingTouch::together() const noexcept {
   bool together = felt_.allFinite();
   for (const Face& face : body_->mesh->felt) {
     const auto v = static_cast<std::size_t>(face[0]);
-    together = together && (motion_->position(v) - body_->mesh->tets.vertices[v]).squaredNorm() < far * far;
+    together = together &&
+               (motion_->position(v) - body_->mesh->tets.vertices[v]).squaredNorm() < far * far;
   }
   return together;
 }

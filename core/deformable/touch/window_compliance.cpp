@@ -81,8 +81,8 @@ WindowCompliance::WindowCompliance(const MovingBody& body, double time) {
   for (std::size_t i = 0; i < touched.size(); ++i) {
     place_[static_cast<std::size_t>(touched[i])] = static_cast<std::int32_t>(i);
   }
-  inverse_ = inverse_of(
-      condensed(stiffness_over(body, time), body.mesh->tets.vertices, held, touched));
+  inverse_ =
+      inverse_of(condensed(stiffness_over(body, time), body.mesh->tets.vertices, held, touched));
 }
 
 SharedWindowCompliance prepared_compliance(const SharedMovingBody& body, double window) {

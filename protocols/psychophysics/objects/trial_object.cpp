@@ -147,7 +147,9 @@ const Schema<TrialObject>& deformable_schema() {
                   [](Table& table, const std::string& key, T& object) {
                     sides_reader (&F::grasped)(table, key, object);
                     if (!object.moves) {
-                      table.reject(key, "stands without model = \"springs\" or \"implicit\", which it needs");
+                      table.reject(
+                          key,
+                          "stands without model = \"springs\" or \"implicit\", which it needs");
                     }
                   })
           .otherwise("none")

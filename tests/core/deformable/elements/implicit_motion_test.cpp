@@ -116,8 +116,7 @@ TEST(ImplicitMotionTest, HeldStillItIsTheEquilibriumOfItsElements) {
     }
     EXPECT_LT((force - expected).norm(), 1e-5 * expected.norm()) << poisson;
     for (std::size_t v = 0; v < motion.vertices(); ++v) {
-      EXPECT_LT((motion.position(v) - at_rest(v) - rest.displacement[v]).norm(),
-                1e-5 * way.norm());
+      EXPECT_LT((motion.position(v) - at_rest(v) - rest.displacement[v]).norm(), 1e-5 * way.norm());
     }
     EXPECT_EQ(motion.inverted(), 0u);
   }
@@ -153,8 +152,8 @@ TEST(ImplicitMotionTest, AFreeMotionDiesDownAsItsDecaySays) {
   EXPECT_NEAR(motion.velocity(0).x(), expected, 1e-4 * expected);
 }
 
-/// Left alone after a blow that sets it swinging a body comes to rest. Two rounds take less out of a
-/// swing than the step says, so that it swings farther than it should, but not without a bound.
+/// Left alone after a blow that sets it swinging a body comes to rest. Two rounds take less out of
+/// a swing than the step says, so that it swings farther than it should, but not without a bound.
 TEST(ImplicitMotionTest, LeftAloneItComesToRest) {
   ImplicitMotion motion = motion_of(block(), bottom());
   for (std::size_t v = 0; v < motion.vertices(); ++v) {
@@ -180,7 +179,8 @@ TEST(ImplicitMotionTest, LeftAloneItComesToRest) {
 /// A push moves the body by H⁻¹, which mobility() tells beforehand and which is symmetric.
 TEST(ImplicitMotionTest, APushMovesWhatMobilityTells) {
   ImplicitMotion motion = motion_of(block(), bottom(), top());
-  const auto pushed = static_cast<std::size_t>(top()[7]), other = static_cast<std::size_t>(top()[9]);
+  const auto pushed = static_cast<std::size_t>(top()[7]),
+             other = static_cast<std::size_t>(top()[9]);
   motion.push(pushed, {0.0, 0.0, -0.01});
   motion.finish_pushes();
   for (std::size_t v = 0; v < motion.vertices(); ++v) {

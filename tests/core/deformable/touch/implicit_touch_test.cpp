@@ -36,7 +36,8 @@ SharedMovingBody springs() {
 TouchOptions ball(double friction = 0.0) { return {kRadius, 5000.0, {friction, 0.8 * friction}}; }
 
 TwoRateTouch at_250_hz(const SharedMovingBody& body, double friction = 0.0) {
-  return {body, prepared_compliance(body, kWindow * kTick), ball(friction), kTick, {kWindow, false}};
+  return {
+      body, prepared_compliance(body, kWindow * kTick), ball(friction), kTick, {kWindow, false}};
 }
 
 /// The ball's way into the block and out again, over a second.
@@ -44,8 +45,8 @@ Vector3d closed_path(double share) {
   const double t = 2.0 * std::numbers::pi * share;
   const double down = 0.5 - 0.5 * std::cos(t);
   return Vector3d(0.0, kTop + kRadius + 0.0005, 0.0) +
-         Vector3d(0.004 * std::sin(3.0 * t) * down,
-                  -0.003 * down * (1.0 + 0.3 * std::sin(7.0 * t)), 0.0);
+         Vector3d(0.004 * std::sin(3.0 * t) * down, -0.003 * down * (1.0 + 0.3 * std::sin(7.0 * t)),
+                  0.0);
 }
 
 /// Pressed and held, with friction, too, the body is where its elements balance the ball's forces.
@@ -57,7 +58,8 @@ TEST(ImplicitTouchTest, HeldStillItIsTheEquilibriumOfItsElementsOnTheBall) {
     touch.start(over + Vector3d(0.0, 0.0005, 0.0));
     contact::Contact felt;
     for (int i = 1; i <= 300; ++i) {
-      felt = touch.tick(over + Vector3d(0.0, 0.0005 - 0.0025 * std::min(1.0, i / 60.0), 0.0), 0.004);
+      felt =
+          touch.tick(over + Vector3d(0.0, 0.0005 - 0.0025 * std::min(1.0, i / 60.0), 0.0), 0.004);
     }
     LoadCase load{"ball", {}, {}};
     Vector3d sum = Vector3d::Zero();
