@@ -105,12 +105,14 @@ if [ "$study" = exam ]; then  # renderers of a point; rigid tools and soft bodie
   done
   build/haptrial exam run "$out/exam" --name half-space --out "$out/answers/half-space" \
     --program python3 docs/worked/exam/half_space.py
+  others=()
   if [ -d "${EXAM_ANSWERS:-}" ]; then
-    cp -r "$EXAM_ANSWERS"/* "$out/answers/"
+    others=("$EXAM_ANSWERS"/*)
   else
     echo "regenerate.sh: no EXAM_ANSWERS; the tables hold haptrial's renderers and half-space alone" >&2
   fi
-  build/haptrial exam score "$out/exam" "$out"/answers/* --out "$out/scores"
+  build/haptrial exam score "$out/exam" "$out/answers/proxy" "${others[@]}" \
+    "$out"/answers/{penalty,distance-field,voxel,half-space} --out "$out/scores"
   rm -f "$folder"/ridge-*.svg
   cp "$out/scores/scores.csv" "$folder/exam-scores.csv"
   cp "$out/scores/report.html" "$out"/scores/ridge-*.svg "$folder/"

@@ -152,12 +152,13 @@ TEST_F(SoftExamCommandTest, TheKeptScoresOfOurOwnAreReproduced) {
   ASSERT_EQ(run("make exam --soft").status, 0);
   const std::set<std::string> some{"layers-pressed", "free-block"};  // the others take longer
   leave_cases(folder_ / "exam", some);
-  for (const std::string renderer : {"springs", "linear-elements"}) {
+  for (const std::string renderer : {"springs", "implicit", "linear-elements"}) {
     const auto sat = run("run exam " + renderer + " --out " + renderer);
     ASSERT_EQ(sat.status, 0) << sat.errors;
   }
-  ASSERT_EQ(run("score exam springs linear-elements --out scores").status, 0);
+  ASSERT_EQ(run("score exam springs implicit linear-elements --out scores").status, 0);
   expect_kept("springs", some);
+  expect_kept("implicit", some);
   expect_kept("linear-elements", some);
   EXPECT_THAT(test::read_text(folder_ / "scores/report.html"), HasSubstr("loses momentum"));
   const auto point = run("run exam proxy --out more");

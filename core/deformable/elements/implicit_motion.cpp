@@ -32,7 +32,7 @@ Row row_of(const Vector3d& v) {
 
 Vector3d vector_of(const Row& row) { return row.head<3>().matrix().cast<double>(); }
 
-void check_options(const ImplicitOptions& options, std::size_t vertices) {
+void check_implicit(const ImplicitOptions& options, std::size_t vertices) {
   if (!std::isfinite(options.step) || options.step <= 0.0) {
     throw InputError(
         fmt::format("an implicit body: the step is {} s; allowed: above 0", options.step));
@@ -123,7 +123,7 @@ double largest_share(const BlockMatrix& a, const MeshFactor& h,
 }  // namespace
 
 ImplicitBody::ImplicitBody(const ElasticBody& elastic, const ImplicitOptions& options)
-    : options_((check_options(options, elastic.mesh().vertices.size()), options)),
+    : options_((check_implicit(options, elastic.mesh().vertices.size()), options)),
       rest_(elastic.mesh().vertices.begin(), elastic.mesh().vertices.end()),
       masses_(elastic.masses().begin(), elastic.masses().end()),
       free_(rest_.size(), 0),
