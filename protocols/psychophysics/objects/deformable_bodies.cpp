@@ -122,13 +122,18 @@ void add_words_of_motion(const scene::Field& field, const scene::DeformableObjec
 void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate) {
   for (scene::Field& field : fields) {
     auto* p = std::get_if<scene::DeformableObjectParameters>(&field.kind);
-    if (p != nullptr && p->mesh && p->moves()) {
-      p->rates.window = p->rate > 0.0 ? deformable::ticks_of_window(*p->mesh, rate, p->rate) : 1;
-      p->moving = p->implicit ? deformable::prepared(p->mesh, *p->implicit, p->rates.window / rate)
-                              : deformable::prepared(p->mesh, *p->springs);
-      p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
+    if (p == nullptr || !p->mesh || !p->moves()) {
+      continue;
+    }
+    if (p->springs) {
+      p->moving = deformable::prepared(p->mesh, *p->springs);
       deformable::steps_on_a_tick(*p->moving, 1.0 / rate);
     }
+    p->rates.window = p->rate > 0.0 ? deformable::ticks_of_window(*p->mesh, rate, p->rate) : 1;
+    if (p->implicit) {
+      p->moving = deformable::prepared(p->mesh, *p->implicit, p->rates.window / rate);
+    }
+    p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
   }
 }
 
