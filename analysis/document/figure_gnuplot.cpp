@@ -42,12 +42,12 @@ std::string quoted(const std::string& text) {
 }
 
 /// A label of a tick, which gnuplot takes for a format.
-std::string tick_label(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '%' ? "%%" : std::string(1, c);
+std::string tick_label(std::string text) {
+  for (auto at = text.find('%'); at != text.npos; at = text.find('%', at + 2)) {
+    text.insert(at, 1, '%');
   }
-  return quoted(result);
+  const std::string& label = text;
+  return quoted(label);
 }
 
 std::vector<const std::vector<double>*> columns(const Series& s) {
