@@ -16,7 +16,8 @@ class BodyMotion {
  public:
   virtual ~BodyMotion() = default;
 
-  // Servo thread, all of the following but those that return a vector: no allocation, lock or throw.
+  // Servo thread, all of the following but those that return a vector: no allocation, lock or
+  // throw.
 
   virtual void step() noexcept = 0;
   /// Makes another round of the last step, better than the one before and without its pushes.
@@ -39,13 +40,14 @@ class BodyMotion {
     positions_[vertex] = position;
   }
   void set_velocity(std::size_t vertex, const Eigen::Vector3d& velocity) noexcept;  // of a free one
-  void stop() noexcept;  // at once
+  void stop() noexcept;                                                             // at once
   /// Goes on from where a motion of the same body is.
   void adopt(const BodyMotion& before) noexcept;
 
   Eigen::Vector3d position(std::size_t vertex) const noexcept { return positions_[vertex]; }
   Eigen::Vector3d velocity(std::size_t vertex) const noexcept { return velocities_[vertex]; }
-  /// Force of the material and from outside as the last step computed it, also on a held vertex [N].
+  /// Force of the material and from outside as the last step computed it, also on a held vertex
+  /// [N].
   Eigen::Vector3d force(std::size_t vertex) const noexcept { return forces_[vertex]; }
   bool held(std::size_t vertex) const noexcept { return held_[vertex] != 0; }
   std::size_t vertices() const noexcept { return masses_.size(); }
@@ -57,7 +59,7 @@ class BodyMotion {
   std::vector<Eigen::Vector3d> positions() const;
   void copy_positions(std::span<Eigen::Vector3d> to) const noexcept;  // (vertices)
   Eigen::Vector3d momentum() const;                                   // [kg·m/s]
-  Eigen::Vector3d angular_momentum() const;                           // about the origin [kg·m²/s]
+  Eigen::Vector3d angular_momentum() const;  // about the origin [kg·m²/s]
 
  protected:
   /// @param points  rest, and behind them whatever else a kernel reads

@@ -41,9 +41,9 @@ class ElementForces {
     Moduli moduli;
   };
 
-  std::vector<Tet> tets_;        // patch after patch
-  std::vector<Patch> patches_;   // and one that marks the end
-  std::vector<Strained> room_;   // of one patch
+  std::vector<Tet> tets_;       // patch after patch
+  std::vector<Patch> patches_;  // and one that marks the end
+  std::vector<Strained> room_;  // of one patch
 };
 
 }  // namespace haptrial::deformable

@@ -15,8 +15,8 @@ namespace haptrial::deformable {
 
 /// How a body of elements is stepped.
 struct ImplicitOptions {
-  double step{4e-3};                // h > 0 [s]
-  double decay{0.0};                // a >= 0: a free motion dies down with exp(-a t) [1/s]
+  double step{4e-3};                    // h > 0 [s]
+  double decay{0.0};                    // a >= 0: a free motion dies down with exp(-a t) [1/s]
   std::vector<std::int32_t> held{};     // vertices that do not move by themselves
   std::vector<std::int32_t> pressed{};  // vertices that push() may be called for
 };
@@ -51,8 +51,8 @@ class ImplicitBody {
   std::span<const float> response(std::size_t pressed) const noexcept {
     const std::int32_t at = column_[pressed];
     return at < 0 ? std::span<const float>()
-                  : std::span(responses_).subspan(static_cast<std::size_t>(at) * rest_.size(),
-                                                  rest_.size());
+                  : std::span(responses_)
+                        .subspan(static_cast<std::size_t>(at) * rest_.size(), rest_.size());
   }
 
  private:
@@ -99,11 +99,11 @@ class ImplicitMotion final : public BodyMotion {
 
   std::shared_ptr<const ImplicitBody> body_;
   ElementForces elements_;
-  double inertia_;                     // (1 + 2 a h) / h² [1/s²]
-  PaddedPoints before_, predicted_;    // x of the step before; x⁰
-  PaddedPoints pushes_;                // of this round [N]
-  int round_{0};                       // of this step, from 1
-  BigArray<MeshFactor::Row> room_;    // by place in the factor
+  double inertia_;                   // (1 + 2 a h) / h² [1/s²]
+  PaddedPoints before_, predicted_;  // x of the step before; x⁰
+  PaddedPoints pushes_;              // of this round [N]
+  int round_{0};                     // of this step, from 1
+  BigArray<MeshFactor::Row> room_;   // by place in the factor
 };
 
 }  // namespace haptrial::deformable

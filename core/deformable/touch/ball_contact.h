@@ -33,11 +33,11 @@ class BallContact {
   /// A point of the surface that the ball may press.
   struct Place {
     std::int32_t sample{};
-    Eigen::Vector3d before{Eigen::Vector3d::Zero()};  // where it was before the step [m]
-    Eigen::Vector3d after{Eigen::Vector3d::Zero()};   // and after it, as it was pressed [m]
-    Eigen::Vector3d normal{Eigen::Vector3d::Zero()};  // n
-    double pressed{0.0};                              // f on the last step [N]
-    Eigen::Vector3d sum{Eigen::Vector3d::Zero()};     // of the forces on it since gather() [N]
+    Eigen::Vector3d before{Eigen::Vector3d::Zero()};      // where it was before the step [m]
+    Eigen::Vector3d after{Eigen::Vector3d::Zero()};       // and after it, as it was pressed [m]
+    Eigen::Vector3d normal{Eigen::Vector3d::Zero()};      // n
+    double pressed{0.0};                                  // f on the last step [N]
+    Eigen::Vector3d sum{Eigen::Vector3d::Zero()};         // of the forces on it since gather() [N]
     Eigen::Vector3d sum_before{Eigen::Vector3d::Zero()};  // likewise, before the step
   };
 

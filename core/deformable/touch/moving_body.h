@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/deformable/springs/spring_body.h"
 #include "core/deformable/elements/implicit_motion.h"
+#include "core/deformable/springs/spring_body.h"
 #include "core/deformable/springs/spring_motion.h"
 #include "core/deformable/touch/haptic_mesh.h"
 #include "core/deformable/touch/tissue.h"
@@ -34,12 +34,12 @@ struct ImplicitTissue {
 /// elements that are stepped implicitly.
 struct MovingBody {
   SharedHapticMesh mesh;
-  std::vector<std::int32_t> held;               // vertices, those that the hand holds among them
-  std::shared_ptr<const ElasticBody> elements;  // null: it is made of springs
+  std::vector<std::int32_t> held;                // vertices, those that the hand holds among them
+  std::shared_ptr<const ElasticBody> elements;   // null: it is made of springs
   std::shared_ptr<const ImplicitBody> implicit;  // of the elements
   SpringBody springs;
-  double drag{};                   // of every vertex: 2 a times their mean mass [N·s/m]
-  double stable_step{};            // springs/stable_step.h [s]
+  double drag{};         // of every vertex: 2 a times their mean mass [N·s/m]
+  double stable_step{};  // springs/stable_step.h [s]
 };
 using SharedMovingBody = std::shared_ptr<const MovingBody>;
 
@@ -52,8 +52,8 @@ SharedMovingBody prepared(const SharedHapticMesh& mesh, const ImplicitTissue& ti
 inline constexpr int kMostSteps = 64;  // on a tick
 
 /// The steps that a body makes on a tick of this period: one of elements one, a body of springs so
-/// many that each is within kStableShare of its stable step: one that is pressed may be stiffer than
-/// at rest.
+/// many that each is within kStableShare of its stable step: one that is pressed may be stiffer
+/// than at rest.
 /// @throws InputError naming the body and what mends it if that is more than kMostSteps.
 int steps_on_a_tick(const MovingBody& body, double period);
 inline constexpr double kStableShare = 0.8;

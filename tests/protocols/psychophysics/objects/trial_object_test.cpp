@@ -225,7 +225,8 @@ TEST(TrialObjectTest, WhatABodyOfImplicitElementsTakesIsSaid) {
   prepare_bodies(fields, 1000.0);
   const std::vector<std::string> lines = words_of_bodies(fields, 1000.0, 15.0);
   ASSERT_GE(lines.size(), 2u);
-  EXPECT_THAT(lines[0], HasSubstr("540 tetrahedra of elements, one implicit step of 4 ms; gives no"));
+  EXPECT_THAT(lines[0],
+              HasSubstr("540 tetrahedra of elements, one implicit step of 4 ms; gives no"));
   EXPECT_THAT(lines[1], HasSubstr("moves 250 times a second, 4 ticks at once"));
 }
 
