@@ -5,8 +5,9 @@
 # A variant, force_training_..., is also compared with force_training. A study of drillings is rated by
 # simulated raters; of an experiment that its definition states whole a few participants are kept.
 # power_QUESTION simulates docs/worked/power/QUESTION.toml, power_null the files of docs/worked/power/null.
-# contact_evaluation and calibration are no studies: haptrial evaluate --duck and haptrial deform
-# calibrate make them.
+# contact_evaluation, calibration and exam are no studies: haptrial evaluate --duck, haptrial deform
+# calibrate and haptrial exam make them. exam makes the point's anew; EXAM_ANSWERS may name a folder
+# of further answers, as those of CHAI3D, whose program is compiled elsewhere.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 study=${1:?which study? a definition in experiments/, without .toml}
@@ -92,6 +93,29 @@ if [[ $study == power_* ]]; then  # many simulated studies
   "power_sha256": "$(sum "results/$study/power.csv")"
 }
 EOF
+  exit
+fi
+if [ "$study" = exam ]; then  # renderers of a point; rigid tools and soft bodies stay as they are
+  folder=results/exam
+  out=$(mktemp -d)
+  trap 'rm -rf "$out"' EXIT
+  build/haptrial exam make "$out/exam"
+  for renderer in proxy penalty distance-field voxel; do
+    build/haptrial exam run "$out/exam" "$renderer" --out "$out/answers/$renderer"
+  done
+  build/haptrial exam run "$out/exam" --name half-space --out "$out/answers/half-space" \
+    --program python3 docs/worked/exam/half_space.py
+  others=()
+  if [ -d "${EXAM_ANSWERS:-}" ]; then
+    others=("$EXAM_ANSWERS"/*)
+  else
+    echo "regenerate.sh: no EXAM_ANSWERS; the tables hold haptrial's renderers and half-space alone" >&2
+  fi
+  build/haptrial exam score "$out/exam" "$out/answers/proxy" "${others[@]}" \
+    "$out"/answers/{penalty,distance-field,voxel,half-space} --out "$out/scores"
+  rm -f "$folder"/ridge-*.svg
+  cp "$out/scores/scores.csv" "$folder/exam-scores.csv"
+  cp "$out/scores/report.html" "$out"/scores/ridge-*.svg "$folder/"
   exit
 fi
 if [ "$study" = calibration ]; then  # springs that follow elements, and a real cube

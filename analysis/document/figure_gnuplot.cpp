@@ -41,6 +41,15 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
+/// A label of a tick, which gnuplot takes for a format.
+std::string tick_label(std::string text) {
+  for (auto at = text.find('%'); at != text.npos; at = text.find('%', at + 2)) {
+    text.insert(at, 1, '%');
+  }
+  const std::string& label = text;
+  return quoted(label);
+}
+
 std::vector<const std::vector<double>*> columns(const Series& s) {
   switch (s.mark) {
     case Mark::kBars:
@@ -119,7 +128,7 @@ std::string axes(const Figure& figure) {
   if (!figure.x_names.empty()) {
     std::string names;
     for (const auto& [at, name] : figure.x_names) {
-      names += fmt::format("{}{} {:.6g}", names.empty() ? "" : ", ", quoted(name), at);
+      names += fmt::format("{}{} {:.6g}", names.empty() ? "" : ", ", tick_label(name), at);
     }
     text += "set xtics (" + names + ")\n";
   }

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 /// bristle that is no stiffer. Of a body that is not prepared the spring alone is known. What moves
 /// keeps an account of its energy, in which the hand has a damping.
 StiffnessBound DeformableObjectParameters::bound() const {
-  if (springs) {
+  if (moves()) {
     return {true, 0.0, deformable::EnergyAccount::kDamping};
   }
   const double behind = body ? deformable::stiffest_touch(*body, tool.radius)

@@ -20,22 +20,24 @@ struct DeformableObjectParameters {
   deformable::SharedHapticMesh mesh;                // null: nothing is felt
   deformable::Tissue tissue;                        // of elements that rest on every tick
   std::optional<deformable::SpringTissue> springs;  // of springs that move, instead
-  double rate{0.0};                                 // of these; 0: that of the loop [Hz]
+  std::optional<deformable::ImplicitTissue> implicit;  // of elements that move, instead
+  double rate{0.0};  // of what moves; 0: that of the loop [Hz]
   contact::ObjectPose pose;                         // of the body's frame in W
   deformable::TouchOptions tool;
   deformable::SharedCompliance body;               // of mesh and tissue; null until it is prepared
-  deformable::SharedMovingBody moving;             // of mesh and springs; likewise
+  deformable::SharedMovingBody moving;             // of mesh and what moves; likewise
   deformable::SharedWindowCompliance gives;        // of a body of its own rate; likewise
   deformable::TwoRates rates;                      // of it
   std::shared_ptr<deformable::MovingShape> shape;  // where its vertices are; null: no pictures
 
   StiffnessBound bound() const;
   FieldTraits traits() const { return {.object = true, .yields = true}; }
+  bool moves() const { return springs || implicit; }
   bool prepared() const { return body != nullptr || moving != nullptr; }
 };
 
-/// A body that a ball presses, in W: of linear elements (core/deformable/touch) or of springs that
-/// move (core/deformable/touch), at the loop's rate or their own. `depth` is how far the ball is
+/// A body that a ball presses, in W: of linear elements at rest, or of springs or elements that
+/// move, at the loop's rate or their own (core/deformable/touch). `depth` is how far the ball is
 /// in the body as it would be at rest, `proxy` the ball's centre.
 class DeformableObject {
  public:

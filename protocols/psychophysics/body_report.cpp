@@ -34,10 +34,10 @@ constexpr std::array<Loss, BodyReport::kLosses> kAllLosses{
          "the force was cut, as it might have given out more energy than the hand had given"},
     Loss{&TouchCounts::flown_apart, "/moving_bodies", "flown_apart",
          "the body flew apart, deformed beyond what its steps are stable for, and was put to rest "
-         "(use smaller constants, more density or fewer cells)"},
+         "(use a shorter step, or of springs smaller constants, more density or fewer cells)"},
     Loss{&TouchCounts::late, "/late_windows", "late_body",
-         "a body of its own rate was late and felt as it had been before (use fewer cells, smaller "
-         "constants or more density, or a machine with less other work)"},
+         "a body of its own rate was late and felt as it had been before (use fewer cells, of springs "
+         "smaller constants or more density, or a machine with less other work)"},
 };
 
 void add(const TouchCounts& more, TouchCounts& to) {

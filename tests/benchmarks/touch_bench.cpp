@@ -3,6 +3,7 @@
 //   bench_touch ticks
 //   bench_touch moving: ticks of a body of springs
 //   bench_touch rates: the same at rates of its own, and how far that is felt from the loop's
+//   bench_touch implicit: springs and elements by implicit steps of 4 ms, in one run
 //   bench_touch live: the same with a thread beside the real clock
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/deformable/elements/static_solver.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "core/deformable/touch/moving_touch.h"
 #include "core/deformable/touch/prepared.h"
@@ -163,6 +165,68 @@ void moving() {
   }
 }
 
+/// How far a body is from where elements are at rest under the forces that it gets, as a share of
+/// the farthest vertex's way.
+double far_from_elements(const ElasticBody& elements, const MovingBody& body,
+                         const MovingTouch& touch) {
+  LoadCase load{"ball", {}, {}};
+  for (const std::int32_t v : body.held) {
+    load.holds.push_back({v, Vector3d::Zero()});
+  }
+  for (const VertexForce& each : touch.forces()) {
+    load.forces.push_back({each.vertex, each.force.cast<double>()});
+  }
+  const Vectors rest = solve_static(elements, load).displacement;
+  double far = 0.0, most = 0.0;
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    const Vector3d u = touch.motion().position(v) - body.mesh->tets.vertices[v];
+    far = std::max(far, (u - rest[v]).norm());
+    most = std::max(most, rest[v].norm());
+  }
+  return far / most;
+}
+
+/// A line of a body that is led for 4 s and then held for 1 s. @param period  of its ticks
+void lead(const std::string& model, const SharedMovingBody& body, double period,
+          const ElasticBody& elements) {
+  MovingTouch touch(body, {kRadius, 5000.0, {}}, period);
+  touch.start({0.0, kTop + kRadius + 0.001, 0.0});
+  std::vector<double> times;
+  const auto tick = [&](double t) {
+    const double begin = thread_time();
+    touch.tick(wandering(2.0 * t), period);
+    times.push_back(thread_time() - begin);
+  };
+  double led = 0.0;
+  while (led < 0.6) {
+    tick(led += period);
+  }
+  const double moving = far_from_elements(elements, *body, touch);
+  for (double t = 0.0; t < 1.0; t += period) {
+    tick(led);
+  }
+  const double held = far_from_elements(elements, *body, touch);
+  std::sort(times.begin(), times.end());
+  const double median = times[times.size() / 2];
+  const auto tets = static_cast<double>(body->mesh->tets.tetrahedra.size());
+  fmt::print("{} {} {:.0f} {:.0f} {:.0f} {:.1f} {:.2f} {:.2f}\n", model, tets, 1.0 / period, median,
+             times.back(), tets / median, 100.0 * moving, 100.0 * held);
+}
+
+void implicit_beside_springs() {
+  fmt::print("model tetrahedra rate_Hz tick_median_us worst_us million_tets_s moving_% held_%\n");
+  for (const int cells : {12, 16, 20}) {
+    for (const double poisson : {0.3, 0.45}) {
+      const SharedMovingBody elements =
+          prepared(block(cells), ImplicitTissue{{15e3, poisson, 1000.0, {}}, 20.0}, 4.0 * kTick);
+      lead(fmt::format("implicit-{}", poisson), elements, 4.0 * kTick, *elements->elements);
+      if (poisson < 0.4) {
+        lead("springs", springs(cells), kTick, *elements->elements);
+      }
+    }
+  }
+}
+
 /// How far a body of its own rate is felt from one that moves on each tick.
 struct Error {
   double sum{0.0}, size{0.0};
@@ -256,6 +320,8 @@ int main(int argc, char** argv) {
     moving();
   } else if (what == "rates") {
     rates();
+  } else if (what == "implicit") {
+    implicit_beside_springs();
   } else if (what == "live") {
     live();
   } else {

@@ -4,6 +4,7 @@
 
 #include "tests/experiments/everyday.h"
 
+#include <array>
 #include <numbers>
 
 namespace haptrial::everyday_test {
@@ -367,6 +368,32 @@ TEST_F(EverydayTest, StiffnessPairs) {
     EXPECT_NEAR(reported("share_chosen", name), over_participants(share), 1e-12);
   }
   EXPECT_GT(reported("worth", "D"), reported("worth", "A"));
+}
+
+/// Each rendering is named by the error of its force; people who judge by that error choose the one
+/// with less.
+TEST_F(EverydayTest, RenderingRealism) {
+  rehearse("rendering_realism", 3);
+  const std::array<std::string, 4> by_error{"0.07 N (0.06; 8 of 100), friction that fits",
+                                            "0.12 N (0.12; 98 of 100), half the friction",
+                                            "0.22 N (0.22; 98 of 100), no friction",
+                                            "0.41 N (0.41; 99 of 100), three times the friction"};
+  for (std::size_t i = 1; i < by_error.size(); ++i) {
+    EXPECT_GT(reported("worth", by_error[i - 1]), reported("worth", by_error[i])) << by_error[i];
+  }
+  const auto share = [&](const std::vector<Row>& rows) {
+    double met = 0.0, chosen = 0.0;
+    for (const Row& row : rows) {
+      const bool first = row.at("first") == by_error[1], second = row.at("second") == by_error[1];
+      met += first || second ? 1.0 : 0.0;
+      chosen +=
+          (first && row.at("real.correct") == "1") || (second && row.at("real.correct") == "0")
+              ? 1.0
+              : 0.0;
+    }
+    return chosen / met;
+  };
+  EXPECT_NEAR(reported("share_chosen", by_error[1]), over_participants(share), 1e-12);
 }
 
 /// No definition of the folder is without a test.

@@ -152,12 +152,13 @@ TEST_F(SoftExamCommandTest, TheKeptScoresOfOurOwnAreReproduced) {
   ASSERT_EQ(run("make exam --soft").status, 0);
   const std::set<std::string> some{"layers-pressed", "free-block"};  // the others take longer
   leave_cases(folder_ / "exam", some);
-  for (const std::string renderer : {"springs", "linear-elements"}) {
+  for (const std::string renderer : {"springs", "implicit", "linear-elements"}) {
     const auto sat = run("run exam " + renderer + " --out " + renderer);
     ASSERT_EQ(sat.status, 0) << sat.errors;
   }
-  ASSERT_EQ(run("score exam springs linear-elements --out scores").status, 0);
+  ASSERT_EQ(run("score exam springs implicit linear-elements --out scores").status, 0);
   expect_kept("springs", some);
+  expect_kept("implicit", some);
   expect_kept("linear-elements", some);
   EXPECT_THAT(test::read_text(folder_ / "scores/report.html"), HasSubstr("loses momentum"));
   const auto point = run("run exam proxy --out more");
@@ -199,6 +200,23 @@ done
   const auto both = run("make more --soft --rigid");
   EXPECT_EQ(both.status, 2);
   EXPECT_THAT(both.errors, HasSubstr("--rigid excludes --soft"));
+}
+
+/// Words of the other program may look like options, known or not.
+TEST_F(ExamCommandTest, AProgramGetsItsWordsWhateverTheyBeginWith) {
+  ASSERT_EQ(run("make exam").status, 0);
+  std::ofstream(folder_ / "words.sh") << R"(echo "$0 $*" > words.txt
+while read -r word rest; do
+  case $word in tick) echo 0 0 0;; *) echo ready;; esac
+done
+)";
+  const auto sat = run("run exam --out a --program sh words.sh -u --out b --no-such 3");
+  EXPECT_EQ(sat.status, 0) << sat.errors;
+  std::ifstream file(folder_ / "words.txt");
+  std::string words;
+  std::getline(file, words);
+  EXPECT_EQ(words, "words.sh -u --out b --no-such 3");
+  EXPECT_EQ(run("run exam --out c --progam sh words.sh").status, 2);
 }
 
 TEST_F(ExamCommandTest, BadInputGetsASentence) {

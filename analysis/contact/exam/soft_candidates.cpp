@@ -5,10 +5,10 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <optional>
 
 #include "analysis/contact/exam/soft_body.h"
 #include "core/deformable/calibration/calibrate.h"
+#include "core/deformable/elements/implicit_motion.h"
 #include "core/deformable/elements/static_solver.h"
 #include "core/deformable/springs/spring_motion.h"
 #include "core/deformable/springs/stable_step.h"
@@ -23,6 +23,7 @@ using deformable::Vectors;
 using Eigen::Vector3d;
 
 constexpr const char* kSprings = "springs";
+constexpr const char* kImplicit = "implicit";
 constexpr const char* kLinearElements = "linear-elements";
 
 /// The force that a body's vertices exert on the tool.
@@ -167,28 +168,21 @@ deformable::SpringConstants calibrated(const SoftBody& body, const SpringBody& s
   return parameters.constants(deformable::calibrate(problem, parameters, settings).logarithms);
 }
 
-class MovingSprings final : public Candidate {
+/// A body that moves, its grip led along the tool's way in steps.
+class MovingCandidate : public Candidate {
  public:
   void begin(const ContactTask& task) override {
     body_ = read_soft_body(task.body);
-    springs_ = deformable::spring_body(
-        body_.mesh, deformable::densities(body_.elasticity, body_.mesh.tetrahedra.size()),
-        {1.0, 1.0, 1.0});
-    springs_.constants = calibrated(body_, springs_);
     held_ = body_.fixed;
     held_.insert(held_.end(), body_.gripped.begin(), body_.gripped.end());
-    const double longest = kShareOfStable * deformable::stable_step(springs_, held_);
-    steps_ = static_cast<int>(std::ceil(1.0 / (task.rate * longest)));
-    const double mass = std::accumulate(springs_.masses.begin(), springs_.masses.end(), 0.0);
-    settings_.step = 1.0 / (task.rate * steps_);
-    settings_.damping = 2.0 * kDecay * mass / static_cast<double>(springs_.masses.size());
+    steps_ = prepare(task.rate);
   }
   void start(const Eigen::Isometry3d& tool) override {
-    motion_.emplace(springs_, settings_, held_);
+    motion_ = motion();
     first_ = last_ = tool.translation();
   }
   void set_load(double share) override {
-    Vectors sums(springs_.rest.size(), Vector3d::Zero());
+    Vectors sums(body_.mesh.vertices.size(), Vector3d::Zero());
     for (const deformable::NodalForce& f : body_.forces) {
       sums[static_cast<std::size_t>(f.vertex)] += share * f.force;
     }
@@ -202,10 +196,12 @@ class MovingSprings final : public Candidate {
     for (int i = 1; i <= steps_; ++i) {
       const Vector3d moved = last_ + (to - last_) * i / steps_ - first_;
       for (const std::int32_t v : body_.gripped) {
-        motion_->place(static_cast<std::size_t>(v),
-                       springs_.rest[static_cast<std::size_t>(v)] + moved);
+        const auto vertex = static_cast<std::size_t>(v);
+        motion_->place(vertex, body_.mesh.vertices[vertex] + moved);
       }
       motion_->step();
+      while (motion_->refine()) {
+      }
     }
     last_ = to;
     Answer answer;
@@ -215,22 +211,62 @@ class MovingSprings final : public Candidate {
   Vectors shape() override {
     Vectors shape = motion_->positions();
     for (std::size_t v = 0; v < shape.size(); ++v) {
-      shape[v] -= springs_.rest[v];
+      shape[v] -= body_.mesh.vertices[v];
     }
     return shape;
   }
 
+ protected:
+  SoftBody body_;
+  std::vector<std::int32_t> held_;
+
  private:
+  /// @returns steps on a tick
+  virtual int prepare(double rate) = 0;
+  /// The body at rest.
+  virtual std::unique_ptr<deformable::BodyMotion> motion() const = 0;
+
+  std::unique_ptr<deformable::BodyMotion> motion_;
+  int steps_{1};                                               // on a tick
+  Vector3d first_{Vector3d::Zero()}, last_{Vector3d::Zero()};  // of the tool [m]
+};
+
+class MovingSprings final : public MovingCandidate {
   static constexpr double kShareOfStable = 0.5;  // a body that is pressed is stiffer than at rest
   static constexpr double kDecay = 10.0;         // of a free motion [1/s]
 
-  SoftBody body_;
+  int prepare(double rate) override {
+    springs_ = deformable::spring_body(
+        body_.mesh, deformable::densities(body_.elasticity, body_.mesh.tetrahedra.size()),
+        {1.0, 1.0, 1.0});
+    springs_.constants = calibrated(body_, springs_);
+    const double longest = kShareOfStable * deformable::stable_step(springs_, held_);
+    const int steps = static_cast<int>(std::ceil(1.0 / (rate * longest)));
+    const double mass = std::accumulate(springs_.masses.begin(), springs_.masses.end(), 0.0);
+    settings_.step = 1.0 / (rate * steps);
+    settings_.damping = 2.0 * kDecay * mass / static_cast<double>(springs_.masses.size());
+    return steps;
+  }
+  std::unique_ptr<deformable::BodyMotion> motion() const override {
+    return std::make_unique<deformable::SpringMotion>(springs_, settings_, held_);
+  }
+
   SpringBody springs_;
-  std::vector<std::int32_t> held_;
   deformable::MotionSettings settings_;
-  std::optional<deformable::SpringMotion> motion_;
-  int steps_{1};                                               // on a tick
-  Vector3d first_{Vector3d::Zero()}, last_{Vector3d::Zero()};  // of the tool [m]
+};
+
+class ImplicitElements final : public MovingCandidate {
+  int prepare(double rate) override {
+    const deformable::ElasticBody elastic(body_.mesh, body_.elasticity);
+    implicit_ = std::make_shared<const deformable::ImplicitBody>(
+        elastic, deformable::ImplicitOptions{1.0 / rate, 0.0, held_, {}});
+    return 1;
+  }
+  std::unique_ptr<deformable::BodyMotion> motion() const override {
+    return std::make_unique<deformable::ImplicitMotion>(implicit_);
+  }
+
+  std::shared_ptr<const deformable::ImplicitBody> implicit_;
 };
 
 }  // namespace
@@ -239,9 +275,12 @@ std::unique_ptr<Candidate> soft_candidate(const std::string& word) {
   if (word == kSprings) {
     return std::make_unique<MovingSprings>();
   }
+  if (word == kImplicit) {
+    return std::make_unique<ImplicitElements>();
+  }
   return word == kLinearElements ? std::make_unique<LinearElements>() : nullptr;
 }
 
-std::vector<std::string> soft_candidate_words() { return {kSprings, kLinearElements}; }
+std::vector<std::string> soft_candidate_words() { return {kSprings, kImplicit, kLinearElements}; }
 
 }  // namespace haptrial::evaluation

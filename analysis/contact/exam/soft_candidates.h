@@ -11,8 +11,8 @@ namespace haptrial::evaluation {
 /// Models of this program for soft bodies:
 ///
 ///     springs          springs of length, area and volume that move (core/deformable/springs),
-///     with
-///                      constants that are calibrated when a body is prepared
+///                      with constants that are calibrated when a body is prepared
+///     implicit         elements that move by implicit steps (core/deformable/elements)
 ///     linear-elements  the response of linear elements to the tool and to the forces, at rest
 ///
 /// @returns null for another word

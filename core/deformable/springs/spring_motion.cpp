@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/deformable/springs/stable_step.h"
@@ -45,13 +45,13 @@ void check_settings(const SpringBody& body, const MotionSettings& settings,
 
 SpringMotion::SpringMotion(const SpringBody& body, const MotionSettings& settings,
                            std::span<const std::int32_t> held)
-    : settings_((check_settings(body, settings, held), settings)),
-      springs_(body, settings.instructions),
-      masses_(body.masses),
-      positions_(springs_.points()),
-      velocities_(positions_.size()),
-      forces_(positions_.size()),
-      external_(positions_.size()) {
+    : SpringMotion(body, settings, held, SpringForces(body, settings.instructions)) {}
+
+SpringMotion::SpringMotion(const SpringBody& body, const MotionSettings& settings,
+                           std::span<const std::int32_t> held, SpringForces springs)
+    : BodyMotion(body.masses, springs.points(), (check_settings(body, settings, held), held)),
+      settings_(settings),
+      springs_(std::move(springs)) {
   for (std::size_t v = 0; v < masses_.size(); ++v) {
     const double drag = 0.5 * settings.damping * settings.step;
     keep_.push_back((masses_[v] - drag) / (masses_[v] + drag));
@@ -66,10 +66,7 @@ SpringMotion::SpringMotion(const SpringBody& body, const MotionSettings& setting
 
 void SpringMotion::step() noexcept {
   std::memcpy(forces_.data(), external_.data(), 4 * sizeof(double) * external_.size());
-  inverted_ = springs_.add(positions_, forces_);
-  if (inverted_ > 0) {
-    ++inverted_steps_;
-  }
+  count_inverted(springs_.add(positions_, forces_));
   double* x = positions_.data();
   double* v = velocities_.data();
   const double* f = forces_.data();
@@ -84,30 +81,10 @@ void SpringMotion::step() noexcept {
   ++steps_;
 }
 
-void SpringMotion::set_force(std::size_t vertex, const Vector3d& force) noexcept {
-  external_[vertex] = force;
-}
-
-void SpringMotion::place(std::size_t vertex, const Vector3d& position) noexcept {
-  positions_[vertex] = position;
-}
-
-void SpringMotion::set_velocity(std::size_t vertex, const Vector3d& velocity) noexcept {
-  if (!held(vertex)) {
-    velocities_[vertex] = velocity;
-  }
-}
-
 void SpringMotion::push(std::size_t vertex, const Vector3d& force) noexcept {
   const Vector3d faster = kick_[vertex] * force;
   velocities_[vertex] += faster;
   positions_[vertex] += settings_.step * faster;
-}
-
-void SpringMotion::stop() noexcept {
-  for (std::size_t v = 0; v < masses_.size(); ++v) {
-    velocities_[v].setZero();
-  }
 }
 
 Activity SpringMotion::activity() const noexcept {
@@ -139,34 +116,6 @@ Activity SpringMotion::activity() const noexcept {
     activity.max_acceleration = activity.mean_acceleration;
   }
   return activity;
-}
-
-std::vector<Vector3d> SpringMotion::positions() const {
-  std::vector<Vector3d> positions(masses_.size());
-  copy_positions(positions);
-  return positions;
-}
-
-void SpringMotion::copy_positions(std::span<Vector3d> to) const noexcept {
-  for (std::size_t v = 0; v < masses_.size(); ++v) {
-    to[v] = positions_[v];
-  }
-}
-
-Vector3d SpringMotion::momentum() const {
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t v = 0; v < masses_.size(); ++v) {
-    sum += masses_[v] * velocities_[v];
-  }
-  return sum;
-}
-
-Vector3d SpringMotion::angular_momentum() const {
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t v = 0; v < masses_.size(); ++v) {
-    sum += masses_[v] * Vector3d(positions_[v]).cross(Vector3d(velocities_[v]));
-  }
-  return sum;
 }
 
 double SpringMotion::kinetic_energy() const {

@@ -69,7 +69,7 @@ void BallContact::adopt(const BallContact& before) noexcept {
   }
 }
 
-Vector3d BallContact::where(const SpringMotion& motion, std::int32_t sample) const noexcept {
+Vector3d BallContact::where(const BodyMotion& motion, std::int32_t sample) const noexcept {
   const SurfaceSamples::Sample& s = samples_.samples[as_size(sample)];
   return s.weight[0] * motion.position(as_size(s.corners[0])) +
          s.weight[1] * motion.position(as_size(s.corners[1])) +
@@ -85,7 +85,7 @@ Vector3d BallContact::at_rest(std::int32_t sample) const noexcept {
   return p;
 }
 
-void BallContact::gather(const SpringMotion& motion, const Vector3d& from,
+void BallContact::gather(const BodyMotion& motion, const Vector3d& from,
                          const Vector3d& to) noexcept {
   ++tick_;
   crowded_ = false;
@@ -118,7 +118,7 @@ void BallContact::gather(const SpringMotion& motion, const Vector3d& from,
   radius_ = std::min(radius_ + growth_, options_.radius);
 }
 
-void BallContact::find_near(const SpringMotion& motion, const Vector3d& middle,
+void BallContact::find_near(const BodyMotion& motion, const Vector3d& middle,
                             double reach) noexcept {
   for (const std::int32_t corner : corners_) {
     near_[as_size(corner)] =
@@ -126,7 +126,7 @@ void BallContact::find_near(const SpringMotion& motion, const Vector3d& middle,
   }
 }
 
-void BallContact::look_at(const SpringMotion& motion, std::int32_t number, const Vector3d& middle,
+void BallContact::look_at(const BodyMotion& motion, std::int32_t number, const Vector3d& middle,
                           double reach) noexcept {
   if (looked_at_[as_size(number)] == tick_) {
     return;
@@ -135,7 +135,7 @@ void BallContact::look_at(const SpringMotion& motion, std::int32_t number, const
   Place place;
   place.sample = number;
   place.pressed = kept_[as_size(number)];
-  place.before = where(motion, place);
+  place.before = place.after = where(motion, place);
   const double distance = (place.before - middle).norm();
   if (distance < reach || place.pressed > 0.0) {
     add(place, distance);
@@ -172,8 +172,19 @@ double BallContact::room(const Vector3d& centre) const noexcept {
   return room;
 }
 
-void BallContact::press(SpringMotion& motion, const Vector3d& tool) noexcept {
-  const Vector3d before = centre_;
+void BallContact::press(BodyMotion& motion, const Vector3d& tool) noexcept {
+  centre_before_ = centre_;
+  for (Place& place : std::span(places_).first(count_)) {
+    place.before = place.after;
+    place.sum_before = place.sum;
+  }
+  press_again(motion, tool);
+}
+
+void BallContact::press_again(BodyMotion& motion, const Vector3d& tool) noexcept {
+  for (Place& place : std::span(places_).first(count_)) {
+    place.sum = place.sum_before;
+  }
   const Vector3d guess = tool - force_ / options_.stiffness;
   centre_ = tool;
   force_.setZero();
@@ -183,15 +194,16 @@ void BallContact::press(SpringMotion& motion, const Vector3d& tool) noexcept {
   const bool rubs = options_.friction.static_friction > 0.0;
   for (int round = 0; round < (rubs ? kRounds : 1); ++round) {
     press_chosen(motion);
-    rub(motion, before);
+    rub(motion);
   }
+  motion.finish_pushes();
   for (Place& place : std::span(places_).first(count_)) {
-    place.before = where(motion, place);
+    place.after = where(motion, place);
   }
 }
 
 /// Friction goes on as on the step before, by the pressures of then.
-void BallContact::rub_on(SpringMotion& motion) noexcept {
+void BallContact::rub_on(BodyMotion& motion) noexcept {
   for (std::size_t i = 0; i < count_ && pressure_ > 0.0; ++i) {
     if (places_[i].pressed > 0.0) {
       apply(motion, places_[i], places_[i].pressed / pressure_ * friction_);
@@ -200,7 +212,7 @@ void BallContact::rub_on(SpringMotion& motion) noexcept {
 }
 
 /// Places that may be pressed on this step, and how they would lie without normal forces.
-void BallContact::choose(const SpringMotion& motion, const Vector3d& centre) noexcept {
+void BallContact::choose(const BodyMotion& motion, const Vector3d& centre) noexcept {
   problem_.free_gap.resize(static_cast<Eigen::Index>(count_));
   pressed_.resize(static_cast<Eigen::Index>(count_));
   Eigen::Index chosen = 0;
@@ -221,7 +233,7 @@ void BallContact::choose(const SpringMotion& motion, const Vector3d& centre) noe
   pressed_.conservativeResize(chosen);
 }
 
-void BallContact::find_compliance(const SpringMotion& motion) noexcept {
+void BallContact::find_compliance(const BodyMotion& motion) noexcept {
   const Eigen::Index chosen = problem_.free_gap.size();
   problem_.compliance.resize(chosen, chosen);
   across_.resize(chosen, chosen);
@@ -237,7 +249,7 @@ void BallContact::find_compliance(const SpringMotion& motion) noexcept {
   }
 }
 
-void BallContact::press_chosen(SpringMotion& motion) noexcept {
+void BallContact::press_chosen(BodyMotion& motion) noexcept {
   solved_ = deformable::press(problem_, pressed_) && solved_;
   pressure_ = pressed_.sum();
   for (Eigen::Index i = 0; i < pressed_.size(); ++i) {
@@ -250,17 +262,17 @@ void BallContact::press_chosen(SpringMotion& motion) noexcept {
   }
 }
 
-/// How far a force on one place moves another that shares its vertices, over a step [m/N].
-double BallContact::together(const SpringMotion& motion, const Place& a,
+/// How far a force on one place moves another, over a step [m/N].
+double BallContact::together(const BodyMotion& motion, const Place& a,
                              const Place& b) const noexcept {
   const SurfaceSamples::Sample& p = sample(a);
   const SurfaceSamples::Sample& q = sample(b);
   double sum = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      if (p.corners[i] == q.corners[j]) {
+      if (p.corners[i] == q.corners[j] || motion.spreads()) {
         sum += p.weight[static_cast<Eigen::Index>(i)] * q.weight[static_cast<Eigen::Index>(j)] *
-               motion.mobility(as_size(p.corners[i]));
+               motion.mobility(as_size(p.corners[i]), as_size(q.corners[j]));
       }
     }
   }
@@ -269,15 +281,14 @@ double BallContact::together(const SpringMotion& motion, const Place& a,
 
 /// Friction is changed so that the places, by their pressures, have not moved along the ball. What
 /// that does to the gaps is left to the next round.
-/// @param before  where the ball's centre was after the last step
-void BallContact::rub(SpringMotion& motion, const Vector3d& before) noexcept {
+void BallContact::rub(BodyMotion& motion) noexcept {
   if (!(pressure_ > 0.0) || !(options_.friction.static_friction > 0.0)) {
     friction_.setZero();
     return;
   }
   const PressedPlaces::Vector share = pressed_ / pressure_;
   Vector3d normal = Vector3d::Zero();
-  Vector3d moved = before - centre_;
+  Vector3d moved = centre_before_ - centre_;
   for (Eigen::Index i = 0; i < share.size(); ++i) {
     normal += share[i] * chosen_place(i).normal;
     moved += share[i] * (where(motion, chosen_place(i)) - chosen_place(i).before);
@@ -300,7 +311,7 @@ void BallContact::rub(SpringMotion& motion, const Vector3d& before) noexcept {
   }
 }
 
-void BallContact::apply(SpringMotion& motion, Place& place, const Vector3d& force) noexcept {
+void BallContact::apply(BodyMotion& motion, Place& place, const Vector3d& force) noexcept {
   const SurfaceSamples::Sample& s = sample(place);
   for (std::size_t k = 0; k < 3; ++k) {
     motion.push(as_size(s.corners[k]), s.weight[static_cast<Eigen::Index>(k)] * force);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/deformable/springs/spring_motion.h"
+#include "core/deformable/body/body_motion.h"
 #include "core/realtime/hand_over.h"
 
 namespace haptrial::deformable {
@@ -21,7 +21,7 @@ class MovingShape {
   }
 
   /// Servo thread: no allocation or lock.
-  void write(const SpringMotion& motion) noexcept {
+  void write(const BodyMotion& motion) noexcept {
     std::vector<Eigen::Vector3f>& slot = slots_[turn_.writing()];
     for (std::size_t v = 0; v < slot.size(); ++v) {
       slot[v] = motion.position(v).cast<float>();

@@ -37,10 +37,10 @@ MovingTouch::MovingTouch(SharedMovingBody body, const TouchOptions& options, dou
       grip_(body_->mesh->grasped.size(), Vector3d::Zero()) {}
 
 void MovingTouch::put_to_rest() noexcept {
-  for (std::size_t v = 0; v < motion_.vertices(); ++v) {
-    motion_.place(v, body_->springs.rest[v]);
+  for (std::size_t v = 0; v < motion_->vertices(); ++v) {
+    motion_->place(v, body_->mesh->tets.vertices[v]);
   }
-  motion_.stop();
+  motion_->stop();
   ball_.forget();
   account_.open();
   contact_ = {};
@@ -62,10 +62,7 @@ void MovingTouch::adopt(const BodyTouch& before, const Vector3d& tool) noexcept 
     return;
   }
   put_to_rest();
-  for (std::size_t v = 0; v < motion_.vertices(); ++v) {
-    motion_.place(v, same->motion_.position(v));
-    motion_.set_velocity(v, same->motion_.velocity(v));
-  }
+  motion_->adopt(*same->motion_);
   ball_.adopt(same->ball_);
   account_ = same->account_;
   contact_ = same->contact_;
@@ -82,7 +79,7 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
   }
   const Vector3d way = tool - tool_;
   account_.book(contact_.force, way, period_);
-  inverted_steps_ = motion_.inverted_steps();
+  inverted_steps_ = motion_->inverted_steps();
   advance(tool);
   if (!together()) {
     ++counts_.flown_apart;
@@ -99,7 +96,7 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
   }
   tool_ = tool;
   if (shape_ && ticks_++ % kTicksOfPicture == 0) {
-    shape_->write(motion_);
+    shape_->write(*motion_);
   }
   return contact_;
 }
@@ -109,15 +106,18 @@ void MovingTouch::advance(const Vector3d& tool) noexcept {
   felt_.setZero();
   std::ranges::fill(grip_, Vector3d::Zero());
   if (!grasps()) {
-    ball_.gather(motion_, tool_, tool);
+    ball_.gather(*motion_, tool_, tool);
   }
   for (int step = 1; step <= steps_; ++step) {
     const Vector3d hand = tool_ + static_cast<double>(step) / steps_ * (tool - tool_);
     if (grasps()) {
       pull(hand);
     } else {
-      motion_.step();
-      ball_.press(motion_, hand);
+      motion_->step();
+      ball_.press(*motion_, hand);
+      while (motion_->refine()) {
+        ball_.press_again(*motion_, hand);
+      }
       felt_ += ball_.force() / steps_;
     }
   }
@@ -128,11 +128,13 @@ void MovingTouch::pull(const Vector3d& hand) noexcept {
   const std::vector<std::int32_t>& grasped = body_->mesh->grasped;
   for (const std::int32_t vertex : grasped) {
     const auto v = static_cast<std::size_t>(vertex);
-    motion_.place(v, body_->springs.rest[v] + hand - grip_at_);
+    motion_->place(v, body_->mesh->tets.vertices[v] + hand - grip_at_);
   }
-  motion_.step();
+  motion_->step();
+  while (motion_->refine()) {
+  }
   for (std::size_t i = 0; i < grasped.size(); ++i) {
-    const Vector3d force = motion_.force(static_cast<std::size_t>(grasped[i])) / steps_;
+    const Vector3d force = motion_->force(static_cast<std::size_t>(grasped[i])) / steps_;
     grip_[i] -= force;
     felt_ -= force;
   }
@@ -145,7 +147,8 @@ bool MovingTouch::together() const noexcept {
   bool together = felt_.allFinite();
   for (const Face& face : body_->mesh->felt) {
     const auto v = static_cast<std::size_t>(face[0]);
-    together = together && (motion_.position(v) - body_->springs.rest[v]).squaredNorm() < far * far;
+    together = together &&
+               (motion_->position(v) - body_->mesh->tets.vertices[v]).squaredNorm() < far * far;
   }
   return together;
 }
@@ -204,7 +207,7 @@ void MovingTouch::keep_forces() noexcept {
 /// might give out more energy than there is to what may be given.
 void MovingTouch::limit() noexcept {
   const double size = contact_.force.norm();
-  if (motion_.inverted_steps() == inverted_steps_) {
+  if (motion_->inverted_steps() == inverted_steps_) {
     upright_ = size;
   } else {
     ++counts_.inverted;

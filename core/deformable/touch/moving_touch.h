@@ -13,12 +13,14 @@
 
 namespace haptrial::deformable {
 
-/// A body of springs that moves, with inertia, waves and large strains, and is pressed by a ball,
-/// or held by the hand at its grasped vertices, which go with the hand from start() on.
+/// A body of springs or implicit elements that moves, with inertia, waves and large strains, and is
+/// pressed by a ball, or held by the hand at its grasped vertices, which go with the hand from
+/// start() on.
 ///
-/// On each tick the body makes several explicit steps, while the hand goes on to the tool; what is
-/// felt is the mean force of these steps. An energy account (energy_account.h) keeps it passive. A
-/// tick is a function of the tool's places alone, to the bit on every instruction set.
+/// On each tick a body of springs makes several explicit steps, one of elements an implicit one,
+/// while the hand goes on to the tool; what is felt is the mean force of these steps. An energy
+/// account (energy_account.h) keeps it passive. A tick is a function of the tool's places alone, to
+/// the bit on every instruction set.
 ///
 /// A point, and any ball below smallest_ball(), is felt as a ball of that radius. A ball that
 /// begins in the surface grows there from what has room; one whose centre is inside touches nothing
@@ -41,7 +43,7 @@ class MovingTouch final : public BodyTouch {
   }
   const TouchCounts& counts() const noexcept override { return counts_; }
 
-  const SpringMotion& motion() const noexcept { return motion_; }
+  const BodyMotion& motion() const noexcept { return *motion_; }
   const BallContact& ball() const noexcept { return ball_; }
   int steps() const noexcept { return steps_; }  // on a tick
   /// The last force without a tetrahedron inside out [N].
@@ -65,7 +67,7 @@ class MovingTouch final : public BodyTouch {
   TouchOptions options_;
   double period_;
   int steps_;
-  SpringMotion motion_;
+  std::unique_ptr<BodyMotion> motion_;
   BallContact ball_;
   EnergyAccount account_;
   std::shared_ptr<MovingShape> shape_;

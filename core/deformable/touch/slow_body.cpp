@@ -19,12 +19,13 @@ std::size_t sample_slot(std::int32_t i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
 SlowBody::SlowBody(const SharedMovingBody& body, SharedWindowCompliance compliance,
-                   const TouchOptions& options, double period, bool threaded,
+                   const TouchOptions& options, double period, int window, bool threaded,
                    std::shared_ptr<MovingShape> shape)
     : body_(body),
       compliance_(std::move(compliance)),
       period_(period),
-      touch_(body, options, period, std::move(shape)) {
+      ticks_of_step_(body->implicit ? window : 1),
+      touch_(body, options, ticks_of_step_ * period, std::move(shape)) {
   const std::size_t samples = touch_.ball().samples().samples.size();
   near_.resize(samples);
   pressed_.assign(samples, 0);
@@ -73,8 +74,8 @@ void SlowBody::advance(const BodyPath& path) noexcept {
     touch_.start(path.from);
     ++window_;  // nothing goes on from before
   }
-  for (int i = 0; i < path.count; ++i) {
-    touch_.tick(path.tools[static_cast<std::size_t>(i)], period_);
+  for (int i = ticks_of_step_ - 1; i < path.count; i += ticks_of_step_) {
+    touch_.tick(path.tools[static_cast<std::size_t>(i)], ticks_of_step_ * period_);
   }
   describe(path, slots_[turn_.writing()]);
   turn_.publish();
@@ -165,7 +166,9 @@ void SlowBody::describe_place(std::int32_t number, double window,
   }
   to.free = to.at - moved.cast<double>();
   to.drift.setZero();
-  if (described_[s] + 1 == window_) {
+  // A place that comes into touch jumps by what the rounds of an implicit step still lack, and a
+  // jump is no drift. Its compliance alone foretells it.
+  if (described_[s] + 1 == window_ && !body_->implicit) {
     to.drift = (to.free - free_[s]) / window;
   }
   described_[s] = window_;

@@ -31,10 +31,11 @@ struct BodyPath {
 /// the thread that asks, with the same bytes. It says how its surface is when the window ends.
 class SlowBody {
  public:
-  /// @param compliance  of `body`  @param period  of a tick [s]
+  /// @param compliance  of `body`  @param period  of a tick [s]  @param window  [ticks]: one of
+  /// elements is stepped once over all of them
   /// @throws as MovingTouch
   SlowBody(const SharedMovingBody& body, SharedWindowCompliance compliance,
-           const TouchOptions& options, double period, bool threaded,
+           const TouchOptions& options, double period, int window, bool threaded,
            std::shared_ptr<MovingShape> shape);
   ~SlowBody();
   SlowBody(const SlowBody&) = delete;
@@ -65,6 +66,7 @@ class SlowBody {
   SharedMovingBody body_;
   SharedWindowCompliance compliance_;
   double period_;
+  int ticks_of_step_;  // of the loop, for one of the body
   MovingTouch touch_;
   std::uint64_t window_{0};  // number of the last one
 

@@ -50,7 +50,8 @@ TwoRateTouch::TwoRateTouch(const SharedMovingBody& body, SharedWindowCompliance 
       period_(period),
       rates_(std::move(rates)),
       steps_(steps_on_a_tick(*body, period)),
-      body_(body, std::move(compliance), options, period, rates_.threaded, std::move(shape)),
+      body_(body, std::move(compliance), options, period, rates_.window, rates_.threaded,
+            std::move(shape)),
       local_(options_),
       forces_(3 * LocalSurface::kMost) {
   late_.reserve(kMostLate);

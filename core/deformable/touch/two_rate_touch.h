@@ -32,7 +32,7 @@ struct TwoRates {
   std::vector<LateWindow> late{};  // without a thread: that are to be late, as they once were
 };
 
-/// A body of springs that moves at a slower rate than it is felt. Every few ticks, a window, the
+/// A body that moves at a slower rate than it is felt. Every few ticks, a window, the
 /// servo thread hands over where the tool was, and gets how the surface was at the end of the
 /// window before. In between it feels the surface near the ball through a local compliance
 /// (local_contact.h), kept passive by an energy account. The body moves as that of a MovingTouch on

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <set>
+#include <utility>
 
 #include "core/deformable/springs/spring_hessian.h"
 #include "core/deformable/touch/condense.h"
@@ -12,7 +13,7 @@ namespace haptrial::deformable {
 namespace {
 
 std::vector<std::uint8_t> flags_of(const MovingBody& body) {
-  std::vector<std::uint8_t> held(body.springs.rest.size(), 0);
+  std::vector<std::uint8_t> held(body.mesh->tets.vertices.size(), 0);
   for (const std::int32_t vertex : body.held) {
     held[static_cast<std::size_t>(vertex)] = 1;
   }
@@ -42,6 +43,29 @@ Eigen::MatrixXf inverse_of(Eigen::MatrixXd matrix) {
   return inverse.selfadjointView<Eigen::Lower>().toDenseMatrix().cast<float>();
 }
 
+/// K + M / τ² at rest.
+BlockMatrix stiffness_over(const MovingBody& body, double time) {
+  const std::span<const double> masses =
+      body.elements ? body.elements->masses() : std::span<const double>(body.springs.masses);
+  std::vector<double> inertia(masses.begin(), masses.end());
+  for (double& each : inertia) {
+    each /= time * time;
+  }
+  const auto with_inertia = [&](BlockMatrix stiffness) {
+    stiffness.scale_and_add(1.0, inertia);
+    return stiffness;
+  };
+  if (!body.elements) {
+    SpringHessian hessian(body.springs);
+    hessian.assemble(body.springs, body.springs.rest);
+    return with_inertia(std::move(hessian.matrix()));
+  }
+  BlockMatrix stiffness(body.elements->patches().groups(), masses.size());
+  Vectors forces;
+  body.elements->stiffness(Vectors(masses.size(), Eigen::Vector3d::Zero()), forces, stiffness);
+  return with_inertia(std::move(stiffness));
+}
+
 struct WindowedTissue {
   SharedMovingBody body;
   double window;
@@ -53,18 +77,12 @@ struct WindowedTissue {
 WindowCompliance::WindowCompliance(const MovingBody& body, double time) {
   const std::vector<std::uint8_t> held = flags_of(body);
   const std::vector<std::int32_t> touched = touched_vertices(body, held);
-  place_.assign(body.springs.rest.size(), -1);
+  place_.assign(held.size(), -1);
   for (std::size_t i = 0; i < touched.size(); ++i) {
     place_[static_cast<std::size_t>(touched[i])] = static_cast<std::int32_t>(i);
   }
-  SpringHessian hessian(body.springs);
-  hessian.assemble(body.springs, body.springs.rest);
-  std::vector<double> inertia = body.springs.masses;
-  for (double& each : inertia) {
-    each /= time * time;
-  }
-  hessian.matrix().scale_and_add(1.0, inertia);
-  inverse_ = inverse_of(condensed(hessian.matrix(), body.springs.rest, held, touched));
+  inverse_ =
+      inverse_of(condensed(stiffness_over(body, time), body.mesh->tets.vertices, held, touched));
 }
 
 SharedWindowCompliance prepared_compliance(const SharedMovingBody& body, double window) {

@@ -9,7 +9,7 @@
 
 namespace haptrial::deformable {
 
-/// How the surface of a body of springs gives way to forces within a time τ, an implicit step of
+/// How the surface of a body that moves gives way to forces within a time τ, an implicit step of
 /// it, with the stiffness K and the masses M at rest:
 ///
 ///     u = (K + M / τ²)⁻¹ f

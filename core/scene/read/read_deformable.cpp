@@ -12,7 +12,7 @@ namespace haptrial::scene {
 namespace {
 
 constexpr Bounds kYoungBounds{0.0, 1e9, true};  // [Pa]
-constexpr double kDecay = 10.0;                 // of springs [1/s]
+constexpr double kDecay = 10.0;                 // of what moves [1/s]
 
 const Schema<deformable::Inclusion>& inclusion_schema() {
   using I = deformable::Inclusion;
@@ -62,14 +62,15 @@ void read_constants(Table& table, const std::string& key, deformable::SpringTiss
   }
 }
 
-const Schema<deformable::SpringTissue>& spring_tissue_schema() {
+/// What a body that moves has, of springs or of elements.
+const Schema<deformable::SpringTissue>& moving_schema() {
   using S = deformable::SpringTissue;
   static const auto schema =
       Schema<S>()
-          .number("density", &S::density, {0.0, 1e5, true}, "kg/m³", "Density of a body of springs")
+          .number("density", &S::density, {0.0, 1e5, true}, "kg/m³", "Density of a body that moves")
           .required()
           .number("decay", &S::decay, {0.0, 1e4}, "1/s",
-                  "Rate at which a free motion of a body of springs dies down: exp(-decay t)");
+                  "Rate at which a free motion of a body that moves dies down: exp(-decay t)");
   return schema;
 }
 
@@ -88,8 +89,17 @@ deformable::SpringTissue read_springs(Table& table) {
                     true});
     read_constants(table, "constants", springs);
   }
-  spring_tissue_schema().read(table, springs);
+  moving_schema().read(table, springs);
   return springs;
+}
+
+deformable::ImplicitTissue read_implicit(Table& table) {
+  deformable::SpringTissue moving;
+  moving.decay = kDecay;
+  moving_schema().read(table, moving);
+  deformable::ImplicitTissue implicit{tissue_schema().read(table), moving.decay};
+  implicit.tissue.density = moving.density;
+  return implicit;
 }
 
 const Schema<deformable::TouchOptions>& touch_schema() {
@@ -104,19 +114,25 @@ const Schema<deformable::TouchOptions>& touch_schema() {
   return schema;
 }
 
-/// The material: elements or springs.
+/// The material: elements, at rest or in motion, or springs.
 void read_material(Table& table, DeformableObjectParameters& p) {
   table.describe({"model",
-                  "What a body that gives way is made of: elements that rest on every tick, or "
-                  "springs that move",
+                  "What a body that gives way is made of: elements that rest on every tick, "
+                  "springs that move, or elements that move by implicit steps",
                   "elements", false});
-  if (!table.has("model") || table.choice("model", {"elements", "springs"}) != "springs") {
+  const std::string model =
+      table.has("model") ? table.choice("model", {"elements", "springs", "implicit"}) : "elements";
+  if (model == "springs") {
+    p.springs = read_springs(table);
+  } else if (model == "implicit") {
+    p.implicit = read_implicit(table);
+    p.tissue = p.implicit->tissue;
+  } else {
     p.tissue = tissue_schema().read(table);
     return;
   }
-  p.springs = read_springs(table);
   table.describe({"rate",
-                  "Motions of a body of springs a second, if it moves less often than it is felt",
+                  "Motions of a body that moves a second, if it moves less often than it is felt",
                   "the loop's", false});
   p.rate = table.has("rate") ? table.number("rate", {0.0, 1e5, true}, "Hz") : 0.0;
 }

@@ -11,6 +11,7 @@
 #include "analysis/contact/exam/own_candidate.h"
 #include "analysis/contact/exam/program_renderer.h"
 #include "core/base/error.h"
+#include "experiments/command/program_words.h"
 #include "experiments/command/subcommand.h"
 
 namespace haptrial::experiments {
@@ -73,11 +74,12 @@ void add_exam_run(CLI::App& exam, int& status) {
   sub->add_option(
       "RENDERER", o.renderer,
       "Renderer of this program: proxy, penalty, voxel or distance-field; rigid-tool in "
-      "an exam of rigid tools; springs or linear-elements in one of soft bodies");
-  sub->add_option("--program", o.program,
+      "an exam of rigid tools; springs, implicit or linear-elements in one of soft bodies");
+  sub->add_option(kProgramOption, o.program,
                   "Another program and its arguments, which answers lines on its standard input "
                   "(to the end of the line)")
-      ->expected(1, 100);
+      ->expected(1, 100)
+      ->delimiter(kProgramSeparator);
   sub->add_option("--name", o.name,
                   "Name of the renderer (default: RENDERER, or the last argument of the program)");
   sub->add_option("--out", o.out, "New folder of the answers")->required();

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
@@ -15,6 +17,7 @@
 #include "experiments/command/line/command_line.h"
 #include "experiments/command/line/command_line_check_internal.h"
 #include "experiments/command/line/shipped_studies.h"
+#include "experiments/command/program_words.h"
 #include "experiments/runner/version.h"
 
 namespace haptrial::experiments {
@@ -28,9 +31,27 @@ void complain(const std::string& sentence) {
   [[maybe_unused]] const int written = std::fputs(("haptrial: " + sentence + "\n").c_str(), stderr);
 }
 
+/// The words of a line, those of another program as one.
+std::vector<std::string> joined_words(std::span<char* const> line) {
+  std::vector<std::string> words(line.begin(), line.end());
+  const auto option = std::ranges::find(words, kProgramOption);
+  if (words.end() - option > 2) {
+    for (auto word = option + 2; word != words.end(); ++word) {
+      *(option + 1) += kProgramSeparator + *word;
+    }
+    words.erase(option + 2, words.end());
+  }
+  return words;
+}
+
 /// Reads a line of words and runs the subcommand that it gives.
 /// @returns the exit status. @throws what the subcommand throws
-int run_line(std::span<char* const> line) {
+int run_line(std::span<char* const> whole) {
+  std::vector<std::string> joined = joined_words(whole);
+  std::vector<char*> line;
+  for (std::string& word : joined) {
+    line.push_back(word.data());
+  }
   CLI::App app("Run force-feedback experiments, record them and analyse the results.");
   app.name("haptrial");
   app.set_version_flag("--version", fmt::format("haptrial {} ({})\n{}", program_version(),
@@ -46,7 +67,7 @@ int run_line(std::span<char* const> line) {
       "Exit status: 0 done, 1 failed, 2 bad input.");
   int status = 0;
   declare_subcommands(app, status);
-  const auto words = line.subspan(1);
+  const auto words = std::span<char* const>(line).subspan(1);
   check_words(app, words);
   try {
     app.parse(static_cast<int>(line.size()), line.data());

@@ -52,39 +52,58 @@ void add_words_of_elements(const scene::Field& field, const scene::DeformableObj
   }
 }
 
-/// Words about springs that move at their own rate. @param cost  of their steps on a tick
+constexpr const char* kCheaper =
+    "use fewer cells, or of springs smaller constants or more density, which need fewer or shorter "
+    "steps";
+
+/// Words about a body that moves at its own rate. @param cost  of a tick, if it had the loop's, and
+/// of a step of elements
 void add_words_of_own_rate(const scene::Field& field, const scene::DeformableObjectParameters& p,
                            double rate, const deformable::TouchCost& cost,
                            std::vector<std::string>& lines) {
   const double window = p.rates.window / rate;
+  const double busy_rate = p.implicit ? p.rate : rate;
   lines.push_back(fmt::format(
       "objects.{}: moves {:g} times a second, {} ticks at once, and is felt {:g} to {:g} ms later "
       "through its surface's compliance of then; that keeps a thread of its own busy for {:.0f} % "
       "(measured now, on this machine)",
       field.name, p.rate, p.rates.window, 1e3 * window, 1e3 * (2.0 * window - 1.0 / rate),
-      100.0 * cost.median * rate));
-  if (cost.most * rate > 1.0) {
+      100.0 * cost.median * busy_rate));
+  if (cost.most * busy_rate > 1.0) {
     lines.push_back(fmt::format(
-        "objects.{}: that is more than there is: the body would be late and move too slowly; use "
-        "fewer cells, smaller constants or more density, which need fewer or shorter steps",
-        field.name));
+        "objects.{}: that is more than there is: the body would be late and move too slowly; {}",
+        field.name, kCheaper));
   }
 }
 
-/// Words about springs that move.
-void add_words_of_springs(const scene::Field& field, const scene::DeformableObjectParameters& p,
-                          double rate, double damping, std::vector<std::string>& lines) {
+/// How a body that moves is stepped.
+std::string words_of_steps(const scene::Field& field, const scene::DeformableObjectParameters& p,
+                           double rate) {
   const deformable::MovingBody& body = *p.moving;
+  const std::size_t tetrahedra = p.mesh->tets.tetrahedra.size();
+  if (body.implicit) {
+    return fmt::format("objects.{}: {} tetrahedra of elements, one implicit step of {:g} ms",
+                       field.name, tetrahedra, 1e3 * body.implicit->options().step);
+  }
   const int steps = deformable::steps_on_a_tick(body, 1.0 / rate);
-  lines.push_back(fmt::format(
+  return fmt::format(
       "objects.{}: {} tetrahedra of springs, {} step{} of {:.3g} ms on a tick (the longest that is "
-      "stable at rest: {:.3g} ms); gives no energy to a hand of at least {:g} N·s/m of damping, "
-      "and the hand of [hand] has {:g}",
-      field.name, body.springs.tetrahedra.size(), steps, steps == 1 ? "" : "s",
-      1e3 / (rate * steps), 1e3 * body.stable_step, deformable::EnergyAccount::kDamping, damping));
-  deformable::MovingTouch touch(p.moving, p.tool, 1.0 / rate);
+      "stable at rest: {:.3g} ms)",
+      field.name, tetrahedra, steps, steps == 1 ? "" : "s", 1e3 / (rate * steps),
+      1e3 * body.stable_step);
+}
+
+/// Words about a body that moves.
+void add_words_of_motion(const scene::Field& field, const scene::DeformableObjectParameters& p,
+                         double rate, double damping, std::vector<std::string>& lines) {
+  lines.push_back(fmt::format(
+      "{}; gives no energy to a hand of at least {:g} N·s/m of damping, and the hand of [hand] has "
+      "{:g}",
+      words_of_steps(field, p, rate), deformable::EnergyAccount::kDamping, damping));
+  const double period = p.implicit ? p.rates.window / rate : 1.0 / rate;
+  deformable::MovingTouch touch(p.moving, p.tool, period);
   const deformable::TouchCost cost =
-      deformable::measured_cost(touch, *p.mesh, p.tool.radius, 1.0 / rate);
+      deformable::measured_cost(touch, *p.mesh, p.tool.radius, period);
   if (p.gives) {
     add_words_of_own_rate(field, p, rate, cost, lines);
     return;
@@ -92,10 +111,9 @@ void add_words_of_springs(const scene::Field& field, const scene::DeformableObje
   lines.push_back(words_of_cost(field.name, cost, rate));
   if (cost.most * rate > 1.0) {
     lines.push_back(fmt::format(
-        "objects.{}: that does not fit into a tick: this machine holds {:.0f} ticks a second; use "
-        "fewer cells, smaller constants or more density, which need fewer or shorter steps, or "
-        "give the body a `rate` of its own",
-        field.name, 1.0 / cost.most));
+        "objects.{}: that does not fit into a tick: this machine holds {:.0f} ticks a second; {}, "
+        "or give the body a `rate` of its own",
+        field.name, 1.0 / cost.most, kCheaper));
   }
 }
 
@@ -104,19 +122,25 @@ void add_words_of_springs(const scene::Field& field, const scene::DeformableObje
 void prepare_moving_bodies(std::vector<scene::Field>& fields, double rate) {
   for (scene::Field& field : fields) {
     auto* p = std::get_if<scene::DeformableObjectParameters>(&field.kind);
-    if (p != nullptr && p->mesh && p->springs) {
-      p->moving = deformable::prepared(p->mesh, *p->springs);
-      p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
-      deformable::steps_on_a_tick(*p->moving, 1.0 / rate);
-      p->rates.window = p->rate > 0.0 ? deformable::ticks_of_window(*p->mesh, rate, p->rate) : 1;
+    if (p == nullptr || !p->mesh || !p->moves()) {
+      continue;
     }
+    if (p->springs) {
+      p->moving = deformable::prepared(p->mesh, *p->springs);
+      deformable::steps_on_a_tick(*p->moving, 1.0 / rate);
+    }
+    p->rates.window = p->rate > 0.0 ? deformable::ticks_of_window(*p->mesh, rate, p->rate) : 1;
+    if (p->implicit) {
+      p->moving = deformable::prepared(p->mesh, *p->implicit, p->rates.window / rate);
+    }
+    p->shape = std::make_shared<deformable::MovingShape>(p->mesh->tets.vertices.size());
   }
 }
 
 void check_bodies(const std::vector<scene::Field>& fields) {
   for (const scene::Field& field : fields) {
     const auto* p = std::get_if<scene::DeformableObjectParameters>(&field.kind);
-    if (p != nullptr && p->mesh && !p->springs) {
+    if (p != nullptr && p->mesh && !p->moves()) {
       deformable::check_tissue(*p->mesh, p->tissue);
       deformable::check_memory(*p->mesh);
     }
@@ -127,7 +151,7 @@ void prepare_bodies(std::vector<scene::Field>& fields, double rate, bool real) {
   prepare_moving_bodies(fields, rate);
   for (scene::Field& field : fields) {
     auto* p = std::get_if<scene::DeformableObjectParameters>(&field.kind);
-    if (p != nullptr && p->mesh && !p->springs) {
+    if (p != nullptr && p->mesh && !p->moves()) {
       p->body = deformable::prepared(p->mesh, p->tissue);
     } else if (p != nullptr && p->moving && p->rate > 0.0) {
       p->gives = deformable::prepared_compliance(p->moving, 1.0 / p->rate);
@@ -145,7 +169,7 @@ std::vector<std::string> words_of_bodies(const std::vector<scene::Field>& fields
       continue;
     }
     if (p->moving) {
-      add_words_of_springs(fields[i], *p, rate, damping, lines);
+      add_words_of_motion(fields[i], *p, rate, damping, lines);
     } else {
       add_words_of_elements(fields[i], *p, scene::stiffness_bound(fields, i), rate, damping, lines);
     }

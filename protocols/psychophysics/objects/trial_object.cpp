@@ -141,13 +141,15 @@ const Schema<TrialObject>& deformable_schema() {
                   sides_reader(&F::felt))
           .otherwise("all that are not fixed")
           .custom("grasped",
-                  "Sides of a body of springs which the hand holds from the first tick on and "
+                  "Sides of a body that moves which the hand holds from the first tick on and "
                   "moves, instead of pressing "
                   "the body",
                   [](Table& table, const std::string& key, T& object) {
                     sides_reader (&F::grasped)(table, key, object);
                     if (!object.moves) {
-                      table.reject(key, "stands without model = \"springs\", which it needs");
+                      table.reject(
+                          key,
+                          "stands without model = \"springs\" or \"implicit\", which it needs");
                     }
                   })
           .otherwise("none")
@@ -159,9 +161,11 @@ const Schema<TrialObject>& deformable_schema() {
 
 /// The keys of a body that gives way; its block, unless it is a file.
 void read_deformable_shape(Table& table, TrialObject& object) {
-  object.moves = table.has("model") && table.choice("model", {"elements", "springs"}) == "springs";
+  const std::string model =
+      table.has("model") ? table.choice("model", {"elements", "springs", "implicit"}) : "elements";
+  object.moves = model != "elements";
   object.own_rate = object.moves && table.has("rate");
-  if (object.moves && table.has("calibrated")) {
+  if (model == "springs" && table.has("calibrated")) {
     object.constants_file = table.text("calibrated");
   }
   deformable_schema().read(table, object);

@@ -28,7 +28,7 @@ struct TrialObject {
   deformable::FeltSides sides{};
   deformable::SharedHapticMesh felt{};     // of a file: null until it is loaded
   bool seen_yielding{true};                // else it is seen at its resting shape
-  bool moves{false};                       // it yields and moves: it is made of springs
+  bool moves{false};                       // it yields and moves
   bool own_rate{false};                    // and moves at another rate than the loop's
   std::filesystem::path constants_file{};  // of springs; empty: none
   std::shared_ptr<const deformable::SpringConstants> constants{};  // of it; null until loaded

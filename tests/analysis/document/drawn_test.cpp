@@ -31,5 +31,14 @@ TEST(DrawnTest, PicturesAreThoseOfAReport) {
   EXPECT_TRUE(drawn({}).empty());
 }
 
+/// gnuplot takes the names of ticks for formats.
+TEST(DrawnTest, NamesOfTicksAreDrawnAsTheyAre) {
+  Figure figure = small_figure("names");
+  figure.x_names = {{0.0, "half, 50 %"}, {1.0, "all of 100%d"}};
+  const std::vector<Drawing> drawings = drawn({figure});
+  EXPECT_NE(drawings.at(0).svg.find("half, 50 %"), std::string::npos);
+  EXPECT_NE(drawings.at(0).svg.find("all of 100%d"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace haptrial::analysis

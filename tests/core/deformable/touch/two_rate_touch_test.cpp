@@ -82,7 +82,7 @@ TEST(WindowComplianceTest, OverALongTimeItIsThatOfTheStatics) {
 
 /// The body itself gives up nothing.
 TEST(SlowBodyTest, TheBodyMovesToTheBitAsAtTheLoopsRate) {
-  SlowBody slow(soft_body(), soft_compliance(), ball(0.3), kTick, false, nullptr);
+  SlowBody slow(soft_body(), soft_compliance(), ball(0.3), kTick, kWindow, false, nullptr);
   MovingTouch one(soft_body(), ball(0.3), kTick);
   BodyPath path;
   path.starts = true;

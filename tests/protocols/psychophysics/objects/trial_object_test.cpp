@@ -212,6 +212,24 @@ TEST(TrialObjectTest, WhatABodyOfSpringsTakesIsSaid) {
               HasSubstr("at most 64 are allowed"));
 }
 
+/// Elements that move take one step for a window, however long that is.
+TEST(TrialObjectTest, WhatABodyOfImplicitElementsTakesIsSaid) {
+  scene::DeformableObjectParameters p;
+  p.mesh = std::make_shared<const deformable::HapticMesh>(
+      deformable::felt_block({0.04, 0.02, 0.04}, 6, {}, "objects.tissue"));
+  p.implicit = deformable::ImplicitTissue{{15e3, 0.45, 1000.0, {}}, 10.0};
+  p.rate = 250.0;
+  std::vector<scene::Field> fields(1);
+  fields[0].name = "tissue";
+  fields[0].kind = p;
+  prepare_bodies(fields, 1000.0);
+  const std::vector<std::string> lines = words_of_bodies(fields, 1000.0, 15.0);
+  ASSERT_GE(lines.size(), 2u);
+  EXPECT_THAT(lines[0],
+              HasSubstr("540 tetrahedra of elements, one implicit step of 4 ms; gives no"));
+  EXPECT_THAT(lines[1], HasSubstr("moves 250 times a second, 4 ticks at once"));
+}
+
 TEST(TrialObjectTest, CalibratedConstantsAreThoseOfABodyOfTheSameCells) {
   const test::TemporaryFolder folder;
   const auto object = [&](int cells) {
