@@ -17,12 +17,12 @@ class DeformableObject;
 /// An object that gives way to the hand.
 struct DeformableObjectParameters {
   using Law = DeformableObject;
-  deformable::SharedHapticMesh mesh;                // null: nothing is felt
-  deformable::Tissue tissue;                        // of elements that rest on every tick
-  std::optional<deformable::SpringTissue> springs;  // of springs that move, instead
+  deformable::SharedHapticMesh mesh;                   // null: nothing is felt
+  deformable::Tissue tissue;                           // of elements that rest on every tick
+  std::optional<deformable::SpringTissue> springs;     // of springs that move, instead
   std::optional<deformable::ImplicitTissue> implicit;  // of elements that move, instead
-  double rate{0.0};  // of what moves; 0: that of the loop [Hz]
-  contact::ObjectPose pose;                         // of the body's frame in W
+  double rate{0.0};                                    // of what moves; 0: that of the loop [Hz]
+  contact::ObjectPose pose;                            // of the body's frame in W
   deformable::TouchOptions tool;
   deformable::SharedCompliance body;               // of mesh and tissue; null until it is prepared
   deformable::SharedMovingBody moving;             // of mesh and what moves; likewise

@@ -15,9 +15,7 @@ ForceTrials::ForceTrials(const ForceDefinition& definition, const SessionPlace& 
       pictures_(d_.display, place),
       expert_(d_.shows_expert() ? std::make_unique<ExpertLog>() : nullptr) {}
 
-std::span<const record::Phase> ForceTrials::phases() const {
-  return passes_of(d_, place_.session);
-}
+std::span<const record::Phase> ForceTrials::phases() const { return passes_of(d_, place_.session); }
 
 std::unique_ptr<Rig> ForceTrials::virtual_rig() const {
   return std::make_unique<VirtualRig>(d_, place_.hand_person_seed, place_.hand_session_seed,

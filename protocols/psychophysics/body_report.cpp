@@ -36,7 +36,8 @@ constexpr std::array<Loss, BodyReport::kLosses> kAllLosses{
          "the body flew apart, deformed beyond what its steps are stable for, and was put to rest "
          "(use a shorter step, or of springs smaller constants, more density or fewer cells)"},
     Loss{&TouchCounts::late, "/late_windows", "late_body",
-         "a body of its own rate was late and felt as it had been before (use fewer cells, of springs "
+         "a body of its own rate was late and felt as it had been before (use fewer cells, of "
+         "springs "
          "smaller constants or more density, or a machine with less other work)"},
 };
 

@@ -60,9 +60,8 @@ void add_flagged(Document& document, const std::vector<TrialScore>& trials, bool
     flagged += reasons.empty() ? 0 : 1;
     if (!reasons.empty() && rows.size() < kMostRows) {
       rows.push_back({score.subject,
-                      several_sessions
-                          ? fmt::format("{} of session {}", score.trial, score.session)
-                          : std::to_string(score.trial),
+                      several_sessions ? fmt::format("{} of session {}", score.trial, score.session)
+                                       : std::to_string(score.trial),
                       score.condition, reasons});
     }
   }

@@ -33,7 +33,7 @@ struct SurfaceCondition {
   std::optional<Contour> contour;
   std::vector<ContourPoint> points;
   std::vector<PlacedThreshold> placed;  // of three variables or four, without a formula
-  std::string no_contour;  // why there is none
+  std::string no_contour;               // why there is none
 };
 
 /// Whether a trial's level has several dimensions.

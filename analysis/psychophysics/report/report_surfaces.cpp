@@ -97,10 +97,11 @@ void add_placed(Document& document, const std::vector<SurfaceCondition>& surface
         at += fmt::format("{}{} = {:.4g}", at.empty() ? "" : ", ", one.variables[k + 1],
                           each.others[k]);
       }
-      rows.push_back({condition_name(one), at, one.variables.front(),
-                      fmt::format("{} [{}, {}]",
-                                  std::isnan(each.median) ? "none in the range" : number(each.median),
-                                  end_words(each.low), end_words(each.high))});
+      rows.push_back(
+          {condition_name(one), at, one.variables.front(),
+           fmt::format("{} [{}, {}]",
+                       std::isnan(each.median) ? "none in the range" : number(each.median),
+                       end_words(each.low), end_words(each.high))});
     }
   }
   if (!rows.empty()) {
@@ -144,15 +145,16 @@ void add_surfaces(Document& document, const TrialsResult& result,
   add_placed(document, result.surfaces);
   document.paragraph(
       method_of(result.surfaces) +
-      fmt::format(" The threshold is where the probability of the answer 1 is {:g} %; its interval "
-                  "is that of "
-                  "one variable at one value of the other. \"Open\" is an end beyond the range."
-                  "{}",
-                  100.0 * (result.surfaces.empty() ? 0.5 : result.surfaces.front().share),
-                  result.plan.by.empty()
-                      ? ""
-                      : " Conditions are compared in the mean of each participant's threshold over "
-                        "the other variables, and over a single one in its slope by least squares."));
+      fmt::format(
+          " The threshold is where the probability of the answer 1 is {:g} %; its interval "
+          "is that of "
+          "one variable at one value of the other. \"Open\" is an end beyond the range."
+          "{}",
+          100.0 * (result.surfaces.empty() ? 0.5 : result.surfaces.front().share),
+          result.plan.by.empty()
+              ? ""
+              : " Conditions are compared in the mean of each participant's threshold over "
+                "the other variables, and over a single one in its slope by least squares."));
 }
 
 }  // namespace haptrial::analysis::trials

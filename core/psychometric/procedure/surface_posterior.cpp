@@ -274,11 +274,10 @@ std::vector<SurfaceThreshold> SurfacePosterior::thresholds(const std::vector<Lev
     const auto share = [&](double p) {
       return one[static_cast<std::size_t>(p * static_cast<double>(one.size() - 1))];
     };
-    all.push_back(
-        {share(0.5), std::min(share(0.025), levels.back()), std::max(share(0.975), levels.front())});
+    all.push_back({share(0.5), std::min(share(0.025), levels.back()),
+                   std::max(share(0.975), levels.front())});
   }
   return all;
 }
-
 
 }  // namespace haptrial::psychometric

@@ -41,8 +41,7 @@ Eigen::ArrayXd unsure(const Eigen::ArrayXd& mean, const Eigen::ArrayXd& variance
 
 }  // namespace
 
-ThresholdSurface::ThresholdSurface(const SurfaceParameters& parameters)
-    : posterior_(parameters) {
+ThresholdSurface::ThresholdSurface(const SurfaceParameters& parameters) : posterior_(parameters) {
   list_levels();
   foretell();
   choose();
@@ -74,10 +73,8 @@ void ThresholdSurface::list_levels() {
 void ThresholdSurface::foretell() {
   for (const auto& each : posterior_.beliefs()) {
     const SmoothBelief& belief = each.of_terms;
-    foretold_.push_back({rows_ * belief.mean(), (rows_ * belief.covariance())
-                                                    .cwiseProduct(rows_)
-                                                    .rowwise()
-                                                    .sum()});
+    foretold_.push_back(
+        {rows_ * belief.mean(), (rows_ * belief.covariance()).cwiseProduct(rows_).rowwise().sum()});
   }
 }
 
@@ -109,8 +106,9 @@ Eigen::VectorXd ThresholdSurface::doubt() const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(rows_.rows());
   for (std::size_t i = 0; i < foretold_.size(); ++i) {
     if (const auto& belief = posterior_.beliefs()[i]; !SurfacePosterior::is_unlikely(belief)) {
-      sum.array() += belief.weight * unsure(foretold_[i].mean.array(), foretold_[i].variance.array(),
-                                            posterior_.f_at_target());
+      sum.array() +=
+          belief.weight * unsure(foretold_[i].mean.array(), foretold_[i].variance.array(),
+                                 posterior_.f_at_target());
     }
   }
   return sum;
@@ -138,11 +136,12 @@ double ThresholdSurface::doubt_after(const Foretold& by, Eigen::Index level,
   const Eigen::ArrayXd mean = by.mean(judged_), variance = by.variance(judged_);
   double sum = 0.0;
   for (const bool answer : {false, true}) {
-    const ProbitChange change = change_by(posterior_.link_of(answer), by.mean[level], by.variance[level]);
-    sum += change.probability *
-           unsure(mean + shared * change.pull, variance - shared.square() * change.bend,
-                  posterior_.f_at_target())
-               .sum();
+    const ProbitChange change =
+        change_by(posterior_.link_of(answer), by.mean[level], by.variance[level]);
+    sum += change.probability * unsure(mean + shared * change.pull,
+                                       variance - shared.square() * change.bend,
+                                       posterior_.f_at_target())
+                                    .sum();
   }
   return sum;
 }
@@ -156,8 +155,7 @@ void ThresholdSurface::choose() {
     if (SurfacePosterior::is_unlikely(belief)) {
       continue;
     }
-    const Eigen::MatrixXd shared =
-        judged_rows_ * (belief.of_terms.covariance() * rows.transpose());
+    const Eigen::MatrixXd shared = judged_rows_ * (belief.of_terms.covariance() * rows.transpose());
     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
       doubts[i] += belief.weight * doubt_after(foretold_[b], compared[static_cast<std::size_t>(i)],
                                                shared.col(i).array());

@@ -42,7 +42,7 @@ struct RunOptions {
   bool stream_optional{false};
   bool resume{false};
   bool pilot{false};
-  bool checked{false};  // `start` has printed its checklist
+  bool checked{false};             // `start` has printed its checklist
   std::vector<std::string> set{};  // KEY=VALUE, of a pilot
   std::string language;
   record::Participant person;

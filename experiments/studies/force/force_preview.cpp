@@ -223,7 +223,8 @@ void add_force_methods(const ForceDefinition& d, std::uint64_t seed, analysis::D
       "plan "
       "has {} blocks, each with one path and one pattern of force {} times under one condition of "
       "training ({}). {}{}",
-      words_of_tests(d), d.design.blocks(), d.design.repetitions, fmt::join(d.design.conditions, ", "),
+      words_of_tests(d), d.design.blocks(), d.design.repetitions,
+      fmt::join(d.design.conditions, ", "),
       d.design.break_after > 0 ? fmt::format("Breaks of {:g} s came after every {} trials. ",
                                              d.design.break_duration, d.design.break_after)
                                : std::string(),

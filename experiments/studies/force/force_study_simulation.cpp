@@ -165,8 +165,7 @@ class ForceStudySimulation final : public StudySimulation {
 
   SimulatedStudy sessions(const std::vector<std::filesystem::path>& files) const override {
     const analysis::StudyResult study = analyze_training(d_, curves_, files, 1);
-    SimulatedStudy r =
-        of_statistics(study.statistics, study.scores.size() + study.tests.size());
+    SimulatedStudy r = of_statistics(study.statistics, study.scores.size() + study.tests.size());
     note_learned(study.learned, r);
     return with_hours(std::move(r));
   }

@@ -22,7 +22,8 @@ void add_learned(const protocols::ForceDefinition& definition, const CurveAnalys
     return;
   }
   for (const analysis::SessionSummary& session : study.sessions) {
-    study.groups[session.info.subject] = protocols::group_of(definition.groups, session.info.subject);
+    study.groups[session.info.subject] =
+        protocols::group_of(definition.groups, session.info.subject);
   }
   study.learned = analysis::learned_study(analysis::learned_scores(study, curves.learning.outcomes),
                                           curves.learning, learning_names(definition));

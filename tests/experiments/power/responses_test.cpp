@@ -180,8 +180,9 @@ TEST(PowerQuestion, ForceTrainingsOfSeveralSessionsAreWatchedByTheirChanges) {
   expect_refused(retention_power(""),
                  "do not simulate force trainings of several sessions; give power.depth = "
                  "\"sessions\"");
-  expect_refused(retention_power("depth = \"sessions\"\n"),
-                 "\"change of recall error, planned: seen-and-felt, retention < seen, retention, Welch's t\"");
+  expect_refused(
+      retention_power("depth = \"sessions\"\n"),
+      "\"change of recall error, planned: seen-and-felt, retention < seen, retention, Welch's t\"");
 }
 
 TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {

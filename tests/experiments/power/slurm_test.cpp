@@ -106,10 +106,11 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 NodeName=HOST NodeAddr=127.0.0.1 CPUs=4 RealMemory=8192 State=UNKNOWN
 )";
     test::write_text(folder_ / "slurm.conf",
-                     settings + "SlurmctldPort=" + std::to_string(test::free_port()) + "\nSlurmdPort=" +
-                         std::to_string(test::free_port()) + "\nStateSaveLocation=" + at +
-                         "/state\nSlurmdSpoolDir=" + at + "/spool\nSlurmctldPidFile=" + at +
-                         "/controller.pid\nSlurmdPidFile=" + at + "/node.pid\n");
+                     settings + "SlurmctldPort=" + std::to_string(test::free_port()) +
+                         "\nSlurmdPort=" + std::to_string(test::free_port()) +
+                         "\nStateSaveLocation=" + at + "/state\nSlurmdSpoolDir=" + at +
+                         "/spool\nSlurmctldPidFile=" + at + "/controller.pid\nSlurmdPidFile=" + at +
+                         "/node.pid\n");
     run_command("sed -i \"s/HOST/$(hostname -s)/; s/USER/$(id -un)/\" '" + at + "/slurm.conf'");
   }
   void start() {

@@ -97,8 +97,8 @@ TEST(GuidedTrialTest, BesideThePathASpringPulls) {
 
 /// The first session of the study of retention is its pre-test, the second trains.
 TEST(GuidedTrialTest, ASessionThatOnlyTestsHasNoTraining) {
-  const ForceDefinition d = load_force_definition(
-      std::filesystem::path(HAPTRIAL_SOURCE_DIR) / "docs/worked/teaching/force_retention.toml");
+  const ForceDefinition d = load_force_definition(std::filesystem::path(HAPTRIAL_SOURCE_DIR) /
+                                                  "docs/worked/teaching/force_retention.toml");
   const GuidedTrial tested = guided_trial(d, first_session(), 1);
   ASSERT_EQ(1u, tested.passes.size());
   EXPECT_EQ(Phase::kTest, tested.passes.front().phase);

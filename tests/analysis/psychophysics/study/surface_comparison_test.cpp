@@ -95,8 +95,8 @@ TrialsData data_of(const People& people, std::size_t study) {
 
 std::unique_ptr<psychometric::Procedure> surface_of(const People& people) {
   if (people.smooth) {
-    static const psychometric::ThresholdSurface begun({.variables = {
-        {"y", even(0.0, 2.0, 9), true}, {"x", even(0.0, 1.0, 5), false}}});
+    static const psychometric::ThresholdSurface begun(
+        {.variables = {{"y", even(0.0, 2.0, 9), true}, {"x", even(0.0, 1.0, 5), false}}});
     return std::make_unique<psychometric::ThresholdSurface>(begun);
   }
   static const auto tables = std::make_shared<const psychometric::QuestTables>(line());
