@@ -136,7 +136,7 @@ std::array<int, 2> led_trials(const MethodsSession& session, const protocols::De
   return {static_cast<int>(led.size()), static_cast<int>(all.size())};
 }
 
-/// Who was led, by group; nothing without a tutor.
+/// Says how many trials a tutor led, by group; nothing without a tutor.
 void add_led(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
              Document& document) {
   std::map<std::string, std::array<int, 2>> counts;

@@ -10,7 +10,7 @@
 
 namespace haptrial::bone {
 
-/// What other ears gave to a scan.
+/// Labels that other ears gave to a scan.
 struct CarriedLabels {
   std::vector<CarriedStructure> structures;
   std::vector<double> correlations;  // of each ear with the scan, as register_ears() has them

@@ -30,8 +30,8 @@ constexpr int kResolutions = 3;
 /// steps; they take as long as the steps themselves.
 constexpr int kMeasurementsPerIteration = 30;
 
-/// What the three steps share. Labels are carried by the nearest voxel (order 0), and beyond the
-/// ear there is kBeyondEar.
+/// Lines that the three steps share. Labels are carried by the nearest voxel (order 0), and beyond
+/// the ear there is kBeyondEar.
 constexpr const char* kEveryStep = R"((FixedInternalImagePixelType "float")
 (MovingInternalImagePixelType "float")
 (FixedImageDimension 3)
@@ -110,7 +110,7 @@ void write_image(const fs::path& folder, const std::string& name, const geometry
   }
 }
 
-/// What the threads tell the one that waits for them, and it them.
+/// Messages between the threads and the one that waits for them.
 struct Progress {
   std::atomic<std::size_t> lines{0};  // of elastix: one for each iteration and some
   std::atomic<bool> cancelled{false};

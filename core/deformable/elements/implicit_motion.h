@@ -21,8 +21,8 @@ struct ImplicitOptions {
   std::vector<std::int32_t> pressed{};  // vertices that push() may be called for
 };
 
-/// What all motions of one body share: neo-Hookean elements, and the matrix that their steps are
-/// solved with,
+/// The part that all motions of one body share: neo-Hookean elements, and the matrix that their
+/// steps are solved with,
 ///
 ///     H = (1 + 2 a h) M / h² + L,    L_ij = Σ over tetrahedra of  w V ∇φ_i · ∇φ_j
 ///

@@ -34,8 +34,8 @@ struct SurfaceThreshold {
 /// All combinations of one value a list, the last list's value changing fastest.
 std::vector<Level> combinations(const std::vector<std::vector<double>>& lists);
 
-/// What answers say of the threshold of one variable as a smooth function of up to three others,
-/// without a formula:
+/// The posterior, given answers, of the threshold of one variable as a smooth function of up to
+/// three others, without a formula:
 ///
 ///     P(1) = guess + (1 - guess - lapse) Phi(f)
 ///

@@ -30,12 +30,12 @@ class ThresholdSurface final : public Procedure {
   std::vector<SurfaceThreshold> thresholds(const std::vector<Level>& others) const {
     return posterior_.thresholds(others);
   }
-  /// What the answers so far say, without the choice of a stimulus.
+  /// The posterior after the answers so far, without the choice of a stimulus.
   const SurfacePosterior& posterior() const noexcept { return posterior_; }
   const SurfaceParameters& parameters() const noexcept { return posterior_.parameters(); }
 
  private:
-  /// What a belief says of every level that may come next.
+  /// Figures of a belief for every level that may come next.
   struct Foretold {
     Eigen::VectorXd mean, variance;  // of f at the levels
   };

@@ -62,7 +62,7 @@ void read_constants(Table& table, const std::string& key, deformable::SpringTiss
   }
 }
 
-/// What a body that moves has, of springs or of elements.
+/// Parts of a body that moves, of springs or of elements.
 const Schema<deformable::SpringTissue>& moving_schema() {
   using S = deformable::SpringTissue;
   static const auto schema =

@@ -58,7 +58,7 @@ std::string edited(const SetOptions& o, const std::string& text) {
                : with_values(text, o.file, std::span(&o.given, 1));
 }
 
-/// What keeps the file from being an experiment; empty: nothing.
+/// The problem that keeps the file from being an experiment; empty: there is none.
 std::string problem_of(const std::string& file) {
   try {
     load_experiment(file);

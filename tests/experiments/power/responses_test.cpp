@@ -161,7 +161,7 @@ TEST(PowerQuestion, WhatHandsProduceIsWatchedInFullSessionsAlone) {
   expect_refused(produced_power("depth = \"sessions\"\n"), "\"constant error: target\"");
 }
 
-/// Of the study of retention, six trials a session and two people a group.
+/// The study of retention with six trials a session and two people a group.
 std::string retention_power(const std::string& rest) {
   std::string text = file_text(kSource / "docs/worked/teaching/force_retention.toml");
   const auto replace = [&text](const std::string& from, const std::string& to) {

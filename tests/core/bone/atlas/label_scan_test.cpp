@@ -62,7 +62,7 @@ BoneModel warped(const BoneModel& ear) {
   return scan;
 }
 
-/// What a CT shows of an ear: bone of some density, and nothing where there is soft tissue.
+/// An ear as a CT shows it: bone of some density, and nothing where there is soft tissue.
 BoneModel as_scanned(const BoneModel& truth) {
   BoneModel scan = truth;
   for (std::size_t at = 0; at < scan.labels.size(); ++at) {
