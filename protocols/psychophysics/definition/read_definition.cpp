@@ -267,7 +267,6 @@ void read_all_objects(Table& root, TrialsDefinition& d) {
 
 /// Plans the definition's sessions.
 void plan(TrialsDefinition& d) {
-  d.design.participants = d.order.participants;
   d.session_plans = d.order.session_plans;
   d.design.break_after = d.order.break_after;
   d.design.break_duration = d.order.break_duration;
@@ -308,6 +307,7 @@ void read_trials_definition(Table& root, std::string_view file_name, TrialsDefin
   d.tracks = psychometric::read_tracks(root);
   d.script = read_level_script(root);
   d.order = read_trial_design(root, !d.tracks.empty());
+  d.design.participants = d.order.participants;
   read_intervals(root, d);
   Table design = root.table("design");
   read_mirroring(design, d);
