@@ -274,9 +274,10 @@ TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
   for (const char* subject : {"S16", "S00", "Ann", "S99999999"}) {
     EXPECT_THAT(message_of([&] { group_of(groups, subject); }), HasSubstr("belongs to no group"));
   }
-  EXPECT_EQ(group_of(read(""), "Ann"), "participants");
+  Table none = Table::parse("x = 1", "d.toml");
+  EXPECT_EQ(group_of(protocols::read_groups(none), "Ann"), "participants");
   EXPECT_THAT(message_of([&] { read("[groups]\na = 0\n"); }),
-              HasSubstr("groups.a is 0; allowed: 1 to 10000"));
+              HasSubstr("groups.a is 0; allowed: a whole number from 1 to 10000"));
 }
 
 }  // namespace
