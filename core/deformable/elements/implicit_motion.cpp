@@ -18,8 +18,8 @@ namespace {
 using Row = MeshFactor::Row;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr double kMostStiffness =
-    1.2;  // of the elements at rest, as H sees it; above 2 it diverges
+/// Stiffness of the elements at rest as H sees it; above 2 descent diverges.
+constexpr double kMostStiffness = 1.2;
 constexpr int kMostStiffenings = 8;
 constexpr int kPowers = 40;  // of the power iteration that finds it
 constexpr int kRoundsOfStep = 2;
