@@ -28,8 +28,8 @@ struct CarriedStructure {
 /// structure other than plain bone keep it; so does plain bone of at least half the full density
 /// where the structure is one that a scan does not show as bone. Others take density 1.
 ///
-/// The margin is the 95th percentile of how far the voxels of the structure of one ear lie outside
-/// of the one that the other ears give without it, over all ears.
+/// For the margin each ear in turn is left out: it is the 95th percentile, over all ears, of how
+/// far voxels of the ear's structure lie outside the structure that the other ears give.
 ///
 /// Source: Rohlfing and Maurer 2007 (mean of distances); docs/algorithms/atlas.md.
 /// @param ears     one field for each ear, of model.grid.count() labels, of model.structures or
