@@ -214,7 +214,8 @@ TEST_F(CommandTest, PicturesThatADryRunDoesNotDrawAreSaidToBeNone) {
 
 TEST_F(CommandTest, BadArguments) {
   expect_bad_input("haptrial", "subcommand");
-  expect_bad_input("haptrial bone", "haptrial bone needs a subcommand; allowed: import, atlas, info");
+  expect_bad_input("haptrial bone",
+                   "haptrial bone needs a subcommand; allowed: import, atlas, info");
   expect_bad_input("haptrial bone pictur x", "'pictur' is not a subcommand of haptrial bone");
   expect_bad_input("haptrial dryrun x.toml", "dryrun");
   expect_bad_input("haptrial dry-run", "DEFINITION");
