@@ -28,7 +28,7 @@ struct StructureMasks {
 StructureMasks masks_of(const geometry::VoxelGrid& grid,
                         std::span<const std::span<const std::uint8_t>> fields, std::uint8_t label);
 
-/// The same part with other voxels in it.
+/// A mask of the same part with other voxels in it.
 BoneModel mask_like(const StructureMasks& masks, const std::vector<bool>& in);
 
 /// Distance between centres from each voxel of the part to the nearest one with the label [m];

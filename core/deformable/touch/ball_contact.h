@@ -56,7 +56,7 @@ class BallContact {
               const Eigen::Vector3d& to) noexcept;
   /// Presses the body after a free step.
   void press(BodyMotion& motion, const Eigen::Vector3d& tool) noexcept;
-  /// The same after another round of that step, in place of the press before.
+  /// Presses after another round of that step, in place of the press before.
   void press_again(BodyMotion& motion, const Eigen::Vector3d& tool) noexcept;
 
   std::span<const Place> places() const noexcept { return std::span(places_).first(count_); }

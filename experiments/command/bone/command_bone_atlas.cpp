@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/bone/atlas/compare_labels.h"
@@ -112,8 +113,8 @@ int bone_atlas(const BoneAtlasOptions& options) {
                                work.report());
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  fmt::print("registered  {} ear{} in {:.0f} s\n", options.ears.size(),
-             options.ears.size() == 1 ? "" : "s", took.count());
+  fmt::print("registered  {} in {:.0f} s\n", counted(options.ears.size(), "ear", "ears"),
+             took.count());
   for (std::size_t ear = 0; ear < options.ears.size(); ++ear) {
     fmt::print("ear         {}: correlation {:.2f}\n", options.ears[ear],
                carried.correlations[ear]);
@@ -135,7 +136,7 @@ void add_bone_atlas(CLI::App& bone, int& status) {
   add_bone_input(*sub, o);
   add_bone_output(*sub, o);
   add_bone_box(*sub, o);
-  sub->add_option("--ears", o.ears, "Labelled ears (.nrrd, .nii), of any side; three or more")
+  sub->add_option("--ears", o.ears, "Labelled ears (.nrrd, .nii), of any side; best three or more")
       ->required();
   sub->add_option("--side", o.side, "Side of the scan's ear: left or right")->required();
   sub->add_option("--iterations", o.iterations,
