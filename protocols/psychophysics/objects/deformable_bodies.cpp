@@ -56,8 +56,8 @@ constexpr const char* kCheaper =
     "use fewer cells, or of springs smaller constants or more density, which need fewer or shorter "
     "steps";
 
-/// Words about a body that moves at its own rate. @param cost  of a tick, if it had the loop's, and
-/// of a step of elements
+/// Words about a body that moves at its own rate.
+/// @param cost  springs: of a tick at the loop's rate; elements: of a step
 void add_words_of_own_rate(const scene::Field& field, const scene::DeformableObjectParameters& p,
                            double rate, const deformable::TouchCost& cost,
                            std::vector<std::string>& lines) {
