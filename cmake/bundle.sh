@@ -16,7 +16,7 @@ machine='^(linux-vdso|ld-linux[a-z0-9-]*|libc|libm|libmvec|libdl|librt|libpthrea
 libraries() { ldd "$1" | awk '$2 == "=>" { print $1, $3 }'; }
 
 # all_libraries: those of the command, and OSMesa's, which the command loads when it draws.
-osmesa=$(/sbin/ldconfig -p | awk '$1 == "libOSMesa.so.8" { print $NF; exit }')
+osmesa=$(/sbin/ldconfig -p | awk '$1 == "libOSMesa.so.8" && !found++ { print $NF }')
 [ -n "$osmesa" ] || { echo "bundle.sh: not found: libOSMesa.so.8" >&2; exit 1; }
 all_libraries() {
   { libraries "$top/bin/haptrial"; echo "libOSMesa.so.8 $osmesa"; libraries "$osmesa"; } | sort -u
@@ -24,7 +24,7 @@ all_libraries() {
 
 # package_of FILE: whose it is; dpkg knows some files of /usr/lib as those of /lib.
 package_of() {
-  { dpkg-query -S "$1" || dpkg-query -S "${1#/usr}" || true; } 2>/dev/null | head -n 1 | cut -d: -f1
+  { dpkg-query -S "$1" || dpkg-query -S "${1#/usr}" || true; } 2>/dev/null | sed -n '1s/:.*//p'
 }
 
 missing=$(all_libraries | awk '$2 == "not" { print $1 }')

@@ -18,7 +18,7 @@ page() {
 
 help=$("$command" --help)
 {
-  printf '.TH HAPTRIAL 1 "" "%s" "User Commands"\n' "$("$command" --version | head -n 1)"
+  printf '.TH HAPTRIAL 1 "" "%s" "User Commands"\n' "$("$command" --version | sed -n 1p)"
   printf '.SH NAME\nhaptrial \\- force\\-feedback experiments: run, record, analyse\n'
   printf '.SH SYNOPSIS\n.B haptrial\n.I SUBCOMMAND\n[\\fIOPTIONS\\fR]\n'
   printf '.SH DESCRIPTION\n.nf\n%s\n.fi\n' "$(as_text <<<"$help")"

@@ -65,7 +65,7 @@ build() {
   done
   [ "${1:-}" = -- ] && shift
   run_quietly cmake -S "$root" -B "$root/$folder" -G Ninja "${options[@]}"
-  if ! ninja -C "$root/$folder" -n "$@" | grep -q 'no work to do'; then
+  if ! ninja -C "$root/$folder" -n "$@" | grep 'no work to do' >/dev/null; then
     run_ninja "$folder" "$@"
   fi
 }

@@ -15,7 +15,7 @@ seed=${2:-1}
 definition=experiments/$study.toml
 cd "$root"
 sum() { sha256sum "$1" | cut -d' ' -f1; }
-program() { build/haptrial --version | head -n 1; }
+program() { build/haptrial --version | sed -n 1p; }
 
 if [ "$study" = contact_evaluation ]; then  # no participants: a simulated recording of a contact
   out=$(mktemp -d)/duck

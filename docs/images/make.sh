@@ -31,7 +31,7 @@ trials() {
     --out "$work/trials" >/dev/null
   local condition
   for condition in haptic visual visuohaptic; do
-    cp "$(find "$work/trials/frames" -name "*-$condition-03.png" | sort | head -n 1)" \
+    cp "$(find "$work/trials/frames" -name "*-$condition-03.png" | sort | sed -n 1p)" \
       "$images/trial-$condition.png"
   done
 }

@@ -65,6 +65,7 @@ std::string impatience(const std::string& text) {
       "[Cc]lock::now\\(\\) *[<>]|"                                     // a deadline
       "\\balarm\\([0-9]|\\btimeout [0-9]+ |"                           // of a process
       "_L[TE]\\([^;\n]*([Cc]lock::now|seconds_since|perf_counter)|"    // a duration in C++
+      "EXPECT_(NEAR|DOUBLE_EQ|G[TE])\\([^;\n]*rate_measured, [1-9]|"   // a rate
       "assertLess\\w*\\([^\n]*(seconds|elapsed|perf_counter|shares)",  // and in Python
       std::regex::optimize);
   std::smatch found;
@@ -88,7 +89,7 @@ TEST(WaitsTest, TheRuleFindsWhatBreaksIt) {
   for (const char* text :
        {"while (!good() && Clock::now() < end) {", "::alarm(60);",
         "run_command(\"timeout 500 python3 x.py\")", "EXPECT_LT(seconds_since(start), 2.0);",
-        "self.assertLess(elapsed, 1.0)\n"}) {
+        "EXPECT_NEAR(status.rate_measured, 1000.0, 100.0);", "self.assertLess(elapsed, 1.0)\n"}) {
     EXPECT_NE(impatience(text), "") << text;
   }
   EXPECT_EQ(impatience("test::wait_until([&] { return good(); });"), "");
