@@ -34,7 +34,7 @@ std::string occasion_of(PageTime when, int block) {
 }
 
 /// "3 / 10" on a page with several items.
-std::string progress_of(const pages::Page* page, const questions::Question& item) {
+std::string progress_of(const questions::Page* page, const questions::Question& item) {
   return page != nullptr && page->items.size() > 1
              ? fmt::format("{} / {}", &item - page->items.data() + 1, page->items.size())
              : "";
@@ -83,7 +83,7 @@ bool SessionPages::show(const std::vector<std::string>& names, PageTime when, in
                         bool missed) {
   std::vector<Place> places;
   for (const std::string& name : names) {
-    const pages::Page& page = d_.pages.page(name);
+    const questions::Page& page = d_.pages.page(name);
     for (const questions::Question& item : page.items) {
       if (!missed || item.kind->traits().asks) {
         places.push_back({&page, &item, when, block});

@@ -47,7 +47,7 @@ class SessionPages {
  private:
   /// An item of the pages that follow each other, and when they do.
   struct Place {
-    const pages::Page* page;  // null: the last look at all answers
+    const questions::Page* page;  // null: the last look at all answers
     const questions::Question* item;
     record::PageTime when;
     int block;

@@ -9,11 +9,11 @@
 
 namespace haptrial::experiments {
 
-questions::Answer virtual_answer(const pages::Page& page, const questions::Question& item,
+questions::Answer virtual_answer(const questions::Page& page, const questions::Question& item,
                                  std::uint64_t session_seed, const std::string& occasion) {
   RandomStream random(session_seed, fmt::format("page {} {} {}", page.name, item.name, occasion));
   questions::AnswerDraft draft;
-  if (page.kind == pages::PageKind::kEdinburgh) {
+  if (page.kind == questions::PageKind::kEdinburgh) {
     constexpr int kRight = 3;  // "right", and "always right"
     draft.chosen = kRight + static_cast<int>(random.below(2));
   } else {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/pages/page.h"
+#include "core/questions/page.h"
 
 namespace haptrial::experiments {
 
@@ -12,7 +12,7 @@ namespace haptrial::experiments {
 /// answer does not depend on other items.
 /// @param session_seed  of the participant
 /// @param occasion      "before", "after block 2", …
-questions::Answer virtual_answer(const pages::Page& page, const questions::Question& item,
+questions::Answer virtual_answer(const questions::Page& page, const questions::Question& item,
                                  std::uint64_t session_seed, const std::string& occasion);
 
 }  // namespace haptrial::experiments

@@ -53,7 +53,7 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
 
 /// The pictures of pages, before somebody looks at them.
 void check_pictures(const protocols::Definition& definition, const std::filesystem::path& folder) {
-  for (const pages::Page& page : definition.pages.pages) {
+  for (const questions::Page& page : definition.pages.pages) {
     for (const questions::Question& item : page.items) {
       if (!item.picture.empty()) {
         static_cast<void>(render::read_png(folder / item.picture));

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/base/definition/schema.h"
-#include "core/pages/read_pages.h"
+#include "core/questions/read_pages.h"
 #include "protocols/definition/room.h"
 
 namespace haptrial::protocols {
@@ -115,7 +115,7 @@ void read_common(Table& root, std::string_view file_name, Definition& definition
   }
   definition.screen = screen_schema().read(screen);
   definition.texts = text_schema().read(texts);
-  definition.pages = pages::read_pages(root);
+  definition.pages = questions::read_pages(root);
   read_devices(root, definition);
   definition.channels = channel::read_channels(root);
   definition.actuators = sound::read_actuators(root);

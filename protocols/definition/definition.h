@@ -15,7 +15,7 @@
 #include "core/device/pedal.h"
 #include "core/device/vendor_devices.h"
 #include "core/device/virtual_device.h"
-#include "core/pages/page.h"
+#include "core/questions/page.h"
 #include "core/render/flat/trial_display_style.h"
 #include "core/sound/actuator.h"
 #include "core/stream/marker_options.h"
@@ -71,7 +71,7 @@ struct Definition {
   render::TrialDisplayStyle display;
   ScreenOptions screen;
   SessionTexts texts;
-  haptrial::pages::PagePlan pages;  // beside the trials
+  haptrial::questions::PagePlan pages;  // beside the trials
   std::string language;             // of the texts; empty: the definition's own
   // Parameters of the devices that may take the virtual one's place; a table that is left out has
   // its defaults.

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/pages/scores.h"
+#include "core/questions/scores.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
 
@@ -29,7 +29,7 @@ std::string time_word(const record::AnswerRow& row) {
 /// The answers to one page on one occasion.
 struct Filled {
   std::string page, when;
-  std::vector<pages::GivenAnswer> answers;
+  std::vector<questions::GivenAnswer> answers;
 };
 
 std::vector<Filled> filled_pages(const record::SessionReader& reader) {
@@ -62,7 +62,7 @@ bool same(const PageSummary& summary, const PageScore& score) {
 }  // namespace
 
 std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& files,
-                                   const pages::PagePlan& plan, const GroupOf& group_of) {
+                                   const questions::PagePlan& plan, const GroupOf& group_of) {
   std::vector<PageScore> scores;
   if (plan.empty()) {
     return scores;
@@ -73,11 +73,11 @@ std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& fil
     const std::string group = group_of ? group_of(person) : std::string();
     for (const Filled& filled : filled_pages(reader)) {
       const bool known = std::any_of(plan.pages.begin(), plan.pages.end(),
-                                     [&](const pages::Page& p) { return p.name == filled.page; });
+                                     [&](const questions::Page& p) { return p.name == filled.page; });
       if (!known) {
         continue;
       }
-      for (const pages::Score& score : pages::scores_of(plan.page(filled.page), filled.answers)) {
+      for (const questions::Score& score : questions::scores_of(plan.page(filled.page), filled.answers)) {
         scores.push_back({person, group, filled.page, filled.when, score.name, score.value});
       }
     }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/psychophysics/data/read_trials.h"
-#include "core/pages/page.h"
+#include "core/questions/page.h"
 
 namespace haptrial::analysis::trials {
 
@@ -33,7 +33,7 @@ struct PageSummary {
 /// several sessions each counts.
 /// @throws InputError naming a file that is damaged.
 std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& files,
-                                   const pages::PagePlan& plan, const GroupOf& group_of);
+                                   const questions::PagePlan& plan, const GroupOf& group_of);
 
 /// Mean and standard deviation for each group, in the order of first occurrence.
 std::vector<PageSummary> summaries_of(const std::vector<PageScore>& scores);

@@ -95,8 +95,8 @@ std::vector<MachineCheck> check_definition(const RunOptions& options,
 }
 
 MachineCheck check_consent(const RunOptions& options, const Definition& d) {
-  const bool page = std::ranges::any_of(d.pages.pages, [](const pages::Page& each) {
-    return each.kind == pages::PageKind::kConsent;
+  const bool page = std::ranges::any_of(d.pages.pages, [](const questions::Page& each) {
+    return each.kind == questions::PageKind::kConsent;
   });
   if (page) {
     return {"consent", State::kReady, "the participant is asked on a page"};

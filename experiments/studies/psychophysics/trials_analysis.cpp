@@ -216,7 +216,7 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   if (!d.questions.empty() && d.questions.front().has_choices()) {
     defaults.choices = d.questions.front().answers();
   }
-  for (const pages::Page& page : d.pages.pages) {
+  for (const questions::Page& page : d.pages.pages) {
     defaults.pages.push_back(page.name);
   }
   for (std::size_t i = 1; i < d.questions.size() && defaults.rating.empty(); ++i) {

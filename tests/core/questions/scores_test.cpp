@@ -1,4 +1,4 @@
-#include "core/pages/scores.h"
+#include "core/questions/scores.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <map>
 #include <string>
 
-#include "core/pages/known_questionnaires.h"
+#include "core/questions/known_questionnaires.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 namespace {
 
 using Ratings = std::array<double, 6>;
@@ -135,4 +135,4 @@ TEST(EdinburghTest, LeavesOutWhatWasNeverDone) {
 }
 
 }  // namespace
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

@@ -1,4 +1,4 @@
-#include "analysis/statistics/sequence/hidden_markov.h"
+#include "analysis/bone_drilling/phases/hidden_markov.h"
 
 #include <cmath>
 #include <limits>

@@ -1,9 +1,9 @@
-#include "core/pages/page.h"
+#include "core/questions/page.h"
 
 #include <algorithm>
 #include <stdexcept>
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 
 const Page& PagePlan::page(const std::string& name) const {
   const auto found =
@@ -14,4 +14,4 @@ const Page& PagePlan::page(const std::string& name) const {
   return *found;
 }
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

@@ -1,4 +1,4 @@
-#include "core/pages/read_pages.h"
+#include "core/questions/read_pages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/questions/question_kind.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 namespace {
 
 using testing::HasSubstr;
@@ -104,4 +104,4 @@ TEST(PagesTest, MistakesGetTheirSentence) {
 }
 
 }  // namespace
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

@@ -1,4 +1,4 @@
-#include "experiments/methods/study_methods.h"
+#include "experiments/plan/audit/study_methods.h"
 
 #include <algorithm>
 #include <set>

@@ -1,13 +1,13 @@
-#include "core/pages/scores.h"
+#include "core/questions/scores.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/pages/known_questionnaires.h"
+#include "core/questions/known_questionnaires.h"
 #include "core/questions/question_kind.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 namespace {
 
 const GivenAnswer* answer_to(const std::vector<GivenAnswer>& answers, const std::string& item) {
@@ -106,4 +106,4 @@ std::vector<Score> scores_of(const Page& page, const std::vector<GivenAnswer>& a
   return scores;
 }
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

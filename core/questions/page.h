@@ -6,7 +6,7 @@
 
 #include "core/questions/question.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 
 enum class PageKind { kText, kConsent, kNasaTlx, kEdinburgh, kQuestions };
 
@@ -30,4 +30,4 @@ struct PagePlan {
   const Page& page(const std::string& name) const;
 };
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/pages/page.h"
+#include "core/questions/page.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 
 /// An answer to one item.
 struct GivenAnswer {
@@ -44,4 +44,4 @@ struct Score {
 /// number. Items without an answer, and answers that are none, have no score.
 std::vector<Score> scores_of(const Page& page, const std::vector<GivenAnswer>& answers);
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/base/counted.h"
-#include "experiments/methods/study_methods.h"
+#include "experiments/plan/audit/study_methods.h"
 #include "experiments/study/session_name.h"
 #include "protocols/definition/groups.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/questions/question.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 
 /// The six scales of the NASA-TLX, in their order: names of items.
 inline constexpr std::array<const char*, 6> kTlxScales{"mental",      "physical", "temporal",
@@ -23,4 +23,4 @@ std::vector<questions::Question> nasa_tlx_items(bool weighted);
 /// Source: Oldfield 1971, appendix II.
 std::vector<questions::Question> edinburgh_items();
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

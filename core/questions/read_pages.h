@@ -1,12 +1,12 @@
 #pragma once
 
-#include "core/pages/page.h"
+#include "core/questions/page.h"
 
 namespace haptrial {
 class Table;
 }
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 
 /// Reads [pages] of a definition; a definition without has none. Keys in brackets are optional.
 ///
@@ -25,4 +25,4 @@ namespace haptrial::pages {
 ///     words     true: any text
 PagePlan read_pages(Table& root);
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

@@ -1,4 +1,4 @@
-#include "core/pages/known_questionnaires.h"
+#include "core/questions/known_questionnaires.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "core/questions/scale_kind.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 namespace {
 
 using questions::Question;
@@ -101,4 +101,4 @@ std::vector<Question> edinburgh_items() {
   return items;
 }
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions

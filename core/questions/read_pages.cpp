@@ -1,4 +1,4 @@
-#include "core/pages/read_pages.h"
+#include "core/questions/read_pages.h"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <set>
 
 #include "core/base/definition/schema.h"
-#include "core/pages/known_questionnaires.h"
 #include "core/questions/consent_kind.h"
 #include "core/questions/kind_parts.h"
+#include "core/questions/known_questionnaires.h"
 #include "core/questions/question_kinds.h"
 #include "core/questions/reading_kind.h"
 
-namespace haptrial::pages {
+namespace haptrial::questions {
 namespace {
 
 using questions::Question;
@@ -210,4 +210,4 @@ PagePlan read_pages(Table& root) {
   return plan;
 }
 
-}  // namespace haptrial::pages
+}  // namespace haptrial::questions
