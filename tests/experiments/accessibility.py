@@ -6,15 +6,12 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from npm_package import npm_package  # noqa: E402
 
-VERSION = "4.14.1"
-SHA512 = "FHfa+lmNjQZfJz1q8wKqIDwC6DExcHt/pkjNQb09a3NPjCKg2rhu5qb2S4r76ASyFNNtuFooJpZe37OgudVGtQ=="
-
 
 class Rules:
     """@throws OutOfReach"""
 
     def __init__(self, folder):
-        package = npm_package(folder, "axe-core", VERSION, SHA512)
+        package = npm_package(folder, "axe-core")
         self.script = (package / "axe.min.js").read_text(encoding="utf-8")
 
     def findings(self, page):

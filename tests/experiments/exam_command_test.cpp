@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,8 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "analysis/files/csv.h"
 #include "tests/experiments/command.h"
@@ -186,6 +189,70 @@ TEST_F(SoftExamCommandTest, TheProgramsOfThePageSitIt) {
   ASSERT_EQ(run("score exam " + folders + "--out scores").status, 0);
   expect_kept("position-based dynamics", {"free-block"});
   expect_kept("vertex block descent", {"free-block"});
+}
+
+/// One tetrahedron, its base fixed or free: MuJoCo, by its package of npm, answers with the force
+/// of Saint Venant and Kirchhoff's law where the tool pulls the top, and flies by Newton's where
+/// forces act on it.
+TEST_F(SoftExamCommandTest, MujocoAnswersByThePipe) {
+  const auto package =
+      test::run_command("/usr/bin/python3 " + (kSource / "tests/support").string() +
+                        "/npm_package.py " HAPTRIAL_BINARY_DIR " mujoco");
+  if (package.status == 3) {
+    GTEST_SKIP() << "no network, so no package: " << package.errors;
+  }
+  ASSERT_EQ(package.status, 0) << package.errors;
+  constexpr double kSide = 0.01;
+  constexpr double kForce = 1e-3;
+  for (const auto& [name, base, top] : {std::tuple{"pulled", 1, 2}, {"pushed", 0, 0}}) {
+    std::ofstream(folder_ / (std::string(name) + ".node"))
+        << "4 3 3 1\n0 0 0 0 0 0 0 " << base << "\n1 " << kSide << " 0 0 0 0 0 " << base << "\n2 0 "
+        << kSide << " 0 0 0 0 " << base << "\n3 0 0 " << kSide << " 0 0 " << kForce << ' ' << top
+        << '\n';
+    std::ofstream(folder_ / (std::string(name) + ".ele")) << "1 4 3\n0 0 1 2 3 10000 0.3 1000\n";
+  }
+  constexpr int kTicks = 20;
+  constexpr double kPull = 0.1;  // of the side
+  std::ofstream lines(folder_ / "lines");
+  lines << "body soft rate 1000 pulled.node\nstart 1 2 3\n";
+  for (int tick = 1; tick <= kTicks; ++tick) {  // it is there after half of them, and rests
+    lines << "tick 0 1 2 " << 3.0 + kPull * kSide * std::min(1.0, 2.0 * tick / kTicks) << " 0\n";
+  }
+  lines << "body soft rate 1000 pushed.node\nstart 0 0 0\n";
+  for (int tick = 1; tick <= kTicks; ++tick) {
+    lines << "tick 0 0 0 0 1\n";
+  }
+  lines << "shape\n";
+  lines.close();
+  const auto answered =
+      test::run_command("cd '" + folder_.path().string() + "' && node '" +
+                        (kSource / "docs/worked/exam/mujoco_body.mjs").string() + "' '" +
+                        package.output.substr(0, package.output.find('\n')) + "' < lines");
+  ASSERT_EQ(answered.status, 0) << answered.errors;
+  std::vector<std::string> answers;
+  std::istringstream text(answered.output);
+  for (std::string line; std::getline(text, line);) {
+    answers.push_back(line);
+  }
+  ASSERT_EQ(answers.size(), 2u * (2 + kTicks) + 1) << answered.output;
+
+  const double modulus = 1e4 * 0.7 / (1.3 * 0.4);  // lambda + 2 mu [Pa]
+  const double strain = kPull + 0.5 * kPull * kPull;
+  const double base = 0.5 * kSide * kSide;
+  double x = 0, y = 0, z = 0;
+  std::istringstream(answers[1 + kTicks]) >> x >> y >> z;
+  EXPECT_NEAR(z, -base / 3.0 * (1.0 + kPull) * modulus * strain, 1e-9);
+
+  const double mass = 1000.0 * base * kSide / 3.0;
+  const double time = 1e-3 * kTicks;
+  std::istringstream shape(answers.back());
+  double sum = 0.0;
+  for (int vertex = 0; vertex < 4 && shape >> x >> y >> z; ++vertex) {
+    sum += z / 4.0;
+  }
+  const double exact = 0.5 * kForce / mass * time * time;
+  EXPECT_GE(sum, exact * (1.0 - 1e-6));
+  EXPECT_LE(sum, exact * (1.0 + 1.0 / kTicks)) << "a step takes its last velocity";
 }
 
 TEST_F(SoftExamCommandTest, BadAnswersGetASentence) {
