@@ -49,7 +49,7 @@ SpectrumTable default_sound() {
   SpectrumTable table;
   table.source =
       "cutting.free: a recorded drill loop, its burr and load unknown; all else made up from it";
-  table.unit = fmt::format("full scale");
+  table.unit = kFullScale;
   const Spectrum loop = recorded();
   table.of(Burr::kCutting) = {{{"free", 0.0, true, loop}},
                               {{"light", 0.0, false, varied(loop, 0.97, 1.5, 1.3)},
@@ -63,7 +63,7 @@ SpectrumTable default_sound() {
 SpectrumTable default_vibration() {
   SpectrumTable table;
   table.source = fmt::format("made up: the source prints its recordings without numbers");
-  table.unit = fmt::format("N");
+  table.unit = kNewton;
   table.of(Burr::kCutting) = {
       {{"free", 0.0, false, rumble(1.0, 0.02)}},
       {{"light", 0.0, false, rumble(0.97, 0.08)}, {"typical", 2.0, false, rumble(0.85, 0.25)}}};

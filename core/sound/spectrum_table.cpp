@@ -96,7 +96,7 @@ void read_kind(Table& table, SpectrumTable::Kind& kind) {
 SpectrumTable read_document(Table& document) {
   SpectrumTable table;
   table.source = document.text("source");
-  table.unit = document.choice("unit", {"full scale", "N"});
+  table.unit = document.choice("unit", {kFullScale, kNewton});
   bool any = false;
   for (const Burr burr : kBurrs) {
     if (const std::string key(name_of(burr)); document.has(key)) {

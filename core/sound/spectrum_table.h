@@ -41,6 +41,9 @@ struct Level {
   Spectrum spectrum{};
 };
 
+inline constexpr const char* kFullScale = "full scale";
+inline constexpr const char* kNewton = "N";
+
 /// How a drill sounds, or shakes the hand that holds it, by burr, contact and force.
 /// Source: Morris 2006, §3.2.3.8 and §3.2.9.
 struct SpectrumTable {
@@ -49,7 +52,7 @@ struct SpectrumTable {
     std::vector<Level> contact;  // on bone, by rising force
   };
   std::string source;  // where the numbers come from, in a sentence
-  std::string unit;    // of the amplitudes: "full scale" (of sound) or "N" (of vibration)
+  std::string unit;    // of the amplitudes: kFullScale (of sound) or kNewton (of vibration)
   std::array<Kind, kBurrs.size()> kinds;
 
   const Kind& of(Burr burr) const { return kinds[static_cast<std::size_t>(burr)]; }

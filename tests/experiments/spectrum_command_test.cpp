@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/sound/spectrum_table.h"
@@ -57,6 +59,65 @@ TEST_F(SpectrumCommandTest, MakesATableLevelByLevel) {
   EXPECT_NEAR(kind.contact[0].spectrum.peaks[0].amplitude, 0.2, 0.002);
   EXPECT_NEAR(kind.contact[0].spectrum.peaks[1].amplitude, 0.1, 0.001);
   EXPECT_GT(std::filesystem::file_size(folder_ / "p.png"), 1000U);
+}
+
+/// Two sines of a sensor, as a table.
+std::string sensed(const std::string& quantity, double amplitude) {
+  std::string text = "time," + quantity + "\n";
+  for (int i = 0; i < 8192; ++i) {
+    const double time = i / 4000.0;
+    const double turn = 2.0 * std::numbers::pi * 300.0 * time;
+    text += std::to_string(time) + "," +
+            std::to_string(amplitude * (std::sin(turn) + 0.5 * std::sin(2.0 * turn + 1.0))) + "\n";
+  }
+  return text;
+}
+
+/// A sensor of force, and one of acceleration on a handle of known mass: the same vibration.
+TEST_F(SpectrumCommandTest, AForceOrAnAccelerationGivesATableInNewtons) {
+  record("sensor.wav", 300.0);
+  test::write_text(folder_ / "force.csv", sensed("force", 0.4));
+  test::write_text(folder_ / "acceleration.csv", sensed("acceleration", 8.0));
+  const auto result =
+      run("haptrial spectrum force.csv force.toml\n"
+          "haptrial spectrum acceleration.csv moved.toml --mass 0.05 --picture p.png\n"
+          "haptrial spectrum sensor.wav wav.toml --unit N --full-scale 2\n"
+          "haptrial spectrum acceleration.csv");
+  ASSERT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("amplitudes  N\n"));
+  EXPECT_THAT(result.output, HasSubstr("amplitudes  m/s2\n"));
+  for (const char* file : {"force.toml", "moved.toml", "wav.toml"}) {
+    const auto table = sound::read_spectrum_table(folder_ / file);
+    EXPECT_EQ(table.unit, sound::kNewton) << file;
+    const sound::Spectrum& found = table.of(sound::Burr::kCutting).contact.at(0).spectrum;
+    ASSERT_GE(found.count, 2) << file;
+    EXPECT_NEAR(found.peaks[0].frequency, 300.0, 1.0) << file;
+    EXPECT_NEAR(found.peaks[0].amplitude, 0.4, 0.004) << file;
+    EXPECT_NEAR(found.peaks[1].amplitude, 0.2, 0.002) << file;
+  }
+}
+
+TEST_F(SpectrumCommandTest, UnitsAreNotMixed) {
+  record("air.wav", 1140.0);
+  test::write_text(folder_ / "force.csv", sensed("force", 0.4));
+  test::write_text(folder_ / "acceleration.csv", sensed("acceleration", 8.0));
+  test::write_text(folder_ / "neither.csv", "time,volts\n0,1\n");
+  test::write_text(folder_ / "uneven.csv", "time,force\n0,1\n0.001,1\n0.002,1\n0.004,1\n");
+  ASSERT_EQ(run("haptrial spectrum force.csv t.toml --level free").status, 0);
+  for (const auto& [line, why] :
+       {std::pair{"air.wav t.toml --add", "t.toml: has the unit N; allowed: full scale"},
+        {"acceleration.csv new.toml", "--mass is 0; allowed: above 0 kg"},
+        {"force.csv new.toml --mass 1", "--mass is 1; allowed"},
+        {"air.wav --unit N", "--unit is 'N' and --full-scale 0; allowed: neither, or both"},
+        {"air.wav --unit g --full-scale 2", "--unit is 'g'; allowed: N, m/s2"},
+        {"force.csv --unit N --full-scale 2", "is a table, whose columns say the unit"},
+        {"force.csv --wav out.wav", "--wav makes a sound, and force.csv is in N"},
+        {"neither.csv", "has the columns time, volts; allowed: time [s] and either force [N]"},
+        {"uneven.csv", "uneven.csv:5: time is '0.004'; allowed: about 0.00133333 s after"}}) {
+    const auto result = run(std::string("haptrial spectrum ") + line);
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_THAT(result.errors, HasSubstr(why)) << line;
+  }
 }
 
 TEST_F(SpectrumCommandTest, BadInputGetsASentence) {

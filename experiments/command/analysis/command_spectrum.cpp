@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -6,8 +7,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
+#include <vector>
 
 #include "analysis/document/figure_gnuplot.h"
+#include "analysis/files/csv.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/base/scratch_folder.h"
@@ -28,6 +32,9 @@ struct SpectrumOptions {
   double force{0.0};
   int peaks{24};
   int segment{0};
+  std::string unit;
+  double full_scale{0.0};
+  double mass{0.0};
   bool add{false};
   std::string wav;
   std::string picture;
@@ -37,6 +44,13 @@ struct SpectrumOptions {
 namespace fs = std::filesystem;
 
 constexpr double kSynthesized = 4.0;  // [s]
+constexpr const char* kAcceleration = "m/s2";
+
+/// What was recorded, in its unit.
+struct Measured {
+  sound::Recording recording;
+  std::string unit{sound::kFullScale};
+};
 
 sound::Burr burr_of(const std::string& name) {
   for (const sound::Burr burr : sound::kBurrs) {
@@ -61,7 +75,82 @@ void check(const SpectrumOptions& options) {
     throw InputError(
         fmt::format("--peaks is {}; allowed: 1 to {}", options.peaks, sound::Spectrum::kMaxPeaks));
   }
+  if (!options.unit.empty() && options.unit != sound::kNewton && options.unit != kAcceleration) {
+    throw InputError(not_allowed("--unit", fmt::format("'{}'", options.unit),
+                                 {sound::kNewton, kAcceleration}));
+  }
   check_new_figure(options.picture, options.overwrite);
+}
+
+/// The table of a sensor: evenly in time, one of two quantities.
+Measured read_table(const std::string& file) {
+  constexpr double kUneven = 0.1;  // of a step
+  const auto table = analysis::CsvTable::load(file);
+  const bool acceleration = table.has("acceleration");
+  if (acceleration == table.has("force")) {
+    throw InputError(fmt::format(
+        "{}: has the columns {}; allowed: time [s] and either force [N] or acceleration [m/s2]",
+        file, fmt::join(table.columns(), ", ")));
+  }
+  const std::size_t column = table.column("time");
+  const std::vector<double> times = table.numbers(column);
+  const std::vector<double> values =
+      table.numbers(table.column(acceleration ? "acceleration" : "force"));
+  Measured measured;
+  measured.unit = acceleration ? kAcceleration : sound::kNewton;
+  measured.recording.samples.assign(values.begin(), values.end());
+  const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!(std::abs(times[i] - times[i - 1] - step) < kUneven * step)) {
+      table.refuse(i, column,
+                   fmt::format("about {:.6g} s after the row before, as the others are", step));
+    }
+  }
+  measured.recording.rate = 1.0 / step;
+  return measured;
+}
+
+/// @throws InputError where the options do not say what the recording's numbers are
+Measured read_measured(const SpectrumOptions& options) {
+  if (fs::path(options.file).extension() == ".csv") {
+    if (!options.unit.empty() || options.full_scale != 0.0) {
+      throw InputError(
+          fmt::format("{}: is a table, whose columns say the unit; --unit and "
+                      "--full-scale are for sound files",
+                      options.file));
+    }
+    return read_table(options.file);
+  }
+  Measured measured{sound::read_recording(options.file)};
+  if (options.unit.empty() != (options.full_scale == 0.0) || options.full_scale < 0.0) {
+    throw InputError(
+        fmt::format("--unit is '{}' and --full-scale {}; allowed: neither, or both: "
+                    "the unit of the sensor and what the file's full scale is in it",
+                    options.unit, options.full_scale));
+  }
+  if (!options.unit.empty()) {
+    measured.unit = options.unit;
+    for (float& sample : measured.recording.samples) {
+      sample *= static_cast<float>(options.full_scale);
+    }
+  }
+  return measured;
+}
+
+/// Acceleration becomes the force that gives it to a mass.
+void turn_into_force(const SpectrumOptions& options, Measured& measured) {
+  if ((options.mass > 0.0) != (measured.unit == kAcceleration)) {
+    throw InputError(
+        fmt::format("--mass is {}; allowed: above 0 kg for a table made from an "
+                    "acceleration, else not given",
+                    options.mass));
+  }
+  if (options.mass > 0.0) {
+    for (float& sample : measured.recording.samples) {
+      sample *= static_cast<float>(options.mass);
+    }
+    measured.unit = sound::kNewton;
+  }
 }
 
 sound::PowerSpectrum spectrum_of(const sound::Recording& recording, int segment,
@@ -80,13 +169,15 @@ sound::PowerSpectrum spectrum_of(const sound::Recording& recording, int segment,
   }
 }
 
-void print(const sound::Recording& recording, const sound::PowerSpectrum& power,
+void print(const Measured& measured, const sound::PowerSpectrum& power,
            const sound::Spectrum& found) {
+  const sound::Recording& recording = measured.recording;
   fmt::print("recording   {:.3f} s at {:.0f} Hz\n",
              static_cast<double>(recording.samples.size()) / recording.rate, recording.rate);
   fmt::print("spectrum    {} segments, a bin every {:.4g} Hz\n", power.segments, power.bin);
   fmt::print("dominant    {:.1f} Hz; fundamental {:.1f} Hz\n", sound::dominant(found),
              sound::fundamental(found));
+  fmt::print("amplitudes  {}\n", measured.unit);
   fmt::print("peaks       {:>10} {:>10} {:>10}\n", "Hz", "amplitude", "width, Hz");
   for (int i = 0; i < found.count; ++i) {
     const sound::Peak& peak = found.peaks[static_cast<std::size_t>(i)];
@@ -97,13 +188,18 @@ void print(const sound::Recording& recording, const sound::PowerSpectrum& power,
 }
 
 /// The table with the level in its place, by rising force.
-sound::SpectrumTable table_with(const SpectrumOptions& options, const sound::Spectrum& found) {
+sound::SpectrumTable table_with(const SpectrumOptions& options, const std::string& unit,
+                                const sound::Spectrum& found) {
   sound::SpectrumTable table;
-  table.unit = "full scale";
+  table.unit = unit;
   table.source = fmt::format("haptrial spectrum {}", fs::path(options.file).filename().string());
   if (options.add && fs::exists(options.out)) {
     const std::string more = table.source;
     table = sound::read_spectrum_table(options.out);
+    if (table.unit != unit) {
+      throw InputError(fmt::format("{}: has the unit {}; allowed: {}, which that of {} is",
+                                   options.out, table.unit, unit, options.file));
+    }
     table.source = fmt::format("{}; {}", table.source, more);
   }
   auto& kind = table.of(burr_of(options.burr));
@@ -126,12 +222,12 @@ sound::SpectrumTable table_with(const SpectrumOptions& options, const sound::Spe
   return table;
 }
 
-std::vector<float> synthesized(const sound::Spectrum& found, double rate) {
+std::vector<float> synthesized(const sound::Spectrum& found, double rate, float most) {
   sound::Harmonics harmonics(rate, RandomStream(1, "spectrum"), 0.0);
   harmonics.aim(found, 1.0, 1.0);
   std::vector<float> samples(static_cast<std::size_t>(kSynthesized * rate));
   for (float& sample : samples) {
-    sample = static_cast<float>(std::clamp(harmonics.next(), -1.0, 1.0));
+    sample = std::clamp(static_cast<float>(harmonics.next()), -most, most);
   }
   return samples;
 }
@@ -151,14 +247,15 @@ analysis::Series curve(const sound::PowerSpectrum& power, const char* label,
 }
 
 /// The recording's spectrum beside that of the sound that is made from its peaks.
-void draw(const SpectrumOptions& options, const sound::PowerSpectrum& recorded,
-          const sound::PowerSpectrum& made) {
+void draw(const SpectrumOptions& options, const std::string& unit,
+          const sound::PowerSpectrum& recorded, const sound::PowerSpectrum& made) {
   constexpr double kHighest = 16'000.0;  // [Hz]
   analysis::Figure figure;
   figure.name = "spectrum";
   figure.title = fmt::format("{}", fs::path(options.file).filename().string());
   figure.x_label = "frequency [kHz]";
-  figure.y_label = "power density [dB re full scale²/Hz]";
+  figure.y_label =
+      fmt::format("power density [dB re {}²/Hz]", unit == kAcceleration ? "(m/s²)" : unit);
   figure.series.push_back(
       curve(recorded, "recorded", {.color = "#1f6f8b", .width = 2.0}, kHighest));
   figure.series.push_back(
@@ -180,29 +277,37 @@ void draw(const SpectrumOptions& options, const sound::PowerSpectrum& recorded,
 int spectrum(const SpectrumOptions& options) {
   check(options);
   burr_of(options.burr);
-  const sound::Recording recording = sound::read_recording(options.file);
+  Measured measured = read_measured(options);
+  if (!options.out.empty() || options.mass != 0.0) {
+    turn_into_force(options, measured);
+  }
+  if (!options.wav.empty() && measured.unit != sound::kFullScale) {
+    throw InputError(
+        fmt::format("--wav makes a sound, and {} is in {}", options.file, measured.unit));
+  }
+  const sound::Recording& recording = measured.recording;
   const sound::PowerSpectrum power = spectrum_of(recording, options.segment, options.file);
   const sound::Spectrum found = sound::find_peaks(power, {.most = options.peaks});
-  print(recording, power, found);
+  print(measured, power, found);
   if (!options.out.empty()) {
-    const sound::SpectrumTable table = table_with(options, found);
+    const sound::SpectrumTable table = table_with(options, measured.unit, found);
     WholeFile out(options.out, options.overwrite || options.add);
     out.write(sound::to_toml(table));
     out.finish();
     fmt::print("wrote       {}\n", options.out);
   }
-  if (options.wav.empty() && options.picture.empty()) {
-    return 0;
-  }
-  const std::vector<float> made = synthesized(found, recording.rate);
   if (!options.wav.empty()) {
+    const std::vector<float> made = synthesized(found, recording.rate, 1.0F);
     sound::WavWriter wav(options.wav, static_cast<int>(recording.rate), options.overwrite);
     wav.write(made);
     wav.finish();
     fmt::print("wrote       {}\n", options.wav);
   }
   if (!options.picture.empty()) {
-    draw(options, power, sound::power_spectrum(made, recording.rate, options.segment));
+    const std::vector<float> made =
+        synthesized(found, recording.rate, std::numeric_limits<float>::max());
+    draw(options, measured.unit, power,
+         sound::power_spectrum(made, recording.rate, options.segment));
     fmt::print("wrote       {}\n", options.picture);
   }
   return 0;
@@ -211,11 +316,15 @@ int spectrum(const SpectrumOptions& options) {
 }  // namespace
 
 void add_spectrum(CLI::App& app, int& status) {
-  CLI::App* sub = subcommand(app, "spectrum", "Make a table of a drill's sound from a recording",
-                             "haptrial spectrum drill.wav drill.toml --level free",
-                             {"", "algorithms/drill-sound.md"});
+  CLI::App* sub = subcommand(
+      app, "spectrum", "Make a table of a drill's sound or vibration from a recording",
+      "haptrial spectrum drill.wav drill.toml --level free", {"", "algorithms/drill-sound.md"});
   auto& o = options_of<SpectrumOptions>(*sub, status, spectrum);
-  sub->add_option("FILE", o.file, "Recording (.wav, .flac, .aiff)")->required();
+  sub->add_option(
+         "FILE", o.file,
+         "Recording: a sound file (.wav, .flac, .aiff), or a table (.csv) with the columns "
+         "time [s] and force [N] or acceleration [m/s2]")
+      ->required();
   sub->add_option("OUT", o.out, "New table (.toml) (default: print only)");
   sub->add_option("--burr", o.burr, with_default("Kind of burr: diamond or cutting", o.burr));
   sub->add_option("--level", o.level,
@@ -224,6 +333,10 @@ void add_spectrum(CLI::App& app, int& status) {
   sub->add_option("--peaks", o.peaks, with_default("Largest number of peaks", o.peaks));
   sub->add_option("--segment", o.segment,
                   "Samples in a segment, a power of two (default: 40 ms or more)");
+  sub->add_option("--unit", o.unit, "Unit of a sensor that recorded a sound file: N or m/s2");
+  sub->add_option("--full-scale", o.full_scale, "Full scale of that file in the unit");
+  sub->add_option("--mass", o.mass,
+                  "Mass of the handle, which the force of a table from an acceleration moves [kg]");
   sub->add_flag("--add", o.add, "Add the level to an existing table");
   sub->add_option("--wav", o.wav, "New sound file made from the peaks (.wav)");
   sub->add_option("--picture", o.picture, "New picture of both spectra (.png, .svg)");

@@ -144,7 +144,12 @@ void read_sound(Table& root, BoneDefinition& d, const fs::path* folder) {
     if (table.has(key)) {
       const std::string name = table.text(key);
       if (folder != nullptr) {
+        const std::string unit = into.unit;
         into = sound::read_spectrum_table(*folder / name);
+        if (into.unit != unit) {
+          table.reject(key, fmt::format("{}, which has the unit {}", name, into.unit),
+                       fmt::format("spectra of the unit {}", unit));
+        }
       }
     }
   };
