@@ -12,10 +12,19 @@ namespace haptrial::evaluation {
 struct EvaluationNames {
   std::string recording, mesh;  // file names
   bool simulated{false};        // the recording is, and the report says so
+  double mesh_unit{1.0};        // of the mesh's file [m]
 };
 
 /// A line of text for each fact, for a terminal: no line end.
 std::vector<std::string> evaluation_lines(const Evaluation& evaluation);
+
+/// A table of the contact, a row for each tick: out- and in-trajectory in the mesh's frame [m], the
+/// recorded force on the probe [N] and that of every rendering.
+std::string contact_csv(const Evaluation& evaluation);
+
+/// What was identified, as the table [objects.recorded] of a definition of trials. What the
+/// recording does not fix has a comment in its place.
+std::string objects_toml(const Evaluation& evaluation, const EvaluationNames& names);
 
 /// "proxy", "proxy with friction 0.21".
 std::string name_of(const EvaluatedRendering& rendering);

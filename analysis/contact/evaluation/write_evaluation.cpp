@@ -10,6 +10,8 @@ void write_evaluation(const Evaluation& evaluation, const EvaluationNames& names
                       const std::filesystem::path& folder) {
   exchange::NewFolder out(folder);
   out.write("evaluation.json", evaluation_json(evaluation, names));
+  out.write("contact.csv", contact_csv(evaluation));
+  out.write("objects.toml", objects_toml(evaluation, names));
   const auto figures = evaluation_figures(evaluation, names);
   const std::filesystem::path place = out.place("report.html").parent_path();
   analysis::draw_figures(figures, place);

@@ -194,7 +194,7 @@ struct GivenRecording {
 GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& prepare) {
   const fs::path first(o.recording.front());
   evaluation::EvaluationNames names{first.filename().string(), fs::path(o.mesh).filename().string(),
-                                    o.simulated};
+                                    o.simulated, unit_of(o.units)};
   if (o.recording.size() > 1 || first.extension() != ".h5") {
     if (o.object || o.trial) {
       throw InputError("--object and --trial are for a session file (.h5)");
@@ -351,7 +351,8 @@ void add_evaluate(CLI::App& app, int& status) {
   CLI::App* sub =
       subcommand(app, "evaluate", "Compare renderings of a body with a recorded contact",
                  "haptrial evaluate poses.csv forces.csv --mesh body.stl --units mm --out out/body",
-                 {"evaluation.json, report.html and its pictures in the folder of --out",
+                 {"evaluation.json, contact.csv, objects.toml, report.html and its pictures in the "
+                  "folder of --out",
                   "algorithms/contact-evaluation.md"});
   auto& o = options_of<EvaluateOptions>(*sub, status, evaluate);
   sub->add_option("RECORDING", o.recording,

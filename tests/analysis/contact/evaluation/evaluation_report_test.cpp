@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 
 #include "analysis/contact/demo_study/simulated_probe.h"
+#include "analysis/files/csv.h"
+#include "core/base/definition/table.h"
 
 namespace haptrial::evaluation {
 namespace {
@@ -93,6 +97,68 @@ TEST(EvaluationReportTest, OperationsAreToldByTheirNames) {
       EXPECT_GT(done.sweeps, done.ticks / 10);
     }
   }
+}
+
+/// Each row of the table keeps the law of the in-trajectory (§7.3.1), and has what was rendered.
+TEST(EvaluationFilesTest, TheContactIsThereTickByTick) {
+  const PreparedContact& c = rubbed_duck().contact;
+  const auto table = analysis::CsvTable::parse(contact_csv(rubbed_duck()), "contact.csv");
+  ASSERT_EQ(table.rows(), c.time.size());
+  const auto vectors = [&](const std::string& what, const std::string& unit) {
+    std::array<std::vector<double>, 3> columns;
+    for (std::size_t i = 0; i < 3; ++i) {
+      columns[i] = table.numbers(table.column(what + "_" + "xyz"[i] + "_" + unit));
+    }
+    return columns;
+  };
+  const auto out = vectors("out", "m");
+  const auto in = vectors("in", "m");
+  const auto force = vectors("force", "N");
+  const auto rendered = vectors("proxy", "N");
+  const auto touching = table.numbers(table.column("touching"));
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Eigen::Vector3d depth, f, r;
+    for (int i = 0; i < 3; ++i) {
+      const auto axis = static_cast<std::size_t>(i);
+      depth[i] = out[axis][row] - in[axis][row];
+      f[i] = force[axis][row];
+      r[i] = rendered[axis][row];
+    }
+    const double pressed = std::max(0.0, f.dot(c.normal[row]));
+    EXPECT_NEAR(depth.norm(), pressed / c.stiffness, 1e-8) << row;
+    EXPECT_EQ(touching[row] == 1.0, pressed > c.least_force) << row;
+    EXPECT_LT((r - rubbed_duck().renderings[0].rendered.force[row]).norm(), 1e-7) << row;
+  }
+}
+
+/// A definition of trials can hold what was identified: the duck is hard and has a friction of 0.2.
+TEST(EvaluationFilesTest, TheObjectIsATableOfADefinition) {
+  const EvaluationNames names{"probe.csv", "duck.stl", true, 1e-3};
+  const std::string text = objects_toml(rubbed_duck(), names);
+  EXPECT_THAT(text, testing::StartsWith("# SIMULATED: probe.csv on duck.stl"));
+  Table root = Table::parse(text, "objects.toml");
+  Table object = root.table("objects").table("recorded");
+  EXPECT_EQ(object.text("mesh"), "duck.stl");
+  EXPECT_EQ(object.number("scale", {}), 1e-3);
+  Table friction = object.table("friction");
+  EXPECT_NEAR(friction.number("dynamic", {}), 0.2, 0.02);
+  EXPECT_TRUE(friction.has("static"));
+  const Interval& k = rubbed_duck().identified->stiffness;
+  EXPECT_EQ(object.has("stiffness"), std::isfinite(k.value)) << text;
+}
+
+TEST(EvaluationFilesTest, WhatIsNotKnownIsNotStated) {
+  Evaluation unknown = rubbed_duck();
+  unknown.identified->dynamic_friction.reset();
+  unknown.identified->static_friction.reset();
+  EXPECT_THAT(objects_toml(unknown, {"a", "b"}),
+              testing::AllOf(HasSubstr("# friction: not known from the recording"),
+                             testing::Not(HasSubstr("friction]"))));
+  unknown.identified->dynamic_friction = Interval{0.3, 0.25, 0.35};
+  EXPECT_THAT(objects_toml(unknown, {"a", "b"}),
+              HasSubstr("static = 0.3  # the other one's; this one is not known"));
+  unknown.identified.reset();
+  EXPECT_THAT(objects_toml(unknown, {"a", "b"}), HasSubstr("tells neither stiffness nor friction"));
 }
 
 }  // namespace

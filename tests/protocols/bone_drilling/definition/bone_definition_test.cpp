@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/sound/spectrum_table.h"
 #include "experiments/studies/experiment.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
@@ -75,6 +76,31 @@ TEST(BoneDefinitionTest, ABoneThatIsNotThereIsNamed) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("nowhere.nrrd"));
   }
+}
+
+/// A sound in full scale would be a vibration of as many newtons.
+TEST(BoneDefinitionTest, SpectraOfTheOtherUnitAreRefused) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "newtons.toml", sound::to_toml(sound::default_vibration()));
+  test::write_text(folder / "full.toml", sound::to_toml(sound::default_sound()));
+  const auto problem = [&](const std::string& keys) -> std::string {
+    std::string text = test::drilling_with({});
+    const std::string table = "[sound]\n";
+    const std::size_t at = text.find(table);
+    at == std::string::npos ? text += "\n" + table + keys : text.insert(at + table.size(), keys);
+    test::write_text(folder / "study.toml", text);
+    try {
+      protocols::load_bone_definition(folder / "study.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem("spectra = \"full.toml\"\nvibration = \"newtons.toml\"\n"), "");
+  EXPECT_THAT(problem("vibration = \"full.toml\"\n"),
+              HasSubstr("sound.vibration is full.toml, which has the unit full scale; allowed: "
+                        "spectra of the unit N"));
+  EXPECT_THAT(problem("spectra = \"newtons.toml\"\n"), HasSubstr("which has the unit N; allowed"));
 }
 
 TEST(BoneDefinitionTest, TheProtocolIsFoundByItsName) {

@@ -1,0 +1,98 @@
+// What others take from an evaluation: the contact tick by tick, and the object that it found.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "analysis/contact/evaluation/evaluation_report.h"
+
+namespace haptrial::evaluation {
+namespace {
+
+void add_names(std::string& header, const std::string& what, const char* unit) {
+  for (const char axis : {'x', 'y', 'z'}) {
+    fmt::format_to(std::back_inserter(header), ",{}_{}_{}", what, axis, unit);
+  }
+}
+
+void add_numbers(std::string& row, const Eigen::Vector3d& v) {
+  fmt::format_to(std::back_inserter(row), ",{:.9g},{:.9g},{:.9g}", v.x(), v.y(), v.z());
+}
+
+std::string of(const char* unit, const Interval& i) {
+  return fmt::format("{:.4g} to {:.4g}{}", i.low, i.high, unit);
+}
+
+/// A coefficient of friction, or the other one where the recording does not tell it.
+std::string friction_line(const char* key, const Interval* own, const Interval& other) {
+  const Interval& i = own != nullptr ? *own : other;
+  return fmt::format("{} = {:.4g}  # {}\n", key, std::max(0.0, i.value),
+                     own != nullptr ? fmt::format("95 %: {}", of("", i))
+                                    : "the other one's; this one is not known from the recording");
+}
+
+const Interval* address(const std::optional<Interval>& i) { return i ? &*i : nullptr; }
+
+}  // namespace
+
+std::string contact_csv(const Evaluation& evaluation) {
+  const PreparedContact& c = evaluation.contact;
+  std::string text = "time_s,touching";
+  add_names(text, "out", "m");
+  add_names(text, "in", "m");
+  add_names(text, "force", "N");
+  for (const EvaluatedRendering& rendering : evaluation.renderings) {
+    std::string name = name_of(rendering);
+    std::ranges::replace(name, ' ', '-');
+    add_names(text, name, "N");
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < c.time.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{:.9g},{:d}", c.time[i], c.touching[i] ? 1 : 0);
+    add_numbers(text, c.out[i]);
+    add_numbers(text, c.in[i]);
+    add_numbers(text, c.force[i]);
+    for (const EvaluatedRendering& rendering : evaluation.renderings) {
+      add_numbers(text, rendering.rendered.force[i]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string objects_toml(const Evaluation& evaluation, const EvaluationNames& names) {
+  std::string text = fmt::format(
+      "# {}{} on {}, as haptrial evaluate found it; intervals hold 95 %.\n[objects.recorded]\n"
+      "mesh = \"{}\"  # put it beside the definition\nscale = {:g}\n",
+      names.simulated ? "SIMULATED: " : "", names.recording, names.mesh, names.mesh,
+      names.mesh_unit);
+  if (!evaluation.identified) {
+    return text + "# the recording tells neither stiffness nor friction\n";
+  }
+  const IdentifiedContact& found = *evaluation.identified;
+  const Interval& k = found.stiffness;
+  if (std::isfinite(k.value) && k.value > 0.0) {
+    fmt::format_to(std::back_inserter(text), "stiffness = {:.4g}  # 95 %: {}\n", k.value,
+                   of(" N/m", k));
+  } else {
+    fmt::format_to(std::back_inserter(text),
+                   "# stiffness: the poses tell only that it is above {:.4g} N/m\n",
+                   std::max(0.0, k.low));
+  }
+  for (const std::string& sentence : found.confounded) {
+    fmt::format_to(std::back_inserter(text), "# {}\n", sentence);
+  }
+  const Interval* resting = address(found.static_friction);
+  const Interval* moving = address(found.dynamic_friction);
+  if (resting == nullptr && moving == nullptr) {
+    return text + "# friction: not known from the recording\n";
+  }
+  text += "\n[objects.recorded.friction]\n";
+  text += friction_line("static", resting, moving != nullptr ? *moving : *resting);
+  text += friction_line("dynamic", moving, resting != nullptr ? *resting : *moving);
+  return text;
+}
+
+}  // namespace haptrial::evaluation
