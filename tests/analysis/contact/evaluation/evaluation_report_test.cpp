@@ -139,9 +139,9 @@ TEST(EvaluationFilesTest, TheObjectIsATableOfADefinition) {
   Table root = Table::parse(text, "objects.toml");
   Table object = root.table("objects").table("recorded");
   EXPECT_EQ(object.text("mesh"), "duck.stl");
-  EXPECT_EQ(object.number("scale", {}), 1e-3);
+  EXPECT_EQ(object.number("scale", {}, ""), 1e-3);
   Table friction = object.table("friction");
-  EXPECT_NEAR(friction.number("dynamic", {}), 0.2, 0.02);
+  EXPECT_NEAR(friction.number("dynamic", {}, ""), 0.2, 0.02);
   EXPECT_TRUE(friction.has("static"));
   const Interval& k = rubbed_duck().identified->stiffness;
   EXPECT_EQ(object.has("stiffness"), std::isfinite(k.value)) << text;
