@@ -44,7 +44,9 @@ class LastAnswer {
   /// Carries out a request, outside a pass. Called often.
   void see_to_request();
   Next next() const { return next_; }
-  /// Goes back to the trial before, once next() says so.
+  /// Whether an answer was taken back, and the session is to go on with its trial.
+  bool goes_back() const { return next_ == Next::kTrialBefore && !p_.controller.requests().abort; }
+  /// Goes back to the trial before, once goes_back() says so.
   std::optional<protocols::PlannedTrial> go_back();
 
  private:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,7 +14,6 @@
 #include "experiments/control/progress.h"
 #include "experiments/control/session_controller.h"
 #include "experiments/plan/plan_log.h"
-#include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/devices.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/last_answer.h"
@@ -27,6 +25,7 @@
 #include "experiments/runner/session_opening.h"
 #include "experiments/runner/session_pages.h"
 #include "experiments/runner/session_record.h"
+#include "experiments/runner/trial_presenter.h"
 #include "experiments/screen/screen_mirror.h"
 #include "experiments/screen/speaker.h"
 #include "protocols/definition/groups.h"
@@ -39,26 +38,10 @@
 namespace haptrial::experiments {
 namespace {
 
-using protocols::AfterAbort;
 using protocols::Outcome;
 using protocols::PlannedTrial;
 using protocols::TrialEnd;
 using realtime::ClockKind;
-
-/// How long trials take: those to come as long, in the mean, as those of this run.
-class TimedTrials {
- public:
-  void add(double seconds) {
-    sum_ += seconds;
-    ++count_;
-  }
-  /// Needs at least one trial. @returns seconds
-  double mean() const { return sum_ / count_; }
-
- private:
-  double sum_{0.0};
-  int count_{0};
-};
 
 class Session {
  public:
@@ -76,19 +59,11 @@ class Session {
   void hear_inputs();
   std::vector<std::string> open_channels();
   std::vector<ChannelStatus> channel_status() const;
-  void note_warnings();
-  void note_time_left(double trial_seconds);
-  void show_trial();
   void run_trials();
   void note_setting();
   bool has_break_after(const PlannedTrial& trial) const;
-  bool goes_back();
   bool is_hopeless() const;
   std::string why_given_up() const;
-  Outcome present(const PlannedTrial& trial);
-  bool run_trial(const PlannedTrial& trial, int attempt);
-  bool run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt);
-  void keep_responses();
   protocols::SessionPlace place();
 
   void finish();
@@ -99,8 +74,6 @@ class Session {
   const bool real_;
   std::unique_ptr<Progress> progress_;  // of what takes seconds
   SessionSummary summary_;
-  std::vector<record::ResponseRow> responses_;  // of the present attempt
-  TimedTrials timed_;
   bool left_{false};  // trials that an abort kept from being presented to their end
   realtime::ServoLoop loop_;
   markers::OnsetLog onsets_;  // before the screen and the record, whose threads look at it
@@ -124,7 +97,7 @@ class Session {
   NextTrial next_;
   LastAnswer last_answer_;
   SessionNotices notices_;
-  AbortedPass aborted_;
+  TrialPresenter presenter_;
 };
 
 std::unique_ptr<protocols::Trials> trials_of(const SessionRequest& request,
@@ -206,7 +179,7 @@ Session::Session(const SessionRequest& request)
                [this] {
                  hear_inputs();
                  last_answer_.see_to_request();
-                 note_warnings();
+                 notices_.note(trials_->take_warnings());
                  controller_.status().partner = trials_->partner();
                  controller_.status().channels = channel_status();
                  if (live_ == nullptr) {
@@ -219,7 +192,8 @@ Session::Session(const SessionRequest& request)
       next_({request, *trials_, record_, pages_}),
       last_answer_({*trials_, record_, controller_}),
       notices_({request, loop_, record_, controller_, summary_}),
-      aborted_({d_, *trials_, record_, controller_, pacing_, notices_, real_}) {
+      presenter_({d_, *trials_, servo_.task, record_, controller_, pacing_, notices_, last_answer_,
+                  input_.mistakes, screen_.get(), summary_, real_, [this] { progress_.reset(); }}) {
   SessionStatus& status = controller_.status();
   status.subject = request.subject;
   status.device = request.device.name;
@@ -269,9 +243,7 @@ void Session::hear_inputs() {
     record_.event(news.event, news.text);
     notices_.note(news.notice);
   }
-  for (const std::string& news : channels_.take_news()) {
-    notices_.note(news);
-  }
+  notices_.note(channels_.take_news());
   for (const SpokenText& spoken : speaker_ ? speaker_->take_spoken() : std::vector<SpokenText>{}) {
     record_.event_at(spoken.begun_ns, "spoken", spoken.text);
   }
@@ -297,12 +269,6 @@ std::vector<ChannelStatus> Session::channel_status() const {
     all.push_back(std::move(status));
   }
   return all;
-}
-
-void Session::note_warnings() {
-  for (const std::string& warning : trials_->take_warnings()) {
-    notices_.note(warning);
-  }
 }
 
 Session::~Session() {
@@ -348,18 +314,14 @@ SessionSummary Session::run() {
     }
     notices_.note_real_time();
     channels_.begin();  // after the first tick: before it, the session's clock stands
-    for (const std::string& notice : missing) {
-      notices_.note(notice);
-    }
+    notices_.note(missing);
     notices_.note(record_.notice());
     if (screen_) {
       notices_.note(screen_->summary().notice);
     }
     notices_.note(record_.markers().notice());
     notices_.note(input_.pedal.notice());
-    for (const std::string& notice : trials_->notices()) {
-      notices_.note(notice);
-    }
+    notices_.note(trials_->notices());
     notices_.say_plan(extent, trials_->extent(0).trials,
                       finished_trials(record_.earlier(), trials_->phases().back()));
     run_trials();
@@ -396,8 +358,8 @@ void Session::run_trials() {
       pacing_.wait_to_begin(trial->practice ? d_.texts.practice : d_.texts.counts);
       practised = trial->practice;
     }
-    const Outcome outcome = present(*trial);
-    if (goes_back()) {
+    const Outcome outcome = presenter_.present(*trial);
+    if (last_answer_.goes_back()) {
       trial = last_answer_.go_back();
       continue;
     }
@@ -422,7 +384,7 @@ void Session::run_trials() {
     }
     if (rests && trial) {
       pacing_.take_break();
-      trial = goes_back() ? last_answer_.go_back() : trial;
+      trial = last_answer_.goes_back() ? last_answer_.go_back() : trial;
     }
   }
   left_ = left_ || next_.ended_at_page() || is_hopeless();
@@ -442,18 +404,6 @@ void Session::note_setting() {
   }
 }
 
-void Session::show_trial() {
-  pacing_.clear_text();
-  if (screen_) {
-    const std::uint64_t number = screen_->show(trials_->drawing());
-    pacing_.clear_text();
-    if (trials_->waits_for_picture()) {
-      pacing_.wait_for_picture(number);
-    }
-    progress_.reset();
-  }
-}
-
 /// A virtual participant whose first 20 passes were all aborted will not complete any other.
 bool Session::is_hopeless() const {
   constexpr int kTries = 20;
@@ -469,135 +419,10 @@ std::string Session::why_given_up() const {
                        : trials_->why_given_up();
 }
 
-/// Whether an answer was taken back, and the session is to go on with its trial.
-bool Session::goes_back() {
-  return last_answer_.next() == LastAnswer::Next::kTrialBefore && !controller_.requests().abort;
-}
-
-/// One trial until it is done: again when the experimenter repeats it, or when
-/// it was aborted while an experimenter is there to see to the cause.
-Outcome Session::present(const PlannedTrial& trial) {
-  const auto begun = std::chrono::steady_clock::now();
-  trials_->prepare(trial, record_);
-  note_warnings();
-  progress_.reset();
-  PendingRequests& requests = controller_.requests();
-  Outcome outcome{trial, TrialEnd::kAborted, {}};
-  while (!requests.abort) {
-    const int attempt = last_answer_.begin_attempt(trial);
-    const bool anew = std::exchange(requests.repeat, false);
-    requests.skip = false;
-    responses_.clear();
-    trials_->begin_attempt(trial, anew);
-    show_trial();
-    record_.mark_trial("trial_begin", trial, attempt);
-    const bool presented = run_trial(trial, attempt);
-    pacing_.pause_where_asked();
-    last_answer_.see_to_request();
-    if (presented && requests.repeat && last_answer_.next() == LastAnswer::Next::kAsPlanned) {
-      last_answer_.repeat();
-    }
-    requests.repeat = requests.repeat || last_answer_.next() == LastAnswer::Next::kSameTrial;
-    const bool done = presented && last_answer_.next() == LastAnswer::Next::kAsPlanned;
-    const AfterAbort after = done ? AfterAbort::kAsAsked : trials_->after_abort();
-    const bool skipped = (requests.skip || after == AfterAbort::kSkip) && !done;
-    const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
-    record_.mark_trial("trial_end", trial, attempt, how);
-    notices_.say_trial(trial, how);
-    outcome.end = done ? TrialEnd::kCompleted : skipped ? TrialEnd::kSkipped : TrialEnd::kAborted;
-    outcome.responses = responses_;
-    if (skipped) {
-      record_.skip(trial);
-    }
-    const bool again = (controller_.attended() && !goes_back()) || after == AfterAbort::kAgain;
-    if ((done && !requests.repeat) || requests.skip || skipped || !again) {
-      break;
-    }
-  }
-  last_answer_.end_trial(outcome.end == TrialEnd::kCompleted);
-  if (outcome.end == TrialEnd::kCompleted && !trial.practice) {
-    note_time_left(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
-  }
-  return outcome;
-}
-
-void Session::note_time_left(double trial_seconds) {
-  timed_.add(trial_seconds);
-  SessionStatus& status = controller_.status();
-  const int trials = std::max(0, status.trials - status.trial);
-  const int breaks = d_.design.break_after > 0 ? trials / d_.design.break_after : 0;
-  status.left = trials * timed_.mean() + breaks * d_.design.break_duration;
-}
-
 /// Whether a break follows, after every `break_after` trials.
 bool Session::has_break_after(const PlannedTrial& trial) const {
   const int after = d_.design.break_after;
   return after > 0 && !trial.practice && trial.trial % after == 0;
-}
-
-/// @returns whether all passes were completed.
-bool Session::run_trial(const PlannedTrial& trial, int attempt) {
-  bool done = true;
-  const std::span<const record::Phase> phases = trials_->phases();
-  for (std::size_t i = 0; i < phases.size(); ++i) {
-    if (i > 0) {
-      pacing_.pause_where_asked();
-      const PendingRequests& requests = controller_.requests();
-      if (requests.repeat || requests.skip || requests.abort ||
-          last_answer_.next() != LastAnswer::Next::kAsPlanned) {
-        return false;
-      }
-    }
-    const bool completed = run_pass(trial, phases[i], attempt);
-    if (!completed && (controller_.attended() || trials_->after_abort() != AfterAbort::kAsAsked)) {
-      return false;  // the trial is presented again, from its first pass on
-    }
-    done = done && completed;
-  }
-  return done;
-}
-
-bool Session::run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt) {
-  if (pacing_.text_shown()) {
-    show_trial();
-  }
-  PlannedTrial row = trial;
-  protocols::Pass& pass = trials_->make_pass(row, phase);
-  record_.markers().prepare(trials_->varied_cues());
-  const std::int32_t number = record_.begin_pass(row, phase, attempt);
-  servo_.task.start(pass, number);
-  last_answer_.add_pass(number);
-  ++summary_.passes;
-  pacing_.drive_until_idle();
-  notices_.note_overruns(pacing_.watch());
-  const protocols::PassResult& result = servo_.task.result();
-  const bool aborted = result.state == protocols::PassState::kAborted;
-  trials_->close_pass(record_, number);
-  keep_responses();
-  record_.end_pass(result);
-  notices_.note_pass(result);
-  if (aborted) {
-    controller_.status().aborted_passes = ++summary_.aborted_passes;
-    aborted_.see_to(result);
-  } else {
-    aborted_.note_completed();
-  }
-  trials_->draw_pictures(trial, phase);
-  return !aborted;
-}
-
-void Session::keep_responses() {
-  std::vector<record::ResponseRow> rows = trials_->responses();
-  std::optional<std::int64_t> answered;
-  if (!rows.empty()) {
-    answered = record_.time_of(rows.front().sequence) - record_.session_time(0);
-  }
-  input_.mistakes.close_pass(record_.pass(), answered);
-  if (!rows.empty()) {
-    last_answer_.note_answer();
-    responses_.insert(responses_.end(), rows.begin(), rows.end());
-    record_.keep_responses(std::move(rows));
-  }
 }
 
 void Session::finish() {
@@ -606,13 +431,9 @@ void Session::finish() {
     record_.keep_frames(screen_->take_frames());
   }
   hear_inputs();
-  for (const std::string& lost : input_.losses(rig_->gamepad())) {
-    notices_.note(lost);
-  }
+  notices_.note(input_.losses(rig_->gamepad()));
   notices_.note_troubles(live_.get(), screen_.get());
-  for (const std::string& notice : trials_->notices()) {  // what came up meanwhile
-    notices_.note(notice);
-  }
+  notices_.note(trials_->notices());  // what came up meanwhile
   const PendingRequests& requests = controller_.requests();
   summary_.stopped = left_ && requests.abort && !requests.for_good;
   if (summary_.stopped) {

@@ -36,6 +36,12 @@ void SessionNotices::note(const std::string& notice) {
   tell("notice: " + notice);
 }
 
+void SessionNotices::note(const std::vector<std::string>& notices) {
+  for (const std::string& notice : notices) {
+    note(notice);
+  }
+}
+
 void SessionNotices::note_real_time() {
   if (p_.loop.clock() != ClockKind::kReal) {
     return;

@@ -33,6 +33,7 @@ class SessionNotices {
 
   /// A sentence that an experimenter has to know: once each, everywhere. Empty ones are none.
   void note(const std::string& notice);
+  void note(const std::vector<std::string>& notices);
   /// Whether the loop was refused real-time treatment, once it has begun.
   void note_real_time();
   /// The pass that has just ended. @param watch  of it

@@ -1,0 +1,169 @@
+#include "experiments/runner/trial_presenter.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace haptrial::experiments {
+
+using protocols::AfterAbort;
+using protocols::Outcome;
+using protocols::PlannedTrial;
+using protocols::TrialEnd;
+
+TrialPresenter::TrialPresenter(const Parts& parts)
+    : p_(parts),
+      aborted_({parts.definition, parts.trials, parts.record, parts.controller, parts.pacing,
+                parts.notices, parts.real}) {}
+
+Outcome TrialPresenter::present(const PlannedTrial& trial) {
+  const auto begun = std::chrono::steady_clock::now();
+  p_.trials.prepare(trial, p_.record);
+  p_.notices.note(p_.trials.take_warnings());
+  p_.prepared();
+  responses_.clear();
+  Attempted last;
+  while (!p_.controller.requests().abort && last.again) {
+    last = present_once(trial);
+  }
+  const bool completed = last.end == TrialEnd::kCompleted;
+  p_.last_answer.end_trial(completed);
+  if (completed && !trial.practice) {
+    note_time_left(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+  }
+  return {trial, last.end, responses_};
+}
+
+TrialPresenter::Attempted TrialPresenter::present_once(const PlannedTrial& trial) {
+  PendingRequests& requests = p_.controller.requests();
+  const int attempt = p_.last_answer.begin_attempt(trial);
+  const bool anew = std::exchange(requests.repeat, false);
+  requests.skip = false;
+  responses_.clear();
+  p_.trials.begin_attempt(trial, anew);
+  show();
+  p_.record.mark_trial("trial_begin", trial, attempt);
+  const bool presented = run_passes(trial, attempt);
+  p_.pacing.pause_where_asked();
+  const bool done = answer_stands(presented);
+  const AfterAbort after = done ? AfterAbort::kAsAsked : p_.trials.after_abort();
+  const bool skipped = (requests.skip || after == AfterAbort::kSkip) && !done;
+  const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
+  p_.record.mark_trial("trial_end", trial, attempt, how);
+  p_.notices.say_trial(trial, how);
+  if (skipped) {
+    p_.record.skip(trial);
+  }
+  const bool over = (done && !requests.repeat) || requests.skip || skipped;
+  const bool wanted =
+      (p_.controller.attended() && !p_.last_answer.goes_back()) || after == AfterAbort::kAgain;
+  return {done      ? TrialEnd::kCompleted
+          : skipped ? TrialEnd::kSkipped
+                    : TrialEnd::kAborted,
+          wanted && !over};
+}
+
+/// Sees to what was asked for during an attempt. @returns whether it was presented, and nobody took
+/// its answer back or wants it anew
+bool TrialPresenter::answer_stands(bool presented) {
+  PendingRequests& requests = p_.controller.requests();
+  p_.last_answer.see_to_request();
+  if (presented && requests.repeat && p_.last_answer.next() == LastAnswer::Next::kAsPlanned) {
+    p_.last_answer.repeat();
+  }
+  requests.repeat = requests.repeat || p_.last_answer.next() == LastAnswer::Next::kSameTrial;
+  return presented && p_.last_answer.next() == LastAnswer::Next::kAsPlanned;
+}
+
+void TrialPresenter::show() {
+  p_.pacing.clear_text();
+  if (p_.screen != nullptr) {
+    const std::uint64_t number = p_.screen->show(p_.trials.drawing());
+    p_.pacing.clear_text();
+    if (p_.trials.waits_for_picture()) {
+      p_.pacing.wait_for_picture(number);
+    }
+    p_.prepared();
+  }
+}
+
+/// @returns whether all passes were completed.
+bool TrialPresenter::run_passes(const PlannedTrial& trial, int attempt) {
+  bool done = true;
+  const std::span<const record::Phase> phases = p_.trials.phases();
+  for (std::size_t i = 0; i < phases.size(); ++i) {
+    if (i > 0) {
+      p_.pacing.pause_where_asked();
+      const PendingRequests& requests = p_.controller.requests();
+      if (requests.repeat || requests.skip || requests.abort ||
+          p_.last_answer.next() != LastAnswer::Next::kAsPlanned) {
+        return false;
+      }
+    }
+    const bool completed = run_pass(trial, phases[i], attempt);
+    if (!completed &&
+        (p_.controller.attended() || p_.trials.after_abort() != AfterAbort::kAsAsked)) {
+      return false;  // the trial is presented again, from its first pass on
+    }
+    done = done && completed;
+  }
+  return done;
+}
+
+bool TrialPresenter::run_pass(const PlannedTrial& trial, const record::Phase& phase, int attempt) {
+  if (p_.pacing.text_shown()) {
+    show();
+  }
+  PlannedTrial row = trial;
+  protocols::Pass& pass = p_.trials.make_pass(row, phase);
+  p_.record.markers().prepare(p_.trials.varied_cues());
+  const std::int32_t number = p_.record.begin_pass(row, phase, attempt);
+  p_.task.start(pass, number);
+  p_.last_answer.add_pass(number);
+  ++p_.summary.passes;
+  p_.pacing.drive_until_idle();
+  p_.notices.note_overruns(p_.pacing.watch());
+  const protocols::PassResult& result = p_.task.result();
+  const bool aborted = result.state == protocols::PassState::kAborted;
+  p_.trials.close_pass(p_.record, number);
+  keep_responses();
+  p_.record.end_pass(result);
+  p_.notices.note_pass(result);
+  if (aborted) {
+    p_.controller.status().aborted_passes = ++p_.summary.aborted_passes;
+    aborted_.see_to(result);
+  } else {
+    aborted_.note_completed();
+  }
+  p_.trials.draw_pictures(trial, phase);
+  return !aborted;
+}
+
+void TrialPresenter::keep_responses() {
+  std::vector<record::ResponseRow> rows = p_.trials.responses();
+  std::optional<std::int64_t> answered;
+  if (!rows.empty()) {
+    answered = p_.record.time_of(rows.front().sequence) - p_.record.session_time(0);
+  }
+  p_.mistakes.close_pass(p_.record.pass(), answered);
+  if (!rows.empty()) {
+    p_.last_answer.note_answer();
+    responses_.insert(responses_.end(), rows.begin(), rows.end());
+    p_.record.keep_responses(std::move(rows));
+  }
+}
+
+/// Trials to come are taken to last as long, in the mean, as those of this run.
+void TrialPresenter::note_time_left(double trial_seconds) {
+  seconds_ += trial_seconds;
+  ++timed_;
+  SessionStatus& status = p_.controller.status();
+  const protocols::Design& design = p_.definition.design;
+  const int trials = std::max(0, status.trials - status.trial);
+  const int breaks = design.break_after > 0 ? trials / design.break_after : 0;
+  status.left = trials * seconds_ / timed_ + breaks * design.break_duration;
+}
+
+}  // namespace haptrial::experiments

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "experiments/control/session_controller.h"
+#include "experiments/runner/aborted_pass.h"
+#include "experiments/runner/last_answer.h"
+#include "experiments/runner/loop_pacing.h"
+#include "experiments/runner/reported_mistakes.h"
+#include "experiments/runner/session_notices.h"
+#include "experiments/runner/session_record.h"
+#include "experiments/runner/session_request.h"
+#include "experiments/screen/screen.h"
+#include "protocols/interface/session_task.h"
+#include "protocols/interface/trials.h"
+
+namespace haptrial::experiments {
+
+/// Presents trials: shows each, runs its passes, keeps its answers. A trial is presented again when
+/// the experimenter repeats it, when its answer is taken back, or when it was aborted while an
+/// experimenter is there to see to the cause. Session's thread.
+class TrialPresenter {
+ public:
+  /// All of them outlive it.
+  struct Parts {
+    const protocols::Definition& definition;
+    protocols::Trials& trials;
+    protocols::SessionTask& task;
+    SessionRecord& record;
+    SessionController& controller;
+    LoopPacing& pacing;
+    SessionNotices& notices;
+    LastAnswer& last_answer;
+    ReportedMistakes& mistakes;
+    Screen* screen;  // null: none
+    SessionSummary& summary;
+    bool real{false};                // on a real clock
+    std::function<void()> prepared;  // what took seconds is over
+  };
+  explicit TrialPresenter(const Parts& parts);
+
+  /// One trial until it is done. @throws RunError as AbortedPass
+  protocols::Outcome present(const protocols::PlannedTrial& trial);
+
+ private:
+  struct Attempted {
+    protocols::TrialEnd end{protocols::TrialEnd::kAborted};
+    bool again{true};  // another attempt follows
+  };
+  Attempted present_once(const protocols::PlannedTrial& trial);
+  bool answer_stands(bool presented);
+  bool run_passes(const protocols::PlannedTrial& trial, int attempt);
+  bool run_pass(const protocols::PlannedTrial& trial, const record::Phase& phase, int attempt);
+  void show();
+  void keep_responses();
+  void note_time_left(double trial_seconds);
+
+  Parts p_;
+  AbortedPass aborted_;
+  std::vector<record::ResponseRow> responses_;  // of the present attempt
+  double seconds_{0.0};                         // of the trials of this run
+  int timed_{0};                                // trials whose time that is
+};
+
+}  // namespace haptrial::experiments
