@@ -104,6 +104,13 @@ double FindingValue::as_number() const {
                              : Finding::kNone;
 }
 
+Finding plain_finding(std::string name, std::string title, FindingValue value, std::string unit) {
+  Finding finding{std::move(name), std::move(title), std::move(value)};
+  finding.unit = std::move(unit);
+  finding.form = JsonForm::kPlain;
+  return finding;
+}
+
 std::string line_of(const Finding& f) {
   return fmt::format("{}: {}{}{}", f.title, word_of(f),
                      f.unit.empty() || std::isnan(number_of(f)) ? "" : " " + f.unit,
@@ -148,8 +155,10 @@ static void add_list(Document& part, const FindingList& list,
     part.points(lines);
   }
   for (const FindingTable& table : list.tables) {
-    part.subheading(table.title);
-    add_table(part, table, false);
+    if (!table.folded && !table.title.empty()) {
+      part.subheading(table.title);
+    }
+    add_table(part, table, table.folded);
   }
   part.blocks.insert(part.blocks.end(), list.blocks.begin(), list.blocks.end());
   for (const Figure& figure : list.figures) {

@@ -58,6 +58,10 @@ struct Finding {
   std::string json{};  // text of a list or an object that JSON alone shows in place of the value
 };
 
+/// A finding whose value alone stands in JSON.
+Finding plain_finding(std::string name, std::string title, FindingValue value,
+                      std::string unit = {});
+
 /// Findings that belong together, as those of a participant under a condition.
 using FindingRow = std::vector<Finding>;
 
@@ -68,6 +72,7 @@ struct FindingTable {
   std::string title;
   std::vector<FindingRow> rows{};
   bool in_lines{false};  // the terminal, too, has every row in words, not their number alone
+  bool folded{false};    // in the report, under its title
 };
 
 /// Findings under a heading: a line each, then tables, blocks and figures.

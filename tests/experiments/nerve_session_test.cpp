@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
 #include <string>
@@ -215,6 +216,13 @@ TEST_F(NerveSessionTest, AReportIsMadeAndMarkedAsSimulated) {
   const std::string text = test::read_text(report);
   EXPECT_THAT(text, AllOf(HasSubstr("Nerve monitor (simulated)"), HasSubstr("drawn nerve"),
                           HasSubstr("SIMULATED"), HasSubstr("false alarms")));
+  const auto json =
+      nlohmann::json::parse(test::read_text(report.parent_path() / "statistics.json"));
+  const auto& monitor = json["nerve_monitor"];
+  EXPECT_EQ(monitor["events"][1]["nerve"], "drawn nerve");
+  EXPECT_GT(monitor["events"][1]["bursts"].get<int>() + monitor["events"][1]["trains"].get<int>(),
+            0);
+  EXPECT_FALSE(monitor["first_events"].empty());
   EXPECT_THAT(test::read_text(report.parent_path() / "nerves.csv"),
               HasSubstr("S01.h5,S01,participants,1,1,monitor on,"));
 }

@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/field_row.h"
@@ -119,7 +120,11 @@ TEST_F(TwoHandsTest, TheReportTellsHeatAndBlood) {
                                     field[0].harmful_time)));
   const std::string report = test::read_text(study / "report.md");
   EXPECT_THAT(report, HasSubstr("Heat and blood (simulated)"));
-  EXPECT_THAT(report, HasSubstr(fmt::format("| 1 | {:.1f} |", field[0].hottest)));
+  EXPECT_THAT(report, HasSubstr(fmt::format("| 1 | {:#.4g} |", field[0].hottest)));
+  const auto json = nlohmann::json::parse(test::read_text(study / "statistics.json"));
+  const auto& row = json["heat_and_blood"]["procedures"][0];
+  EXPECT_EQ(row["session"], "S01.h5");
+  EXPECT_DOUBLE_EQ(row["hottest_degC"], field[0].hottest);
 }
 
 TEST_F(TwoHandsTest, AReplayFeelsTheSameInBothHands) {

@@ -6,8 +6,6 @@
 #include <map>
 #include <set>
 
-#include "core/base/counted.h"
-
 namespace haptrial::analysis::drilling {
 namespace {
 
@@ -34,8 +32,8 @@ std::set<std::string> raters_of(const CheckedStudy& study) {
   return raters;
 }
 
-std::string percent(const std::optional<double>& share) {
-  return share ? fmt::format("{:.0f} %", 100.0 * *share) : "–";
+FindingValue percent(const std::optional<double>& share) {
+  return share ? FindingValue(100.0 * *share) : FindingValue();
 }
 
 /// Share of points that are those that the measure proposed.
@@ -50,17 +48,17 @@ std::optional<double> as_measured(const CheckedStudy& study, std::size_t item) {
   return all > 0.0 ? std::optional(same / all) : std::nullopt;
 }
 
-std::string mean_points(const CheckedStudy& study, std::size_t item) {
+double mean_points(const CheckedStudy& study, std::size_t item) {
   double sum = 0.0;
   for (const CheckedRow& row : study.rows) {
     sum += row.points[item];
   }
-  return fmt::format("{:.2f}", sum / static_cast<double>(study.rows.size()));
+  return sum / static_cast<double>(study.rows.size());
 }
 
 /// Mean over a group's procedures of the raters' mean total.
-std::string mean_total(const CheckedStudy& study, const ByProcedure& all,
-                       const std::vector<ProcedureSummary>& procedures, const std::string& group) {
+FindingRow total_row(const CheckedStudy& study, const ByProcedure& all,
+                     const std::vector<ProcedureSummary>& procedures, const std::string& group) {
   double sum = 0.0;
   int count = 0;
   for (const ProcedureSummary& p : procedures) {
@@ -75,7 +73,36 @@ std::string mean_total(const CheckedStudy& study, const ByProcedure& all,
     sum += total / static_cast<double>(own->second.size());
     ++count;
   }
-  return count > 0 ? fmt::format("{:.1f} ({})", sum / count, count) : "–";
+  return {plain_finding("group", "group", group),
+          plain_finding("mean_total", "mean total", count > 0 ? sum / count : FindingValue(), "%"),
+          plain_finding("procedures", "procedures", count)};
+}
+
+FindingRow item_row(const CheckedStudy& study, std::size_t n) {
+  const ChecklistItem& item = study.checklist.items[n];
+  return {
+      plain_finding("item", "item", item.text),
+      plain_finding("weight", "weight", item.weight),
+      plain_finding("of", "of", item.points),
+      plain_finding("mean_points", "mean points", mean_points(study, n)),
+      plain_finding("same_points", "pairs of raters with the same points",
+                    percent(same_points(study, n)), "%"),
+      plain_finding("as_measured", "as its measure proposed", percent(as_measured(study, n)), "%")};
+}
+
+Finding agreement_finding(const Defined<Intraclass>& agreement) {
+  Finding finding{.name = "icc_2_1",
+                  .title = "Agreement of one rater with another in the total, ICC(2,1)",
+                  .form = JsonForm::kEstimate};
+  if (agreement && agreement->random_raters) {
+    finding.value = agreement->random_raters->value;
+    finding.low = agreement->random_raters->low;
+    finding.high = agreement->random_raters->high;
+    finding.n = agreement->targets;
+  } else {
+    finding.why_not = agreement ? agreement->random_raters.because() : agreement.because();
+  }
+  return finding;
 }
 
 }  // namespace
@@ -113,46 +140,32 @@ std::optional<double> same_points(const CheckedStudy& study, std::size_t item) {
   return pairs > 0.0 ? std::optional(same / pairs) : std::nullopt;
 }
 
-void add_checklist_section(Document& document, const CheckedStudy& study,
-                           const std::vector<ProcedureSummary>& procedures,
-                           const std::vector<std::string>& groups, bool simulated) {
+FindingList checklist_findings(const CheckedStudy& study,
+                               const std::vector<ProcedureSummary>& procedures,
+                               const std::vector<std::string>& groups) {
+  FindingList list{.name = "checklist", .heading = "Checklist: " + study.checklist.name};
   if (study.rows.empty()) {
-    return;
+    return list;
   }
-  const std::string title = "Checklist: " + study.checklist.name;
-  document.heading(simulated ? title + " (simulated)" : title);
   const ByProcedure all = by_procedure(study);
-  document.paragraph(fmt::format(
-      "{} filled it in for {} without knowing whose they were. The total is the weighted share of "
-      "all points.",
-      counted(raters_of(study).size(), "rater", "raters"),
-      counted(all.size(), "procedure", "procedures")));
-  std::vector<std::string> totals{"mean total [%] (procedures)"};
-  std::vector<std::string> heading{""};
+  list.findings = {plain_finding("raters", "raters", raters_of(study).size()),
+                   plain_finding("procedures", "procedures", all.size()),
+                   agreement_finding(checklist_agreement(study))};
+  FindingTable totals{"groups", ""};
   for (const std::string& group : groups) {
-    heading.push_back(group);
-    totals.push_back(mean_total(study, all, procedures, group));
+    totals.rows.push_back(total_row(study, all, procedures, group));
   }
-  document.table(heading, {totals});
-  std::vector<std::vector<std::string>> rows;
+  FindingTable items{"items", ""};
   for (std::size_t n = 0; n < study.checklist.items.size(); ++n) {
-    const ChecklistItem& item = study.checklist.items[n];
-    rows.push_back({item.text, fmt::format("{:g}", item.weight), std::to_string(item.points),
-                    mean_points(study, n), percent(same_points(study, n)),
-                    percent(as_measured(study, n))});
+    items.rows.push_back(item_row(study, n));
   }
-  document.table({"item", "weight", "of", "mean points", "pairs of raters with the same points",
-                  "as its measure proposed"},
-                 rows);
-  const Defined<Intraclass> agreement = checklist_agreement(study);
-  document.paragraph(
-      agreement && agreement->random_raters
-          ? fmt::format("Agreement of one rater with another in the total: ICC(2,1) = {:.2f} over "
-                        "{} procedures. Raters saw what the measures proposed, which brings them "
-                        "together.",
-                        agreement->random_raters->value, agreement->targets)
-          : fmt::format("The intraclass correlation of the totals is not defined: {}.",
-                        agreement ? agreement->random_raters.because() : agreement.because()));
+  list.tables = {totals, items};
+  Document words;
+  words.paragraph(
+      "Raters filled it in without knowing whose procedures they were. The total is the weighted "
+      "share of all points. They saw what the measures proposed, which brings them together.");
+  list.blocks = words.blocks;
+  return list;
 }
 
 }  // namespace haptrial::analysis::drilling

@@ -15,8 +15,6 @@
 namespace haptrial::analysis::drilling {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
 /// Sum over the procedures of one condition.
 struct CrossingSum {
   int procedures{0};
@@ -121,33 +119,34 @@ std::string crossings_csv(std::span<const CrossingProcedure> procedures) {
   return text;
 }
 
-void add_crossing_section(Document& document, std::span<const CrossingProcedure> procedures,
-                          bool simulated) {
+FindingList crossing_findings(std::span<const CrossingProcedure> procedures) {
+  FindingList list{.name = "forbidden_regions", .heading = "Forbidden regions"};
   if (procedures.empty()) {
-    return;
+    return list;
   }
-  document.heading(simulated ? "Forbidden regions (simulated)" : "Forbidden regions");
-  document.paragraph(
-      "A crossing begins where a burr, turning or not, comes nearer to a structure than its "
-      "margin, "
-      "and ends where it has left. Crossings are recorded whether the participant felt or heard "
-      "the "
-      "regions or not.");
-  Rows rows;
+  FindingTable& table = list.tables.emplace_back("conditions", "");
   for (const auto& [condition, sum] : sums_of(procedures)) {
-    rows.push_back({condition, std::to_string(sum.procedures), fmt::format("{:.1f}", sum.minutes),
-                    std::to_string(sum.count),
-                    sum.minutes > 0.0 ? fmt::format("{:.2f}", sum.count / sum.minutes) : "–",
-                    fmt::format("{:.1f}", sum.time), fmt::format("{:.2f}", 1e3 * sum.deepest)});
+    table.rows.push_back(
+        {plain_finding("condition", "condition", condition),
+         plain_finding("procedures", "procedures", sum.procedures),
+         plain_finding("drilling_min", "drilling", sum.minutes, "min"),
+         plain_finding("crossings", "crossings", sum.count),
+         plain_finding("crossings_per_minute", "crossings a minute of drilling",
+                       sum.minutes > 0.0 ? sum.count / sum.minutes : FindingValue(), "1/min"),
+         plain_finding("time_s", "time in regions", sum.time, "s"),
+         plain_finding("deepest_mm", "deepest", 1e3 * sum.deepest, "mm")});
   }
-  document.table({"condition", "procedures", "drilling [min]", "crossings",
-                  "crossings a minute of drilling", "time in regions [s]", "deepest [mm]"},
-                 rows);
   if (const std::vector<GivenValue> rates = rates_of(procedures); has_both(rates)) {
-    document.table({"with regions less without, participants' means", "result"},
-                   {{"crossings a minute of drilling (1/min)",
-                     difference_word(with_less_without(rates), "1/min")}});
+    list.findings = difference_findings("crossings_per_minute", "crossings a minute of drilling",
+                                        "1/min", with_less_without(rates));
   }
+  Document words;
+  words.paragraph(
+      "A crossing begins where a burr, turning or not, comes nearer to a structure than its "
+      "margin, and ends where it has left. Crossings are recorded whether the participant felt or "
+      "heard the regions or not. Differences are of participants' means.");
+  list.blocks = words.blocks;
+  return list;
 }
 
 std::vector<std::string> crossing_lines(std::span<const CrossingProcedure> procedures) {

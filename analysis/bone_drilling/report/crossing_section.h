@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/report/with_without.h"
-#include "analysis/document/document.h"
+#include "analysis/document/finding.h"
 
 namespace haptrial::record {
 class SessionReader;
@@ -37,9 +37,8 @@ std::vector<CrossingProcedure> load_crossings(const record::SessionReader& file,
 std::string crossings_csv(std::span<const CrossingProcedure> procedures);
 
 /// Crossings by condition, and what the regions changed, participants being their own controls.
-/// Nothing where no region is forbidden. @param simulated  the participants are programs
-void add_crossing_section(Document& document, std::span<const CrossingProcedure> procedures,
-                          bool simulated);
+/// Without values where no region is forbidden.
+FindingList crossing_findings(std::span<const CrossingProcedure> procedures);
 
 /// Lines for the end of the command, without "Simulated".
 std::vector<std::string> crossing_lines(std::span<const CrossingProcedure> procedures);

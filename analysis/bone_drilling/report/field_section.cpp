@@ -19,29 +19,37 @@ bool has_field(std::span<const ProcedureSummary> procedures) {
                      [](const ProcedureSummary& p) { return p.field.has_value(); });
 }
 
-void add_field_section(Document& document, std::span<const ProcedureSummary> procedures,
-                       bool simulated) {
+FindingList field_findings(std::span<const ProcedureSummary> procedures) {
+  FindingList list{.name = "heat_and_blood", .heading = "Heat and blood"};
   if (!has_field(procedures)) {
-    return;
+    return list;
   }
-  document.heading(simulated ? "Heat and blood (simulated)" : "Heat and blood");
-  document.paragraph(
-      "Both are a model to train with. Whoever drills, the temperatures say who pressed long and "
-      "rinsed late, and predict nothing about a patient; groups are not compared.");
-  std::vector<std::vector<std::string>> rows;
+  FindingTable& table = list.tables.emplace_back("procedures", "");
   for (const ProcedureSummary& p : procedures) {
     if (p.field) {
       const record::FieldRow& field = *p.field;
-      rows.push_back({p.participant, p.group, std::to_string(p.number),
-                      warms(field) ? fmt::format("{:.1f}", field.hottest) : "–",
-                      warms(field) ? fmt::format("{:.1f}", field.harmful_time) : "–",
-                      fmt::format("{:.2f}", kMillilitres * field.bled),
-                      fmt::format("{:.2f}", kMillilitres * field.blood_sucked)});
+      const auto of_heat = [&](double value) {
+        return warms(field) ? FindingValue(value) : FindingValue();
+      };
+      table.rows.push_back(
+          {plain_finding("session", "", p.session),
+           plain_finding("participant", "participant", p.participant),
+           plain_finding("group", "group", p.group),
+           plain_finding("procedure", "procedure", p.number),
+           plain_finding("hottest_degC", "hottest at the burr", of_heat(field.hottest), "°C"),
+           plain_finding("harmful_time_s", "above the harmful temperature",
+                         of_heat(field.harmful_time), "s"),
+           plain_finding("bled_ml", "blood lost", kMillilitres * field.bled, "ml"),
+           plain_finding("blood_sucked_ml", "sucked away", kMillilitres * field.blood_sucked,
+                         "ml")});
     }
   }
-  document.table({"participant", "group", "procedure", "hottest at the burr [°C]",
-                  "above the harmful temperature [s]", "blood lost [ml]", "sucked away [ml]"},
-                 rows);
+  Document words;
+  words.paragraph(
+      "Both are a model to train with. Whoever drills, the temperatures say who pressed long and "
+      "rinsed late, and predict nothing about a patient; groups are not compared.");
+  list.blocks = words.blocks;
+  return list;
 }
 
 std::string field_csv(std::span<const ProcedureSummary> procedures) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -11,7 +12,6 @@
 namespace haptrial::analysis::drilling {
 namespace {
 
-using Row = std::vector<std::string>;
 using Some = std::vector<const NerveProcedure*>;
 
 constexpr double kLittle = 0.5;  // train time, below which palsy is rare (Prell et al. 2007) [s]
@@ -32,7 +32,8 @@ std::vector<std::pair<std::string, Some>> by_condition(
   return groups;
 }
 
-Row counts_row(const std::string& condition, const std::string& nerve, const Some& procedures) {
+FindingRow counts_row(const std::string& condition, const std::string& nerve,
+                      const Some& procedures) {
   NerveCounts sum;
   double minutes = 0.0;
   for (const NerveProcedure* p : procedures) {
@@ -46,15 +47,16 @@ Row counts_row(const std::string& condition, const std::string& nerve, const Som
       }
     }
   }
-  return {condition,
-          nerve,
-          std::to_string(procedures.size()),
-          fmt::format("{:.1f}", minutes),
-          std::to_string(sum.bursts),
-          std::to_string(sum.trains),
-          std::to_string(sum.responses),
-          fmt::format("{:.1f}", sum.train_time),
-          minutes > 0.0 ? fmt::format("{:.2f}", sum.events() / minutes) : "–"};
+  return {plain_finding("condition", "condition", condition),
+          plain_finding("nerve", "nerve", nerve),
+          plain_finding("procedures", "procedures", procedures.size()),
+          plain_finding("drilling_min", "drilling", minutes, "min"),
+          plain_finding("bursts", "bursts", sum.bursts),
+          plain_finding("trains", "trains", sum.trains),
+          plain_finding("responses", "responses", sum.responses),
+          plain_finding("train_time_s", "train time", sum.train_time, "s"),
+          plain_finding("events_per_minute", "events a minute of drilling",
+                        minutes > 0.0 ? sum.events() / minutes : FindingValue(), "1/min")};
 }
 
 std::vector<double> reactions_of(const Some& procedures) {
@@ -70,35 +72,42 @@ std::vector<double> reactions_of(const Some& procedures) {
   return times;
 }
 
-std::string quantile(const std::vector<double>& sorted, double share) {
+std::optional<double> quantile(const std::vector<double>& sorted, double share) {
   if (sorted.empty()) {
-    return "–";
+    return std::nullopt;
   }
   const auto last = static_cast<double>(sorted.size() - 1);
-  return fmt::format("{:.2f}", sorted[static_cast<std::size_t>(share * last + 0.5)]);
+  return sorted[static_cast<std::size_t>(share * last + 0.5)];
 }
 
-Row reaction_row(const std::string& condition, const Some& procedures) {
+FindingRow reaction_row(const std::string& condition, const Some& procedures) {
   const std::vector<double> times = reactions_of(procedures);
   std::size_t open = 0;
   for (const NerveProcedure* p : procedures) {
     open += p->reactions.size();
   }
-  return {condition,
-          std::to_string(times.size()),
-          std::to_string(open - times.size()),
-          quantile(times, 0.5),
-          quantile(times, 0.25),
-          quantile(times, 0.75)};
+  const auto at = [&](double share) {
+    const auto value = quantile(times, share);
+    return value ? FindingValue(*value) : FindingValue();
+  };
+  return {plain_finding("condition", "condition", condition),
+          plain_finding("reactions", "reactions", times.size()),
+          plain_finding("without_lift_off", "without a lift-off", open - times.size()),
+          plain_finding("median_s", "median reaction time", at(0.5), "s"),
+          plain_finding("first_quartile_s", "first quartile", at(0.25), "s"),
+          plain_finding("third_quartile_s", "third quartile", at(0.75), "s")};
 }
 
-Row train_row(const std::string& condition, const Some& procedures) {
+FindingRow train_row(const std::string& condition, const Some& procedures) {
   const auto count = [&](double low, double high) {
-    return std::to_string(std::count_if(procedures.begin(), procedures.end(), [&](const auto* p) {
+    return std::count_if(procedures.begin(), procedures.end(), [&](const auto* p) {
       return p->train_time() >= low && p->train_time() < high;
-    }));
+    });
   };
-  return {condition, count(0.0, kLittle), count(kLittle, kMuch), count(kMuch, 1e9)};
+  return {plain_finding("condition", "condition", condition),
+          plain_finding("below_0.5_s", "procedures below 0.5 s of train time", count(0.0, kLittle)),
+          plain_finding("0.5_to_10_s", "0.5 s to 10 s", count(kLittle, kMuch)),
+          plain_finding("10_s_and_more", "10 s and more", count(kMuch, 1e9))};
 }
 
 std::optional<double> reaction_value(const NerveProcedure& p) { return p.reaction(); }
@@ -116,9 +125,13 @@ std::vector<GivenValue> values_of(const std::vector<NerveProcedure>& procedures,
   return values;
 }
 
-std::string on_off_word(const std::vector<NerveProcedure>& procedures,
-                        std::optional<double> (*value)(const NerveProcedure&), const char* unit) {
-  return difference_word(with_less_without(values_of(procedures, value)), unit);
+void add_on_off(FindingRow& findings, const char* name, const char* title, const char* unit,
+                const std::vector<NerveProcedure>& procedures,
+                std::optional<double> (*value)(const NerveProcedure&)) {
+  const WithWithout difference = with_less_without(values_of(procedures, value));
+  std::ranges::move(
+      difference_findings(std::string("with_less_without/") + name, title, unit, difference),
+      std::back_inserter(findings));
 }
 
 NerveDetection all_detection(const std::vector<NerveProcedure>& procedures) {
@@ -129,75 +142,84 @@ NerveDetection all_detection(const std::vector<NerveProcedure>& procedures) {
   return sum;
 }
 
-std::string part_of(int part, int of) {
-  return of > 0 ? fmt::format("{} of {} ({:.1f} %)", part, of, 100.0 * part / of) : "none planted";
+FindingRow part_row(const char* what, int part, int of) {
+  return {plain_finding("what", "the monitor against what was put into the electromyograms", what),
+          plain_finding("found", "found", part), plain_finding("of", "of", of),
+          plain_finding("share", "share", of > 0 ? 100.0 * part / of : FindingValue(), "%")};
 }
 
-Row result_row(const char* what, const std::string& result) { return {what, result}; }
+void add_detection(FindingList& list, const NerveDetection& d) {
+  list.tables.push_back(
+      {"detection",
+       "",
+       {part_row("discharges", d.found, d.planted),
+        part_row("of those with a peak above the threshold", d.above_found, d.above),
+        part_row("artefacts taken for events", d.artefacts_passed, d.artefacts)}});
+  list.tables.push_back(
+      {"alarms",
+       "",
+       {{plain_finding("false_alarms", "false alarms", d.false_alarms),
+         plain_finding("hours", "in", d.hours, "h"),
+         plain_finding("false_alarms_per_hour", "false alarms an hour",
+                       d.hours > 0.0 ? d.false_alarms / d.hours : FindingValue(), "1/h"),
+         plain_finding("train_time_counted_s", "train time counted", d.found_train, "s"),
+         plain_finding("train_time_planted_s", "planted", d.planted_train, "s")}}});
+}
 
-void add_detection(Document& document, const NerveDetection& d) {
-  document.table(
-      {"the monitor against what was put into the electromyograms", "result"},
-      {result_row("discharges found", part_of(d.found, d.planted)),
-       result_row("of those with a peak above the threshold", part_of(d.above_found, d.above)),
-       result_row("false alarms",
-                  fmt::format("{} in {:.2f} h, {:.1f} an hour", d.false_alarms, d.hours,
-                              d.hours > 0.0 ? d.false_alarms / d.hours : 0.0)),
-       result_row("artefacts taken for events", part_of(d.artefacts_passed, d.artefacts)),
-       result_row("train time", fmt::format("{:.2f} s counted, {:.2f} s planted", d.found_train,
-                                            d.planted_train))});
+FindingTable timeline_of(const std::vector<NerveProcedure>& procedures) {
+  FindingTable table{
+      .name = "first_events", .title = "First events of stretches of drilling", .folded = true};
+  for (const NerveProcedure& p : procedures) {
+    for (const NerveReaction& reaction : p.reactions) {
+      table.rows.push_back(
+          {plain_finding("participant", "participant", p.participant),
+           plain_finding("procedure", "procedure", p.number),
+           plain_finding("condition", "condition", p.condition),
+           plain_finding("begin_s", "first event at", reaction.begin, "s"),
+           plain_finding("lift_off_s", "lift-off after",
+                         reaction.lift_off ? FindingValue(*reaction.lift_off) : FindingValue(),
+                         "s")});
+    }
+  }
+  return table;
 }
 
 }  // namespace
 
-void add_nerve_section(Document& document, const std::vector<NerveProcedure>& procedures,
-                       bool simulated) {
+FindingList nerve_findings(const std::vector<NerveProcedure>& procedures) {
+  FindingList list{.name = "nerve_monitor", .heading = "Nerve monitor"};
   if (procedures.empty()) {
-    return;
+    return list;
   }
-  document.heading(simulated ? "Nerve monitor (simulated)" : "Nerve monitor");
-  document.paragraph(
+  FindingTable counts{"events", ""}, reactions{"reactions", ""}, trains{"train_times", ""};
+  for (const auto& [condition, some] : by_condition(procedures)) {
+    for (const NerveCounts& nerve : some.front()->nerves) {
+      counts.rows.push_back(counts_row(condition, nerve.nerve, some));
+    }
+    reactions.rows.push_back(reaction_row(condition, some));
+    trains.rows.push_back(train_row(condition, some));
+  }
+  list.tables = {counts, reactions, trains, timeline_of(procedures)};
+  add_detection(list, all_detection(procedures));
+  Document words;
+  words.paragraph(
       "Nerves, electromyograms and monitor are a model to train with; whoever drills, these are "
       "simulated, and nothing here is a clinical claim. An event is a burst or a train that the "
       "monitor found; its reaction time runs from the first event of a stretch of drilling to the "
       "lift-off that ends it.");
-  std::vector<Row> counts, reactions, trains;
-  for (const auto& [condition, some] : by_condition(procedures)) {
-    for (const NerveCounts& nerve : some.front()->nerves) {
-      counts.push_back(counts_row(condition, nerve.nerve, some));
-    }
-    reactions.push_back(reaction_row(condition, some));
-    trains.push_back(train_row(condition, some));
-  }
-  document.table({"condition", "nerve", "procedures", "drilling [min]", "bursts", "trains",
-                  "responses", "train time [s]", "events a minute of drilling"},
-                 counts);
-  document.table({"condition", "reactions", "without a lift-off", "median reaction time [s]",
-                  "first quartile", "third quartile"},
-                 reactions);
-  document.table(
-      {"condition", "procedures below 0.5 s of train time", "0.5 s to 10 s", "10 s and more"},
-      trains);
   if (has_both(values_of(procedures, rate_value))) {
-    document.table(
-        {"monitor on less monitor off, participants' means", "result"},
-        {result_row("events a minute of drilling", on_off_word(procedures, rate_value, "1/min")),
-         result_row("train time of a procedure", on_off_word(procedures, train_value, "s")),
-         result_row("median reaction time", on_off_word(procedures, reaction_value, "s"))});
-    document.paragraph("The three results are not adjusted for each other.");
+    add_on_off(list.findings, "events_per_minute", "events a minute of drilling", "1/min",
+               procedures, rate_value);
+    add_on_off(list.findings, "train_time", "train time of a procedure", "s", procedures,
+               train_value);
+    add_on_off(list.findings, "reaction_time", "median reaction time", "s", procedures,
+               reaction_value);
+    words.paragraph(
+        "Monitor on less monitor off, by participants' means: the three results are not adjusted "
+        "for each other.");
   }
-  std::vector<Row> timeline;
-  for (const NerveProcedure& p : procedures) {
-    for (const NerveReaction& reaction : p.reactions) {
-      timeline.push_back({p.participant, std::to_string(p.number), p.condition,
-                          fmt::format("{:.2f}", reaction.begin),
-                          reaction.lift_off ? fmt::format("{:.2f}", *reaction.lift_off) : "–"});
-    }
-  }
-  document.table(
-      {"participant", "procedure", "condition", "first event at [s]", "lift-off after [s]"},
-      timeline, "First events of stretches of drilling");
-  add_detection(document, all_detection(procedures));
+  list.blocks = words.blocks;
+  return list;
 }
 
 std::vector<std::string> nerve_lines(const std::vector<NerveProcedure>& procedures) {
@@ -209,10 +231,11 @@ std::vector<std::string> nerve_lines(const std::vector<NerveProcedure>& procedur
       events += p->events();
       trains += p->train_time();
     }
-    lines.push_back(
-        fmt::format("{}: {} nerve events in {} procedures, train time {:.1f} s, median "
-                    "reaction {} s",
-                    condition, events, some.size(), trains, quantile(reactions_of(some), 0.5)));
+    const std::optional<double> median = quantile(reactions_of(some), 0.5);
+    lines.push_back(fmt::format(
+        "{}: {} nerve events in {} procedures, train time {:.1f} s, median "
+        "reaction {} s",
+        condition, events, some.size(), trains, median ? fmt::format("{:.2f}", *median) : "–"));
   }
   return lines;
 }

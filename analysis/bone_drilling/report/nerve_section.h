@@ -4,15 +4,13 @@
 #include <vector>
 
 #include "analysis/bone_drilling/report/nerve_findings.h"
-#include "analysis/document/document.h"
+#include "analysis/document/finding.h"
 
 namespace haptrial::analysis::drilling {
 
-/// Adds the findings of monitors to a report: events by nerve and condition, train time, reactions,
-/// and how well the monitor itself did. Nothing where nothing was watched.
-/// @param simulated  the participants are programs
-void add_nerve_section(Document& document, const std::vector<NerveProcedure>& procedures,
-                       bool simulated);
+/// What monitors found: events by nerve and condition, train time, reactions, and how well the
+/// monitor itself did. Without values where nothing was watched.
+FindingList nerve_findings(const std::vector<NerveProcedure>& procedures);
 
 /// Lines for the end of the command, without "Simulated".
 std::vector<std::string> nerve_lines(const std::vector<NerveProcedure>& procedures);

@@ -4,17 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <utility>
 
 #include "analysis/bone_drilling/phases/phase_labels.h"
 #include "analysis/bone_drilling/report/validity_table.h"
-#include "analysis/bone_drilling/report/validity_words.h"
-#include "analysis/statistics/design/interval_word.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
-
-using Rows = std::vector<std::vector<std::string>>;
 
 std::vector<std::string> all_phases(const ValidityResult& result) {
   std::vector<std::vector<PhaseSpan>> all;
@@ -26,43 +24,51 @@ std::vector<std::string> all_phases(const ValidityResult& result) {
   return phases_in_order(all);
 }
 
-/// One row: means of each group in a quantity of every divided procedure.
+/// A row for each group: its mean in a quantity of every divided procedure.
 template <class Value>
-std::vector<std::string> phase_row(const ValidityResult& result, const std::string& title,
-                                   const Value& value) {
+void add_rows(FindingTable& rows, const ValidityResult& result, const Finding& label,
+              const std::string& unit, const Value& value) {
   ValueTable table = table_of(result.validity, result.procedures);
   for (std::size_t i = 0; i < result.procedures.size(); ++i) {
     if (!result.procedures[i].phases.empty()) {
       table.rows[i].value = value(result.procedures[i].phases);
     }
   }
-  std::vector<std::string> row{title};
-  const auto means = group_values(table, result.validity.plan);
-  for (std::size_t g = 0; g < result.validity.plan.groups.size(); ++g) {
-    row.push_back(interval_word(means[g].participant_means));
+  for (const GroupValues& group : group_values(table, result.validity.plan)) {
+    Finding mean{.name = "mean",
+                 .title = "mean of participants' means",
+                 .unit = unit,
+                 .form = JsonForm::kEstimate};
+    if (group.participant_means) {
+      mean.value = group.participant_means->mean;
+      mean.low = group.participant_means->low;
+      mean.high = group.participant_means->high;
+    } else {
+      mean.why_not = group.participant_means.because();
+    }
+    rows.rows.push_back({label, plain_finding("group", "group", group.group), mean});
   }
-  return row;
 }
 
 /// The order in which phases began first, by how many procedures had it, the most frequent first.
-Rows orders_of(const ValidityResult& result) {
+std::vector<FindingRow> orders_of(const ValidityResult& result) {
   std::map<std::string, int> counts;
   for (const ProcedureSummary& p : result.procedures) {
     std::vector<std::string> names;
     for (const PhaseTime& each : phase_times(p.phases)) {
       names.push_back(each.phase);
     }
-    counts[fmt::format("{}", fmt::join(names, ", "))] += names.empty() ? 0 : 1;
-  }
-  Rows rows;
-  for (const auto& [order, count] : counts) {
-    if (count > 0) {
-      rows.push_back({order, std::to_string(count)});
+    if (!names.empty()) {
+      ++counts[fmt::format("{}", fmt::join(names, ", "))];
     }
   }
-  std::stable_sort(rows.begin(), rows.end(), [&](const auto& a, const auto& b) {
-    return counts[a.front()] > counts[b.front()];
-  });
+  std::vector<std::pair<std::string, int>> sorted(counts.begin(), counts.end());
+  std::ranges::stable_sort(sorted, std::greater(), &std::pair<std::string, int>::second);
+  std::vector<FindingRow> rows;
+  for (const auto& [order, count] : sorted) {
+    rows.push_back({plain_finding("order", "order in which phases began first", order),
+                    plain_finding("procedures", "procedures", count)});
+  }
   return rows;
 }
 
@@ -73,30 +79,30 @@ bool is_divided(const ValidityResult& result) {
                      [](const ProcedureSummary& p) { return !p.phases.empty(); });
 }
 
-void add_phase_section(Document& document, const ValidityResult& result) {
+FindingList phase_findings(const ValidityResult& result) {
+  FindingList list{.name = "phases", .heading = "Phases"};
   if (!is_divided(result)) {
-    return;
+    return list;
   }
-  std::vector<std::string> heading{"mean of participants' means [95 % CI]"};
-  heading.insert(heading.end(), result.validity.plan.groups.begin(),
-                 result.validity.plan.groups.end());
-  Rows rows;
+  FindingTable times{"times", ""};
   for (const std::string& phase : all_phases(result)) {
-    rows.push_back(
-        phase_row(result, phase + ", time [s]",
-                  [&](const std::vector<PhaseSpan>& spans) { return time_in(spans, phase); }));
+    add_rows(times, result, plain_finding("phase", "phase", phase), "s",
+             [&](const std::vector<PhaseSpan>& spans) { return time_in(spans, phase); });
   }
-  rows.push_back(phase_row(result, "changes of the phase", [](const std::vector<PhaseSpan>& spans) {
-    return static_cast<double>(phase_changes(spans));
-  }));
-  document.heading(result.validity.simulated ? "Phases (simulated)" : "Phases");
-  document.paragraph(
+  FindingTable changes{"changes", ""};
+  add_rows(changes, result, plain_finding("quantity", "quantity", "changes of the phase"), "",
+           [](const std::vector<PhaseSpan>& spans) {
+             return static_cast<double>(phase_changes(spans));
+           });
+  list.tables = {times, changes, {"orders", "", orders_of(result)}};
+  Document words;
+  words.paragraph(
       "A hidden Markov model (phases.json of the study) recognised them from the strokes: tool, "
       "depth, nearest structure, force, speed and view. It errs, by as much as haptrial bone "
       "phases said when it was learned. If it was learned from these same procedures it fits them "
       "better than others. Groups are not compared here.");
-  document.table(heading, rows);
-  document.table({"order in which phases began first", "procedures"}, orders_of(result));
+  list.blocks = words.blocks;
+  return list;
 }
 
 std::string phases_csv(std::span<const ProcedureSummary> procedures) {

@@ -2,6 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/bone_drilling/report/checklist_section.h"
+#include "analysis/bone_drilling/report/crossing_section.h"
+#include "analysis/bone_drilling/report/field_section.h"
+#include "analysis/bone_drilling/report/nerve_section.h"
+#include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/learning/learning_json_internal.h"
 #include "analysis/statistics/design/result_json_internal.h"
@@ -274,6 +279,11 @@ std::string validity_json(const ValidityResult& result, const std::vector<Findin
   if (!result.hints.empty()) {
     root["hints"] = hints_of(result);
   }
+  const Json sections = json_of(std::vector<FindingList>{
+      nerve_findings(result.nerves), crossing_findings(result.crossings), phase_findings(result),
+      checklist_findings(result.checked, result.procedures, result.validity.plan.groups),
+      field_findings(result.procedures)});
+  root.update(sections);
   if (Json values = json_of(own); !values.empty()) {
     root["own_findings"] = std::move(values);
   }

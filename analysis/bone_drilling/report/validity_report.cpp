@@ -42,16 +42,15 @@ class Report {
     document_.points(summary_lines(result_));
     add_design();
     add_learning_section(document_, result_.learned, drawings_, v_.simulated);
-    add_nerve_section(document_, result_.nerves, v_.simulated);
+    add(nerve_findings(result_.nerves));
     add_hint_section(document_, result_.hints, result_.hint_effects, v_.simulated);
-    add_crossing_section(document_, result_.crossings, v_.simulated);
+    add(crossing_findings(result_.crossings));
     add_achieved_section(document_, result_);
-    add_phase_section(document_, result_);
+    add(phase_findings(result_));
     if (compares_experts() || v_.rated > 0) {
       add_ratings();
     }
-    add_checklist_section(document_, result_.checked, result_.procedures, v_.plan.groups,
-                          v_.simulated);
+    add(checklist_findings(result_.checked, result_.procedures, v_.plan.groups));
     if (compares_experts()) {
       add_metrics();
     }
@@ -62,7 +61,7 @@ class Report {
     }
     add_unknown();
     add_tears();
-    add_field_section(document_, result_.procedures, v_.simulated);
+    add(field_findings(result_.procedures));
     add_quality();
     if (compares_experts()) {
       add_published();
@@ -84,6 +83,12 @@ class Report {
   void add_simulation_alarm() {
     if (v_.simulated) {
       document_.alarm(kSimulatedValidity);
+    }
+  }
+  void add(FindingList list) {
+    if (list.has_values()) {
+      list.heading += v_.simulated ? " (simulated)" : "";
+      add_findings(document_, {list}, drawings_);
     }
   }
   void section(const std::string& text) {

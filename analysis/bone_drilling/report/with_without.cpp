@@ -54,6 +54,25 @@ WithWithout with_less_without(const std::vector<GivenValue>& values) {
   return {on.size(), paired_t_test(on, off, Tail::kTwoSided)};
 }
 
+FindingRow difference_findings(const std::string& name, const std::string& title,
+                               const std::string& unit, const WithWithout& c) {
+  Finding difference{.name = name + "/difference",
+                     .title = title + ", with less without",
+                     .unit = unit,
+                     .n = c.participants,
+                     .form = JsonForm::kEstimate};
+  Finding p = plain_finding(name + "/p", title + ": p of the paired t-test", {});
+  if (c.test) {
+    difference.value = c.test->difference;
+    difference.low = c.test->low;
+    difference.high = c.test->high;
+    p.value = c.test->p;
+  } else {
+    difference.why_not = p.why_not = c.test.because();
+  }
+  return {difference, p};
+}
+
 std::string difference_word(const WithWithout& c, const char* unit) {
   return c.test ? fmt::format("{:+.2f}{}{}, 95 % CI {:.2f} to {:.2f}, paired {} ({} participants)",
                               c.test->difference, *unit != '\0' ? " " : "", unit, c.test->low,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/document/finding.h"
 #include "analysis/statistics/tests/t_tests.h"
 
 namespace haptrial::analysis::drilling {
@@ -42,6 +43,10 @@ struct WithWithout {
   Defined<TTest> test{Undefined{""}};
 };
 WithWithout with_less_without(const std::vector<GivenValue>& values);
+
+/// The difference with its interval, and p. @param name  their place in JSON
+FindingRow difference_findings(const std::string& name, const std::string& title,
+                               const std::string& unit, const WithWithout& c);
 
 /// Words for difference, interval and test.
 std::string difference_word(const WithWithout& c, const char* unit);

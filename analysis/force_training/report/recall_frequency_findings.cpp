@@ -32,16 +32,7 @@ constexpr std::array<Shown, 3> kShown{
           &RecallBand::coherence}};
 
 Finding frequency_of(const RecallBand& band) {
-  Finding finding{"frequency", "frequency", band.frequency};
-  finding.unit = "Hz";
-  finding.form = JsonForm::kPlain;
-  return finding;
-}
-
-Finding plain(const char* name, const char* title, FindingValue value) {
-  Finding finding{name, title, std::move(value)};
-  finding.form = JsonForm::kPlain;
-  return finding;
+  return plain_finding("frequency", "frequency", band.frequency, "Hz");
 }
 
 Finding value_finding(const Shown& shown, const RecallAtFrequency& at) {
@@ -64,13 +55,13 @@ Finding value_finding(const Shown& shown, const RecallAtFrequency& at) {
 FindingRow frequency_row(const RecallBand& band, const RecallAtFrequency& at) {
   Finding label{"at", "", fmt::format("{:.4g} Hz", band.frequency)};
   label.form = JsonForm::kAbsent;
-  FindingRow row{label, frequency_of(band), plain("condition", "condition", at.condition),
-                 plain("participants", "participants", at.people)};
+  FindingRow row{label, frequency_of(band), plain_finding("condition", "condition", at.condition),
+                 plain_finding("participants", "participants", at.people)};
   for (const Shown& shown : kShown) {
     row.push_back(value_finding(shown, at));
   }
-  row.push_back(plain("chance_coherence", "coherence by chance",
-                      at.trials > 0.0 ? 1.0 / at.trials : Finding::kNone));
+  row.push_back(plain_finding("chance_coherence", "coherence by chance",
+                              at.trials > 0.0 ? 1.0 / at.trials : Finding::kNone));
   return row;
 }
 

@@ -140,9 +140,9 @@ TEST(ChecklistSectionTest, AgreementIsThatOfTheTotals) {
   EXPECT_EQ(same_points(study, 0), 0.75);
   EXPECT_EQ(same_points(study, 1), 0.75);
   Document document;
-  add_checklist_section(document, study, {}, {"surgeons"}, true);
+  add_findings(document, {checklist_findings(study, {}, {"surgeons"})}, {});
   const std::string text = to_markdown(document);
-  EXPECT_THAT(text, HasSubstr("Checklist: Mastoidectomy (simulated)"));
+  EXPECT_THAT(text, HasSubstr("Checklist: Mastoidectomy"));
   EXPECT_THAT(text, HasSubstr("ICC(2,1)"));
 }
 
