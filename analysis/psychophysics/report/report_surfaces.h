@@ -15,7 +15,8 @@ void add_surfaces(Document& document, const TrialsResult& result,
 /// The threshold over two variables with its band and what was presented: "surface-P01".
 std::vector<Figure> surface_figures(const TrialsResult& result);
 
-/// The threshold of every function: "surfaces.csv". NaN is empty.
+/// The threshold of every function: "surfaces.csv". NaN is empty; over three variables and four,
+/// `first` has the levels of all others.
 std::string surfaces_csv(const TrialsResult& result);
 
 /// The part "surfaces" of results.json.

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -64,6 +67,14 @@ std::string surfaces_csv(const TrialsResult& result) {
         row.add(point.low).add(point.high);
         row.end();
       }
+    }
+    for (const PlacedThreshold& each : one.placed) {
+      const std::vector<std::string> others(one.variables.begin() + 1, one.variables.end());
+      row.add(one.participant).add(one.track).add(one.condition).add(one.share);
+      row.add(fmt::format("{}", fmt::join(others, ", ")));
+      row.add(fmt::format("{}", fmt::join(each.others, ", ")));
+      row.add(one.variables[0]).add(each.median).add(each.low).add(each.high);
+      row.end();
     }
   }
   return text;

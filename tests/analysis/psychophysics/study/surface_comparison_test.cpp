@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "analysis/psychophysics/report/report_surfaces.h"
 #include "analysis/psychophysics/study/trials_study.h"
 #include "core/base/random.h"
 #include "core/psychometric/procedure/quest_plus.h"
@@ -247,6 +249,10 @@ TEST(SurfaceComparisonTest, MeansOverTwoOtherVariablesDifferAsThePeoplesPlanesDo
   const Hyperplane plane{.others = 2, .trials = 120, .shift = 0.25};
   const TrialsResult result = analyzed(plane, 1, surface_of(plane));
   ASSERT_EQ(result.surfaces.front().placed.size(), 9u);
+  const std::string table = surfaces_csv(result);
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(table, '\n')),
+            1 + 9 * result.surfaces.size());
+  EXPECT_NE(table.find(",\"b, c\",\"0, 0\",a,"), std::string::npos) << table.substr(0, 300);
   const TTest& test = test_of(result, "surface_threshold");
   EXPECT_NEAR(test.difference, 0.25, 4.0 * test.error);
   EXPECT_LT(test.error, 0.25 * 0.25);
