@@ -232,7 +232,9 @@ function(haptrial_layer_tests)
   # A protocol that only the tests and a page of the documents have.
   target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol/springs.cpp)
   target_include_directories(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/docs/worked/protocol)
-  target_sources(test_experiments PRIVATE ${CMAKE_SOURCE_DIR}/tests/support/boards/simulated_board.cpp)
+  target_sources(test_experiments PRIVATE
+                 ${CMAKE_SOURCE_DIR}/tests/support/boards/simulated_board.cpp
+                 ${CMAKE_SOURCE_DIR}/tests/analysis/exchange/small_session.cpp)
   add_dependencies(test_experiments stand_in_dhd stand_in_hd stand_in_lsl stand_in_espeak)
 endfunction()
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
@@ -28,11 +29,14 @@ struct Sorted {
   std::vector<fs::path> study;
   std::vector<fs::path> pilots;
   std::vector<fs::path> declined;
+  std::vector<std::string> copies;
 };
 
 Sorted sorted_files(const fs::path& folder) {
   Sorted sorted;
-  for (const fs::path& file : session_files(folder)) {
+  DistinctSessions distinct = distinct_sessions(session_files(folder));
+  sorted.copies = std::move(distinct.copies);
+  for (const fs::path& file : distinct.files) {
     const record::SessionReader reader(file);
     (is_declined(reader)   ? sorted.declined
      : reader.info().pilot ? sorted.pilots
@@ -197,6 +201,25 @@ std::string remark_on_consent(const std::vector<fs::path>& files) {
                    names_of(by_experimenter));
 }
 
+/// Files of one session of a participant that were recorded at different times.
+std::string remark_on_repeated(const std::vector<fs::path>& files) {
+  std::map<std::pair<std::string, std::uint64_t>, std::vector<fs::path>> sessions;
+  for (const fs::path& file : files) {
+    const record::SessionInfo info = record::SessionReader(file).info();
+    sessions[{info.subject, info.session}].push_back(file);
+  }
+  std::vector<std::string> repeated;
+  for (const auto& [session, own] : sessions) {
+    if (own.size() > 1) {
+      repeated.push_back(
+          fmt::format("{} session {}: {}", session.first, session.second, names_of(own)));
+    }
+  }
+  return repeated.empty() ? ""
+                          : fmt::format("Recorded more than once, and all of it analysed: {}.",
+                                        fmt::join(repeated, "; "));
+}
+
 std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
   if (pilots == Pilots::kAlone) {
     return "These are pilot sessions, not the study.";
@@ -207,6 +230,43 @@ std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
 }
 
 }  // namespace
+
+DistinctSessions distinct_sessions(const std::vector<fs::path>& files) {
+  struct Found {
+    std::size_t file;  // that stays
+    std::size_t passes;
+  };
+  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t, std::string>, Found> sessions;
+  std::vector<std::size_t> copy_of(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const record::SessionReader reader(files[i]);
+    const record::SessionInfo& info = reader.info();
+    const std::size_t passes = reader.passes().size();
+    const auto [at, is_new] = sessions.try_emplace(
+        {info.subject, info.session, info.seed, info.start_utc}, Found{i, passes});
+    const auto length = [&](std::size_t file) { return files[file].filename().string().size(); };
+    if (passes > at->second.passes ||
+        (passes == at->second.passes && length(i) < length(at->second.file))) {
+      copy_of[at->second.file] = i;
+      at->second = {i, passes};
+    }
+    copy_of[i] = at->second.file;
+  }
+  DistinctSessions distinct;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    std::size_t kept = i;
+    while (copy_of[kept] != kept) {
+      kept = copy_of[kept];
+    }
+    if (kept == i) {
+      distinct.files.push_back(files[i]);
+    } else {
+      distinct.copies.push_back(
+          fmt::format("{} (of {})", files[i].filename().string(), files[kept].filename().string()));
+    }
+  }
+  return distinct;
+}
 
 bool is_declined(const record::SessionReader& reader) {
   const auto answers = reader.rows<record::AnswerRow>();
@@ -245,6 +305,14 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
   study.files = taken(sorted, folder, pilots);
   study.first = record::SessionReader(study.files.front()).info();
   if (const std::string remark = remark_on_pilots(sorted, pilots); !remark.empty()) {
+    study.remarks.push_back(remark);
+  }
+  if (!sorted.copies.empty()) {
+    study.remarks.push_back(
+        fmt::format("Not analysed, because another file holds the same session: {}.",
+                    fmt::join(sorted.copies, ", ")));
+  }
+  if (const std::string remark = remark_on_repeated(study.files); !remark.empty()) {
     study.remarks.push_back(remark);
   }
   if (!sorted.declined.empty()) {

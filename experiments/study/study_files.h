@@ -20,7 +20,17 @@ namespace haptrial::experiments {
 /// Pilots are tried before a study and are no part of it: never analysed together with it.
 enum class Pilots { kLeftOut, kAlone };
 
-/// The session files of a folder that `pilots` asks for, sorted by name.
+/// Files of different sessions.
+struct DistinctSessions {
+  std::vector<std::filesystem::path> files;
+  std::vector<std::string> copies;  // "S01 copy.h5 (of S01.h5)", for a sentence
+};
+
+/// Leaves out files whose session is also in another one: a copy would count its trials twice. The
+/// file with the most passes stays, of equal ones that with the shortest name.
+DistinctSessions distinct_sessions(const std::vector<std::filesystem::path>& files);
+
+/// The session files of a folder that `pilots` asks for, without copies, sorted by name.
 /// @throws InputError when there are none.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder, Pilots pilots);
 

@@ -10,6 +10,7 @@
 #include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/procedure_setup.h"
+#include "experiments/study/study_files.h"
 #include "experiments/study/study_run.h"
 
 namespace haptrial::experiments {
@@ -42,7 +43,7 @@ void ExpertSessions::add(const fs::path& file) {
 
 void ExpertSessions::add_study(const fs::path& folder) {
   const std::size_t before = procedures_.size();
-  for (const fs::path& file : session_files(folder)) {
+  for (const fs::path& file : distinct_sessions(session_files(folder)).files) {
     const record::SessionReader reader(file);
     const record::SessionInfo& info = reader.info();
     if (info.pilot || !record::drills(reader)) {
