@@ -6,7 +6,6 @@
 #include <chrono>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -21,16 +20,14 @@ namespace fs = std::filesystem;
 
 void refuse_twins(const std::vector<ExportSession>& sessions) {
   std::set<fs::path> seen;
-  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t, std::string>, fs::path> begun;
+  std::map<record::SessionInfo::Identity, fs::path> begun;
   for (const auto& session : sessions) {
     std::error_code error;
     if (!seen.insert(fs::canonical(session.file, error)).second) {
       throw InputError(
           fmt::format("{}: is given twice; give each session once", session.file.string()));
     }
-    const record::SessionInfo& info = session.info;
-    const auto [twin, is_new] =
-        begun.try_emplace({info.subject, info.session, info.seed, info.start_utc}, session.file);
+    const auto [twin, is_new] = begun.try_emplace(session.info.identity(), session.file);
     if (!is_new) {
       throw InputError(fmt::format("{}: holds the same session as {}; give each session once",
                                    session.file.string(), twin->second.string()));

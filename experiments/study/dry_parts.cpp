@@ -35,10 +35,10 @@ const fs::path& begun(const fs::path& folder, const std::string& what) {
     write_whole(folder / kWhat, what);
   }
   if (file_text(folder / kWhat) != what) {
-    throw InputError(
-        fmt::format("{}: holds sessions of another definition, script, seed or program ({} says which); "
-                    "choose a new folder with --parts",
-                    folder.string(), kWhat));
+    throw InputError(fmt::format(
+        "{}: holds sessions of another definition, script, seed or program ({} says which); "
+        "choose a new folder with --parts",
+        folder.string(), kWhat));
   }
   return folder;
 }

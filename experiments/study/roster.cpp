@@ -98,9 +98,16 @@ class RosterMaker {
 
  private:
   void add_files(const std::vector<FoundFile>& files, bool excluded) {
+    std::map<record::SessionInfo::Identity, std::string> begun;
     for (const FoundFile& found : files) {
       check_study(found);
       const record::SessionInfo& info = found.info;
+      const auto [twin, is_new] = begun.try_emplace(info.identity(), found.session.file);
+      if (!is_new) {
+        roster_.remarks.push_back(fmt::format("Not counted, because {} holds the same session: {}.",
+                                              twin->second, found.session.file));
+        continue;
+      }
       auto at = std::find_if(roster_.persons.begin(), roster_.persons.end(), [&](const auto& each) {
         return each.subject == info.subject && each.pilot == info.pilot &&
                each.excluded == excluded;

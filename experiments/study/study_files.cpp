@@ -236,14 +236,12 @@ DistinctSessions distinct_sessions(const std::vector<fs::path>& files) {
     std::size_t file;  // that stays
     std::size_t passes;
   };
-  std::map<std::tuple<std::string, std::uint64_t, std::uint64_t, std::string>, Found> sessions;
+  std::map<record::SessionInfo::Identity, Found> sessions;
   std::vector<std::size_t> copy_of(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     const record::SessionReader reader(files[i]);
-    const record::SessionInfo& info = reader.info();
     const std::size_t passes = reader.passes().size();
-    const auto [at, is_new] = sessions.try_emplace(
-        {info.subject, info.session, info.seed, info.start_utc}, Found{i, passes});
+    const auto at = sessions.try_emplace(reader.info().identity(), Found{i, passes}).first;
     const auto length = [&](std::size_t file) { return files[file].filename().string().size(); };
     if (passes > at->second.passes ||
         (passes == at->second.passes && length(i) < length(at->second.file))) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace haptrial::record {
@@ -145,6 +146,10 @@ struct SessionInfo {
   bool pilot{false};                    // tried before the study: no part of it
   std::uint64_t session{1};             // of the participant, from 1: studies may take several days
   Participant participant{};
+
+  /// No two sessions have it in common: files with the same one are copies.
+  auto identity() const { return std::tuple(subject, session, seed, start_utc); }
+  using Identity = std::tuple<std::string, std::uint64_t, std::uint64_t, std::string>;
 };
 
 }  // namespace haptrial::record

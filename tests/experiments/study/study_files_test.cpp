@@ -56,6 +56,8 @@ TEST(StudyFilesTest, ACopyIsLeftOutOfAnAnalysisWhichSaysSo) {
       HasSubstr("Not analysed, because another file holds the same session: S01 copy.h5 (of "
                 "S01.h5)."));
   EXPECT_THAT(test::read_text(folder / "study/report.md"), HasSubstr("S01 copy.h5"));
+  const auto listed = run("haptrial roster study.toml study");
+  EXPECT_THAT(listed.output + listed.errors, HasSubstr("holds the same session"));
   const auto exported = run("haptrial export study/S02.h5 elsewhere.h5 --csv out");
   EXPECT_EQ(exported.status, 2);
   EXPECT_THAT(exported.errors, HasSubstr("elsewhere.h5: holds the same session as study/S02.h5"));
