@@ -4,7 +4,10 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <cstdio>
 #include <iterator>
+#include <numeric>
 
 #include "core/base/error.h"
 
@@ -12,6 +15,7 @@ namespace haptrial::deformable {
 namespace {
 
 constexpr std::string_view kHead = "kind,number,constant_J";
+constexpr std::string_view kShape = "# body: ";
 
 struct KindOfSpring {
   std::string_view word;
@@ -62,10 +66,40 @@ double constant_of(std::string_view line, const std::string& where, std::string_
   return value;
 }
 
+/// What a body keeps that is shifted or turned, and changes with its size or its shape.
+struct RestShape {
+  double volume{0.0};  // [m³]
+  double edges{0.0};   // length of all [m]
+
+  explicit RestShape(const SpringBody& body)
+      : volume(std::accumulate(body.volumes.begin(), body.volumes.end(), 0.0)),
+        edges(std::accumulate(body.lengths.begin(), body.lengths.end(), 0.0)) {}
+};
+
+std::string words_of(const RestShape& shape) {
+  return fmt::format("volume {:.9g} m3, all edges {:.9g} m", shape.volume, shape.edges);
+}
+
+/// @param line  behind kShape
+void check_shape(std::string_view line, const std::string& name, const SpringBody& body) {
+  constexpr double kRounding = 1e-6;
+  const RestShape own(body);
+  RestShape theirs = own;
+  const int read = std::sscanf(std::string(line).c_str(), "volume %lf m3, all edges %lf m",
+                               &theirs.volume, &theirs.edges);
+  const auto same = [](double a, double b) { return std::abs(a - b) <= kRounding * std::abs(a); };
+  if (read != 2 || !same(own.volume, theirs.volume) || !same(own.edges, theirs.edges)) {
+    throw InputError(
+        fmt::format("{}: has the constants of a body of {}, and this one is of {}; calibrate this "
+                    "one, too",
+                    name, line, words_of(own)));
+  }
+}
+
 }  // namespace
 
-std::string constants_csv(const SpringConstants& constants) {
-  std::string text = fmt::format("{}\n", kHead);
+std::string constants_csv(const SpringBody& body, const SpringConstants& constants) {
+  std::string text = fmt::format("{}{}\n{}\n", kShape, words_of(RestShape(body)), kHead);
   for (const KindOfSpring& kind : kKinds) {
     const std::vector<double>& list = constants.*kind.list;
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -78,7 +112,12 @@ std::string constants_csv(const SpringConstants& constants) {
 SpringConstants parse_constants(std::string_view text, const std::string& name,
                                 const SpringBody& body) {
   Lines lines(text);
-  if (const std::string_view head = lines.next(); head != kHead) {
+  std::string_view head = lines.next();
+  if (head.starts_with(kShape)) {
+    check_shape(head.substr(kShape.size()), name, body);
+    head = lines.next();
+  }
+  if (head != kHead) {
     throw InputError(fmt::format("{}: begins with '{}'; a table of constants begins with '{}'",
                                  name, head, kHead));
   }

@@ -254,7 +254,7 @@ void write_calibration(const DeformBody& body, const deformable::SpringBody& spr
                        const CalibrationRun& run, const std::string& folder) {
   exchange::NewFolder out(folder);
   out.write("calibration.json", json_of(body, springs, run));
-  out.write("constants.csv", deformable::constants_csv(run.springs));
+  out.write("constants.csv", deformable::constants_csv(springs, run.springs));
   out.write("evaluations.csv", evaluations_csv(run.result.steps));
   const auto place = out.place("report.html").parent_path();
   const analysis::Figure figure = error_figure(run);

@@ -232,17 +232,16 @@ TEST(TrialObjectTest, WhatABodyOfImplicitElementsTakesIsSaid) {
 
 TEST(TrialObjectTest, CalibratedConstantsAreThoseOfABodyOfTheSameCells) {
   const test::TemporaryFolder folder;
-  const auto object = [&](int cells) {
-    return read(
-        "thing = { kind = \"deformable\", shape = \"box\", size = [0.04, 0.04, 0.03], cells = " +
-        std::to_string(cells) + ", model = \"springs\", calibrated = \"constants.csv\" }");
+  const auto object = [&](int cells, const std::string& size = "[0.04, 0.04, 0.03]") {
+    return read("thing = { kind = \"deformable\", shape = \"box\", size = " + size + ", cells = " +
+                std::to_string(cells) + ", model = \"springs\", calibrated = \"constants.csv\" }");
   };
   // Constants as haptrial deform calibrate makes them for [body] block = [0.04, 0.04, 0.03].
   const deformable::SpringBody body = deformable::spring_body(
       deformable::block_body({0.04, 0.04, 0.03}, 4), 1000.0, {1.0, 2.0, 3.0});
   deformable::SpringConstants constants = body.constants;
   constants.area[7] = 0.25;
-  write_text(folder / "constants.csv", deformable::constants_csv(constants));
+  write_text(folder / "constants.csv", deformable::constants_csv(body, constants));
   std::vector<TrialObject> objects = object(4);
   EXPECT_EQ(objects.at(0).constants, nullptr);
   load_objects(objects, folder.path());
@@ -254,7 +253,10 @@ TEST(TrialObjectTest, CalibratedConstantsAreThoseOfABodyOfTheSameCells) {
   objects = object(5);
   EXPECT_THAT(test::message_of([&] { load_objects(objects, folder.path()); }),
               AllOf(HasSubstr("objects.thing: "), HasSubstr("constants.csv:"),
-                    HasSubstr("springs of length")));
+                    HasSubstr("the constants of a body of volume 4.8e-05 m3")));
+  objects = object(4, "[0.08, 0.08, 0.06]");  // as many springs
+  EXPECT_THAT(test::message_of([&] { load_objects(objects, folder.path()); }),
+              HasSubstr("calibrate this one, too"));
 }
 
 TEST(TrialObjectTest, ABodyIsSeenAsItIsPressedUnlessItIsToBeSeenAtRest) {
