@@ -458,6 +458,13 @@ TEST_F(CommandTest, ASubjectWhoHasASessionIsNamedWithWhatToDo) {
   expect_bad_input(run, "P01 has an unfinished session here; add --resume, or choose another ");
 }
 
+TEST_F(CommandTest, ASubjectWhoDiffersInCapitalsAloneIsRefused) {
+  ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
+  expect_bad_input("haptrial run " + shipped() + " --device virtual --subject s01 --out " +
+                       path("study"),
+                   "--subject is 's01', and ");
+}
+
 TEST_F(CommandTest, NothingToResumeIsRefusedWithWhatIsUnfinished) {
   const std::string run = "haptrial run " + shipped() + " --subject q12 --resume --out ";
   expect_bad_input(run + path("typo"),

@@ -141,6 +141,20 @@ std::vector<EarlierSession> earlier_sessions(const RunOptions& options, const fs
   return sessions;
 }
 
+/// "p01" beside "P01" would be somebody else, who never came before.
+void refuse_other_case(const RunOptions& options, const EarlierSession& earlier) {
+  const auto same = [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == std::tolower(b);
+  };
+  const std::string& theirs = earlier.info.subject;
+  if (theirs != options.subject && std::ranges::equal(theirs, options.subject, same)) {
+    throw InputError(
+        fmt::format("--subject is '{}', and {} is of '{}'; write the same participant in the same "
+                    "way, or choose a name that differs in more than capitals",
+                    options.subject, earlier.file.string(), theirs));
+  }
+}
+
 }  // namespace
 
 void check_run_options(const RunOptions& options) {
@@ -182,7 +196,9 @@ void check_session_file(const RunOptions& options, const fs::path& file) {
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
                         const protocols::Definition& setup, const fs::path& own) {
   std::string changed;
-  for (const auto& [file, info] : earlier_sessions(options, own)) {
+  for (const EarlierSession& earlier : earlier_sessions(options, own)) {
+    refuse_other_case(options, earlier);
+    const auto& [file, info] = earlier;
     const DefinitionChanges changes =
         protocols::study_changes(protocol, info, setup.text, options.devices.front());
     if (!changes.same_study()) {
