@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "analysis/files/csv.h"
 #include "core/base/fnv.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/record/read/session_reader.h"
@@ -103,6 +105,40 @@ TEST_F(EvaluateCommandTest, WritesReportAndNumbers) {
   EXPECT_NEAR(friction["value"].get<double>(), kFriction, 0.02);
   EXPECT_LT(friction["low_95"].get<double>(), friction["high_95"].get<double>());
   EXPECT_TRUE(json["identified"]["stiffness_N_per_m"]["high_95"].is_null()) << "a rigid body";
+}
+
+/// Another program reads the in-trajectory, and its forces are judged as ours are: here it presses
+/// back by k times the depth, which is the recorded force without friction.
+TEST_F(EvaluateCommandTest, ForcesOfAnotherProgramAreJudged) {
+  const std::string line =
+      "haptrial evaluate rubbed --mesh body.obj --registered --lag 0 --renderer proxy --stiffness "
+      "500 ";
+  ASSERT_EQ(run(line + "--out out").status, 0);
+  const auto contact = analysis::CsvTable::load(folder_ / "out/contact.csv");
+  std::ofstream mine(folder_ / "mine.csv");
+  mine << "force_x_N,force_y_N,force_z_N\n";
+  std::array<std::vector<double>, 3> out, in;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out[i] = contact.numbers(contact.column(fmt::format("out_{}_m", "xyz"[i])));
+    in[i] = contact.numbers(contact.column(fmt::format("in_{}_m", "xyz"[i])));
+  }
+  for (std::size_t row = 0; row < contact.rows(); ++row) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      mine << 500.0 * (out[i][row] - in[i][row]) << (i < 2 ? "," : "\n");
+    }
+  }
+  mine.close();
+  const auto judged = run(line + "--rendered mine.csv --out judged");
+  ASSERT_EQ(judged.status, 0) << judged.errors;
+  EXPECT_THAT(judged.output, HasSubstr("\nmine "));
+  const auto json = numbers("judged");
+  ASSERT_EQ(json["other_programs"].size(), 1u);
+  EXPECT_NEAR(json["other_programs"][0]["force_error"]["root_mean_square_N"].get<double>(),
+              kFriction * std::sqrt(1.0 + 0.5 * 0.4 * 0.4), 0.01);
+  EXPECT_THAT(test::read_text(folder_ / "judged/report.html"), HasSubstr(">mine<"));
+  const auto few = run("head -5 mine.csv > few.csv; " + line + "--rendered few.csv");
+  EXPECT_EQ(few.status, 2);
+  EXPECT_THAT(few.errors, HasSubstr("few.csv: few has 4 forces; allowed: "));
 }
 
 /// Another hand on the same body, less than half as rough: its friction is not the first one's.

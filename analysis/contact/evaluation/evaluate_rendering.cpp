@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/contact/evaluation/check_body.h"
 #include "core/contact/renderer_kinds.h"
@@ -94,6 +95,20 @@ EvaluatedRendering measured_rendering(const PreparedContact& contact, const cont
   r.noticeable = noticeable_error(contact.force, r.rendered.force);
   r.ticks = tick_times(r.rendered.tick_seconds);
   return r;
+}
+
+OtherRendering measured_forces(const PreparedContact& contact, const std::string& name,
+                               std::vector<Eigen::Vector3d> forces) {
+  if (forces.size() != contact.force.size()) {
+    throw std::invalid_argument(
+        fmt::format("{} has {} forces; allowed: {}, one for each tick of the in-trajectory", name,
+                    forces.size(), contact.force.size()));
+  }
+  OtherRendering other{name, std::move(forces), {}, {}, {}};
+  other.force = force_error(contact.force, other.rendered);
+  other.bands = band_error(contact.force, other.rendered, contact.rate);
+  other.noticeable = noticeable_error(contact.force, other.rendered);
+  return other;
 }
 
 Evaluation evaluate_rendering(const ContactRecording& recording, const contact::FeltBody& body,

@@ -34,6 +34,15 @@ struct EvaluatedRendering {
   TickTimes ticks;  // [s]
 };
 
+/// Forces that another program gave for the in-trajectory, beside the recorded ones.
+struct OtherRendering {
+  std::string name;
+  std::vector<Eigen::Vector3d> rendered;  // (n) on the probe [N]
+  ForceError force;
+  BandError bands;
+  NoticeableError noticeable;
+};
+
 /// Another recording of the same body with the same probe.
 struct NamedRecording {
   std::string name;
@@ -52,6 +61,7 @@ struct Evaluation {
   std::size_t triangles{0};
   std::optional<FrictionFit> friction;         // absent where it was given, or no proxy renders
   std::vector<EvaluatedRendering> renderings;  // without friction, then with
+  std::vector<OtherRendering> others;          // of other programs
   std::optional<IdentifiedContact> identified;
   std::optional<NamedCrossFit> cross;  // with other recordings, the first is this one
   std::vector<std::string> remarks;    // sentences: what is doubtful, what was not measured
@@ -74,6 +84,11 @@ Evaluation evaluate_rendering(const ContactRecording& recording, const contact::
 void add_cross_fit(Evaluation& evaluation, const std::string& name,
                    const std::vector<NamedRecording>& others, const contact::FeltBody& body,
                    const EvaluationOptions& options);
+
+/// The metrics of another program's forces. @throws std::invalid_argument for another number of
+/// them than the in-trajectory has ticks
+OtherRendering measured_forces(const PreparedContact& contact, const std::string& name,
+                               std::vector<Eigen::Vector3d> forces);
 
 /// The metrics of one rendering. @param threshold  see EvaluationOptions
 EvaluatedRendering measured_rendering(const PreparedContact& contact, const contact::FeltBody& body,

@@ -48,6 +48,9 @@ std::string contact_csv(const Evaluation& evaluation) {
     std::ranges::replace(name, ' ', '-');
     add_names(text, name, "N");
   }
+  for (const OtherRendering& other : evaluation.others) {
+    add_names(text, other.name, "N");
+  }
   text += '\n';
   for (std::size_t i = 0; i < c.time.size(); ++i) {
     fmt::format_to(std::back_inserter(text), "{:.9g},{:d}", c.time[i], c.touching[i] ? 1 : 0);
@@ -56,6 +59,9 @@ std::string contact_csv(const Evaluation& evaluation) {
     add_numbers(text, c.force[i]);
     for (const EvaluatedRendering& rendering : evaluation.renderings) {
       add_numbers(text, rendering.rendered.force[i]);
+    }
+    for (const OtherRendering& other : evaluation.others) {
+      add_numbers(text, other.rendered[i]);
     }
     text += '\n';
   }

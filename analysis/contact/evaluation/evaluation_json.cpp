@@ -59,6 +59,30 @@ Json operations_json(const RenderedContact& r) {
   return json;
 }
 
+Json to_json(const ForceError& force, const BandError& bands) {
+  return {{"root_mean_square_N", force.root_mean_square},
+          {"mean_norm_N", force.mean_norm},
+          {"worst_N", force.worst},
+          {"mean_force_N", force.mean_force},
+          {"below_10_Hz_N", bands.slow},
+          {"10_to_100_Hz_N", bands.middle},
+          {"above_100_Hz_N", bands.fast}};
+}
+
+Json to_json(const NoticeableError& noticeable) {
+  return {{"median_thresholds", noticeable.median},
+          {"beyond_7_percent", noticeable.beyond_low},
+          {"beyond_10_percent", noticeable.beyond_high},
+          {"samples", noticeable.samples},
+          {"verdict", noticeable.verdict}};
+}
+
+Json to_json(const OtherRendering& other) {
+  return {{"name", other.name},
+          {"force_error", to_json(other.force, other.bands)},
+          {"noticeable", to_json(other.noticeable)}};
+}
+
 Json to_json(const EvaluatedRendering& r, const PreparedContact& c) {
   Json places = Json::array();
   for (const ProblemPlace& place : r.position.places) {
@@ -69,26 +93,14 @@ Json to_json(const EvaluatedRendering& r, const PreparedContact& c) {
       {"renderer", contact::name_of(r.kind)},
       {"friction", r.friction},
       {"radius_m", r.radius},
-      {"force_error",
-       {{"root_mean_square_N", r.force.root_mean_square},
-        {"mean_norm_N", r.force.mean_norm},
-        {"worst_N", r.force.worst},
-        {"mean_force_N", r.force.mean_force},
-        {"below_10_Hz_N", r.bands.slow},
-        {"10_to_100_Hz_N", r.bands.middle},
-        {"above_100_Hz_N", r.bands.fast}}},
+      {"force_error", to_json(r.force, r.bands)},
       {"position_error",
        {{"root_mean_square_m", r.position.root_mean_square},
         {"mean_norm_m", r.position.mean_norm},
         {"worst_m", r.position.worst},
         {"beyond_share", r.position.beyond_share},
         {"places", places}}},
-      {"noticeable",
-       {{"median_thresholds", r.noticeable.median},
-        {"beyond_7_percent", r.noticeable.beyond_low},
-        {"beyond_10_percent", r.noticeable.beyond_high},
-        {"samples", r.noticeable.samples},
-        {"verdict", r.noticeable.verdict}}},
+      {"noticeable", to_json(r.noticeable)},
       {"tick_s", {{"median", r.ticks.median}, {"p999", r.ticks.p999}, {"worst", r.ticks.worst}}},
       {"operations_per_tick", operations_json(r.rendered)},
       {"preparation_s", r.rendered.preparation},
@@ -142,6 +154,10 @@ std::string evaluation_json(const Evaluation& e, const EvaluationNames& names) {
   root["renderings"] = Json::array();
   for (const EvaluatedRendering& r : e.renderings) {
     root["renderings"].push_back(to_json(r, e.contact));
+  }
+  root["other_programs"] = Json::array();
+  for (const OtherRendering& other : e.others) {
+    root["other_programs"].push_back(to_json(other));
   }
   root["identified"] = e.identified ? to_json(*e.identified) : Json(nullptr);
   root["cross_fit"] = e.cross ? to_json(*e.cross) : Json(nullptr);

@@ -74,12 +74,18 @@ TextTable error_table(const Evaluation& e) {
   TextTable table{{"renderer", "root mean square (N)", "mean norm (N)", "below 10 Hz (N)",
                    "10 to 100 Hz (N)", "above 100 Hz (N)", "place, root mean square (mm)"},
                   {}};
+  const auto add = [&](const std::string& name, const ForceError& force, const BandError& bands,
+                       const std::string& place) {
+    table.rows.push_back({name, fmt::format("{:.4f}", force.root_mean_square),
+                          fmt::format("{:.4f}", force.mean_norm), fmt::format("{:.4f}", bands.slow),
+                          fmt::format("{:.4f}", bands.middle), fmt::format("{:.4f}", bands.fast),
+                          place});
+  };
   for (const EvaluatedRendering& r : e.renderings) {
-    table.rows.push_back(
-        {name_of(r), fmt::format("{:.4f}", r.force.root_mean_square),
-         fmt::format("{:.4f}", r.force.mean_norm), fmt::format("{:.4f}", r.bands.slow),
-         fmt::format("{:.4f}", r.bands.middle), fmt::format("{:.4f}", r.bands.fast),
-         fmt::format("{:.3f}", kMilli * r.position.root_mean_square)});
+    add(name_of(r), r.force, r.bands, fmt::format("{:.3f}", kMilli * r.position.root_mean_square));
+  }
+  for (const OtherRendering& other : e.others) {
+    add(other.name, other.force, other.bands, "–");
   }
   return table;
 }
@@ -192,6 +198,9 @@ std::vector<std::string> evaluation_lines(const Evaluation& e) {
   for (const EvaluatedRendering& r : e.renderings) {
     lines.push_back(fmt::format("{}: {} {} places with an error beyond the threshold.", name_of(r),
                                 r.noticeable.verdict, r.position.places.size()));
+  }
+  for (const OtherRendering& other : e.others) {
+    lines.push_back(fmt::format("{}: {}", other.name, other.noticeable.verdict));
   }
   if (e.cross) {
     lines.emplace_back();

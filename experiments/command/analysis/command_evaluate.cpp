@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -29,6 +30,7 @@ struct EvaluateOptions {
   bool duck{false};
   std::string seed{"1"};
   std::vector<std::string> recording;
+  std::vector<std::string> rendered;
   std::optional<std::string> object;
   std::optional<int> trial;
   std::vector<std::string> tested_on;
@@ -230,9 +232,31 @@ std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o) {
   return others;
 }
 
+/// Forces of another program: a row for each tick of contact.csv, which an earlier run wrote.
+evaluation::OtherRendering read_rendered(const evaluation::PreparedContact& contact,
+                                         const std::string& file) {
+  const auto table = analysis::CsvTable::load(file);
+  std::array<std::vector<double>, 3> axes;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    axes[i] = table.numbers(table.column(fmt::format("force_{}_N", "xyz"[i])));
+  }
+  std::vector<Eigen::Vector3d> forces(table.rows());
+  for (std::size_t row = 0; row < forces.size(); ++row) {
+    forces[row] = {axes[0][row], axes[1][row], axes[2][row]};
+  }
+  try {
+    return evaluation::measured_forces(contact, fs::path(file).stem().string(), std::move(forces));
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
 int evaluate_demo_study(const EvaluateOptions& o) {
   if (!o.recording.empty() || !o.mesh.empty()) {
     throw InputError("--duck is given with a recording or a mesh; it makes its own");
+  }
+  if (!o.rendered.empty()) {
+    throw InputError("--rendered needs RECORDING; --duck makes its own");
   }
   if (!o.tested_on.empty()) {
     throw InputError("--test-on needs RECORDING; --duck makes its own");
@@ -278,6 +302,9 @@ int evaluate(const EvaluateOptions& options) {
     }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", options.recording.front(), error.what()));
+  }
+  for (const std::string& file : options.rendered) {
+    found.others.push_back(read_rendered(found.contact, file));
   }
   if (!options.out.empty()) {
     evaluation::write_evaluation(found, names, options.out);
@@ -368,6 +395,10 @@ void add_evaluate(CLI::App& app, int& status) {
          "Another recording of the body with the same probe, a table, a folder or a session file, "
          "on which the "
          "friction is tested that fits RECORDING, and the other way round; may be repeated")
+      ->allow_extra_args(false);
+  sub->add_option("--rendered", o.rendered,
+                  "Forces that another program gave for the in-trajectory of contact.csv, tick by "
+                  "tick: force_x_N, force_y_N, force_z_N (.csv); may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--mesh", o.mesh, "Mesh of the body (.obj, .ply, .stl)");
   sub->add_option("--units", o.units, with_default("Unit of the mesh: m, cm or mm", o.units));
