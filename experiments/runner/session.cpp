@@ -252,10 +252,13 @@ void Session::hear_inputs() {
   }
 }
 
+/// The channels' threads outlive the record, and ask for the time until they end.
 /// @returns sentences on those that do not answer
 std::vector<std::string> Session::open_channels() {
-  return channels_.start([this] { return record_.session_time(loop_.elapsed_ns()); },
-                         next_samples(request_, channels_));
+  const auto now = [&loop = loop_, start_ns = record_.session_time(0)] {
+    return start_ns + loop.elapsed_ns();
+  };
+  return channels_.start(now, next_samples(request_, channels_));
 }
 
 std::vector<ChannelStatus> Session::channel_status() const {
