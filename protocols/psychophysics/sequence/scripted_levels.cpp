@@ -34,12 +34,13 @@ ScriptedLevels::ScriptedLevels(const ScriptPlan& plan, std::string subject, bool
 
 void ScriptedLevels::recall(const record::SessionReader& earlier) {
   recalled_ = kept_before(plan_, kScriptEvent, earlier);
-  std::map<int, std::int32_t> passes;  // the last of each trial
+  const std::vector<record::PassRow> passes = earlier.passes();
+  std::map<int, std::int32_t> last;  // pass of each trial
   for (const record::LevelRow& row : earlier.rows<record::LevelRow>()) {
-    const record::PassRow& pass = earlier.passes().at(static_cast<std::size_t>(row.pass));
+    const record::PassRow& pass = passes.at(static_cast<std::size_t>(row.pass));
     const int key = key_of(pass.trial, pass.practice);
     psychometric::Level& level = earlier_[key];
-    if (const auto [at, first] = passes.try_emplace(key, row.pass); at->second != row.pass) {
+    if (const auto [at, first] = last.try_emplace(key, row.pass); at->second != row.pass) {
       at->second = row.pass;
       level.clear();
     }

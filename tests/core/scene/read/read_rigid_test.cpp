@@ -68,9 +68,8 @@ TEST(ReadRigidTest, EveryMistakeGetsItsSentence) {
 }
 
 TEST(ReadRigidTest, KeysOfOtherRenderersAreRefused) {
-  const auto& cells = std::get<RigidObjectParameters>(
-      read_thing(kLeast + "renderer = \"voxel\"\nresolution = 32").kind);
-  EXPECT_EQ(cells.resolution, 32);
+  const auto cells = read_thing(kLeast + "renderer = \"voxel\"\nresolution = 32");
+  EXPECT_EQ(std::get<RigidObjectParameters>(cells.kind).resolution, 32);
   EXPECT_THAT(told_of_thing(kLeast + "resolution = 32"),
               HasSubstr("resolution stands beside the renderer \"proxy\", which has no cells"));
   EXPECT_THAT(told_of_thing(kLeast + "renderer = \"voxel\"\nresolution = 2"),
