@@ -145,10 +145,11 @@ TEST_F(LiveHaplyTest, AFaultStaysUntilAPersonClearsIt) {
   session.wait();
 }
 
-/// A hand that draws the burr to and fro over the bone and lets it sink in.
+/// A hand that draws the burr to and fro over the bone, lets it sink in and lifts it again, so that
+/// it cuts whenever the session begins.
 void drilling_hand(test::StandInHandle& handle, double seconds) {
   const double way = 0.004 * std::sin(2.0 * seconds);  // to the right [m]
-  const double depth = std::min(0.004 * seconds, 0.02);
+  const double depth = 0.01 * (1.0 - std::cos(2.5 * seconds));
   handle.anchor = {way, 0.0, 0.012 - depth};
   handle.buttons = 1;  // power
 }
