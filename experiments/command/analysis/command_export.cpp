@@ -39,8 +39,6 @@ struct ExportOptions {
   std::optional<int> jobs;
 };
 
-using analysis::counted;
-
 /// Session files as they are, folders as what they hold.
 std::vector<fs::path> all_files(const std::vector<std::string>& given) {
   std::vector<fs::path> files;
@@ -72,25 +70,28 @@ void export_as_bids(const ExportOptions& options, const std::vector<fs::path>& f
   ExportWatch watch(files);
   const auto done = exchange::export_bids(files, options.bids, data_set_options(options, jobs),
                                           [&](std::uint64_t samples) { watch(samples); });
-  const std::string missing = done.missing > 0 ? ", missing: " + counted(done.missing, "tick") : "";
-  fmt::print("{} of {}, {}{}\ndata set: {}\n", counted(done.sessions, "session"),
-             counted(done.subjects, "participant"), counted(done.samples, "sample"), missing,
-             options.bids);
+  const std::string missing =
+      done.missing > 0 ? ", missing: " + analysis::counted(done.missing, "tick") : "";
+  fmt::print("{} of {}, {}{}\ndata set: {}\n", analysis::counted(done.sessions, "session"),
+             analysis::counted(done.subjects, "participant"),
+             analysis::counted(done.samples, "sample"), missing, options.bids);
 }
 
 void export_as_psych_ds(const ExportOptions& options, const std::vector<fs::path>& files) {
   const auto done =
       exchange::export_psych_ds(files, options.psych_ds, data_set_options(options, 1));
-  fmt::print("{} of {}, {}\ndata set: {}\n", counted(done.sessions, "session"),
-             counted(done.subjects, "participant"), counted(done.passes, "pass"), options.psych_ds);
+  fmt::print("{} of {}, {}\ndata set: {}\n", analysis::counted(done.sessions, "session"),
+             analysis::counted(done.subjects, "participant"),
+             analysis::counted(done.passes, "pass"), options.psych_ds);
 }
 
 void export_as_xdf(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
   ExportWatch watch(files);
   const auto done = exchange::export_xdf(files, options.xdf, jobs,
                                          [&](std::uint64_t samples) { watch(samples); });
-  fmt::print("{}, {}, {}\nfiles: {}\n", counted(done.sessions, "session"),
-             counted(done.streams, "stream"), counted(done.samples, "sample"), options.xdf);
+  fmt::print("{}, {}, {}\nfiles: {}\n", analysis::counted(done.sessions, "session"),
+             analysis::counted(done.streams, "stream"), analysis::counted(done.samples, "sample"),
+             options.xdf);
 }
 
 void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& files, int jobs) {
@@ -98,8 +99,9 @@ void export_as_csv(const ExportOptions& options, const std::vector<fs::path>& fi
   const auto done = exchange::export_csv(files, options.csv,
                                          {options.samples, known_phases(), known_tables(), jobs},
                                          [&](std::uint64_t samples) { watch(samples); });
-  fmt::print("{}, {}, {}\ntables: {}\n", counted(done.sessions, "session"),
-             counted(done.passes, "pass"), counted(done.samples, "sample"), options.csv);
+  fmt::print("{}, {}, {}\ntables: {}\n", analysis::counted(done.sessions, "session"),
+             analysis::counted(done.passes, "pass"), analysis::counted(done.samples, "sample"),
+             options.csv);
 }
 
 void check_form(const ExportOptions& options) {
