@@ -9,8 +9,8 @@
 
 #include "analysis/bone_drilling/metrics/phase_span.h"
 #include "analysis/bone_drilling/phases/action.h"
-#include "analysis/bone_drilling/phases/hidden_markov.h"
 #include "analysis/statistics/base/defined.h"
+#include "analysis/statistics/base/hidden_markov.h"
 
 namespace haptrial::analysis::drilling {
 

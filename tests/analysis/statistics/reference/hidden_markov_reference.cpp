@@ -2,7 +2,7 @@
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
-#include "analysis/bone_drilling/phases/hidden_markov.h"
+#include "analysis/statistics/base/hidden_markov.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
 namespace haptrial::analysis::reference::hidden_markov_reference {

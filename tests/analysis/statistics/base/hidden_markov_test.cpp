@@ -1,5 +1,5 @@
 // Hidden Markov models against all paths of small cases, enumerated one by one.
-#include "analysis/bone_drilling/phases/hidden_markov.h"
+#include "analysis/statistics/base/hidden_markov.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/bone_drilling/phases/hidden_markov.h"
+#include "analysis/statistics/base/hidden_markov.h"
 
 #include <cmath>
 #include <limits>
