@@ -218,7 +218,7 @@ TEST_F(NerveSessionTest, AReportIsMadeAndMarkedAsSimulated) {
                           HasSubstr("SIMULATED"), HasSubstr("false alarms")));
   const auto json =
       nlohmann::json::parse(test::read_text(report.parent_path() / "statistics.json"));
-  const auto& monitor = json["nerve_monitor"];
+  const auto& monitor = json["nerve_monitor"]["tables"];
   EXPECT_EQ(monitor["events"][1]["nerve"], "drawn nerve");
   EXPECT_GT(monitor["events"][1]["bursts"].get<int>() + monitor["events"][1]["trains"].get<int>(),
             0);

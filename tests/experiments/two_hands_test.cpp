@@ -122,7 +122,7 @@ TEST_F(TwoHandsTest, TheReportTellsHeatAndBlood) {
   EXPECT_THAT(report, HasSubstr("Heat and blood (simulated)"));
   EXPECT_THAT(report, HasSubstr(fmt::format("| 1 | {:#.4g} |", field[0].hottest)));
   const auto json = nlohmann::json::parse(test::read_text(study / "statistics.json"));
-  const auto& row = json["heat_and_blood"]["procedures"][0];
+  const auto& row = json["heat_and_blood"]["tables"]["procedures"][0];
   EXPECT_EQ(row["session"], "S01.h5");
   EXPECT_DOUBLE_EQ(row["hottest_degC"], field[0].hottest);
 }
