@@ -26,8 +26,8 @@ std::vector<std::string> all_phases(const ValidityResult& result) {
 
 /// A row for each group: its mean in a quantity of every divided procedure.
 template <class Value>
-void add_rows(FindingTable& rows, const ValidityResult& result, const Finding& label,
-              const std::string& unit, const Value& value) {
+void add_means(FindingTable& rows, const ValidityResult& result, const Finding& label,
+               const std::string& unit, const Value& value) {
   ValueTable table = table_of(result.validity, result.procedures);
   for (std::size_t i = 0; i < result.procedures.size(); ++i) {
     if (!result.procedures[i].phases.empty()) {
@@ -86,14 +86,14 @@ FindingList phase_findings(const ValidityResult& result) {
   }
   FindingTable times{"times", ""};
   for (const std::string& phase : all_phases(result)) {
-    add_rows(times, result, plain_finding("phase", "phase", phase), "s",
-             [&](const std::vector<PhaseSpan>& spans) { return time_in(spans, phase); });
+    add_means(times, result, plain_finding("phase", "phase", phase), "s",
+              [&](const std::vector<PhaseSpan>& spans) { return time_in(spans, phase); });
   }
   FindingTable changes{"changes", ""};
-  add_rows(changes, result, plain_finding("quantity", "quantity", "changes of the phase"), "",
-           [](const std::vector<PhaseSpan>& spans) {
-             return static_cast<double>(phase_changes(spans));
-           });
+  add_means(changes, result, plain_finding("quantity", "quantity", "changes of the phase"), "",
+            [](const std::vector<PhaseSpan>& spans) {
+              return static_cast<double>(phase_changes(spans));
+            });
   list.tables = {times, changes, {"orders", "", orders_of(result)}};
   Document words;
   words.paragraph(

@@ -16,7 +16,7 @@ double log_sum(const Eigen::MatrixBase<Vector>& x) {
   return std::isinf(most) ? kImpossible : most + std::log((x.array() - most).exp().sum());
 }
 
-void check(const MarkovChain& chain, const Eigen::MatrixXd& emission) {
+void check_chain(const MarkovChain& chain, const Eigen::MatrixXd& emission) {
   const Eigen::Index n = chain.states();
   if (n < 1 || chain.transition.rows() != n || chain.transition.cols() != n ||
       emission.cols() != n || emission.rows() < 1) {
@@ -64,7 +64,7 @@ MarkovChain chain_of_counts(const Eigen::VectorXd& start, const Eigen::MatrixXd&
 }
 
 BestPath most_probable_path(const MarkovChain& chain, const Eigen::MatrixXd& emission) {
-  check(chain, emission);
+  check_chain(chain, emission);
   const Eigen::Index times = emission.rows();
   Eigen::VectorXd best = chain.start + emission.row(0).transpose();
   Eigen::MatrixXi from(times, chain.states());
@@ -89,7 +89,7 @@ BestPath most_probable_path(const MarkovChain& chain, const Eigen::MatrixXd& emi
 }
 
 StatePosterior state_posterior(const MarkovChain& chain, const Eigen::MatrixXd& emission) {
-  check(chain, emission);
+  check_chain(chain, emission);
   const Eigen::MatrixXd alpha = forward(chain, emission);
   const Eigen::MatrixXd beta = backward(chain, emission);
   StatePosterior result;

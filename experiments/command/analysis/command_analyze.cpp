@@ -9,7 +9,7 @@
 #include "analysis/exchange/score.h"
 #include "analysis/tutoring/link_report.h"
 #include "core/base/error.h"
-#include "experiments/command/analysis/curve_commands.h"
+#include "experiments/command/curves/curve_commands.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/plan/audit/stated_and_done.h"

@@ -76,8 +76,8 @@ void check(const SpectrumOptions& options) {
         fmt::format("--peaks is {}; allowed: 1 to {}", options.peaks, sound::Spectrum::kMaxPeaks));
   }
   if (!options.unit.empty() && options.unit != sound::kNewton && options.unit != kAcceleration) {
-    throw InputError(not_allowed("--unit", fmt::format("'{}'", options.unit),
-                                 {sound::kNewton, kAcceleration}));
+    throw InputError(
+        not_allowed("--unit", fmt::format("'{}'", options.unit), {sound::kNewton, kAcceleration}));
   }
   check_new_figure(options.picture, options.overwrite);
 }
@@ -99,9 +99,16 @@ Measured read_table(const std::string& file) {
   Measured measured;
   measured.unit = acceleration ? kAcceleration : sound::kNewton;
   measured.recording.samples.assign(values.begin(), values.end());
-  const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  std::vector<double> steps{0.0};
   for (std::size_t i = 1; i < times.size(); ++i) {
-    if (!(std::abs(times[i] - times[i - 1] - step) < kUneven * step)) {
+    steps.push_back(times[i] - times[i - 1]);
+  }
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double step = *middle;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (!(std::abs(steps[i] - step) < kUneven * step)) {
       table.refuse(i, column,
                    fmt::format("about {:.6g} s after the row before, as the others are", step));
     }
@@ -169,8 +176,8 @@ sound::PowerSpectrum spectrum_of(const sound::Recording& recording, int segment,
   }
 }
 
-void print(const Measured& measured, const sound::PowerSpectrum& power,
-           const sound::Spectrum& found) {
+void print_spectrum(const Measured& measured, const sound::PowerSpectrum& power,
+                    const sound::Spectrum& found) {
   const sound::Recording& recording = measured.recording;
   fmt::print("recording   {:.3f} s at {:.0f} Hz\n",
              static_cast<double>(recording.samples.size()) / recording.rate, recording.rate);
@@ -288,7 +295,7 @@ int spectrum(const SpectrumOptions& options) {
   const sound::Recording& recording = measured.recording;
   const sound::PowerSpectrum power = spectrum_of(recording, options.segment, options.file);
   const sound::Spectrum found = sound::find_peaks(power, {.most = options.peaks});
-  print(measured, power, found);
+  print_spectrum(measured, power, found);
   if (!options.out.empty()) {
     const sound::SpectrumTable table = table_with(options, measured.unit, found);
     WholeFile out(options.out, options.overwrite || options.add);

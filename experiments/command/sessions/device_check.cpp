@@ -145,6 +145,9 @@ Verdict judge_lateness(const realtime::ServoLoop& loop) {
                   1e-3 * late.percentile(99.9), 1e-3 * late.max(), loop.overruns(), 1e-3 * period)};
 }
 
+/// In millimetres and tenths; nothing is just below 0.
+double tenths(double metres) { return 0.1 * std::round(1e4 * metres) + 0.0; }
+
 Verdict judge_workspace(const DeviceFindings& f, const Eigen::Vector3d& reach) {
   const bool good =
       (f.lowest.array() <= -reach.array()).all() && (f.highest.array() >= reach.array()).all();
@@ -152,9 +155,9 @@ Verdict judge_workspace(const DeviceFindings& f, const Eigen::Vector3d& reach) {
       good, "workspace",
       fmt::format("x {:.1f} to {:.1f} mm, y {:.1f} to {:.1f} mm, z {:.1f} to {:.1f} mm; {:.1f}, "
                   "{:.1f} and {:.1f} mm to each side are needed",
-                  1e3 * f.lowest.x(), 1e3 * f.highest.x(), 1e3 * f.lowest.y(), 1e3 * f.highest.y(),
-                  1e3 * f.lowest.z(), 1e3 * f.highest.z(), 1e3 * reach.x(), 1e3 * reach.y(),
-                  1e3 * reach.z())};
+                  tenths(f.lowest.x()), tenths(f.highest.x()), tenths(f.lowest.y()),
+                  tenths(f.highest.y()), tenths(f.lowest.z()), tenths(f.highest.z()),
+                  1e3 * reach.x(), 1e3 * reach.y(), 1e3 * reach.z())};
 }
 
 Verdict judge_pushes(const DeviceFindings& f) {

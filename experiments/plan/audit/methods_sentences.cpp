@@ -19,7 +19,7 @@ using analysis::Document;
 using Counts = std::map<std::string, int>;
 
 /// "3 right, 1 left".
-std::string words_of(const Counts& counts) {
+std::string method_words(const Counts& counts) {
   std::vector<std::string> words;
   for (const auto& [word, count] : counts) {
     words.push_back(fmt::format("{} {}", count, word));
@@ -47,7 +47,8 @@ std::string over_people(const std::map<std::string, const MethodsSession*>& peop
     const std::string word = word_of(session->facts.info);
     ++counts[word.empty() ? "not recorded" : word];
   }
-  return counts.size() == 1 && counts.contains("not recorded") ? "not recorded" : words_of(counts);
+  return counts.size() == 1 && counts.contains("not recorded") ? "not recorded"
+                                                               : method_words(counts);
 }
 
 /// Sessions that are in the folder and not in the analysis, with the reason for each.

@@ -1,4 +1,4 @@
-#include "experiments/command/analysis/export_watch.h"
+#include "experiments/command/curves/export_watch.h"
 
 #include <fmt/format.h>
 

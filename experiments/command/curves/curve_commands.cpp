@@ -1,4 +1,4 @@
-#include "experiments/command/analysis/curve_commands.h"
+#include "experiments/command/curves/curve_commands.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,7 +13,7 @@
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/analysis/export_watch.h"
+#include "experiments/command/curves/export_watch.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/experiment.h"
