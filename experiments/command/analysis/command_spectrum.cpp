@@ -113,7 +113,7 @@ Measured read_table(const std::string& file) {
                    fmt::format("about {:.6g} s after the row before, as the others are", step));
     }
   }
-  measured.recording.rate = 1.0 / step;
+  measured.recording.rate = static_cast<double>(times.size() - 1) / (times.back() - times.front());
   return measured;
 }
 
