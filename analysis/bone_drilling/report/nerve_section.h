@@ -8,7 +8,7 @@
 
 namespace haptrial::analysis::drilling {
 
-/// What monitors found: events by nerve and condition, train time, reactions, and how well the
+/// Findings of monitors: events by nerve and condition, train time, reactions, and how well the
 /// monitor itself did. Without values where nothing was watched.
 FindingList nerve_findings(const std::vector<NerveProcedure>& procedures);
 

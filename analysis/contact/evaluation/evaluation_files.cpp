@@ -1,4 +1,4 @@
-// What others take from an evaluation: the contact tick by tick, and the object that it found.
+// Files for other programs: the contact tick by tick, and the object that an evaluation found.
 
 #include <fmt/format.h>
 

@@ -66,7 +66,7 @@ double constant_of(std::string_view line, const std::string& where, std::string_
   return value;
 }
 
-/// What a body keeps that is shifted or turned, and changes with its size or its shape.
+/// Measures of a body at rest that a shift or a turn keeps, and another size or shape changes.
 struct RestShape {
   double volume{0.0};  // [m³]
   double edges{0.0};   // length of all [m]

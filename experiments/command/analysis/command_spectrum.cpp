@@ -46,7 +46,7 @@ namespace fs = std::filesystem;
 constexpr double kSynthesized = 4.0;  // [s]
 constexpr const char* kAcceleration = "m/s2";
 
-/// What was recorded, in its unit.
+/// A recording and its unit.
 struct Measured {
   sound::Recording recording;
   std::string unit{sound::kFullScale};
