@@ -460,9 +460,9 @@ TEST_F(CommandTest, ASubjectWhoHasASessionIsNamedWithWhatToDo) {
 
 TEST_F(CommandTest, ASubjectWhoDiffersInCapitalsAloneIsRefused) {
   ASSERT_EQ(brief_study("study", "--subjects 1").status, 0);
-  expect_bad_input("haptrial run " + shipped() + " --device virtual --subject s01 --out " +
-                       path("study"),
-                   "--subject is 's01', and ");
+  expect_bad_input(
+      "haptrial run " + shipped() + " --device virtual --subject s01 --out " + path("study"),
+      "--subject is 's01', and ");
 }
 
 TEST_F(CommandTest, NothingToResumeIsRefusedWithWhatIsUnfinished) {

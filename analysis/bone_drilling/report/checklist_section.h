@@ -24,7 +24,7 @@ std::optional<double> same_points(const CheckedStudy& study, std::size_t item);
 /// Totals by group, each item, and how raters and measures agree. Without values where nobody
 /// filled in a checklist.
 FindingList checklist_findings(const CheckedStudy& study,
-                              const std::vector<ProcedureSummary>& procedures,
-                              const std::vector<std::string>& groups);
+                               const std::vector<ProcedureSummary>& procedures,
+                               const std::vector<std::string>& groups);
 
 }  // namespace haptrial::analysis::drilling

@@ -22,8 +22,8 @@ std::vector<std::string> evaluation_lines(const Evaluation& evaluation);
 /// recorded force on the probe [N] and that of every rendering.
 std::string contact_csv(const Evaluation& evaluation);
 
-/// The identified object as the table [objects.recorded] of a definition of trials. A value that the
-/// recording does not fix has a comment in its place.
+/// The identified object as the table [objects.recorded] of a definition of trials. A value that
+/// the recording does not fix has a comment in its place.
 std::string objects_toml(const Evaluation& evaluation, const EvaluationNames& names);
 
 /// "proxy", "proxy with friction 0.21".

@@ -72,12 +72,14 @@ std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& fil
     const std::string& person = reader.info().subject;
     const std::string group = group_of ? group_of(person) : std::string();
     for (const Filled& filled : filled_pages(reader)) {
-      const bool known = std::any_of(plan.pages.begin(), plan.pages.end(),
-                                     [&](const questions::Page& p) { return p.name == filled.page; });
+      const bool known =
+          std::any_of(plan.pages.begin(), plan.pages.end(),
+                      [&](const questions::Page& p) { return p.name == filled.page; });
       if (!known) {
         continue;
       }
-      for (const questions::Score& score : questions::scores_of(plan.page(filled.page), filled.answers)) {
+      for (const questions::Score& score :
+           questions::scores_of(plan.page(filled.page), filled.answers)) {
         scores.push_back({person, group, filled.page, filled.when, score.name, score.value});
       }
     }
