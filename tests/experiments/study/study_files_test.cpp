@@ -63,5 +63,18 @@ TEST(StudyFilesTest, ACopyIsLeftOutOfAnAnalysisWhichSaysSo) {
   EXPECT_THAT(exported.errors, HasSubstr("elsewhere.h5: holds the same session as study/S02.h5"));
 }
 
+TEST(StudyFilesTest, ASessionThatWasRecordedTwiceIsSaid) {
+  const test::TemporaryFolder folder;
+  const auto done = test::run_command(
+      "set -e\ncd '" + folder.path().string() +
+      "'\nhaptrial new study.toml --from stiffness_discrimination\n"
+      "haptrial dry-run study.toml --subjects 1 --trials 8 --out study\nsleep 1.1\n"
+      "haptrial dry-run study.toml --subjects 1 --trials 8 --out later\n"
+      "cp later/S01.h5 study/later.h5\nhaptrial analyze study");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("Recorded more than once, and all of it analysed: S01 session "
+                                     "1: S01.h5, later.h5."));
+}
+
 }  // namespace
 }  // namespace haptrial::experiments::study_files_test
