@@ -191,9 +191,8 @@ TEST_F(SoftExamCommandTest, TheProgramsOfThePageSitIt) {
   expect_kept("vertex block descent", {"free-block"});
 }
 
-/// One tetrahedron, its base fixed or free: MuJoCo, by its package of npm, answers with the force
-/// of Saint Venant and Kirchhoff's law where the tool pulls the top, and flies by Newton's where
-/// forces act on it.
+/// One tetrahedron of MuJoCo, by its package of npm. Pulled at the top it answers with the force of
+/// the Saint Venant-Kirchhoff law; pushed while it is free it moves by Newton's second law.
 TEST_F(SoftExamCommandTest, MujocoAnswersByThePipe) {
   const auto package =
       test::run_command("/usr/bin/python3 " + (kSource / "tests/support").string() +
