@@ -98,14 +98,19 @@ class RosterMaker {
 
  private:
   void add_files(const std::vector<FoundFile>& files, bool excluded) {
-    std::map<record::SessionInfo::Identity, std::string> begun;
+    std::vector<SessionCopy> copies;
     for (const FoundFile& found : files) {
+      copies.push_back({found.info.identity(), static_cast<std::size_t>(found.session.trials),
+                        found.session.file});
+    }
+    const std::vector<std::size_t> stay = files_that_stay(copies);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const FoundFile& found = files[i];
       check_study(found);
       const record::SessionInfo& info = found.info;
-      const auto [twin, is_new] = begun.try_emplace(info.identity(), found.session.file);
-      if (!is_new) {
+      if (stay[i] != i) {
         roster_.remarks.push_back(fmt::format("Not counted, because {} holds the same session: {}.",
-                                              twin->second, found.session.file));
+                                              files[stay[i]].session.file, found.session.file));
         continue;
       }
       auto at = std::find_if(roster_.persons.begin(), roster_.persons.end(), [&](const auto& each) {

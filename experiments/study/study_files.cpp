@@ -231,36 +231,35 @@ std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
 
 }  // namespace
 
-DistinctSessions distinct_sessions(const std::vector<fs::path>& files) {
-  struct Found {
-    std::size_t file;  // that stays
-    std::size_t passes;
+std::vector<std::size_t> files_that_stay(const std::vector<SessionCopy>& files) {
+  const auto rank = [&](std::size_t i) {
+    return std::pair(files[i].passes, -static_cast<std::ptrdiff_t>(files[i].name.size()));
   };
-  std::map<record::SessionInfo::Identity, Found> sessions;
-  std::vector<std::size_t> copy_of(files.size());
+  std::map<record::SessionInfo::Identity, std::size_t> best;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const record::SessionReader reader(files[i]);
-    const std::size_t passes = reader.passes().size();
-    const auto at = sessions.try_emplace(reader.info().identity(), Found{i, passes}).first;
-    const auto length = [&](std::size_t file) { return files[file].filename().string().size(); };
-    if (passes > at->second.passes ||
-        (passes == at->second.passes && length(i) < length(at->second.file))) {
-      copy_of[at->second.file] = i;
-      at->second = {i, passes};
-    }
-    copy_of[i] = at->second.file;
+    std::size_t& stays = best.try_emplace(files[i].identity, i).first->second;
+    stays = rank(i) > rank(stays) ? i : stays;
   }
+  std::vector<std::size_t> stay;
+  for (const SessionCopy& file : files) {
+    stay.push_back(best.at(file.identity));
+  }
+  return stay;
+}
+
+DistinctSessions distinct_sessions(const std::vector<fs::path>& files) {
+  std::vector<SessionCopy> all;
+  for (const fs::path& file : files) {
+    const record::SessionReader reader(file);
+    all.push_back({reader.info().identity(), reader.passes().size(), file.filename().string()});
+  }
+  const std::vector<std::size_t> stay = files_that_stay(all);
   DistinctSessions distinct;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    std::size_t kept = i;
-    while (copy_of[kept] != kept) {
-      kept = copy_of[kept];
-    }
-    if (kept == i) {
+    if (stay[i] == i) {
       distinct.files.push_back(files[i]);
     } else {
-      distinct.copies.push_back(
-          fmt::format("{} (of {})", files[i].filename().string(), files[kept].filename().string()));
+      distinct.copies.push_back(fmt::format("{} (of {})", all[i].name, all[stay[i]].name));
     }
   }
   return distinct;

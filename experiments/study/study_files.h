@@ -20,14 +20,24 @@ namespace haptrial::experiments {
 /// Pilots are tried before a study and are no part of it: never analysed together with it.
 enum class Pilots { kLeftOut, kAlone };
 
+/// A file of a session, among which copies are looked for.
+struct SessionCopy {
+  record::SessionInfo::Identity identity;
+  std::size_t passes{0};
+  std::string name;
+};
+
+/// For each file the one that stays of those with its session: with the most passes, of equal ones
+/// that with the shortest name.
+std::vector<std::size_t> files_that_stay(const std::vector<SessionCopy>& files);
+
 /// Files of different sessions.
 struct DistinctSessions {
   std::vector<std::filesystem::path> files;
   std::vector<std::string> copies;  // "S01 copy.h5 (of S01.h5)", for a sentence
 };
 
-/// Leaves out files whose session is also in another one: a copy would count its trials twice. The
-/// file with the most passes stays, of equal ones that with the shortest name.
+/// Leaves out files whose session is also in another one: a copy would count its trials twice.
 DistinctSessions distinct_sessions(const std::vector<std::filesystem::path>& files);
 
 /// The session files of a folder that `pilots` asks for, without copies, sorted by name.

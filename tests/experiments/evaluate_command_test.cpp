@@ -139,6 +139,10 @@ TEST_F(EvaluateCommandTest, ForcesOfAnotherProgramAreJudged) {
   const auto few = run("head -5 mine.csv > few.csv; " + line + "--rendered few.csv");
   EXPECT_EQ(few.status, 2);
   EXPECT_THAT(few.errors, HasSubstr("few.csv: few has 4 forces; allowed: "));
+  const auto same = run("mkdir other; cp mine.csv other/mine.csv; " + line +
+                        "--rendered mine.csv --rendered other/mine.csv");
+  EXPECT_EQ(same.status, 2);
+  EXPECT_THAT(same.errors, HasSubstr("other/mine.csv: another file of --rendered is called mine"));
 }
 
 /// Another hand on the same body, less than half as rough: its friction is not the first one's.

@@ -7,13 +7,15 @@
 #include <iterator>
 
 #include "analysis/contact/evaluation/evaluation_report.h"
+#include "analysis/files/delimited.h"
+#include "core/base/toml_text.h"
 
 namespace haptrial::evaluation {
 namespace {
 
-void add_names(std::string& header, const std::string& what, const char* unit) {
+void add_names(exchange::RowText& header, const std::string& what, const char* unit) {
   for (const char axis : {'x', 'y', 'z'}) {
-    fmt::format_to(std::back_inserter(header), ",{}_{}_{}", what, axis, unit);
+    header.add(fmt::format("{}_{}_{}", what, axis, unit));
   }
 }
 
@@ -39,19 +41,21 @@ const Interval* address(const std::optional<Interval>& i) { return i ? &*i : nul
 
 std::string contact_csv(const Evaluation& evaluation) {
   const PreparedContact& c = evaluation.contact;
-  std::string text = "time_s,touching";
-  add_names(text, "out", "m");
-  add_names(text, "in", "m");
-  add_names(text, "force", "N");
+  std::string text;
+  exchange::RowText header(text, exchange::Delimited::kCsv);
+  header.add("time_s").add("touching");
+  add_names(header, "out", "m");
+  add_names(header, "in", "m");
+  add_names(header, "force", "N");
   for (const EvaluatedRendering& rendering : evaluation.renderings) {
     std::string name = name_of(rendering);
     std::ranges::replace(name, ' ', '-');
-    add_names(text, name, "N");
+    add_names(header, name, "N");
   }
   for (const OtherRendering& other : evaluation.others) {
-    add_names(text, other.name, "N");
+    add_names(header, other.name, "N");
   }
-  text += '\n';
+  header.end();
   for (std::size_t i = 0; i < c.time.size(); ++i) {
     fmt::format_to(std::back_inserter(text), "{:.9g},{:d}", c.time[i], c.touching[i] ? 1 : 0);
     add_numbers(text, c.out[i]);
@@ -71,8 +75,8 @@ std::string contact_csv(const Evaluation& evaluation) {
 std::string objects_toml(const Evaluation& evaluation, const EvaluationNames& names) {
   std::string text = fmt::format(
       "# {}{} on {}, as haptrial evaluate found it; intervals hold 95 %.\n[objects.recorded]\n"
-      "mesh = \"{}\"  # put it beside the definition\nscale = {:g}\n",
-      names.simulated ? "SIMULATED: " : "", names.recording, names.mesh, names.mesh,
+      "mesh = {}  # put it beside the definition\nscale = {:g}\n",
+      names.simulated ? "SIMULATED: " : "", names.recording, names.mesh, toml_text(names.mesh),
       names.mesh_unit);
   if (!evaluation.identified) {
     return text + "# the recording tells neither stiffness nor friction\n";

@@ -11,28 +11,12 @@
 
 #include "analysis/psychophysics/exchange/field_text.h"
 #include "core/base/error.h"
+#include "core/base/toml_text.h"
 
 namespace haptrial::analysis::trials {
 namespace {
 
 constexpr std::size_t kMostChoices = 64;
-
-/// A text in TOML's quotes.
-std::string toml_text(std::string_view text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (byte < ' ' || byte == 0x7f) {
-      result += fmt::format("\\u{:04X}", byte);
-    } else {
-      result += c;
-    }
-  }
-  return result + '"';
-}
 
 bool takes_numbers(const std::string& kind) { return kind == "magnitude" || kind == "adjustment"; }
 

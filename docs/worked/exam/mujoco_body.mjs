@@ -95,6 +95,10 @@ class SoftBody {
     }
     this.led = this.vertices.filter((v) => v.marker === 2);
   }
+  close() {
+    this.data.delete();
+    this.model.delete();
+  }
   start() {
     this.mujoco.mj_resetData(this.model, this.data);
     this.tool = [0, 0, 0];
@@ -126,6 +130,10 @@ class SoftBody {
   }
 }
 
+if (process.argv.length !== 3) {
+  console.error('usage: node mujoco_body.mjs FOLDER-OF-THE-PACKAGE-MUJOCO');
+  process.exit(2);
+}
 const { default: load } = await import(pathToFileURL(`${process.argv[2]}/mujoco.js`));
 const mujoco = await load();
 let body;
@@ -133,6 +141,7 @@ let first;
 for await (const line of createInterface({ input: process.stdin })) {
   const [word, ...rest] = line.split(' ');
   if (word === 'body') {  // body soft rate HZ FILE
+    body?.close();
     body = new SoftBody(mujoco, line.split(' ').slice(4).join(' '), Number(rest[2]));
     console.log('ready');
   } else if (word === 'start') {  // start X Y Z

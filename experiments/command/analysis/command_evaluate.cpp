@@ -232,22 +232,41 @@ std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o) {
   return others;
 }
 
-/// Forces of another program: a row for each tick of contact.csv, which an earlier run wrote.
-evaluation::OtherRendering read_rendered(const evaluation::PreparedContact& contact,
-                                         const std::string& file) {
-  const auto table = analysis::CsvTable::load(file);
-  std::array<std::vector<double>, 3> axes;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    axes[i] = table.numbers(table.column(fmt::format("force_{}_N", "xyz"[i])));
+/// Forces of another program and its name: a row for each tick of contact.csv, which an earlier run
+/// wrote.
+struct Rendered {
+  std::string file;
+  std::string name;
+  std::vector<Eigen::Vector3d> forces;
+};
+
+std::vector<Rendered> read_rendered(const std::vector<std::string>& files) {
+  std::vector<Rendered> all;
+  for (const std::string& file : files) {
+    Rendered one{file, fs::path(file).stem().string(), {}};
+    if (std::ranges::find(all, one.name, &Rendered::name) != all.end()) {
+      throw InputError(fmt::format(
+          "{}: another file of --rendered is called {}, too; give each a name of its own", file,
+          one.name));
+    }
+    const auto table = analysis::CsvTable::load(file);
+    std::array<std::vector<double>, 3> axes;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      axes[i] = table.numbers(table.column(fmt::format("force_{}_N", "xyz"[i])));
+    }
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      one.forces.emplace_back(axes[0][row], axes[1][row], axes[2][row]);
+    }
+    all.push_back(std::move(one));
   }
-  std::vector<Eigen::Vector3d> forces(table.rows());
-  for (std::size_t row = 0; row < forces.size(); ++row) {
-    forces[row] = {axes[0][row], axes[1][row], axes[2][row]};
-  }
+  return all;
+}
+
+evaluation::OtherRendering judged(const evaluation::PreparedContact& contact, Rendered rendered) {
   try {
-    return evaluation::measured_forces(contact, fs::path(file).stem().string(), std::move(forces));
+    return evaluation::measured_forces(contact, rendered.name, std::move(rendered.forces));
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", file, error.what()));
+    throw InputError(fmt::format("{}: {}", rendered.file, error.what()));
   }
 }
 
@@ -288,6 +307,7 @@ int evaluate(const EvaluateOptions& options) {
   const double unit = unit_of(options.units);
   const auto [recording, names] = read_given(options, chain.prepare);
   const std::vector<evaluation::NamedRecording> others = read_others(options);
+  std::vector<Rendered> rendered = read_rendered(options.rendered);
   const contact::FeltBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
   try {
     evaluation::check_body(body);
@@ -303,8 +323,8 @@ int evaluate(const EvaluateOptions& options) {
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", options.recording.front(), error.what()));
   }
-  for (const std::string& file : options.rendered) {
-    found.others.push_back(read_rendered(found.contact, file));
+  for (Rendered& each : rendered) {
+    found.others.push_back(judged(found.contact, std::move(each)));
   }
   if (!options.out.empty()) {
     evaluation::write_evaluation(found, names, options.out);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/base/toml_text.h"
 #include "core/base/whole_file.h"
 #include "core/bone/data/anatomy.h"
 #include "core/bone/data/bone_summary.h"
@@ -16,16 +17,6 @@ namespace {
 struct BoneStructuresOptions : BoneInput, BoneOutput {
   std::string table;
 };
-
-/// As a text of TOML.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const bool control = static_cast<unsigned char>(c) < 0x20;
-    result += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, control ? ' ' : c);
-  }
-  return result + "\"";
-}
 
 void list(const bone::BoneModel& model, const bone::BoneSummary& summary) {
   fmt::print("{:5} {:28} {:>10} {:>11}  {}\n", "label", "structure", "voxels", "mm3", "name");
@@ -52,7 +43,7 @@ std::string table_of(const bone::BoneModel& model, const bone::BoneSummary& summ
   for (const bone::StructureSummary& one : summary.structures) {
     const std::string& name = model.structures[one.label].name;
     if (!bone::is_known_structure(name)) {
-      table += fmt::format("{} = {}\n", quoted(name), quoted(bone::nearest_structure(name)));
+      table += fmt::format("{} = {}\n", toml_text(name), toml_text(bone::nearest_structure(name)));
     }
   }
   return table;
