@@ -109,7 +109,8 @@ std::unique_ptr<protocols::Trials> trials_of(const SessionRequest& request,
                       session = place.session](int trial) {
       return d.is_led(session, {trial, participant, protocols::group_of(d.groups, participant)});
     };
-    return protocols::tutored(std::move(trials), options, *request.tutor, led);
+    return protocols::tutored(std::move(trials), options, *request.tutor, request.definition->text,
+                              led);
   }
   return request.link ? protocols::linked(std::move(trials), options, *request.link, place)
                       : std::move(trials);

@@ -62,6 +62,8 @@ ModelMotion read_model(const TutorChoice& choice) {
   ModelMotion motion;
   motion.rate = reader.info().rate;
   motion.subject = reader.info().subject;
+  motion.definition = reader.info().definition;
+  motion.definition_name = reader.info().definition_name;
   std::set<int> known;
   for (const record::PassRow& pass : reader.passes()) {
     if (pass.status != record::PassStatus::kCompleted || pass.practice) {

@@ -23,6 +23,8 @@ struct ModelMotion {
   double rate{1000.0};  // [Hz]
   int trial{0};
   std::string subject;                   // who did it
+  std::string definition;                // whole text of the definition that it was done by
+  std::string definition_name;           // its file
   std::vector<tutoring::Partner> ticks;  // not empty
   double duration() const noexcept { return static_cast<double>(ticks.size() - 1) / rate; }
 };

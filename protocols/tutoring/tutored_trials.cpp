@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/record/rows/tutoring_row.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/tutoring/tutored_pass.h"
@@ -16,13 +17,19 @@ namespace {
 class TutoredTrials final : public Trials {
  public:
   TutoredTrials(std::unique_ptr<Trials> inner, const TutoringOptions& options,
-                const TutorChoice& tutor, std::function<bool(int)> led)
+                const TutorChoice& tutor, const std::string& definition,
+                std::function<bool(int)> led)
       : inner_(std::move(inner)),
         led_(std::move(led)),
         options_(options),
         from_(tutor.from),
         file_(tutor.file.filename().string()),
-        motion_(read_model(tutor)) {
+        motion_(read_model(tutor)),
+        other_(motion_.definition == definition
+                   ? std::string()
+                   : fmt::format("; recorded by another definition, {}: whether its places and "
+                                 "objects are the same is not checked",
+                                 motion_.definition_name)) {
     for (const record::TableDescription* table : inner_->tables()) {
       if (table == &record::table_of<record::TutoringRow>()) {
         throw InputError("--tutor: conditions of the definition have an expert of their own");
@@ -79,8 +86,8 @@ class TutoredTrials final : public Trials {
   std::string why_given_up() const override { return inner_->why_given_up(); }
   std::vector<std::string> notices() const override {
     std::vector<std::string> all = inner_->notices();
-    all.push_back(fmt::format("led by trial {} of {} ({}), {:.1f} s", motion_.trial,
-                              motion_.subject, file_, motion_.duration() - from_));
+    all.push_back(fmt::format("led by trial {} of {} ({}), {:.1f} s{}", motion_.trial,
+                              motion_.subject, file_, motion_.duration() - from_, other_));
     return all;
   }
 
@@ -91,6 +98,7 @@ class TutoredTrials final : public Trials {
   double from_;
   std::string file_;
   ModelMotion motion_;
+  std::string other_;  // what is to be said of a recording by another definition
   TutoringLog log_;
   std::optional<TutoredPass> pass_;
 };
@@ -98,8 +106,10 @@ class TutoredTrials final : public Trials {
 }  // namespace
 
 std::unique_ptr<Trials> tutored(std::unique_ptr<Trials> trials, const TutoringOptions& options,
-                                const TutorChoice& tutor, std::function<bool(int)> led) {
-  return std::make_unique<TutoredTrials>(std::move(trials), options, tutor, std::move(led));
+                                const TutorChoice& tutor, const std::string& definition,
+                                std::function<bool(int)> led) {
+  return std::make_unique<TutoredTrials>(std::move(trials), options, tutor, definition,
+                                         std::move(led));
 }
 
 }  // namespace haptrial::protocols

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "protocols/definition/tutoring_options.h"
 #include "protocols/interface/trials.h"
@@ -14,8 +15,10 @@ namespace haptrial::protocols {
 /// tutor's by a spring of low gain, and the tutor's forces are played. What the own pass would give
 /// is faded out meanwhile, and comes back at the end of the recording. What the tutor did is
 /// recorded in /tutoring, tick by tick.
+/// @param definition  the session's, as text: a recording by another one is said in a notice
 /// @param led  whether a trial is led, by its number; practice has 0
 std::unique_ptr<Trials> tutored(std::unique_ptr<Trials> trials, const TutoringOptions& options,
-                                const TutorChoice& tutor, std::function<bool(int trial)> led);
+                                const TutorChoice& tutor, const std::string& definition,
+                                std::function<bool(int trial)> led);
 
 }  // namespace haptrial::protocols

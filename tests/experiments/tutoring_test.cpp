@@ -19,9 +19,10 @@ namespace {
 
 using test::run_command;
 using testing::HasSubstr;
+using testing::Not;
 
-const std::string kDefinition =
-    std::string(HAPTRIAL_SOURCE_DIR) + "/experiments/force_training.toml";
+const std::string kExperiments = std::string(HAPTRIAL_SOURCE_DIR) + "/experiments";
+const std::string kDefinition = kExperiments + "/force_training.toml";
 
 std::vector<record::Sample> run_of_first_pass(const record::SessionReader& reader) {
   const record::PassRow pass = reader.passes().front();
@@ -183,6 +184,31 @@ TEST(TutoringTest, WhatCannotLeadIsSaidBeforeAFolderIsMade) {
       0);
   EXPECT_THAT(refused(tutor + "/S01.h5:5"), HasSubstr("trial 5; allowed: 1"));
   EXPECT_THAT(refused(tutor + "/S01.h5:1@1000"), HasSubstr("1000 s is not in it"));
+  const std::string other = (folder / "other").string();
+  ASSERT_EQ(run_command("haptrial dry-run " + kExperiments +
+                        "/stiffness_discrimination.toml --subjects 1 --trials 1 --out " + other)
+                .status,
+            0);
+  EXPECT_THAT(refused(other + "/S01.h5:1"),
+              HasSubstr("is a session of protocol 'trials'; allowed: one of 'force_training'"));
+}
+
+TEST(TutoringTest, ARecordingByAnotherDefinitionIsSaid) {
+  const test::TemporaryFolder folder;
+  const std::string tutor = (folder / "tutor").string();
+  const std::string one = kDefinition + " --subjects 1 --trials 1 --out ";
+  ASSERT_EQ(run_command("haptrial dry-run " + one + tutor).status, 0);
+  const auto notices = [&](const std::string& name, const std::string& options) {
+    const std::string out = (folder / name).string();
+    const std::string led = " --tutor " + tutor + "/S01.h5:1" + options;
+    EXPECT_EQ(run_command("haptrial dry-run " + one + out + led).status, 0);
+    return run_command("haptrial info " + out + "/S01.h5").output;
+  };
+  const std::string own = notices("own", "");
+  EXPECT_THAT(own, HasSubstr("led by trial 1 of S01 (S01.h5)"));
+  EXPECT_THAT(own, Not(HasSubstr("another definition")));
+  EXPECT_THAT(notices("other", " --set tutoring.stiffness=60"),
+              HasSubstr("recorded by another definition, force_training.toml"));
 }
 
 }  // namespace

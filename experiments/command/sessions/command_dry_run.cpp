@@ -12,6 +12,7 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
+#include "experiments/command/sessions/run_checks.h"
 #include "experiments/command/sessions/set_option.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/interrupt.h"
@@ -140,8 +141,7 @@ int dry_run(const DryRunOptions& options) {
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
   dry.session = options.session ? checked_session(*options.session, setup) : 0;
   if (!options.tutor.empty()) {
-    dry.tutor = protocols::read_tutor_choice(options.tutor);
-    protocols::read_model(*dry.tutor);  // before a folder is made
+    dry.tutor = checked_tutor(options.tutor, experiment.study->protocol());
   }
   if (options.taught && !options.tutor.empty()) {
     throw InputError("--tutor and --taught are both given; leave out one of them");

@@ -246,8 +246,7 @@ RunEnd run_command(const RunOptions& asked) {
       options.trials ? checked_number("--trials", *options.trials, 1, setup.design.trials) : 0;
   request.session = options.session.value_or(1);
   if (!options.tutor.empty()) {
-    request.tutor = protocols::read_tutor_choice(options.tutor);
-    protocols::read_model(*request.tutor);  // before a folder is made
+    request.tutor = checked_tutor(options.tutor, experiment.study->protocol());
   }
   request.file = session_file(options, setup);
   check_session_file(options, request.file);

@@ -13,6 +13,7 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/runner/devices.h"
+#include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
 #include "protocols/interface/protocol.h"
@@ -246,6 +247,19 @@ void check_recording(const RunOptions& options, const protocols::Protocol& proto
                     *file, sentence_of(changes.binding)));
   }
   protocol.check_replayed(setup, reader);
+}
+
+protocols::TutorChoice checked_tutor(const std::string& text, const protocols::Protocol& protocol) {
+  protocols::TutorChoice tutor = protocols::read_tutor_choice(text);
+  protocols::read_model(tutor);
+  const protocols::Protocol& recorded = protocol_of(record::SessionReader(tutor.file).info());
+  if (&recorded != &protocol) {
+    throw InputError(
+        fmt::format("--tutor: {} is a session of protocol '{}'; allowed: one of '{}', the protocol "
+                    "of the definition",
+                    tutor.file.string(), recorded.name(), protocol.name()));
+  }
+  return tutor;
 }
 
 void check_pages(const RunOptions& options, const protocols::Definition& setup) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "experiments/command/sessions/run_options.h"
+#include "protocols/tutoring/model_motion.h"
 
 namespace haptrial::protocols {
 struct Definition;
@@ -31,6 +32,11 @@ std::string check_study(const RunOptions& options, const protocols::Protocol& pr
 /// subject, seed or definition, or more devices are named than the definition drives.
 void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
                      const protocols::Definition& setup);
+
+/// Reads --tutor of `run` and `dry-run`, so that a recording that can't lead is refused before a
+/// folder is made.
+/// @throws InputError where it holds no such run, or is a session of another protocol
+protocols::TutorChoice checked_tutor(const std::string& text, const protocols::Protocol& protocol);
 
 /// @throws InputError if nobody could read or answer the definition's pages.
 void check_pages(const RunOptions& options, const protocols::Definition& setup);
